@@ -1,0 +1,38 @@
+//! Profiles: functions along a primitive that multiply its field.
+use serde::{Deserialize, Serialize};
+
+/// A wave of one parameter, with values in [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Wave {
+    /// 1 everywhere.
+    One,
+    /// The parameter itself, clamped to [0, 1].
+    X,
+    /// `(1 + sin x)/2`, x in radians.
+    Sin,
+    /// `(1 + cos x)/2`.
+    Cos,
+    /// `sin² x`.
+    Sin2,
+    /// `cos² x`.
+    Cos2,
+    /// The fraction of x.
+    Saw,
+    /// `1 − |2·fract(x) − 1|`.
+    Hat,
+    /// 0 for fract(x) < ½, else 1.
+    Step,
+}
+
+/// `times · (low + (high−low)·fu(scale_u·u)·fv(scale_v·v))` with u, v in [0, 1] along the primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Profile {
+    /// Waves of u and v.
+    pub waves: [Wave; 2],
+    /// Factors on u and v before the waves.
+    pub scale: [f64; 2],
+    /// The value where the waves' product is 0 and where it is 1.
+    pub bounds: [f64; 2],
+    /// A factor on the whole.
+    pub times: f64,
+}

@@ -1,0 +1,96 @@
+//! Shapes placed in the world.
+//!
+//! All coordinates are world coordinates: objects and their transforms are already applied.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// One shape made of one material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Element {
+    /// The geometry.
+    pub shape: Shape,
+    /// Index into [`crate::Scene::materials`].
+    pub material: usize,
+    /// Where in the text this element was written.
+    pub origin: Origin,
+}
+
+/// Where an element comes from: a byte range of one of the project's files.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Origin {
+    /// Index of the file in the compiler's file list.
+    pub file: u32,
+    /// First byte of the command.
+    pub start: u32,
+    /// One past its last byte.
+    pub end: u32,
+}
+
+/// A shape. When soft, its axis, arc, face or plane is the skeleton; when hard, it is drawn as its
+/// offset surface at [`Shape::radius`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Shape {
+    /// A ball. Soft: a point.
+    Sphere {
+        /// Centre.
+        center: DVec3,
+        /// Radius, > 0.
+        radius: f64,
+    },
+    /// A cylinder with flat lids. Soft: a line segment.
+    Cylinder {
+        /// One end of the axis.
+        base: DVec3,
+        /// The other end.
+        apex: DVec3,
+        /// Radius, > 0.
+        radius: f64,
+    },
+    /// A piece of a torus with flat lids: the points `center + sweep·(cos t·u + sin t·v)`,
+    /// `0 ≤ t ≤ angle`, thickened. Soft: the arc itself.
+    Arc {
+        /// Centre of the circle.
+        center: DVec3,
+        /// Unit vector towards the start of the arc.
+        u: DVec3,
+        /// Unit vector perpendicular to `u`, towards which the arc turns.
+        v: DVec3,
+        /// Radius of the circle, > 0.
+        sweep: f64,
+        /// Angle swept, radians, in (0, 2π].
+        angle: f64,
+        /// Radius of the tube, > 0.
+        radius: f64,
+    },
+    /// A flat triangle; hard with a blobbiness and `soft off`, a prism of thickness `2·radius`.
+    Triangle {
+        /// Corners.
+        corners: [DVec3; 3],
+        /// Half the thickness; 0 for a plain flat triangle.
+        radius: f64,
+    },
+    /// An infinite plane; as an offset surface, a slab of thickness `2·radius`.
+    Plane {
+        /// A point of the plane.
+        point: DVec3,
+        /// Unit normal.
+        normal: DVec3,
+        /// Half the thickness; 0 for a plain plane.
+        radius: f64,
+    },
+}
+
+impl Shape {
+    /// The shape's own radius (its tube, ball or half thickness).
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        match *self {
+            Self::Sphere { radius, .. }
+            | Self::Cylinder { radius, .. }
+            | Self::Arc { radius, .. }
+            | Self::Triangle { radius, .. }
+            | Self::Plane { radius, .. } => radius,
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! What a shape is made of: colours for Phong's model, and the softness of its flesh.
+
+use crate::Rgb;
+use field::{Kernel, Profile};
+use serde::{Deserialize, Serialize};
+
+/// A material, made by the command `surface` (or its synonym `material`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    /// The alias that the text uses.
+    pub name: String,
+    /// Light given off whatever the lights do. Default: [`Material::AMBIENT_SHARE`] of `diffuse`.
+    pub ambient: Rgb,
+    /// Share of a light's colour scattered evenly.
+    pub diffuse: Rgb,
+    /// Share of a light's colour in the highlight.
+    pub specular: Rgb,
+    /// Phong's exponent; the larger, the smaller the highlight. ≥ 0.
+    pub shine: f32,
+    /// Radius in isolation R for soft elements whose own radius is overruled (`fragile`). 0: none.
+    pub radius: f64,
+    /// Blobbiness B (its magnitude counts; the datasets write it negative). 0 makes the material hard.
+    pub blobbiness: f64,
+    /// Multiplies the field; negative values carve.
+    pub strength: f64,
+    /// Kernel of the soft elements.
+    pub kernel: Kernel,
+    /// Profile (a texture whose target is `strength`), if any.
+    pub profile: Option<Profile>,
+}
+
+impl Material {
+    /// The share of the diffuse colour that a material glows with when the text gives no `ambient`.
+    pub const AMBIENT_SHARE: f32 = 0.15;
+
+    /// Whether elements of this material become part of the convolution surface.
+    #[must_use]
+    pub fn is_soft(&self) -> bool {
+        self.blobbiness != 0.0
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            name: String::from("default"),
+            ambient: [0.8 * Self::AMBIENT_SHARE; 3],
+            diffuse: [0.8; 3],
+            specular: [0.0; 3],
+            shine: 0.0,
+            radius: 0.0,
+            blobbiness: 0.0,
+            strength: 1.0,
+            kernel: Kernel::Cauchy,
+            profile: None,
+        }
+    }
+}

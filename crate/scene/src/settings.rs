@@ -1,0 +1,72 @@
+//! Options that hold for the whole picture.
+
+use field::BlobScale;
+use serde::{Deserialize, Serialize};
+
+/// The settings of one picture, with the language's defaults.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Width and height of the picture in pixels (`framesize`), each 1 … [`Settings::MAX_FRAME`].
+    pub frame: [u32; 2],
+    /// `sample n`: at most n×n rays a pixel where the picture has contrast. 1 … [`Settings::MAX_SAMPLES`].
+    pub samples: u32,
+    /// Per-channel contrast between neighbouring pixels above which a pixel is sampled further.
+    pub contrast: [f32; 3],
+    /// `gamma g`: the picture's values are raised to 1/g.
+    pub gamma: f32,
+    /// `soft on`: soft elements blend; off: their offset surfaces are drawn.
+    pub soft: bool,
+    /// How a blobbiness is read.
+    pub blob_scale: BlobScale,
+    /// Which soft primitives take their material's radius instead of their own.
+    pub fragile: Fragile,
+    /// Depth of influence: a soft element is ignored where its field is below this share of the
+    /// threshold. In (0, 1).
+    pub influence: f64,
+}
+
+impl Settings {
+    /// Largest picture side.
+    pub const MAX_FRAME: u32 = 8192;
+    /// Largest sampling grid side.
+    pub const MAX_SAMPLES: u32 = 16;
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            frame: [128, 128],
+            samples: 1,
+            contrast: [0.25, 0.2, 0.4],
+            gamma: 1.0,
+            soft: true,
+            blob_scale: BlobScale::Relative,
+            fragile: Fragile::default(),
+            influence: 1e-3,
+        }
+    }
+}
+
+/// `fragile all|arc|pipe|cylinder|sphere|none`: the soft primitives whose own radius is overruled
+/// by their material's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fragile {
+    /// Arcs and arches.
+    pub arc: bool,
+    /// Pipes.
+    pub pipe: bool,
+    /// Cylinders.
+    pub cylinder: bool,
+    /// Spheres.
+    pub sphere: bool,
+}
+
+impl Fragile {
+    /// `fragile all`.
+    pub const ALL: Self = Self {
+        arc: true,
+        pipe: true,
+        cylinder: true,
+        sphere: true,
+    };
+}

@@ -1,0 +1,107 @@
+//! Which elements are soft, and the convolution field they make together.
+
+use crate::{Element, Fragile, Scene, Shape};
+use field::{Field, Primitive, Skeleton};
+
+/// The convolution surface of a scene: the field, and which element each primitive came from.
+#[derive(Clone, Debug)]
+pub struct SoftSurface {
+    /// The sum of all soft elements' fields; the surface is where it equals [`field::THRESHOLD`].
+    pub field: Field,
+    /// For each primitive of `field`, the index of its element in [`Scene::elements`].
+    pub element: Vec<usize>,
+}
+
+impl Scene {
+    /// Whether an element belongs to the convolution surface under the present settings.
+    #[must_use]
+    pub fn is_soft(&self, element: &Element) -> bool {
+        self.settings.soft && self.material_is_soft(element)
+    }
+
+    fn material_is_soft(&self, element: &Element) -> bool {
+        self.materials
+            .get(element.material)
+            .is_some_and(crate::Material::is_soft)
+    }
+
+    /// The radius that counts for an element: for soft materials the material's own where
+    /// `fragile` says so and it is given, else the shape's. With `soft off` the offset surface of
+    /// such an element is drawn at the same radius.
+    #[must_use]
+    pub fn radius(&self, element: &Element) -> f64 {
+        let own = element.shape.radius();
+        if !self.material_is_soft(element) {
+            return own;
+        }
+        let Fragile {
+            arc,
+            cylinder,
+            sphere,
+            ..
+        } = self.settings.fragile;
+        let material = self.materials[element.material].radius;
+        let overruled = match element.shape {
+            Shape::Arc { .. } => arc,
+            Shape::Cylinder { .. } => cylinder,
+            Shape::Sphere { .. } => sphere,
+            // These have no radius of their own in the language.
+            Shape::Triangle { .. } | Shape::Plane { .. } => true,
+        };
+        if overruled && material > 0.0 {
+            material
+        } else {
+            own
+        }
+    }
+
+    /// The field of all soft elements.
+    #[must_use]
+    pub fn soft_surface(&self) -> SoftSurface {
+        let mut field = Field::default();
+        let mut indices = Vec::new();
+        for (index, element) in self.elements.iter().enumerate() {
+            if !self.is_soft(element) {
+                continue;
+            }
+            let material = &self.materials[element.material];
+            let skeleton = match element.shape {
+                Shape::Sphere { center, .. } => Skeleton::Point { center },
+                Shape::Cylinder { base, apex, .. } => Skeleton::Segment { base, apex },
+                Shape::Arc {
+                    center,
+                    u,
+                    v,
+                    sweep,
+                    angle,
+                    ..
+                } => Skeleton::Arc {
+                    center,
+                    u,
+                    v,
+                    radius: sweep,
+                    angle,
+                },
+                Shape::Triangle { corners, .. } => Skeleton::Triangle { corners },
+                Shape::Plane { point, normal, .. } => Skeleton::Plane { point, normal },
+            };
+            let shaping = field::Shaping {
+                kernel: material.kernel,
+                radius: self.radius(element),
+                blobbiness: material.blobbiness,
+                blob_scale: self.settings.blob_scale,
+                strength: material.strength,
+                influence: self.settings.influence,
+            };
+            // An element without a positive radius has no flesh; the language has said so.
+            if let Some(primitive) = Primitive::new(skeleton, &shaping, material.profile) {
+                field.primitives.push(primitive);
+                indices.push(index);
+            }
+        }
+        SoftSurface {
+            field,
+            element: indices,
+        }
+    }
+}
