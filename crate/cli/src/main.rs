@@ -1,2 +1,65 @@
-//! To be written.
-fn main() {}
+//! The program `sinew`: the same core as the page, on a command line.
+//!
+//! Each subcommand is a module of its own. Results go to the standard output, everything said to
+//! a person goes to the standard error, and the exit status is 0 when all went well, 1 when the
+//! dataset has errors, and 2 when the command could not be carried out at all.
+
+mod check;
+mod files;
+mod probe;
+mod render;
+mod report;
+mod share;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(
+    name = "sinew",
+    version,
+    about = "Convolution surfaces: smooth shapes grown on a skeleton"
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Say what is wrong with a dataset
+    Check(check::Check),
+    /// Trace a dataset's picture
+    Render(render::Render),
+    /// Evaluate the field at points, or intersect rays with the surface
+    Probe(probe::Probe),
+    /// Print the evaluated scene as JSON
+    Scene(check::Scene),
+    /// Print the link that opens a dataset in the page
+    Share(share::Share),
+    /// Take a link apart: print or write the texts it carries
+    Open(share::Open),
+}
+
+/// What a subcommand came to: `Ok(true)` all well, `Ok(false)` the dataset has errors, `Err` a
+/// sentence that says why it could not be carried out and what to do.
+type Outcome = Result<bool, String>;
+
+fn main() -> ExitCode {
+    let outcome = match Arguments::parse().command {
+        Command::Check(command) => command.run(),
+        Command::Render(command) => command.run(),
+        Command::Probe(command) => command.run(),
+        Command::Scene(command) => command.run(),
+        Command::Share(command) => command.run(),
+        Command::Open(command) => command.run(),
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(sentence) => {
+            eprintln!("sinew: {sentence}");
+            ExitCode::from(2)
+        }
+    }
+}

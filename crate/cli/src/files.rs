@@ -1,0 +1,117 @@
+//! From files on disk to a project.
+//!
+//! A dataset may `read` others. The compiler only ever sees the texts of a project, so the ones it
+//! asks for are fetched here, from the folder of the first file, until it asks for no more.
+
+use rats::{Compiled, File, Project};
+use std::path::{Path, PathBuf};
+
+/// Largest text accepted from disk, bytes.
+const MAX_TEXT: u64 = 4 * 1024 * 1024;
+/// Most files fetched for one project.
+const MAX_FILES: usize = 256;
+
+/// A dataset read from disk and compiled.
+pub struct Loaded {
+    /// The texts.
+    pub project: Project,
+    /// What they mean.
+    pub compiled: Compiled,
+    /// Time the compiler took for the last, complete run.
+    pub compile_seconds: f64,
+}
+
+/// Loads a dataset and all that it reads.
+///
+/// # Errors
+/// If the first file cannot be read. A missing file further down is a diagnostic of the compiler.
+pub fn load(path: &Path) -> Result<Loaded, String> {
+    let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+    let name = path.file_name().map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    );
+    let mut project = Project {
+        files: vec![File {
+            name,
+            text: read(path)?,
+        }],
+    };
+    // Every text is looked at once for the names it reads.
+    let mut next = 0;
+    while next < project.files.len() && project.files.len() < MAX_FILES {
+        for wanted in rats::reads(&project.files[next].text) {
+            let known = project.files.iter().any(|file| file.name == wanted);
+            if !known && let Some(text) = inside(&folder, &wanted).and_then(|path| read(&path).ok())
+            {
+                project.files.push(File { name: wanted, text });
+            }
+        }
+        next += 1;
+    }
+    let start = std::time::Instant::now();
+    let compiled = rats::compile(&project);
+    Ok(Loaded {
+        project,
+        compiled,
+        compile_seconds: start.elapsed().as_secs_f64(),
+    })
+}
+
+/// The path of a file named in a dataset; names that lead out of the dataset's folder are refused,
+/// because a dataset may come from a stranger.
+fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
+    let relative = Path::new(name);
+    let stays = relative.components().all(|part| {
+        matches!(
+            part,
+            std::path::Component::Normal(_) | std::path::Component::CurDir
+        )
+    });
+    stays.then(|| folder.join(relative))
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    let size = std::fs::metadata(path)
+        .map_err(|error| format!("cannot open {}: {error}", path.display()))?
+        .len();
+    if size > MAX_TEXT {
+        return Err(format!(
+            "{} has {size} bytes; the limit for one text is {MAX_TEXT}",
+            path.display()
+        ));
+    }
+    let bytes =
+        std::fs::read(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    String::from_utf8(bytes).map_err(|_| format!("{} is not UTF-8 text", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_leave_the_folder_are_refused() {
+        let folder = Path::new("models");
+        assert!(inside(folder, "parts/leg.rat").is_some());
+        assert!(inside(folder, "../secret.rat").is_none());
+        assert!(inside(folder, "/etc/passwd").is_none());
+    }
+
+    #[test]
+    fn files_are_fetched_as_far_as_they_read_each_other() {
+        let folder = std::env::temp_dir().join(format!("sinew-files-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("temporary folder");
+        std::fs::write(folder.join("main.rat"), "read leg.rat\n").expect("written");
+        std::fs::write(folder.join("leg.rat"), "read toe.rat main.rat\n").expect("written");
+        std::fs::write(
+            folder.join("toe.rat"),
+            "surface s diffuse White\nsphere s 1 0 0 0\n",
+        )
+        .expect("written");
+        let loaded = load(&folder.join("main.rat")).expect("loads");
+        assert_eq!(loaded.project.files.len(), 3);
+        assert_eq!(loaded.compiled.scene.elements.len(), 1);
+        std::fs::remove_dir_all(&folder).expect("removed");
+    }
+}

@@ -1,0 +1,70 @@
+//! Showing diagnostics to a person.
+
+use crate::files::Loaded;
+use codespan_reporting::diagnostic::{Diagnostic, Label};
+use codespan_reporting::files::SimpleFiles;
+use codespan_reporting::term;
+use rats::Severity;
+use std::io::IsTerminal;
+
+/// Writes all diagnostics to the standard error, with the lines they are about.
+///
+/// Returns whether the dataset is free of errors.
+pub fn to_stderr(loaded: &Loaded) -> bool {
+    let mut files = SimpleFiles::new();
+    let ids: Vec<_> = loaded
+        .project
+        .files
+        .iter()
+        .map(|file| {
+            (
+                file.name.as_str(),
+                files.add(file.name.as_str(), file.text.as_str()),
+            )
+        })
+        .collect();
+    let mut text = String::new();
+    for diagnostic in &loaded.compiled.diagnostics {
+        let shown = match diagnostic.severity {
+            Severity::Error => Diagnostic::error(),
+            Severity::Warning => Diagnostic::warning(),
+            Severity::Note => Diagnostic::note(),
+        };
+        let label = ids
+            .iter()
+            .find(|(name, _)| *name == diagnostic.file)
+            .map(|&(_, id)| Label::primary(id, diagnostic.span.clone()));
+        let shown = shown
+            .with_message(&diagnostic.message)
+            .with_labels(label.into_iter().collect())
+            .with_notes(
+                diagnostic
+                    .hint
+                    .iter()
+                    .map(|hint| format!("help: {hint}"))
+                    .collect(),
+            );
+        let config = term::Config::default();
+        if term::emit_to_string(&mut text, &config, &files, &shown).is_err() {
+            // The excerpt could not be drawn; the message itself must not be lost.
+            text.push_str(&format!(
+                "{}:{}:{}: {}\n",
+                diagnostic.file, diagnostic.line, diagnostic.column, diagnostic.message
+            ));
+        }
+    }
+    if std::io::stderr().is_terminal() && !text.is_empty() {
+        eprintln!();
+    }
+    eprint!("{text}");
+    is_clean(loaded)
+}
+
+/// Whether a dataset has no errors (warnings are fine).
+pub fn is_clean(loaded: &Loaded) -> bool {
+    loaded
+        .compiled
+        .diagnostics
+        .iter()
+        .all(|diagnostic| diagnostic.severity != Severity::Error)
+}

@@ -1,0 +1,197 @@
+//! The scene's own rules: the projection, whose radius counts, and the message form.
+
+use field::Skeleton;
+use glam::DVec3;
+use scene::{Camera, Element, Fragile, Light, LightKind, Material, Origin, Scene, Shape, wire};
+
+fn soft(name: &str, radius: f64) -> Material {
+    Material {
+        name: name.into(),
+        blobbiness: -2.0,
+        radius,
+        ..Material::default()
+    }
+}
+
+fn element(shape: Shape, material: usize) -> Element {
+    Element {
+        shape,
+        material,
+        origin: Origin::default(),
+    }
+}
+
+fn ball(radius: f64) -> Shape {
+    Shape::Sphere {
+        center: DVec3::ZERO,
+        radius,
+    }
+}
+
+fn close(a: DVec3, b: DVec3) -> bool {
+    (a - b).length() < 1e-12
+}
+
+#[test]
+fn the_middle_of_the_picture_looks_at_the_target() {
+    let camera = Camera {
+        eye: DVec3::new(3.0, 3.0, 3.0),
+        target: DVec3::ZERO,
+        up: DVec3::Z,
+        fov: 50.0,
+    };
+    let projection = camera.projection(640, 480);
+    assert!(close(
+        projection.direction(0.5, 0.5),
+        -DVec3::ONE.normalize()
+    ));
+    // Up in the picture is towards +z, right is towards the viewer's right hand.
+    assert!(projection.direction(0.5, 0.0).z > projection.direction(0.5, 1.0).z);
+    assert!(
+        projection
+            .direction(1.0, 0.5)
+            .dot(DVec3::new(-1.0, 1.0, 0.0))
+            > 0.0
+    );
+}
+
+#[test]
+fn the_angle_of_view_is_the_horizontal_one_and_pixels_are_square() {
+    let camera = Camera {
+        fov: 90.0,
+        ..Camera::default()
+    };
+    let projection = camera.projection(200, 100);
+    assert!(close(
+        projection.direction(1.0, 0.5),
+        DVec3::new(1.0, 0.0, -1.0).normalize()
+    ));
+    assert!(close(
+        projection.direction(0.5, 0.0),
+        DVec3::new(0.0, 0.5, -1.0).normalize()
+    ));
+}
+
+#[test]
+fn degenerate_cameras_still_project() {
+    for camera in [
+        Camera {
+            eye: DVec3::ZERO,
+            target: DVec3::ZERO,
+            ..Camera::default()
+        },
+        Camera {
+            up: DVec3::Z,
+            ..Camera::default()
+        },
+        Camera {
+            up: DVec3::ZERO,
+            eye: DVec3::Y,
+            ..Camera::default()
+        },
+        Camera {
+            fov: f64::INFINITY,
+            ..Camera::default()
+        },
+    ] {
+        let direction = camera.projection(0, 7).direction(0.3, 0.9);
+        assert!(
+            (direction.length() - 1.0).abs() < 1e-12,
+            "{camera:?} gives {direction}"
+        );
+    }
+}
+
+#[test]
+fn fragile_lets_the_material_overrule_a_soft_primitives_radius() {
+    let mut scene = Scene {
+        materials: vec![
+            soft("flesh", 0.5),
+            Material::default(),
+            soft("no radius", 0.0),
+        ],
+        ..Scene::default()
+    };
+    let [flesh, bone, bare] = [0, 1, 2].map(|material| element(ball(0.2), material));
+    assert_eq!(scene.radius(&flesh), 0.2);
+    scene.settings.fragile = Fragile {
+        sphere: true,
+        ..Fragile::default()
+    };
+    assert_eq!(scene.radius(&flesh), 0.5);
+    assert_eq!(scene.radius(&bone), 0.2, "hard elements keep their own");
+    assert_eq!(
+        scene.radius(&bare),
+        0.2,
+        "a material without a radius has none to give"
+    );
+    let tube = Shape::Cylinder {
+        base: DVec3::ZERO,
+        apex: DVec3::X,
+        radius: 0.1,
+    };
+    assert_eq!(
+        scene.radius(&element(tube, 0)),
+        0.1,
+        "cylinders were not listed"
+    );
+    scene.settings.fragile = Fragile::ALL;
+    assert_eq!(scene.radius(&element(tube, 0)), 0.5);
+}
+
+#[test]
+fn soft_off_leaves_no_flesh() {
+    let mut scene = Scene {
+        materials: vec![soft("flesh", 0.5), Material::default()],
+        ..Scene::default()
+    };
+    scene.elements = vec![element(ball(0.2), 1), element(ball(0.3), 0)];
+    let surface = scene.soft_surface();
+    assert_eq!(surface.element, [1], "only the soft material's element");
+    assert!(matches!(
+        surface.field.primitives[0].skeleton,
+        Skeleton::Point { .. }
+    ));
+    scene.settings.soft = false;
+    assert!(scene.soft_surface().field.primitives.is_empty());
+}
+
+#[test]
+fn an_isolated_ball_has_its_radius() {
+    let mut scene = Scene {
+        materials: vec![soft("flesh", 0.5)],
+        ..Scene::default()
+    };
+    scene.elements = vec![element(ball(0.3), 0)];
+    let field = scene.soft_surface().field;
+    assert!((field.jet(DVec3::new(0.0, 0.3, 0.0)).value - field::THRESHOLD).abs() < 1e-12);
+}
+
+#[test]
+fn a_scene_survives_the_journey_to_a_worker() {
+    let mut scene = Scene {
+        materials: vec![soft("flesh", 0.5)],
+        ..Scene::default()
+    };
+    scene.elements = vec![element(
+        Shape::Plane {
+            point: DVec3::ONE,
+            normal: DVec3::Y,
+            radius: 0.1,
+        },
+        0,
+    )];
+    scene.lights = vec![Light {
+        kind: LightKind::Distant { towards: DVec3::Z },
+        colour: [1.0, 0.5, 0.25],
+        shadow: true,
+    }];
+    let bytes = wire::pack(&scene).expect("packs");
+    assert_eq!(wire::unpack(&bytes).expect("unpacks"), scene);
+    for cut in 0..bytes.len() {
+        assert!(
+            wire::unpack(&bytes[..cut]).is_err(),
+            "a message cut at {cut} is refused"
+        );
+    }
+}
