@@ -1,0 +1,221 @@
+//! The program's subcommands, end to end.
+
+mod common;
+
+use common::{Folder, printed, sinew};
+use serde_json::Value;
+
+const BALL: &str = "eyep 0 0 5\nvrp 0 0 0\nvup 0 1 0\nfov 40 40\nframesize 32 24\n\
+    light White point pos 3 4 5\nsurface flesh diffuse OrangeRed blob -2\nsphere flesh 1 0 0 0\nshoot\n";
+
+#[test]
+fn check_points_at_every_error_and_exits_1() {
+    let folder = Folder::new("check");
+    let bad = folder.write(
+        "bad.rat",
+        "surface s diffuse White\nspere s 1 0 0 0\nsphere nobody 1 0 0 0\n",
+    );
+    let output = sinew(&["check", &bad], "");
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("bad.rat:2:1") && said.contains("sphere"),
+        "{said}"
+    );
+    assert!(said.contains("bad.rat:3:8"), "{said}");
+
+    let output = sinew(&["check", &bad, "--json"], "");
+    assert_eq!(output.status.code(), Some(1));
+    let list: Vec<Value> = serde_json::from_str(&printed(&output)).expect("JSON");
+    let lines: Vec<_> = list
+        .iter()
+        .filter(|d| d["severity"] == "error")
+        .map(|d| d["line"].as_u64())
+        .collect();
+    assert_eq!(lines, [Some(2), Some(3)]);
+
+    let good = folder.write("good.rat", BALL);
+    assert_eq!(sinew(&["check", &good], "").status.code(), Some(0));
+}
+
+#[test]
+fn a_missing_file_is_a_sentence_and_exit_2() {
+    let output = sinew(&["check", "no-such-file.rat"], "");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no-such-file.rat"));
+}
+
+#[test]
+fn render_writes_a_picture_and_counts_its_work() {
+    let folder = Folder::new("render");
+    let file = folder.write("ball.rat", BALL);
+    let picture = folder.path("ball.png");
+    let output = sinew(
+        &[
+            "render",
+            &file,
+            "-o",
+            &picture,
+            "-r",
+            "40",
+            "30",
+            "-s",
+            "2",
+            "--threads",
+            "2",
+            "--json",
+        ],
+        "",
+    );
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let summary: Value = serde_json::from_str(&printed(&output)).expect("JSON");
+    assert_eq!(summary["elements"]["soft"], 1);
+    assert!(summary["rays"]["primary"].as_u64() >= Some(40 * 30));
+    assert!(summary["field_evaluations"].as_u64() > Some(0));
+    assert!(summary["seconds"]["trace"].as_f64() > Some(0.0));
+
+    let mut reader = png::Decoder::new(std::io::BufReader::new(
+        std::fs::File::open(&picture).expect("written"),
+    ))
+    .read_info()
+    .expect("PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("size")];
+    let frame = reader.next_frame(&mut pixels).expect("frame");
+    assert_eq!((frame.width, frame.height), (40, 30));
+    let pixel = |x: usize, y: usize| &pixels[(y * 40 + x) * 3..][..3];
+    assert!(
+        pixel(20, 15)[0] > 2 * pixel(20, 15)[2],
+        "the ball is orange: {:?}",
+        pixel(20, 15)
+    );
+    assert_eq!(pixel(0, 0), pixel(39, 29), "the corners are background");
+}
+
+#[test]
+fn render_refuses_what_it_cannot_do() {
+    let folder = Folder::new("refuse");
+    let file = folder.write("ball.rat", BALL);
+    for arguments in [
+        ["-o", "x.gif", "-r", "4", "4"],
+        ["-o", "x.png", "-r", "0", "4"],
+        ["-o", "x.png", "-r", "4", "100000"],
+    ] {
+        let mut all = vec!["render", file.as_str()];
+        all.extend(arguments);
+        assert_eq!(sinew(&all, "").status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn the_number_of_threads_does_not_change_the_picture() {
+    let folder = Folder::new("threads");
+    let file = folder.write("ball.rat", BALL);
+    let pictures = ["1", "2", "5"].map(|threads| {
+        let path = folder.path(&format!("{threads}.png"));
+        assert!(
+            sinew(
+                &[
+                    "render",
+                    &file,
+                    "-o",
+                    &path,
+                    "-s",
+                    "3",
+                    "--threads",
+                    threads
+                ],
+                ""
+            )
+            .status
+            .success()
+        );
+        std::fs::read(path).expect("written")
+    });
+    assert!(pictures[0] == pictures[1] && pictures[1] == pictures[2]);
+}
+
+#[test]
+fn probe_shows_rays_entering_and_leaving() {
+    let folder = Folder::new("rays");
+    let file = folder.write("ball.rat", BALL);
+    let output = sinew(
+        &["probe", &file, "--rays", "-"],
+        "0 0 5 0 0 -2\n0 5 5 0 0 -1\n1 2 3\n",
+    );
+    assert_eq!(output.status.code(), Some(1), "the third line is no ray");
+    let lines: Vec<Value> = printed(&output)
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect();
+    let hits = lines[0]["hits"].as_array().expect("list");
+    let distances: Vec<f64> = hits.iter().filter_map(|hit| hit["t"].as_f64()).collect();
+    assert_eq!(distances.len(), 2);
+    // Radius in isolation 1: that is what the field is normalised for.
+    assert!(
+        (distances[0] - 4.0).abs() < 1e-6 && (distances[1] - 6.0).abs() < 1e-6,
+        "{distances:?}"
+    );
+    assert!(
+        hits[0]["normal"][2].as_f64() > Some(0.999) && hits[1]["normal"][2].as_f64() < Some(-0.999)
+    );
+    assert_eq!(lines[1]["hits"].as_array().map(Vec::len), Some(0));
+    assert_eq!(lines[2]["line"], 3);
+}
+
+#[test]
+fn probe_weighs_materials() {
+    let folder = Folder::new("weights");
+    let file = folder.write(
+        "two.rat",
+        "surface red diffuse Red blob -2\nsurface blue diffuse Blue blob -2\nsphere red 1 -1 0 0\nsphere blue 1 1 0 0\n",
+    );
+    let output = sinew(&["probe", &file, "--points", "-"], "0 0.5 0\n-1 0 0\n");
+    let lines: Vec<Value> = printed(&output)
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect();
+    let weight = |line: usize, name: &str| lines[line]["weights"][name].as_f64().expect("a weight");
+    assert!((weight(0, "red") - 0.5).abs() < 1e-12 && (weight(0, "blue") - 0.5).abs() < 1e-12);
+    assert!(weight(1, "red") > 0.8);
+    assert!((weight(1, "red") + weight(1, "blue") - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn links_carry_all_texts_there_and_back() {
+    let folder = Folder::new("share");
+    folder.write("part.rat", "sphere flesh 1 0 0 0 # ünïcode\n");
+    let main = "surface flesh diffuse White blob -1\nread part.rat\n";
+    let file = folder.write("main.rat", main);
+    let output = sinew(
+        &["share", &file, "--page", "https://example.org/sinew/"],
+        "",
+    );
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let link = printed(&output).trim().to_owned();
+    assert!(link.starts_with("https://example.org/sinew/#"), "{link}");
+    let out = folder.path("out");
+    assert!(sinew(&["open", &link, "-o", &out], "").status.success());
+    let opened =
+        |name: &str| std::fs::read_to_string(folder.0.join("out").join(name)).expect("written");
+    assert_eq!(opened("main.rat"), main);
+    assert_eq!(opened("part.rat"), "sphere flesh 1 0 0 0 # ünïcode\n");
+    assert_eq!(
+        sinew(&["open", &link, "-o", &out], "").status.code(),
+        Some(2),
+        "nothing is overwritten"
+    );
+    assert_eq!(
+        sinew(&["open", "https://example.org/#rubbish"], "")
+            .status
+            .code(),
+        Some(2)
+    );
+}
