@@ -1,0 +1,381 @@
+//! What the user is working on, without any window: the project, its undo steps, what the compiler
+//! says about it, the last scene that could be drawn, and the camera chosen by hand.
+//!
+//! Two counters tell others what changed: [`Session::revision`] rises with every change of the text,
+//! [`Session::generation`] with every change of what is to be drawn. Times are seconds on any clock
+//! that never goes back.
+
+use crate::history::{History, Snapshot};
+use rats::{Compiled, Diagnostic, Project, Severity};
+use scene::{Camera, Scene};
+use serde::{Deserialize, Serialize};
+
+/// Longest project the editor takes, bytes over all files. The editor lays the whole text out at
+/// every key, so this is far below what a link could carry.
+pub const MAX_TEXT: usize = 256 * 1024;
+/// Most files in a project.
+pub const MAX_FILES: usize = 64;
+
+impl Snapshot for Project {
+    fn bytes(&self) -> usize {
+        self.files
+            .iter()
+            .map(|file| file.name.len() + file.text.len() + 64)
+            .sum()
+    }
+}
+
+/// Why a text was not taken over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refused {
+    /// Longer than [`MAX_TEXT`].
+    TooLong {
+        /// Its length in bytes.
+        bytes: usize,
+    },
+    /// More files than [`MAX_FILES`].
+    TooManyFiles {
+        /// How many there are.
+        files: usize,
+    },
+}
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::TooLong { bytes } => write!(
+                f,
+                "This text is {} kB long and the editor takes {} kB. Nothing was changed; use loops to write less, or the command-line program for long files.",
+                bytes.div_ceil(1024),
+                MAX_TEXT / 1024
+            ),
+            Self::TooManyFiles { files } => write!(
+                f,
+                "This project has {files} files and the editor takes {MAX_FILES}. Nothing was changed; join some of them."
+            ),
+        }
+    }
+}
+
+/// Checks a project against the editor's limits.
+///
+/// # Errors
+/// If it is too long or has too many files.
+pub fn check_size(project: &Project) -> Result<(), Refused> {
+    let bytes = project.files.iter().map(|file| file.text.len()).sum();
+    if bytes > MAX_TEXT {
+        return Err(Refused::TooLong { bytes });
+    }
+    let files = project.files.len();
+    if files > MAX_FILES {
+        return Err(Refused::TooManyFiles { files });
+    }
+    Ok(())
+}
+
+/// The part of a session that is kept when the page is closed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Kept {
+    /// The texts.
+    pub project: Project,
+    /// The camera chosen by hand.
+    pub camera: Option<Camera>,
+    /// What can be undone.
+    #[serde(default)]
+    pub history: History<Project>,
+}
+
+/// The user's work.
+pub struct Session {
+    project: Project,
+    history: History<Project>,
+    compiled: Compiled,
+    good: Option<Scene>,
+    camera: Option<Camera>,
+    revision: u64,
+    generation: u64,
+    compiling: bool,
+}
+
+impl Session {
+    /// Starts with a project and a camera chosen by hand, if any. The project gets at least one
+    /// file. With `compile` false nothing is compiled before [`Session::enable`] is called.
+    #[must_use]
+    pub fn new(kept: Kept, compile: bool) -> Self {
+        let mut session = Self {
+            project: Project::default(),
+            history: History::default(),
+            compiled: Compiled {
+                scene: Scene::default(),
+                diagnostics: Vec::new(),
+                hot: Vec::new(),
+            },
+            good: None,
+            camera: None,
+            revision: 0,
+            generation: 0,
+            compiling: compile,
+        };
+        session.open(kept);
+        session
+    }
+
+    /// Replaces everything: another piece of work.
+    pub fn open(&mut self, kept: Kept) {
+        self.project = kept.project;
+        if self.project.files.is_empty() {
+            self.project.files.push(rats::File {
+                name: String::from("main.rat"),
+                text: String::new(),
+            });
+        }
+        self.history = kept.history;
+        self.camera = kept.camera;
+        self.good = None;
+        self.changed();
+    }
+
+    /// What to keep when the page is closed; the undo steps take at most `history_bytes`.
+    #[must_use]
+    pub fn keep(&self, history_bytes: usize) -> Kept {
+        Kept {
+            project: self.project.clone(),
+            camera: self.camera,
+            history: self.history.within(history_bytes),
+        }
+    }
+
+    /// The texts.
+    #[must_use]
+    pub fn project(&self) -> &Project {
+        &self.project
+    }
+
+    /// The text of a file; empty if there is no such file.
+    #[must_use]
+    pub fn text(&self, file: usize) -> &str {
+        self.project
+            .files
+            .get(file)
+            .map_or("", |file| file.text.as_str())
+    }
+
+    /// Changes the text of one file.
+    ///
+    /// # Errors
+    /// If the project would become too long; then nothing changes.
+    pub fn set_text(&mut self, file: usize, text: String, now: f64) -> Result<(), Refused> {
+        let Some(present) = self.project.files.get(file) else {
+            return Ok(());
+        };
+        if present.text == text {
+            return Ok(());
+        }
+        let others: usize = self.project.files.iter().map(|file| file.text.len()).sum();
+        let bytes = others - present.text.len() + text.len();
+        if bytes > MAX_TEXT {
+            return Err(Refused::TooLong { bytes });
+        }
+        self.history.record(&self.project, now);
+        self.project.files[file].text = text;
+        self.changed();
+        Ok(())
+    }
+
+    /// Replaces a byte range of one file. A range that does not lie on characters is left alone.
+    ///
+    /// # Errors
+    /// If the project would become too long; then nothing changes.
+    pub fn replace(
+        &mut self,
+        file: usize,
+        range: std::ops::Range<usize>,
+        with: &str,
+        now: f64,
+    ) -> Result<(), Refused> {
+        let text = self.text(file);
+        let (Some(before), Some(after)) = (text.get(..range.start), text.get(range.end..)) else {
+            return Ok(());
+        };
+        let text = format!("{before}{with}{after}");
+        self.set_text(file, text, now)
+    }
+
+    /// Begins a gesture, such as dragging a slider, that is one undo step.
+    pub fn hold(&mut self) {
+        self.history.hold();
+    }
+
+    /// Ends the gesture.
+    pub fn release(&mut self) {
+        self.history.release();
+    }
+
+    /// Takes the last step back. Gives the file and byte position where the text changed.
+    pub fn undo(&mut self) -> Option<(usize, usize)> {
+        let project = self.history.undo(&self.project)?;
+        Some(self.restore(project))
+    }
+
+    /// Does again what was undone.
+    pub fn redo(&mut self) -> Option<(usize, usize)> {
+        let project = self.history.redo(&self.project)?;
+        Some(self.restore(project))
+    }
+
+    /// Whether there is something to undo.
+    #[must_use]
+    pub fn can_undo(&self) -> bool {
+        self.history.can_undo()
+    }
+
+    /// Whether there is something to redo.
+    #[must_use]
+    pub fn can_redo(&self) -> bool {
+        self.history.can_redo()
+    }
+
+    /// What the compiler made of the present text.
+    #[must_use]
+    pub fn compiled(&self) -> &Compiled {
+        &self.compiled
+    }
+
+    /// The messages about the present text.
+    #[must_use]
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.compiled.diagnostics
+    }
+
+    /// How many errors the present text has.
+    #[must_use]
+    pub fn errors(&self) -> usize {
+        self.diagnostics()
+            .iter()
+            .filter(|diagnostic| diagnostic.severity == Severity::Error)
+            .count()
+    }
+
+    /// The scene to draw: that of the last text without errors, seen by the user's camera. While no
+    /// text was ever free of errors, what could be understood is better than nothing. `None` before
+    /// anything was compiled.
+    #[must_use]
+    pub fn scene(&self) -> Option<Scene> {
+        let mut scene = self.good.clone()?;
+        if let Some(camera) = self.camera {
+            scene.camera = camera;
+        }
+        Some(scene)
+    }
+
+    /// The frame of the scene to draw, pixels.
+    #[must_use]
+    pub fn frame(&self) -> [u32; 2] {
+        self.good
+            .as_ref()
+            .map_or([4, 3], |scene| scene.settings.frame.map(|side| side.max(1)))
+    }
+
+    /// The background of the scene to draw.
+    #[must_use]
+    pub fn background(&self) -> scene::Rgb {
+        self.good
+            .as_ref()
+            .map_or(scene::DEFAULT_BACKGROUND, |scene| scene.background)
+    }
+
+    /// The camera in use.
+    #[must_use]
+    pub fn camera(&self) -> Camera {
+        self.camera
+            .or_else(|| self.good.as_ref().map(|scene| scene.camera))
+            .unwrap_or_default()
+    }
+
+    /// The camera chosen by hand, if any.
+    #[must_use]
+    pub fn chosen_camera(&self) -> Option<Camera> {
+        self.camera
+    }
+
+    /// Chooses a camera by hand, or with `None` goes back to the text's. Editing the text never
+    /// changes a camera chosen by hand. A camera with a number that is not finite is refused.
+    pub fn set_camera(&mut self, camera: Option<Camera>) {
+        let finite = camera.is_none_or(|camera| {
+            camera.eye.is_finite()
+                && camera.target.is_finite()
+                && camera.up.is_finite()
+                && camera.fov.is_finite()
+        });
+        if finite && self.camera != camera {
+            self.camera = camera;
+            self.generation += 1;
+        }
+    }
+
+    /// Rises with every change of the text.
+    #[must_use]
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Rises with every change of what [`Session::scene`] gives.
+    #[must_use]
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// Whether texts are compiled. False after a start that failed, until the user asks.
+    #[must_use]
+    pub fn enabled(&self) -> bool {
+        self.compiling
+    }
+
+    /// Compiles from now on.
+    pub fn enable(&mut self) {
+        if !self.compiling {
+            self.compiling = true;
+            self.changed();
+        }
+    }
+
+    fn restore(&mut self, project: Project) -> (usize, usize) {
+        let place = first_difference(&self.project, &project);
+        self.project = project;
+        self.changed();
+        place
+    }
+
+    fn changed(&mut self) {
+        self.revision += 1;
+        if !self.compiling {
+            return;
+        }
+        self.compiled = rats::compile(&self.project);
+        let clean = self.errors() == 0;
+        if clean || self.good.is_none() {
+            let scene = &self.compiled.scene;
+            if self.good.as_ref() != Some(scene) {
+                self.good = Some(scene.clone());
+                self.generation += 1;
+            }
+        }
+    }
+}
+
+/// The file and the byte in the new text where it starts to differ from the old one.
+fn first_difference(old: &Project, new: &Project) -> (usize, usize) {
+    for (index, file) in new.files.iter().enumerate() {
+        let before = old.files.get(index).map_or("", |file| file.text.as_str());
+        if before != file.text {
+            let same: usize = before
+                .chars()
+                .zip(file.text.chars())
+                .take_while(|(a, b)| a == b)
+                .map(|(a, _)| a.len_utf8())
+                .sum();
+            return (index, same);
+        }
+    }
+    (0, 0)
+}

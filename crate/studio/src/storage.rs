@@ -1,0 +1,391 @@
+//! The user's work in the browser's local storage.
+//!
+//! Every piece of work is one record under its own key, so that a shared link or an example never
+//! overwrites what the user made: it becomes a record of its own, and only once it is edited. Two
+//! tabs that edit the same record do not overwrite each other either: the one that finds a record
+//! changed behind its back goes on under a new key. A record that cannot be read, because it is
+//! damaged or from a newer version, is left alone.
+
+use crate::session::Kept;
+use serde::{Deserialize, Serialize};
+
+/// Version of the records; newer ones are not touched.
+pub const VERSION: u32 = 1;
+/// Seconds after an edit until it is written.
+pub const DELAY: f64 = 0.5;
+/// Most bytes of undo steps that are written with a record.
+const HISTORY_BYTES: usize = 512 * 1024;
+
+const DOCUMENT: &str = "sinew/document/";
+const CURRENT: &str = "sinew/current";
+const SETTINGS: &str = "sinew/settings";
+const CRASHED: &str = "sinew/crashed";
+
+/// A place that keeps texts under keys.
+pub trait Store {
+    /// The text under a key.
+    fn get(&self, key: &str) -> Option<String>;
+    /// Keeps a text.
+    ///
+    /// # Errors
+    /// If there is no room or storing is not allowed.
+    fn set(&mut self, key: &str, value: &str) -> Result<(), String>;
+    /// Forgets a key.
+    fn remove(&mut self, key: &str);
+    /// All keys.
+    fn keys(&self) -> Vec<String>;
+}
+
+/// A store in memory, for tests and for browsers that allow none: work lasts until the page closes.
+impl Store for std::collections::BTreeMap<String, String> {
+    fn get(&self, key: &str) -> Option<String> {
+        Self::get(self, key).cloned()
+    }
+    fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+        self.insert(key.to_owned(), value.to_owned());
+        Ok(())
+    }
+    fn remove(&mut self, key: &str) {
+        Self::remove(self, key);
+    }
+    fn keys(&self) -> Vec<String> {
+        Self::keys(self).cloned().collect()
+    }
+}
+
+/// What stands in a list of saved works.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Key of the record.
+    pub id: String,
+    /// What the user calls it.
+    pub name: String,
+    /// When it was written, milliseconds since 1970.
+    pub saved: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Record {
+    version: u32,
+    name: String,
+    saved: f64,
+    kept: Kept,
+}
+
+/// All saved works, and the one that is open.
+pub struct Shelf {
+    store: Box<dyn Store>,
+    /// Tells this tab's writes from those of other tabs.
+    tab: String,
+    writes: u64,
+    /// The open record and the stamp it had when this tab last read or wrote it.
+    open: Option<(String, String)>,
+    pending: Option<(String, Kept)>,
+}
+
+impl Shelf {
+    /// Opens a store. `tab` must differ between tabs (a random word).
+    #[must_use]
+    pub fn new(store: Box<dyn Store>, tab: String) -> Self {
+        Self {
+            store,
+            tab,
+            writes: 0,
+            open: None,
+            pending: None,
+        }
+    }
+
+    /// The id of the work that was open last.
+    #[must_use]
+    pub fn last(&self) -> Option<String> {
+        self.store.get(CURRENT)
+    }
+
+    /// All saved works, the youngest first.
+    #[must_use]
+    pub fn entries(&self) -> Vec<Entry> {
+        let mut entries: Vec<Entry> = self
+            .store
+            .keys()
+            .into_iter()
+            .filter_map(|key| {
+                let id = key.strip_prefix(DOCUMENT)?.to_owned();
+                let (_, record) = self.read(&id)?;
+                Some(Entry {
+                    id,
+                    name: record.name,
+                    saved: record.saved,
+                })
+            })
+            .collect();
+        entries.sort_by(|a, b| b.saved.total_cmp(&a.saved));
+        entries
+    }
+
+    /// Opens a saved work: from now on edits go there. Gives its name and what was kept.
+    pub fn open(&mut self, id: &str) -> Option<(String, Kept)> {
+        let (stamp, record) = self.read(id)?;
+        self.open = Some((id.to_owned(), stamp));
+        self.pending = None;
+        // If this is refused, the next start opens another record; nothing is lost.
+        let _ = self.store.set(CURRENT, id);
+        Some((record.name, record.kept))
+    }
+
+    /// The id of the open work, if it has been written.
+    #[must_use]
+    pub fn opened(&self) -> Option<&str> {
+        self.open.as_ref().map(|(id, _)| id.as_str())
+    }
+
+    /// The next edit begins a new record.
+    pub fn begin(&mut self) {
+        self.open = None;
+        self.pending = None;
+    }
+
+    /// Notes what is to be written by the next [`Shelf::flush`].
+    pub fn put(&mut self, name: &str, kept: Kept) {
+        self.pending = Some((name.to_owned(), kept));
+    }
+
+    /// Whether something waits to be written.
+    #[must_use]
+    pub fn is_dirty(&self) -> bool {
+        self.pending.is_some()
+    }
+
+    /// Writes what waits. `now` is milliseconds since 1970.
+    ///
+    /// # Errors
+    /// If the browser stores nothing; the text then lives in the open page only.
+    pub fn flush(&mut self, now: f64) -> Result<(), String> {
+        let Some((name, kept)) = self.pending.clone() else {
+            return Ok(());
+        };
+        self.writes += 1;
+        let stamp = format!("{}.{}", self.tab, self.writes);
+        let id = match &self.open {
+            Some((id, known)) if self.stamp(id).is_none_or(|stamp| stamp == *known) => id.clone(),
+            _ => stamp.clone(),
+        };
+        let record = |history: usize| {
+            let record = Record {
+                version: VERSION,
+                name: name.clone(),
+                saved: now,
+                kept: Kept {
+                    history: kept.history.within(history),
+                    ..kept.clone()
+                },
+            };
+            serde_json::to_string(&record)
+                .map(|json| format!("{stamp}\n{json}"))
+                .map_err(|error| error.to_string())
+        };
+        let key = format!("{DOCUMENT}{id}");
+        // When room is short the text matters more than its undo steps.
+        self.store
+            .set(&key, &record(HISTORY_BYTES)?)
+            .or_else(|_| self.store.set(&key, &record(0)?))?;
+        self.store.set(CURRENT, &id)?;
+        self.open = Some((id, stamp));
+        self.pending = None;
+        Ok(())
+    }
+
+    /// Deletes a saved work. The open one cannot be deleted.
+    pub fn delete(&mut self, id: &str) {
+        if self.opened() != Some(id) {
+            self.store.remove(&format!("{DOCUMENT}{id}"));
+        }
+    }
+
+    /// Reads the page's settings; defaults where there are none or they cannot be read.
+    #[must_use]
+    pub fn settings<T: Default + for<'a> Deserialize<'a>>(&self) -> T {
+        self.store
+            .get(SETTINGS)
+            .and_then(|json| serde_json::from_str(&json).ok())
+            .unwrap_or_default()
+    }
+
+    /// Writes the page's settings.
+    pub fn set_settings<T: Serialize>(&mut self, settings: &T) {
+        if let Ok(json) = serde_json::to_string(settings) {
+            // Settings that cannot be stored last until the page closes, which is harmless.
+            let _ = self.store.set(SETTINGS, &json);
+        }
+    }
+
+    /// Whether the program stopped in the middle of its work the last time.
+    #[must_use]
+    pub fn crashed(&self) -> bool {
+        self.store.get(CRASHED).is_some()
+    }
+
+    /// Notes that the program stopped (or, with `false`, that it works again).
+    pub fn set_crashed(&mut self, crashed: bool) {
+        if crashed {
+            let _ = self.store.set(CRASHED, "1");
+        } else {
+            self.store.remove(CRASHED);
+        }
+    }
+
+    fn stamp(&self, id: &str) -> Option<String> {
+        let text = self.store.get(&format!("{DOCUMENT}{id}"))?;
+        text.split_once('\n').map(|(stamp, _)| stamp.to_owned())
+    }
+
+    fn read(&self, id: &str) -> Option<(String, Record)> {
+        let text = self.store.get(&format!("{DOCUMENT}{id}"))?;
+        let (stamp, json) = text.split_once('\n')?;
+        let record: Record = serde_json::from_str(json).ok()?;
+        (record.version == VERSION).then(|| (stamp.to_owned(), record))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rats::{File, Project};
+    use std::cell::RefCell;
+    use std::collections::BTreeMap;
+    use std::rc::Rc;
+
+    /// One store behind several shelves, as local storage is behind several tabs.
+    #[derive(Clone, Default)]
+    struct Common(Rc<RefCell<BTreeMap<String, String>>>, Option<usize>);
+
+    impl Store for Common {
+        fn get(&self, key: &str) -> Option<String> {
+            self.0.borrow().get(key).cloned()
+        }
+        fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+            if self.1.is_some_and(|limit| value.len() > limit) {
+                return Err(String::from("no room"));
+            }
+            self.0.borrow_mut().insert(key.to_owned(), value.to_owned());
+            Ok(())
+        }
+        fn remove(&mut self, key: &str) {
+            self.0.borrow_mut().remove(key);
+        }
+        fn keys(&self) -> Vec<String> {
+            self.0.borrow().keys().cloned().collect()
+        }
+    }
+
+    fn kept(text: &str) -> Kept {
+        Kept {
+            project: Project {
+                files: vec![File {
+                    name: String::from("main.rat"),
+                    text: text.to_owned(),
+                }],
+            },
+            ..Kept::default()
+        }
+    }
+
+    fn text(kept: &Kept) -> &str {
+        &kept.project.files[0].text
+    }
+
+    #[test]
+    fn work_undo_and_camera_survive_closing() {
+        let store = Common::default();
+        let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
+        let mut work = kept("new");
+        work.history.record(&kept("old").project, 0.0);
+        work.camera = Some(scene::Camera::default());
+        shelf.put("shell", work.clone());
+        shelf.flush(1.0).unwrap();
+
+        let mut shelf = Shelf::new(Box::new(store), String::from("b"));
+        let last = shelf.last().unwrap();
+        let (name, mut again) = shelf.open(&last).unwrap();
+        assert_eq!((name.as_str(), again.camera), ("shell", work.camera));
+        let undone = again.history.undo(&again.project).unwrap();
+        assert_eq!(undone.files[0].text, "old");
+    }
+
+    #[test]
+    fn beginning_something_else_keeps_the_own_work() {
+        let mut shelf = Shelf::new(Box::<BTreeMap<_, _>>::default(), String::from("a"));
+        shelf.put("mine", kept("mine"));
+        shelf.flush(1.0).unwrap();
+        shelf.begin();
+        shelf.put("linked", kept("linked"));
+        shelf.flush(2.0).unwrap();
+        let names: Vec<_> = shelf.entries().into_iter().map(|e| e.name).collect();
+        assert_eq!(names, ["linked", "mine"]);
+        let open = shelf.opened().unwrap().to_owned();
+        shelf.delete(&open);
+        assert_eq!(shelf.entries().len(), 2, "the open work is not deleted");
+    }
+
+    #[test]
+    fn two_tabs_do_not_overwrite_each_other() {
+        let store = Common::default();
+        let mut first = Shelf::new(Box::new(store.clone()), String::from("a"));
+        first.put("shell", kept("one"));
+        first.flush(1.0).unwrap();
+        let mut second = Shelf::new(Box::new(store), String::from("b"));
+        let id = second.last().unwrap();
+        second.open(&id).unwrap();
+        second.put("shell", kept("two"));
+        second.flush(2.0).unwrap();
+        first.put("shell", kept("three"));
+        first.flush(3.0).unwrap();
+        let mut texts: Vec<_> = first
+            .entries()
+            .iter()
+            .map(|entry| text(&first.read(&entry.id).unwrap().1.kept).to_owned())
+            .collect();
+        texts.sort();
+        assert_eq!(texts, ["three", "two"]);
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_left_alone() {
+        let mut store = Common::default();
+        let key = format!("{DOCUMENT}x");
+        for strange in [
+            "",
+            "no stamp",
+            "s\n{",
+            "s\n{\"version\":2,\"name\":\"\",\"saved\":0,\"kept\":{\"project\":{\"files\":[]},\"camera\":null}}",
+        ] {
+            store.set(&key, strange).unwrap();
+            store.set(CURRENT, "x").unwrap();
+            let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
+            assert!(shelf.open("x").is_none());
+            shelf.put("mine", kept("mine"));
+            shelf.flush(1.0).unwrap();
+            assert_eq!(store.get(&key).unwrap(), strange);
+        }
+    }
+
+    #[test]
+    fn short_room_drops_undo_steps_before_the_text() {
+        let store = Common(Rc::default(), Some(700));
+        let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
+        let mut work = kept("text");
+        work.history.record(&kept(&"x".repeat(1000)).project, 0.0);
+        shelf.put("a", work);
+        shelf.flush(1.0).unwrap();
+        shelf.put("a", kept(&"x".repeat(1000)));
+        assert!(shelf.flush(2.0).is_err());
+        assert!(
+            shelf.is_dirty(),
+            "what could not be written is not forgotten"
+        );
+        assert_eq!(
+            text(&shelf.read(shelf.opened().unwrap()).unwrap().1.kept),
+            "text"
+        );
+    }
+}
