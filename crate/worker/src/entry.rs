@@ -1,0 +1,103 @@
+//! The entry point of a web worker: messages in, messages out.
+//!
+//! The script `www/worker.js` receives the compiled module, instantiates it and calls [`serve`].
+//! From then on each message is one packed [`Request`]. Work is done in steps, each begun by a
+//! message the worker sends to itself, so that requests which came in meanwhile are seen first.
+
+use crate::message::{pack, unpack};
+use crate::{Answer, Engine, Request, Step};
+use js_sys::{Array, Uint8Array};
+use std::cell::RefCell;
+use std::rc::Rc;
+use wasm_bindgen::prelude::*;
+use web_sys::{DedicatedWorkerGlobalScope, MessageChannel, MessageEvent};
+
+struct Desk {
+    engine: Engine,
+    /// Whether a message to ourselves is on its way.
+    ticking: bool,
+    channel: MessageChannel,
+}
+
+/// Takes over the worker's messages. Called once by `www/worker.js`.
+///
+/// # Errors
+/// Outside a dedicated worker.
+#[wasm_bindgen]
+pub fn serve() -> Result<(), JsValue> {
+    std::panic::set_hook(Box::new(|panic| {
+        let message = panic.to_string();
+        web_sys::console::error_1(&JsValue::from_str(&message));
+        send(&Answer::Failed(message));
+    }));
+    let scope = scope()?;
+    let desk = Rc::new(RefCell::new(Desk {
+        engine: Engine::default(),
+        ticking: false,
+        channel: MessageChannel::new()?,
+    }));
+
+    let listener = desk.clone();
+    let on_tick = Closure::<dyn FnMut()>::new(move || {
+        let desk = &mut *listener.borrow_mut();
+        desk.ticking = false;
+        if let Step::Answer(answer) = desk.engine.step(&|| false, &clock) {
+            send(&answer);
+        }
+        desk.tick();
+    });
+    desk.borrow()
+        .channel
+        .port2()
+        .set_onmessage(Some(on_tick.as_ref().unchecked_ref()));
+    on_tick.forget(); // lives as long as the worker
+
+    let on_message = Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
+        let bytes = Uint8Array::new(&event.data()).to_vec();
+        let Ok(request) = unpack::<Request>(&bytes) else {
+            send(&Answer::Failed(String::from(
+                "A message was not understood: page and worker are of different versions. Reload the page.",
+            )));
+            return;
+        };
+        let desk = &mut *desk.borrow_mut();
+        desk.engine.accept(request);
+        desk.tick();
+    });
+    scope.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
+    on_message.forget(); // lives as long as the worker
+    send(&Answer::Started);
+    Ok(())
+}
+
+impl Desk {
+    fn tick(&mut self) {
+        if !self.ticking && !self.engine.is_idle() {
+            self.ticking = self
+                .channel
+                .port1()
+                .post_message(&JsValue::UNDEFINED)
+                .is_ok();
+        }
+    }
+}
+
+fn scope() -> Result<DedicatedWorkerGlobalScope, JsValue> {
+    Ok(js_sys::global().dyn_into::<DedicatedWorkerGlobalScope>()?)
+}
+
+fn clock() -> f64 {
+    scope()
+        .ok()
+        .and_then(|scope| scope.performance())
+        .map_or(0.0, |performance| performance.now() / 1000.0)
+}
+
+/// Sends an answer, giving its memory away instead of copying it again. An answer that cannot be
+/// packed or sent is missed by the page, which then replaces this worker.
+fn send(answer: &Answer) {
+    if let (Ok(scope), Ok(bytes)) = (scope(), pack(answer)) {
+        let buffer = Uint8Array::from(bytes.as_slice()).buffer();
+        let _ = scope.post_message_with_transfer(&buffer, &Array::of1(&buffer));
+    }
+}

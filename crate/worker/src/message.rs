@@ -1,0 +1,76 @@
+//! What the page and a worker say to each other: plain data, packed as bytes.
+
+use scene::Scene;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use tracer::{Pass, Stats, Tile};
+
+/// One tile to trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Order {
+    /// The picture it belongs to.
+    pub generation: u64,
+    /// Which pixels.
+    pub tile: Tile,
+    /// How finely.
+    pub pass: Pass,
+}
+
+/// What the page asks of a worker.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Request {
+    /// A new picture begins: whatever is queued is forgotten.
+    Begin {
+        /// Its number, larger than those before.
+        generation: u64,
+        /// What to draw.
+        scene: Box<Scene>,
+        /// Width and height in pixels, each > 0.
+        size: [u32; 2],
+    },
+    /// Trace this tile after those already queued.
+    Trace(Order),
+    /// Forget whatever is queued, and the picture.
+    Stop,
+}
+
+/// What a worker answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Answer {
+    /// The worker runs and takes requests. Sent once.
+    Started,
+    /// The picture is ready for tracing. Sent once for each [`Request::Begin`] that was not
+    /// overtaken by a later one.
+    Prepared {
+        /// The picture.
+        generation: u64,
+    },
+    /// A tile is done.
+    Traced {
+        /// What had been asked.
+        order: Order,
+        /// RGBA, rows from the top.
+        pixels: Vec<u8>,
+        /// The work done for it.
+        stats: Stats,
+        /// Time it took.
+        seconds: f64,
+    },
+    /// The worker cannot go on, for this reason. The page replaces it.
+    Failed(String),
+}
+
+/// Packs a message.
+///
+/// # Errors
+/// Only if memory runs out while writing.
+pub fn pack<T: Serialize>(message: &T) -> Result<Vec<u8>, postcard::Error> {
+    postcard::to_allocvec(message)
+}
+
+/// Unpacks a message of the same build.
+///
+/// # Errors
+/// If the bytes are not such a message, as happens when page and worker are of different builds.
+pub fn unpack<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, postcard::Error> {
+    postcard::from_bytes(bytes)
+}
