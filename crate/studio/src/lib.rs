@@ -5,10 +5,13 @@
 //! nothing of windows and is tested without one. [`app::App`] ties it to the widgets.
 
 pub mod backend;
+#[cfg(target_arch = "wasm32")]
+pub mod boot;
 pub mod history;
 pub mod indent;
 pub mod picture;
 pub mod session;
+pub mod software;
 pub mod storage;
 
 pub use backend::Backend;

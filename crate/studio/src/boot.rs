@@ -1,0 +1,288 @@
+//! Starts the window on the best that the browser can draw with: WebGPU, else WebGL2, else the
+//! processor ([`crate::software`]).
+//!
+//! What a browser claims and what it can do differ: `navigator.gpu` may be there without an
+//! adapter, a context may be refused, and a device may be lost while the page runs. So each
+//! [`Backend`] is probed, then tried, and when it fails the next one is tried on a fresh canvas (a
+//! canvas that once had a context of one kind never gives another).
+//!
+//! `?backend=webgpu|webgl|none` in the page's address says where to begin, for tests and support.
+
+use std::{cell::Cell, rc::Rc, sync::Arc};
+
+use eframe::{App, CreationContext, WebRunner};
+use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use wasm_bindgen::{JsCast, JsValue, closure::Closure};
+use wasm_bindgen_futures::spawn_local;
+use web_sys::{Document, HtmlCanvasElement, Window};
+
+use crate::{Backend, software};
+
+/// The order of trial.
+const ORDER: [Backend; 3] = [Backend::WebGpu, Backend::WebGl2, Backend::None];
+
+/// A backend lost within this time of its start, in milliseconds, is given up for the next one; a
+/// backend that ran longer is tried once more first, because drivers reset and laptops sleep.
+const STEADY: f64 = 10_000.0;
+
+/// The event that a lost WebGPU device sends to the canvas; WebGL has its own.
+const DEVICE_LOST: &str = "sinew-device-lost";
+
+/// The parameter of the page's address that says where to begin.
+const PARAMETER: &str = "backend";
+
+/// Starts the app on the canvas with the identifier `canvas_id` and says what draws it.
+///
+/// `create` makes the app. It is called again, with another backend, when the one in use fails for
+/// good; the app it made before is dropped then, so what must not be lost belongs into what
+/// `create` captures or into the storage.
+///
+/// # Errors
+/// A sentence for the user when the page has no such canvas or nothing could start, not even
+/// drawing on the processor.
+pub async fn start<A: App + 'static>(
+    canvas_id: &str,
+    create: impl Fn(&CreationContext<'_>, Backend) -> A + 'static,
+) -> Result<Backend, String> {
+    let boot = Rc::new(Boot {
+        canvas_id: canvas_id.to_owned(),
+        create: Box::new(move |context, backend| Box::new(create(context, backend))),
+    });
+    let first = forced().unwrap_or(Backend::WebGpu);
+    boot.start_from(first).await
+}
+
+type Create = dyn Fn(&CreationContext<'_>, Backend) -> Box<dyn App>;
+
+struct Boot {
+    canvas_id: String,
+    create: Box<Create>,
+}
+
+impl Boot {
+    /// Starts the first backend that works, beginning with `first`.
+    async fn start_from(self: Rc<Self>, first: Backend) -> Result<Backend, String> {
+        let mut reasons = Vec::new();
+        for backend in ORDER.into_iter().skip_while(|&backend| backend != first) {
+            if !is_there(backend).await {
+                continue;
+            }
+            match self.clone().run(backend).await {
+                Ok(()) => return Ok(backend),
+                Err(reason) => {
+                    warn(&format!("{} did not start: {reason}", backend.label()));
+                    reasons.push(format!("{}: {reason}", backend.label()));
+                }
+            }
+        }
+        Err(format!(
+            "The window could not start in this browser ({}). Reload the page or use another browser.",
+            reasons.join("; ")
+        ))
+    }
+
+    async fn run(self: Rc<Self>, backend: Backend) -> Result<(), String> {
+        let canvas = self.fresh_canvas()?;
+        let runner = WebRunner::new();
+        let options = eframe::WebOptions {
+            wgpu_options: options(backend).await?,
+            ..Default::default()
+        };
+        let boot = self.clone();
+        let app = canvas.clone();
+        let started = runner
+            .start(
+                canvas.clone(),
+                options,
+                Box::new(move |context| {
+                    watch_device(context, backend, app);
+                    if backend == Backend::None {
+                        software::install(&context.egui_ctx);
+                    }
+                    Ok((boot.create)(context, backend))
+                }),
+            )
+            .await;
+        match started {
+            Ok(()) => {
+                self.restart_when_lost(&canvas, runner, backend)
+                    .map_err(|error| text_of(&error))?;
+                Ok(())
+            }
+            Err(error) => {
+                runner.destroy();
+                Err(text_of(&error))
+            }
+        }
+    }
+
+    /// Puts a canvas that never had a context in the place of the page's canvas.
+    fn fresh_canvas(&self) -> Result<HtmlCanvasElement, String> {
+        let missing = || format!("The page has no canvas with the id {:?}.", self.canvas_id);
+        let old = document()
+            .get_element_by_id(&self.canvas_id)
+            .ok_or_else(missing)?;
+        let new: HtmlCanvasElement = old
+            .clone_node()
+            .map_err(|error| text_of(&error))?
+            .dyn_into()
+            .map_err(|_| missing())?;
+        old.replace_with_with_node_1(&new)
+            .map_err(|error| text_of(&error))?;
+        Ok(new)
+    }
+
+    /// When the canvas loses its device or context, starts anew.
+    fn restart_when_lost(
+        self: Rc<Self>,
+        canvas: &HtmlCanvasElement,
+        runner: WebRunner,
+        backend: Backend,
+    ) -> Result<(), JsValue> {
+        let started = js_sys::Date::now();
+        let done = Cell::new(false);
+        let on_loss = Closure::<dyn Fn()>::new(move || {
+            // A lost device may be told more than once.
+            if done.replace(true) {
+                return;
+            }
+            let next = if js_sys::Date::now() - started >= STEADY {
+                backend
+            } else {
+                after(backend)
+            };
+            warn(&format!(
+                "{} was lost; going on with {}",
+                backend.label(),
+                next.label()
+            ));
+            let (boot, runner) = (self.clone(), runner.clone());
+            spawn_local(async move {
+                runner.destroy();
+                if let Err(reason) = boot.start_from(next).await {
+                    web_sys::console::error_1(&reason.into());
+                }
+            });
+        });
+        for event in [DEVICE_LOST, "webglcontextlost"] {
+            canvas.add_event_listener_with_callback(event, on_loss.as_ref().unchecked_ref())?;
+        }
+        // Lives as long as the page: the canvas may lose its device at any time.
+        on_loss.forget();
+        Ok(())
+    }
+}
+
+/// The backend to fall back to.
+fn after(backend: Backend) -> Backend {
+    match backend {
+        Backend::WebGpu => Backend::WebGl2,
+        Backend::WebGl2 | Backend::None => Backend::None,
+    }
+}
+
+/// What the page's address asks for.
+fn forced() -> Option<Backend> {
+    let query = window().location().search().ok()?;
+    let parameters = web_sys::UrlSearchParams::new_with_str(&query).ok()?;
+    match parameters.get(PARAMETER)?.as_str() {
+        "webgpu" => Some(Backend::WebGpu),
+        "webgl" | "webgl2" => Some(Backend::WebGl2),
+        "none" => Some(Backend::None),
+        _ => None,
+    }
+}
+
+/// Whether the browser really offers the backend.
+async fn is_there(backend: Backend) -> bool {
+    match backend {
+        Backend::WebGpu => wgpu::util::is_browser_webgpu_supported().await,
+        Backend::WebGl2 => has_webgl2(),
+        Backend::None => true,
+    }
+}
+
+fn has_webgl2() -> bool {
+    let canvas: Option<HtmlCanvasElement> = document()
+        .create_element("canvas")
+        .ok()
+        .and_then(|element| element.dyn_into().ok());
+    canvas
+        .and_then(|canvas| canvas.get_context("webgl2").ok().flatten())
+        .is_some()
+}
+
+/// How wgpu is set up for a backend.
+async fn options(backend: Backend) -> Result<WgpuConfiguration, String> {
+    let wgpu_setup = match backend {
+        Backend::WebGpu => on_gpu(wgpu::Backends::BROWSER_WEBGPU),
+        Backend::WebGl2 => on_gpu(wgpu::Backends::GL),
+        Backend::None => software::setup().await?,
+    };
+    Ok(WgpuConfiguration {
+        wgpu_setup,
+        ..Default::default()
+    })
+}
+
+fn on_gpu(backends: wgpu::Backends) -> WgpuSetup {
+    let mut setup = WgpuSetupCreateNew::without_display_handle();
+    setup.instance_descriptor.backends = backends;
+    setup.device_descriptor = Arc::new(|adapter| {
+        let base = if adapter.get_info().backend == wgpu::Backend::Gl {
+            wgpu::Limits::downlevel_webgl2_defaults()
+        } else {
+            wgpu::Limits::default()
+        };
+        wgpu::DeviceDescriptor {
+            label: Some("window"),
+            // As large a window as the adapter can do, but no other limit raised, so that what
+            // runs on one machine runs on the others.
+            required_limits: base.using_resolution(adapter.limits()),
+            ..Default::default()
+        }
+    });
+    setup.into()
+}
+
+/// Tells the canvas when its WebGPU device is lost, and logs errors of the device instead of
+/// ending the app: a frame that is not drawn is no reason to take the editor away.
+fn watch_device(context: &CreationContext<'_>, backend: Backend, canvas: HtmlCanvasElement) {
+    let Some(state) = &context.wgpu_render_state else {
+        return;
+    };
+    state.device.on_uncaptured_error(Arc::new(|error| {
+        web_sys::console::error_1(&error.to_string().into());
+    }));
+    if backend == Backend::WebGpu {
+        state.device.set_device_lost_callback(move |_, _| {
+            if let Ok(event) = web_sys::Event::new(DEVICE_LOST) {
+                // The result only says whether a listener cancelled the event.
+                let _ = canvas.dispatch_event(&event);
+            }
+        });
+    }
+}
+
+fn window() -> Window {
+    web_sys::window().expect("the app runs in a page, not in a worker")
+}
+
+fn document() -> Document {
+    window().document().expect("a page has a document")
+}
+
+fn warn(message: &str) {
+    web_sys::console::warn_1(&message.into());
+}
+
+fn text_of(error: &JsValue) -> String {
+    error
+        .as_string()
+        .or_else(|| {
+            error
+                .dyn_ref::<js_sys::Error>()
+                .map(|error| error.message().into())
+        })
+        .unwrap_or_else(|| format!("{error:?}"))
+}
