@@ -5,13 +5,20 @@
 //! [`Primitive`]; the surface is where F equals [`THRESHOLD`], and inside is where F is larger.
 //! This room knows only mathematics: values, gradients, bounds and ray intervals.
 
+mod angle;
+mod bounds;
+pub mod cauchy;
 pub mod kernel;
 pub mod primitive;
 pub mod profile;
+pub mod quadrature;
+mod reach;
 pub mod real;
 pub mod shaping;
 pub mod skeleton;
 pub mod sum;
+mod term;
+mod waves;
 
 pub use kernel::Kernel;
 pub use primitive::{Jet, Primitive};

@@ -1,5 +1,7 @@
 //! A skeletal element with its kernel: one term of the field.
-use crate::{Kernel, Profile, Real, Shaping, Skeleton};
+use crate::term::{Prepared, Term, place};
+use crate::waves::Waves;
+use crate::{Kernel, Profile, Real, Shaping, Skeleton, THRESHOLD, bounds, reach};
 use glam::DVec3;
 
 /// A value and its gradient.
@@ -12,13 +14,15 @@ pub struct Jet<R> {
 }
 
 /// One term of the field: a skeleton convolved with a kernel.
+///
+/// `f(p) = height · ∫ h(|p−q|) dq` over the skeleton (for a point: `height·h`), times the profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Primitive {
     /// The bone.
     pub skeleton: Skeleton,
     /// The kernel.
     pub kernel: Kernel,
-    /// The kernel's width parameter s.
+    /// The kernel's width parameter s, an inverse length.
     pub width: f64,
     /// The factor on the whole: normalisation times strength.
     pub height: f64,
@@ -26,48 +30,102 @@ pub struct Primitive {
     pub influence: f64,
     /// The profile, if any.
     pub profile: Option<Profile>,
+    pub(crate) prepared: Prepared,
 }
 
+/// Largest coordinate of a skeleton and largest size in kernel widths, so that fourth powers of
+/// them are numbers of single precision.
+const LARGEST: f64 = 1e8;
+
 impl Primitive {
-    /// `None` if the shaping gives no flesh (radius or blobbiness not positive and finite).
+    /// `None` if the shaping gives no flesh: radius, blobbiness or strength zero or not finite, the
+    /// radius negative, the skeleton not finite, or larger than 10⁸ kernel widths.
     #[must_use]
     pub fn new(skeleton: Skeleton, shaping: &Shaping, profile: Option<Profile>) -> Option<Self> {
-        let _ = (skeleton, shaping, profile);
-        todo!()
+        let width = shaping.width()?;
+        let height = shaping.height(&skeleton)?;
+        let peak = profile.map_or(1.0, |p| p.largest());
+        let usable = skeleton.is_finite() && peak.is_finite() && height != 0.0;
+        let size = match skeleton {
+            Skeleton::Point { .. } | Skeleton::Plane { .. } => 0.0,
+            Skeleton::Segment { base, apex } => (apex - base).length(),
+            Skeleton::Arc { radius, .. } => radius,
+            Skeleton::Triangle { corners: [a, b, c] } => (b - a).length().max((c - a).length()),
+        };
+        if !usable || size * width > LARGEST {
+            return None;
+        }
+        let (frame, form) = place(&skeleton, width);
+        let amplitude = match skeleton.dimension() {
+            0 => height,
+            1 => height / width,
+            _ => height / (width * width),
+        };
+        if !amplitude.is_finite() {
+            return None;
+        }
+        let level = THRESHOLD * shaping.influence.max(f64::MIN_POSITIVE);
+        let influence = bounds::depth(&form, amplitude.abs() * peak, level) / width;
+        let waves = profile.map(|profile| Waves::new(&profile, &form));
+        Some(Self {
+            skeleton,
+            kernel: shaping.kernel,
+            width,
+            height,
+            influence,
+            profile,
+            prepared: Prepared::new(Term {
+                frame,
+                form,
+                amplitude,
+                waves,
+            }),
+        })
     }
 
     /// Value and gradient at a point.
+    #[inline]
     #[must_use]
     pub fn jet<R: Real>(&self, point: [R; 3]) -> Jet<R> {
-        let _ = point;
-        todo!()
+        use crate::real::Scalar;
+        R::Scalar::prepared(&self.prepared).jet(point)
     }
 
     /// Value alone.
+    #[inline]
     #[must_use]
     pub fn value<R: Real>(&self, point: [R; 3]) -> R {
-        let _ = point;
-        todo!()
+        self.jet(point).value
     }
 
     /// The ray interval outside which the primitive is beyond its depth of influence:
     /// parameters t of `origin + t·direction`, conservative. `None` if the ray misses it.
+    ///
+    /// The direction need not have unit length.
     #[must_use]
     pub fn ray_interval(&self, origin: DVec3, direction: DVec3) -> Option<[f64; 2]> {
-        let _ = (origin, direction);
-        todo!()
+        let Term { frame, form, .. } = &self.prepared.double;
+        reach::interval(
+            form,
+            self.influence * self.width,
+            frame.point_to_local(origin),
+            frame.vector_to_local(direction),
+        )
     }
 
     /// A sphere (centre, radius) holding all points within the depth of influence; `None` for a plane.
     #[must_use]
     pub fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
-        todo!()
+        let (center, radius) = self.skeleton.bounding_sphere()?;
+        Some((center, radius + self.influence))
     }
 
     /// An upper bound on |f| anywhere at `distance` or more from the skeleton.
     #[must_use]
     pub fn bound_at(&self, distance: f64) -> f64 {
-        let _ = distance;
-        todo!()
+        let term = &self.prepared.double;
+        let peak = self.profile.map_or(1.0, |p| p.largest());
+        let distance = (distance * self.width).max(0.0);
+        term.amplitude.abs() * peak * bounds::bound_at(&term.form, distance)
     }
 }

@@ -36,3 +36,11 @@ pub struct Profile {
     /// A factor on the whole.
     pub times: f64,
 }
+
+impl Profile {
+    /// The largest magnitude of the factor: waves' products are in [0, 1].
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.times.abs() * self.bounds[0].abs().max(self.bounds[1].abs())
+    }
+}

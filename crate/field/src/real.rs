@@ -1,10 +1,17 @@
 //! The numbers that formulas are written in.
 //!
 //! Each formula of this crate is written once, generic over [`Real`], without branches on values:
-//! it runs as `f64` (the reference), `f32`, and `wide::f32x8` (eight at a time), and gives the
-//! same bits on every platform because nothing here calls a platform's own `sin` or `atan`.
+//! it runs as `f64` (the reference), as `f32`, and as [`wide::f32x8`] (eight at a time). Only
+//! operations that IEEE 754 defines to the last bit (`+ − × ÷ √`, comparisons) and polynomials of
+//! our own are used, never a fused multiply-add and never a platform's `sin` or `atan`. So results
+//! have the same bits on every platform, and a lane of `f32x8` has the same bits as `f32` alone.
 
+use crate::term::{Prepared, Term};
 use core::ops::{Add, Div, Mul, Neg, Sub};
+
+mod double;
+mod single;
+mod wide8;
 
 /// A real number, or several side by side that are computed in step.
 pub trait Real:
@@ -16,8 +23,77 @@ pub trait Real:
     + Neg<Output = Self>
     + 'static
 {
+    /// The type of one lane.
+    type Scalar: Scalar;
     /// The result of a comparison, one truth value a lane.
     type Mask: Copy;
-    /// The same constant in every lane.
+    /// Numbers side by side.
+    const LANES: usize;
+    /// Coordinates (in units of the kernel's width) are cut to ± this: beyond it the fourth powers
+    /// that formulas contain would overflow, and the field there is below 10⁻³⁵ anyway.
+    const HORIZON: f64;
+
+    /// The same constant in every lane, rounded to the type.
     fn splat(value: f64) -> Self;
+    /// The same prepared constant in every lane.
+    fn lift(value: Self::Scalar) -> Self;
+    /// Lane by lane from a function of the lane's number.
+    fn from_lanes(lane: impl FnMut(usize) -> f64) -> Self;
+    /// One lane.
+    ///
+    /// # Panics
+    /// If `index ≥ LANES`.
+    fn lane(self, index: usize) -> f64;
+
+    /// √x.
+    fn sqrt(self) -> Self;
+    /// |x|.
+    fn abs(self) -> Self;
+    /// The greatest integer not above x.
+    fn floor(self) -> Self;
+    /// The smaller of two numbers.
+    fn min(self, other: Self) -> Self;
+    /// The larger of two numbers.
+    fn max(self, other: Self) -> Self;
+    /// Where `self < other`.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask holds, else `no`.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Where both masks hold.
+    fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+
+    /// `Q(y)` of `arctan x = x − x³/3 + x⁵·Q(x²)`, for 0 ≤ y ≤ tan²(π/8), to the type's precision.
+    fn arctangent_tail(square: Self) -> Self;
+    /// Sine and cosine, for |x| up to 10⁴ or so.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// `magnitude` with the sign of `self`.
+    #[inline(always)]
+    fn sign_to(self, magnitude: Self) -> Self {
+        Self::select(self.lt(Self::splat(0.0)), -magnitude, magnitude)
+    }
+
+    /// x².
+    #[inline(always)]
+    fn square(self) -> Self {
+        self * self
+    }
+}
+
+/// A real number of one lane, the type that prepared constants have.
+pub trait Scalar: Real<Scalar = Self> + PartialEq + core::fmt::Debug {
+    /// The nearest number of this type.
+    fn round(value: f64) -> Self;
+    /// Of a term prepared in both precisions, the one in this.
+    fn prepared(term: &Prepared) -> &Term<Self>;
+}
+
+/// `c₀ + c₁x + c₂x² + …`
+#[inline(always)]
+pub(crate) fn polynomial<R: Real, const N: usize>(x: R, coefficients: [f64; N]) -> R {
+    let mut sum = R::splat(coefficients[N - 1]);
+    for i in (0..N - 1).rev() {
+        sum = sum * x + R::splat(coefficients[i]);
+    }
+    sum
 }

@@ -1,4 +1,5 @@
 //! The bones: geometry of dimension 0, 1 and 2.
+use crate::term::orthonormal;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -42,4 +43,167 @@ pub enum Skeleton {
         /// Its unit normal.
         normal: DVec3,
     },
+}
+
+impl Skeleton {
+    /// 0 for points, 1 for segments and arcs, 2 for triangles and planes.
+    #[must_use]
+    pub fn dimension(&self) -> u8 {
+        match self {
+            Self::Point { .. } => 0,
+            Self::Segment { .. } | Self::Arc { .. } => 1,
+            Self::Triangle { .. } | Self::Plane { .. } => 2,
+        }
+    }
+
+    /// Length or area; 1 for a point, infinite for a plane.
+    #[must_use]
+    pub fn measure(&self) -> f64 {
+        match *self {
+            Self::Point { .. } => 1.0,
+            Self::Segment { base, apex } => (apex - base).length(),
+            Self::Arc { radius, angle, .. } => radius * angle.clamp(0.0, core::f64::consts::TAU),
+            Self::Triangle { corners: [a, b, c] } => (b - a).cross(c - a).length() / 2.0,
+            Self::Plane { .. } => f64::INFINITY,
+        }
+    }
+
+    /// Distance of a point from the skeleton.
+    #[must_use]
+    pub fn distance(&self, point: DVec3) -> f64 {
+        (point - self.nearest(point)).length()
+    }
+
+    /// The point of the skeleton nearest to `point` (one of them, where there are several).
+    #[must_use]
+    pub fn nearest(&self, point: DVec3) -> DVec3 {
+        match *self {
+            Self::Point { center } => center,
+            Self::Segment { base, apex } => nearest_on_segment(point, base, apex),
+            Self::Arc {
+                center,
+                u,
+                v,
+                radius,
+                angle,
+            } => {
+                let (u, v) = orthonormal(u, v);
+                let half = angle.clamp(0.0, core::f64::consts::TAU) / 2.0;
+                let d = point - center;
+                // Azimuth from the arc's middle: the nearer end is then found by clamping.
+                let (sine, cosine) = libm::sincos(half);
+                let (x, y) = (u * cosine + v * sine, v * cosine - u * sine);
+                let azimuth = libm::atan2(d.dot(y), d.dot(x)).clamp(-half, half);
+                let (sine, cosine) = libm::sincos(azimuth);
+                center + radius * (x * cosine + y * sine)
+            }
+            Self::Triangle { corners: [a, b, c] } => {
+                let (e1, e2) = (b - a, c - a);
+                let normal = e1.cross(e2);
+                let area = normal.length_squared();
+                let d = point - a;
+                let v = normal.dot(e1.cross(d)) / area;
+                let u = normal.dot(d.cross(e2)) / area;
+                if area > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
+                    return a + e1 * u + e2 * v;
+                }
+                [(a, b), (b, c), (c, a)]
+                    .map(|(p, q)| nearest_on_segment(point, p, q))
+                    .into_iter()
+                    .min_by(|p, q| {
+                        p.distance_squared(point)
+                            .total_cmp(&q.distance_squared(point))
+                    })
+                    .unwrap_or(a)
+            }
+            Self::Plane { point: p, normal } => {
+                let n = normal.try_normalize().unwrap_or(DVec3::Z);
+                point - n * n.dot(point - p)
+            }
+        }
+    }
+
+    /// A sphere (centre, radius) that holds the skeleton; `None` for a plane.
+    #[must_use]
+    pub fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
+        match *self {
+            Self::Point { center } => Some((center, 0.0)),
+            Self::Segment { base, apex } => {
+                Some(((base + apex) / 2.0, (apex - base).length() / 2.0))
+            }
+            Self::Arc {
+                center,
+                u,
+                v,
+                radius,
+                angle,
+            } => {
+                if angle >= core::f64::consts::PI {
+                    return Some((center, radius));
+                }
+                // Up to a half circle the sphere over the chord holds the arc.
+                let (u, v) = orthonormal(u, v);
+                let (sine, cosine) = libm::sincos(angle.max(0.0) / 2.0);
+                let middle = center + (u * cosine + v * sine) * (radius * cosine);
+                Some((middle, radius * sine))
+            }
+            Self::Triangle { corners: [a, b, c] } => {
+                // Over the longest side, if the opposite corner is in that sphere, else around.
+                let (p, q, r) = [(a, b, c), (b, c, a), (c, a, b)]
+                    .into_iter()
+                    .max_by(|x, y| {
+                        x.0.distance_squared(x.1)
+                            .total_cmp(&y.0.distance_squared(y.1))
+                    })
+                    .unwrap_or((a, b, c));
+                let middle = (p + q) / 2.0;
+                let half = (q - p).length() / 2.0;
+                if r.distance(middle) <= half {
+                    return Some((middle, half));
+                }
+                let (e1, e2) = (q - p, r - p);
+                let normal = e1.cross(e2);
+                let offset = (e1.length_squared() * e2.cross(normal)
+                    + e2.length_squared() * normal.cross(e1))
+                    / (2.0 * normal.length_squared());
+                Some((p + offset, offset.length() * (1.0 + 1e-12)))
+            }
+            Self::Plane { .. } => None,
+        }
+    }
+
+    /// Whether all its numbers are finite and its radius, if any, is not negative.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        match *self {
+            Self::Point { center } => center.is_finite(),
+            Self::Segment { base, apex } => base.is_finite() && apex.is_finite(),
+            Self::Arc {
+                center,
+                u,
+                v,
+                radius,
+                angle,
+            } => {
+                center.is_finite()
+                    && u.is_finite()
+                    && v.is_finite()
+                    && radius.is_finite()
+                    && radius >= 0.0
+                    && angle.is_finite()
+            }
+            Self::Triangle { corners } => corners.iter().all(|p| p.is_finite()),
+            Self::Plane { point, normal } => point.is_finite() && normal.is_finite(),
+        }
+    }
+}
+
+/// The point of a segment nearest to `point`.
+fn nearest_on_segment(point: DVec3, base: DVec3, apex: DVec3) -> DVec3 {
+    let d = apex - base;
+    let square = d.length_squared();
+    if square == 0.0 {
+        return base;
+    }
+    base + d * ((point - base).dot(d) / square).clamp(0.0, 1.0)
 }

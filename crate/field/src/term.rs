@@ -1,0 +1,238 @@
+//! A primitive made ready for evaluation: its closed form and the frame in which that is written.
+use crate::cauchy::{Arc, Plane, Point, Segment, Triangle};
+use crate::waves::Waves;
+use crate::{Jet, Real, Skeleton};
+use glam::{DMat3, DVec3};
+
+/// Local coordinates: `axes·(p − origin)`; the axes are orthogonal and as long as the kernel's
+/// width parameter s, so that local lengths are in units of the kernel's width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Frame<S> {
+    pub origin: [S; 3],
+    pub axes: [[S; 3]; 3],
+}
+
+impl<S: Copy> Frame<S> {
+    #[inline(always)]
+    pub fn to_local<R: Real<Scalar = S>>(&self, p: [R; 3]) -> [R; 3] {
+        let [x, y, z] = self.origin.map(R::lift);
+        let d = [p[0] - x, p[1] - y, p[2] - z];
+        self.axes.map(|axis| {
+            let [ax, ay, az] = axis.map(R::lift);
+            ax * d[0] + ay * d[1] + az * d[2]
+        })
+    }
+
+    /// A gradient, a covector: derivatives with respect to world coordinates.
+    #[inline(always)]
+    pub fn to_world<R: Real<Scalar = S>>(&self, g: [R; 3]) -> [R; 3] {
+        core::array::from_fn(|i| {
+            R::lift(self.axes[0][i]) * g[0]
+                + R::lift(self.axes[1][i]) * g[1]
+                + R::lift(self.axes[2][i]) * g[2]
+        })
+    }
+
+    fn cast<Q>(&self, f: impl Fn(S) -> Q) -> Frame<Q> {
+        Frame {
+            origin: self.origin.map(&f),
+            axes: self.axes.map(|axis| axis.map(&f)),
+        }
+    }
+}
+
+impl Frame<f64> {
+    pub fn point_to_local(&self, p: DVec3) -> DVec3 {
+        DVec3::from_array(self.to_local(p.to_array()))
+    }
+
+    pub fn vector_to_local(&self, v: DVec3) -> DVec3 {
+        let [x, y, z] = self.axes.map(|axis| DVec3::from_array(axis).dot(v));
+        DVec3::new(x, y, z)
+    }
+}
+
+/// A closed form in its local frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Form<S> {
+    Point(Point),
+    Segment(Segment<S>),
+    Arc(Arc<S>),
+    Triangle(Triangle<S>),
+    Plane(Plane),
+}
+
+impl<S: Copy> Form<S> {
+    #[inline(always)]
+    pub fn jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+        let horizon = R::splat(R::HORIZON);
+        let p = p.map(|x| x.min(horizon).max(-horizon));
+        match self {
+            Self::Point(form) => form.jet(p),
+            Self::Segment(form) => form.jet(p),
+            Self::Arc(form) => form.jet(p),
+            Self::Triangle(form) => form.jet(p),
+            Self::Plane(form) => form.jet(p),
+        }
+    }
+
+    fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Form<Q> {
+        match self {
+            Self::Point(form) => Form::Point(*form),
+            Self::Segment(form) => Form::Segment(Segment { half: f(form.half) }),
+            Self::Arc(form) => Form::Arc(form.cast(f)),
+            Self::Triangle(form) => Form::Triangle(form.cast(f)),
+            Self::Plane(form) => Form::Plane(*form),
+        }
+    }
+}
+
+/// Frame, form and factor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term<S> {
+    pub(crate) frame: Frame<S>,
+    pub(crate) form: Form<S>,
+    /// Factor on the form.
+    pub(crate) amplitude: S,
+    pub(crate) waves: Option<Waves<S>>,
+}
+
+impl<S: Copy> Term<S> {
+    /// Value and local gradient at a local position.
+    #[inline(always)]
+    pub(crate) fn local_jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+        let jet = self.form.jet(p);
+        let amplitude = R::lift(self.amplitude);
+        let jet = Jet {
+            value: amplitude * jet.value,
+            gradient: jet.gradient.map(|g| amplitude * g),
+        };
+        match &self.waves {
+            None => jet,
+            Some(waves) => {
+                let factor = waves.jet(p);
+                Jet {
+                    value: jet.value * factor.value,
+                    gradient: core::array::from_fn(|i| {
+                        jet.gradient[i] * factor.value + jet.value * factor.gradient[i]
+                    }),
+                }
+            }
+        }
+    }
+
+    /// Value and gradient at a position in the world.
+    #[inline(always)]
+    pub(crate) fn jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+        let local = self.local_jet(self.frame.to_local(p));
+        Jet {
+            value: local.value,
+            gradient: self.frame.to_world(local.gradient),
+        }
+    }
+}
+
+/// One term in both precisions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prepared {
+    pub(crate) double: Term<f64>,
+    pub(crate) single: Term<f32>,
+}
+
+impl Prepared {
+    pub fn new(double: Term<f64>) -> Self {
+        let round = |value: f64| value as f32;
+        let single = Term {
+            frame: double.frame.cast(round),
+            form: double.form.cast(round),
+            amplitude: round(double.amplitude),
+            waves: double.waves.map(|waves| waves.cast(round)),
+        };
+        Self { double, single }
+    }
+}
+
+/// The local frame and closed form of a skeleton, for the kernel's width parameter s.
+pub(crate) fn place(skeleton: &Skeleton, s: f64) -> (Frame<f64>, Form<f64>) {
+    match *skeleton {
+        Skeleton::Point { center } => (frame(center, DMat3::IDENTITY, s), Form::Point(Point)),
+        Skeleton::Segment { base, apex } => {
+            let x = (apex - base).try_normalize().unwrap_or(DVec3::X);
+            let y = x.any_orthonormal_vector();
+            let half = s * (apex - base).length() / 2.0;
+            (
+                frame((base + apex) / 2.0, DMat3::from_cols(x, y, x.cross(y)), s),
+                Form::Segment(Segment { half }),
+            )
+        }
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius,
+            angle,
+        } => {
+            let (u, v) = orthonormal(u, v);
+            let angle = angle.clamp(0.0, core::f64::consts::TAU);
+            let arc = Arc::new(s * radius, angle);
+            let (sine, cosine) = libm::sincos(angle / 2.0);
+            let x = (u * cosine + v * sine) * arc.side;
+            let z = u.cross(v);
+            (
+                frame(center + x * radius, DMat3::from_cols(x, z.cross(x), z), s),
+                Form::Arc(arc),
+            )
+        }
+        Skeleton::Triangle { corners: [a, b, c] } => {
+            // The normal is best conditioned at the corner opposite the longest side; which one
+            // matters only for slivers.
+            let x = [b - a, c - b, a - c]
+                .into_iter()
+                .max_by(|p, q| p.length_squared().total_cmp(&q.length_squared()))
+                .and_then(DVec3::try_normalize)
+                .unwrap_or(DVec3::X);
+            let normal = (b - a).cross(c - a);
+            let z = (normal - x * normal.dot(x))
+                .try_normalize()
+                .unwrap_or_else(|| x.any_orthonormal_vector());
+            let axes = DMat3::from_cols(x, z.cross(x), z);
+            let origin = a + ((b - a) + (c - a)) / 3.0;
+            let corners = [a, b, c].map(|p| {
+                let local = axes.transpose() * (p - origin) * s;
+                [local.x, local.y]
+            });
+            (
+                frame(origin, axes, s),
+                Form::Triangle(Triangle::new(corners)),
+            )
+        }
+        Skeleton::Plane { point, normal } => {
+            let z = normal.try_normalize().unwrap_or(DVec3::Z);
+            let x = z.any_orthonormal_vector();
+            (
+                frame(point, DMat3::from_cols(x, z.cross(x), z), s),
+                Form::Plane(Plane),
+            )
+        }
+    }
+}
+
+/// Unit vectors in the plane of u and v, the first along u.
+pub(crate) fn orthonormal(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
+    let u = u.try_normalize().unwrap_or(DVec3::X);
+    let v = (v - u * u.dot(v))
+        .try_normalize()
+        .unwrap_or_else(|| u.any_orthonormal_vector());
+    (u, v)
+}
+
+fn frame(origin: DVec3, axes: DMat3, s: f64) -> Frame<f64> {
+    Frame {
+        origin: origin.to_array(),
+        axes: [
+            (axes.x_axis * s).to_array(),
+            (axes.y_axis * s).to_array(),
+            (axes.z_axis * s).to_array(),
+        ],
+    }
+}

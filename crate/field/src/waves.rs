@@ -1,0 +1,201 @@
+//! Profiles in a primitive's local frame: the factor on its field and that factor's gradient.
+use crate::angle::direction;
+use crate::term::Form;
+use crate::{Jet, Profile, Real, Wave};
+
+/// Where the natural parameters u, v of a primitive are read from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Parameters<S> {
+    /// Nowhere: both are 0 (points and planes).
+    None,
+    /// u and v are linear functions `gradient·p + start` (segments and triangles), cut to [0, 1].
+    Linear {
+        gradient: [[S; 2]; 2],
+        start: [S; 2],
+    },
+    /// u is the angle from an arc's start, divided by the arc's, cut to [0, 1].
+    Angle {
+        radius: S,
+        side: S,
+        start: S,
+        rate: S,
+    },
+}
+
+/// A profile, prepared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Waves<S> {
+    waves: [Wave; 2],
+    scale: [S; 2],
+    low: S,
+    rise: S,
+    parameters: Parameters<S>,
+}
+
+impl Waves<f64> {
+    pub fn new(profile: &Profile, form: &Form<f64>) -> Self {
+        let parameters = match form {
+            Form::Point(_) | Form::Plane(_) => Parameters::None,
+            Form::Segment(segment) => Parameters::Linear {
+                gradient: [[inverse(2.0 * segment.half), 0.0], [0.0; 2]],
+                start: [0.5, 0.0],
+            },
+            Form::Arc(arc) => Parameters::Angle {
+                radius: arc.radius,
+                side: arc.side,
+                start: arc.half_angle,
+                rate: inverse(2.0 * arc.half_angle),
+            },
+            Form::Triangle(triangle) => {
+                // The inverse of the matrix of the sides from corner 0.
+                let [[ax, ay], b, c] = triangle.corners;
+                let e1 = [b[0] - ax, b[1] - ay];
+                let e2 = [c[0] - ax, c[1] - ay];
+                let i = inverse(triangle.double_area);
+                let gradient = [[e2[1] * i, -e2[0] * i], [-e1[1] * i, e1[0] * i]];
+                Parameters::Linear {
+                    gradient,
+                    start: gradient.map(|[gx, gy]| -(gx * ax + gy * ay)),
+                }
+            }
+        };
+        Self {
+            waves: profile.waves,
+            scale: profile.scale,
+            low: profile.times * profile.bounds[0],
+            rise: profile.times * (profile.bounds[1] - profile.bounds[0]),
+            parameters,
+        }
+    }
+}
+
+/// 1/x, or 0 where x is 0: then a parameter has no extent, and stays at its start.
+fn inverse(x: f64) -> f64 {
+    if x > 0.0 { 1.0 / x } else { 0.0 }
+}
+
+impl<S: Copy> Waves<S> {
+    pub fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Waves<Q> {
+        Waves {
+            waves: self.waves,
+            scale: self.scale.map(f),
+            low: f(self.low),
+            rise: f(self.rise),
+            parameters: match &self.parameters {
+                Parameters::None => Parameters::None,
+                Parameters::Linear { gradient, start } => Parameters::Linear {
+                    gradient: gradient.map(|g| g.map(f)),
+                    start: start.map(f),
+                },
+                Parameters::Angle {
+                    radius,
+                    side,
+                    start,
+                    rate,
+                } => Parameters::Angle {
+                    radius: f(*radius),
+                    side: f(*side),
+                    start: f(*start),
+                    rate: f(*rate),
+                },
+            },
+        }
+    }
+
+    /// The factor and its local gradient at a local position.
+    #[inline(always)]
+    pub fn jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+        let zero = R::splat(0.0);
+        // u and v, not yet cut, and their derivatives in the plane.
+        let (parameters, gradients) = match &self.parameters {
+            Parameters::None => ([zero; 2], [[zero; 2]; 2]),
+            Parameters::Linear { gradient, start } => {
+                let gradient = gradient.map(|g| g.map(R::lift));
+                (
+                    [0, 1]
+                        .map(|i| gradient[i][0] * p[0] + gradient[i][1] * p[1] + R::lift(start[i])),
+                    gradient,
+                )
+            }
+            Parameters::Angle {
+                radius,
+                side,
+                start,
+                rate,
+            } => {
+                // From the circle's centre, x towards the arc's middle: the jump of the angle is
+                // then in the middle of the gap.
+                let (side, rate) = (R::lift(*side), R::lift(*rate));
+                let x = side * (R::lift(*radius) + p[0]);
+                let y = side * p[1];
+                let square = (x * x + y * y).max(R::splat(1e-30));
+                (
+                    [(direction(y, x) + R::lift(*start)) * rate, zero],
+                    [
+                        [-(side * y * rate) / square, side * x * rate / square],
+                        [zero; 2],
+                    ],
+                )
+            }
+        };
+        let factors = [0, 1].map(|i| {
+            let scale = R::lift(self.scale[i]);
+            let one = R::splat(1.0);
+            let cut = parameters[i].max(zero).min(one);
+            let (value, slope) = wave(self.waves[i], scale * cut);
+            let inside = R::both(zero.lt(parameters[i]), parameters[i].lt(one));
+            (value, R::select(inside, scale * slope, zero))
+        });
+        let rise = R::lift(self.rise);
+        let (by_u, by_v) = (
+            rise * factors[0].1 * factors[1].0,
+            rise * factors[0].0 * factors[1].1,
+        );
+        Jet {
+            value: R::lift(self.low) + rise * factors[0].0 * factors[1].0,
+            gradient: [
+                by_u * gradients[0][0] + by_v * gradients[1][0],
+                by_u * gradients[0][1] + by_v * gradients[1][1],
+                zero,
+            ],
+        }
+    }
+}
+
+/// A wave and its derivative.
+#[inline(always)]
+fn wave<R: Real>(wave: Wave, x: R) -> (R, R) {
+    let zero = R::splat(0.0);
+    let one = R::splat(1.0);
+    let two = R::splat(2.0);
+    let half = R::splat(0.5);
+    match wave {
+        Wave::One => (one, zero),
+        Wave::X => {
+            let inside = R::both(zero.lt(x), x.lt(one));
+            (x.max(zero).min(one), R::select(inside, one, zero))
+        }
+        Wave::Sin => {
+            let (s, c) = x.sin_cos();
+            (half + half * s, half * c)
+        }
+        Wave::Cos => {
+            let (s, c) = x.sin_cos();
+            (half + half * c, -(half * s))
+        }
+        Wave::Sin2 => {
+            let (s, c) = x.sin_cos();
+            (s * s, two * s * c)
+        }
+        Wave::Cos2 => {
+            let (s, c) = x.sin_cos();
+            (c * c, -(two * s * c))
+        }
+        Wave::Saw => (x - x.floor(), one),
+        Wave::Hat => {
+            let t = two * (x - x.floor()) - one;
+            (one - t.abs(), -t.sign_to(two))
+        }
+        Wave::Step => (R::select((x - x.floor()).lt(half), zero, one), zero),
+    }
+}
