@@ -4,8 +4,29 @@
 //! tile of it. A tile's pixels depend on nothing but the scene, so tiles may be traced in any
 //! order, by any number of threads or workers, on any platform, with equal results.
 
+mod beam;
+mod bound;
+pub mod hard;
+mod hierarchy;
+mod lanes;
+mod packet;
 pub mod picture;
+mod ray;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod render;
+mod roots;
+mod sample;
+mod shade;
+mod slabs;
+mod soft;
+mod solids;
+mod spans;
 pub mod tile;
+mod unit;
+mod walk;
 
 pub use picture::{Hit, Picture, Stats};
-pub use tile::{Pass, Tile};
+pub use ray::Ray;
+#[cfg(not(target_arch = "wasm32"))]
+pub use render::render;
+pub use tile::{Pass, Tile, tiles};

@@ -25,9 +25,58 @@ pub enum Pass {
     Smooth,
 }
 
-/// The tiles of a picture, those nearest to its centre first. Their sides are at most `side`.
+/// The tiles of a picture, those nearest to its centre first. Their sides are at most `side`
+/// (a side of 0 is read as 1), and together they cover every pixel exactly once.
 #[must_use]
 pub fn tiles(width: u32, height: u32, side: u32) -> Vec<Tile> {
-    let _ = (width, height, side);
-    todo!()
+    let side = side.max(1);
+    let mut tiles = Vec::new();
+    for y in (0..height).step_by(side as usize) {
+        for x in (0..width).step_by(side as usize) {
+            tiles.push(Tile {
+                x,
+                y,
+                width: side.min(width - x),
+                height: side.min(height - y),
+            });
+        }
+    }
+    // Twice the offset of the tile's centre from the picture's, so that all numbers are whole;
+    // equal distances keep their order (left to right, top to bottom).
+    tiles.sort_by_key(|t| {
+        let dx = i64::from(2 * t.x + t.width) - i64::from(width);
+        let dy = i64::from(2 * t.y + t.height) - i64::from(height);
+        dx * dx + dy * dy
+    });
+    tiles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_pixel_exactly_once_and_start_at_the_centre() {
+        for (width, height, side) in [(640, 480, 64), (100, 37, 16), (1, 1, 64), (7, 90, 32)] {
+            let tiles = tiles(width, height, side);
+            let mut seen = vec![0u8; (width * height) as usize];
+            for t in &tiles {
+                assert!(t.width > 0 && t.height > 0 && t.width <= side && t.height <= side);
+                for y in t.y..t.y + t.height {
+                    for x in t.x..t.x + t.width {
+                        seen[(y * width + x) as usize] += 1;
+                    }
+                }
+            }
+            assert!(seen.iter().all(|&n| n == 1));
+            let first = tiles[0];
+            let off = |a: u32, n: u32, whole: u32| {
+                (f64::from(a) + f64::from(n) / 2.0 - f64::from(whole) / 2.0).abs()
+            };
+            assert!(off(first.x, first.width, width) <= f64::from(side));
+            assert!(off(first.y, first.height, height) <= f64::from(side));
+        }
+        assert!(tiles(0, 10, 8).is_empty());
+        assert_eq!(tiles(3, 1, 0).len(), 3);
+    }
 }

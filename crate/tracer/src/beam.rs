@@ -1,0 +1,92 @@
+//! A bundle of rays bounded as one: what is proved of the beam holds for each of its rays.
+use crate::ray::Ray;
+use glam::DVec3;
+
+/// A cone with a blunt tip that holds a bundle of rays: at parameter t every ray of the bundle is
+/// within `radius + spread·t` of the axis' point at the same t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beam {
+    /// The middle ray.
+    pub axis: Ray,
+    /// Largest distance of a ray's origin from the axis' origin.
+    pub radius: f64,
+    /// Largest length of the difference between a ray's direction and the axis'.
+    pub spread: f64,
+}
+
+/// Bounds are computed in floating point; this much is added to each so that they stay bounds.
+const ROUNDING: f64 = 1e-9;
+
+impl Beam {
+    /// The beam around a single ray.
+    #[must_use]
+    pub fn of_ray(axis: Ray) -> Self {
+        Self {
+            axis,
+            radius: 0.0,
+            spread: 0.0,
+        }
+    }
+
+    /// The beam around some rays. `None` if there are none.
+    #[must_use]
+    pub fn around(rays: &[Ray]) -> Option<Self> {
+        let n = rays.len() as f64;
+        let origin = rays.iter().map(|r| r.origin).sum::<DVec3>() / n;
+        let direction = rays
+            .iter()
+            .map(|r| r.direction)
+            .sum::<DVec3>()
+            .try_normalize()
+            .or(rays.first().map(|r| r.direction))?;
+        let furthest = |f: &dyn Fn(&Ray) -> f64| rays.iter().map(f).fold(0.0, f64::max);
+        Some(Self {
+            axis: Ray { origin, direction },
+            radius: furthest(&|r| r.origin.distance(origin)) * (1.0 + ROUNDING),
+            spread: furthest(&|r| r.direction.distance(direction)) * (1.0 + ROUNDING),
+        })
+    }
+
+    /// A ball (centre, radius) that holds the piece of every ray between two parameters.
+    #[must_use]
+    pub fn ball(&self, from: f64, to: f64) -> (DVec3, f64) {
+        let middle = 0.5 * (from + to);
+        let half = 0.5 * (to - from);
+        (
+            self.axis.at(middle),
+            (half + self.radius + self.spread * to) * (1.0 + ROUNDING),
+        )
+    }
+
+    /// Whether a ray of the beam may meet a ball.
+    #[must_use]
+    pub fn meets(&self, center: DVec3, radius: f64) -> bool {
+        let reach = radius + self.radius;
+        let d = center - self.axis.origin;
+        let along = d.dot(self.axis.direction);
+        let across = (d.length_squared() - along * along).max(0.0).sqrt();
+        // The distance from the axis' point at t less the beam's growth, sqrt(across² +
+        // (along−t)²) − spread·t, is least where its derivative vanishes, if that is at t ≥ 0.
+        let slope = (1.0 - self.spread * self.spread).max(0.0).sqrt();
+        let at = if slope > 0.0 {
+            along + across * self.spread / slope
+        } else {
+            f64::INFINITY
+        };
+        let least = if at > 0.0 {
+            across * slope - self.spread * along
+        } else {
+            d.length()
+        };
+        least <= reach * (1.0 + ROUNDING) + ROUNDING * d.length()
+    }
+
+    /// The parameters between which a ray of the beam may be inside a ball: t ≥ 0 is distance
+    /// from the ray's origin, so it differs from the ball's distance by no more than the radii.
+    #[must_use]
+    pub fn reach(&self, center: DVec3, radius: f64) -> [f64; 2] {
+        let distance = self.axis.origin.distance(center);
+        let slack = radius + self.radius + ROUNDING * distance;
+        [(distance - slack).max(0.0), distance + slack]
+    }
+}

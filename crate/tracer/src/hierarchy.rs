@@ -1,0 +1,176 @@
+//! A hierarchy of bounding balls: finds the few of many things that a beam may meet.
+use crate::beam::Beam;
+use glam::DVec3;
+
+/// A binary tree of balls over items that each have a ball.
+#[derive(Clone, Debug, Default)]
+pub struct Hierarchy {
+    nodes: Vec<Node>,
+    /// The items' balls, in the tree's order.
+    balls: Vec<(DVec3, f64)>,
+    /// The items' own numbers, in the tree's order.
+    items: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    center: DVec3,
+    radius: f64,
+    /// First item below this node, and how many.
+    first: u32,
+    count: u32,
+    /// The right child; the left one follows its parent. 0 in a leaf.
+    right: u32,
+}
+
+/// Items in a leaf.
+const LEAF: usize = 4;
+
+impl Hierarchy {
+    /// Builds the tree over items given as (number, centre, radius).
+    #[must_use]
+    pub fn new(mut items: Vec<(u32, DVec3, f64)>) -> Self {
+        let mut nodes = Vec::new();
+        if !items.is_empty() {
+            build(&mut items, 0, &mut nodes);
+        }
+        Self {
+            nodes,
+            balls: items.iter().map(|i| (i.1, i.2)).collect(),
+            items: items.iter().map(|i| i.0).collect(),
+        }
+    }
+
+    /// Calls `found` with the number and ball of each item whose ball the beam may meet.
+    pub fn search(&self, beam: &Beam, mut found: impl FnMut(u32, DVec3, f64)) {
+        // The tree halves its items at each level, so 32 levels hold 2³² of them.
+        let mut stack = [0u32; 64];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth];
+            let node = &self.nodes[index as usize];
+            if !beam.meets(node.center, node.radius) {
+                continue;
+            }
+            if node.right == 0 {
+                for i in node.first as usize..(node.first + node.count) as usize {
+                    let (center, radius) = self.balls[i];
+                    if node.count == 1 || beam.meets(center, radius) {
+                        found(self.items[i], center, radius);
+                    }
+                }
+            } else {
+                stack[depth] = node.right;
+                stack[depth + 1] = index + 1;
+                depth += 2;
+            }
+        }
+    }
+}
+
+fn build(items: &mut [(u32, DVec3, f64)], first: u32, nodes: &mut Vec<Node>) {
+    let low = items
+        .iter()
+        .fold(DVec3::INFINITY, |m, i| m.min(i.1 - DVec3::splat(i.2)));
+    let high = items
+        .iter()
+        .fold(DVec3::NEG_INFINITY, |m, i| m.max(i.1 + DVec3::splat(i.2)));
+    let center = 0.5 * (low + high);
+    let radius = items
+        .iter()
+        .map(|i| i.1.distance(center) + i.2)
+        .fold(0.0, f64::max);
+    let index = nodes.len();
+    nodes.push(Node {
+        center,
+        radius,
+        first,
+        count: items.len() as u32,
+        right: 0,
+    });
+    if items.len() <= LEAF {
+        return;
+    }
+    let low = items.iter().fold(DVec3::INFINITY, |m, i| m.min(i.1));
+    let high = items.iter().fold(DVec3::NEG_INFINITY, |m, i| m.max(i.1));
+    let extent = high - low;
+    let axis = (0..3)
+        .max_by(|&a, &b| extent[a].total_cmp(&extent[b]))
+        .unwrap_or(0);
+    let half = items.len() / 2;
+    // Equal centres are ordered by number, so that the tree is the same everywhere.
+    items.select_nth_unstable_by(half, |a, b| {
+        a.1[axis].total_cmp(&b.1[axis]).then(a.0.cmp(&b.0))
+    });
+    let (left, right) = items.split_at_mut(half);
+    build(left, first, nodes);
+    nodes[index].right = nodes.len() as u32;
+    build(right, first + half as u32, nodes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ray::Ray;
+
+    #[test]
+    fn a_search_finds_what_a_full_scan_finds() {
+        let mut state = 3u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
+        };
+        let items: Vec<_> = (0..500)
+            .map(|i| {
+                let c = DVec3::new(next(), next(), next());
+                (i, c, 0.1 * next().abs())
+            })
+            .collect();
+        let tree = Hierarchy::new(items.clone());
+        for case in 0..200 {
+            let beam = Beam {
+                axis: Ray {
+                    origin: DVec3::new(next(), next(), next()) * 3.0,
+                    direction: DVec3::new(next(), next(), next()).normalize(),
+                },
+                radius: if case % 2 == 0 { 0.0 } else { 0.05 },
+                spread: 0.05 * next().abs(),
+            };
+            let mut found = Vec::new();
+            tree.search(&beam, |i, _, _| found.push(i));
+            found.sort_unstable();
+            let scanned: Vec<u32> = items
+                .iter()
+                .filter(|i| beam.meets(i.1, i.2))
+                .map(|i| i.0)
+                .collect();
+            // The tree may skip what a beam grazes by rounding only; it must find the rest.
+            for i in &scanned {
+                let (_, c, r) = items[*i as usize];
+                assert!(found.contains(i) || !beam.meets(c, r * (1.0 - 1e-6)));
+            }
+            assert!(found.iter().all(|i| scanned.contains(i)));
+            // Against points of the beam's own rays.
+            for &(i, c, r) in &items {
+                let t = (c - beam.axis.origin).dot(beam.axis.direction).max(0.0);
+                if beam.axis.at(t).distance(c) < r + (beam.radius + beam.spread * t) * 0.99 {
+                    assert!(found.contains(&i));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_tree_and_a_tree_of_equal_balls_work() {
+        let beam = Beam::of_ray(Ray {
+            origin: DVec3::ZERO,
+            direction: DVec3::X,
+        });
+        Hierarchy::new(Vec::new()).search(&beam, |_, _, _| panic!("nothing to find"));
+        let tree = Hierarchy::new((0..1000).map(|i| (i, DVec3::X, 0.0)).collect());
+        let mut n = 0;
+        tree.search(&beam, |_, _, _| n += 1);
+        assert_eq!(n, 1000);
+    }
+}

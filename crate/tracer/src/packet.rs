@@ -1,0 +1,221 @@
+//! Tracing a packet of rays: hits, shadows, colours.
+use crate::beam::Beam;
+use crate::hard::Crossing;
+use crate::picture::{Picture, Stats};
+use crate::ray::Ray;
+use crate::sample::Sample;
+use crate::shade::{Finish, towards};
+use crate::slabs::{Precision, Slabs};
+use crate::soft::{PACKET, Scratch};
+use crate::walk::Quest;
+use glam::{DVec3, Vec3};
+
+/// Where a ray hits, and what it hits.
+#[derive(Clone, Copy, Debug)]
+struct Hit {
+    t: f64,
+    position: DVec3,
+    /// Unit, towards the eye's side.
+    normal: DVec3,
+    /// How far rays to the lights must start above the surface.
+    lift: f64,
+    finish: Finish,
+    /// 1 for the soft surface, 2 and up for hard elements.
+    thing: u32,
+}
+
+/// Working space of one thread.
+#[derive(Default)]
+pub struct Workspace {
+    scratch: Scratch,
+    crossings: Vec<Crossing>,
+}
+
+impl Picture {
+    /// Traces the rays of one packet, which belong to the beam of `slabs`.
+    pub(crate) fn packet(
+        &self,
+        rays: &[Ray; PACKET],
+        slabs: &mut Option<(Slabs<'_>, f64)>,
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) -> [Sample; PACKET] {
+        work.scratch.evaluations = 0;
+        let mut hits = rays.map(|ray| self.hard_hit(&ray, work));
+        if let Some((slabs, base)) = slabs {
+            self.soft_hits(rays, slabs, *base, work, &mut hits);
+        }
+        let mut colours = [self.background; PACKET];
+        let mut keys = [0u32; PACKET];
+        for i in 0..PACKET {
+            if let Some(hit) = &hits[i] {
+                colours[i] = hit.finish.glow();
+                keys[i] = hit.thing << 8;
+            }
+        }
+        for (number, light) in self.lights.iter().enumerate() {
+            let mut lit = 0u32;
+            let mut way = [(DVec3::Z, 0.0); PACKET];
+            for i in 0..PACKET {
+                if let Some(hit) = &hits[i] {
+                    way[i] = towards(light, hit.position);
+                    if hit.normal.dot(way[i].0) > 0.0 {
+                        lit |= 1 << i;
+                    }
+                }
+            }
+            if light.shadow && lit != 0 {
+                stats.shadow_rays += u64::from(lit.count_ones());
+                lit &= !self.shadowed(&hits, &way, lit, work);
+            }
+            for i in 0..PACKET {
+                if let (Some(hit), true) = (&hits[i], lit >> i & 1 != 0) {
+                    colours[i] += hit.finish.lit(
+                        Vec3::from(light.colour),
+                        hit.normal.as_vec3(),
+                        way[i].0.as_vec3(),
+                        rays[i].direction.as_vec3(),
+                    );
+                    keys[i] ^= 1 << (number % 8);
+                }
+            }
+        }
+        stats.field_evaluations += work.scratch.evaluations;
+        core::array::from_fn(|i| Sample {
+            colour: colours[i].max(Vec3::ZERO).min(Vec3::ONE),
+            key: keys[i],
+            depth: hits[i].map_or(f32::INFINITY, |h| h.t as f32),
+        })
+    }
+
+    fn hard_hit(&self, ray: &Ray, work: &mut Workspace) -> Option<Hit> {
+        let (number, crossing) = self.solids.first(ray, f64::INFINITY, &mut work.crossings)?;
+        let facing = if crossing.normal.dot(ray.direction) > 0.0 {
+            -crossing.normal
+        } else {
+            crossing.normal
+        };
+        Some(Hit {
+            t: crossing.t,
+            position: ray.at(crossing.t),
+            normal: facing,
+            lift: 1e-6 * (1.0 + crossing.t),
+            finish: self.finishes[self.solids.material(number)],
+            thing: number + 2,
+        })
+    }
+
+    fn soft_hits(
+        &self,
+        rays: &[Ray; PACKET],
+        slabs: &mut Slabs<'_>,
+        base: f64,
+        work: &mut Workspace,
+        hits: &mut [Option<Hit>; PACKET],
+    ) {
+        let based = rays.map(|r| Ray {
+            origin: r.at(base),
+            direction: r.direction,
+        });
+        let limits: [f64; PACKET] =
+            core::array::from_fn(|i| hits[i].map_or(f64::INFINITY, |h| h.t - base));
+        let scratch = &mut work.scratch;
+        let found = self
+            .soft
+            .walk(slabs, &based, &limits, ALL, Quest::First, scratch);
+        if found.is_empty() {
+            return;
+        }
+        let flesh = self.soft.flesh(slabs, &based, &found, scratch);
+        for hit in &found {
+            let lane = hit.lane;
+            let ray = &rays[lane];
+            let gradient = flesh.gradient[lane];
+            let steepness = gradient.length();
+            let Some(mut normal) = (-gradient).try_normalize() else {
+                continue;
+            };
+            if normal.dot(ray.direction) > 0.0 {
+                normal = -normal;
+            }
+            let t = base + flesh.t[lane];
+            let mut finish = Finish::default();
+            let total: f32 = flesh.weights.iter().map(|(_, w)| w[lane]).sum();
+            for (material, weight) in &flesh.weights {
+                let share = weight[lane] / total;
+                if share > 0.0 {
+                    finish.mix(&self.finishes[*material as usize], share);
+                }
+            }
+            hits[lane] = Some(Hit {
+                t,
+                position: ray.at(t),
+                normal,
+                lift: (4.0 * Precision::PICTURE.last / steepness).min(5e-3) + 1e-6,
+                finish,
+                thing: 1,
+            });
+        }
+    }
+
+    /// Which of the lit hits have something between them and the light.
+    fn shadowed(
+        &self,
+        hits: &[Option<Hit>; PACKET],
+        way: &[(DVec3, f64); PACKET],
+        lit: u32,
+        work: &mut Workspace,
+    ) -> u32 {
+        let mut rays = [None; PACKET];
+        let mut limits = [0.0; PACKET];
+        let mut dark = 0;
+        for i in 0..PACKET {
+            if let (Some(hit), true) = (&hits[i], lit >> i & 1 != 0) {
+                let ray = Ray {
+                    origin: hit.position + hit.normal * hit.lift,
+                    direction: way[i].0,
+                };
+                limits[i] = way[i].1;
+                if self
+                    .solids
+                    .first(&ray, limits[i], &mut work.crossings)
+                    .is_some()
+                {
+                    dark |= 1 << i;
+                } else {
+                    rays[i] = Some(ray);
+                }
+            }
+        }
+        let alive: Vec<Ray> = rays.iter().flatten().copied().collect();
+        let Some(beam) = Beam::around(&alive) else {
+            return dark;
+        };
+        let furthest = limits.iter().copied().fold(0.0, f64::max);
+        let Some((mut slabs, base)) = self.soft.slabs(beam, furthest) else {
+            return dark;
+        };
+        // Lanes not in use repeat the first one.
+        let based = rays.map(|ray| {
+            let ray = ray.unwrap_or(alive[0]);
+            Ray {
+                origin: ray.at(base),
+                direction: ray.direction,
+            }
+        });
+        let limits = limits.map(|l| l - base);
+        let followed = (0..PACKET).fold(0, |m, i| m | u32::from(rays[i].is_some()) << i);
+        let found = self.soft.walk(
+            &mut slabs,
+            &based,
+            &limits,
+            followed,
+            Quest::Entry,
+            &mut work.scratch,
+        );
+        found.iter().fold(dark, |m, hit| m | 1 << hit.lane)
+    }
+}
+
+/// All lanes of a packet.
+const ALL: u32 = (1 << PACKET) - 1;

@@ -1,0 +1,34 @@
+//! Which pixels need more than one ray.
+use glam::Vec3;
+
+/// What one ray saw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The colour, each channel within 0 … 1.
+    pub colour: Vec3,
+    /// What was hit and which lights reach it: differs across silhouettes and edges of shadows.
+    pub key: u32,
+    /// Distance of the hit; infinite for the background.
+    pub depth: f32,
+}
+
+/// A difference of this much of the full brightness is about where steps become visible.
+const VISIBLE: f32 = 4.0 / 255.0;
+
+/// Whether the pixels of two neighbouring samples need further rays between them.
+///
+/// They do where a channel differs by more than its contrast times the sum of both values (the
+/// contrast of Mitchell), or times one where the sum is larger; and, so that outlines are smooth
+/// however weak their contrast, where the two see different things and the difference is visible.
+/// `jump` is the difference of distance that neighbours on one surface stay below unless the
+/// surface is seen edge-on.
+#[must_use]
+pub fn differ(a: &Sample, b: &Sample, contrast: Vec3, jump: f32) -> bool {
+    let difference = (a.colour - b.colour).abs();
+    let largest = difference.max_element();
+    if largest <= VISIBLE {
+        return false;
+    }
+    let allowed = contrast * (a.colour + b.colour).min(Vec3::ONE);
+    difference.cmpgt(allowed).any() || a.key != b.key || !((a.depth - b.depth).abs() <= jump)
+}

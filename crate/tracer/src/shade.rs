@@ -1,0 +1,92 @@
+//! Phong's model: ambient light, and for each source a diffuse and a specular share.
+//!
+//! `ambient + Σ light·(diffuse·(N·L) + specular·(R·V)^shine)`, where N is the normal, L points to
+//! the light, R is L mirrored at N and V points to the eye.
+use glam::{DVec3, Vec3};
+use scene::{Light, LightKind, Material};
+
+/// A surface's colours for Phong's model; those of several materials can be mixed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Finish {
+    ambient: Vec3,
+    diffuse: Vec3,
+    specular: Vec3,
+    shine: f32,
+}
+
+impl Finish {
+    /// A material's colours.
+    #[must_use]
+    pub fn of(material: &Material) -> Self {
+        Self {
+            ambient: Vec3::from(material.ambient),
+            diffuse: Vec3::from(material.diffuse),
+            specular: Vec3::from(material.specular),
+            shine: material.shine.max(0.0),
+        }
+    }
+
+    /// Adds a share of another finish.
+    pub fn mix(&mut self, other: &Self, share: f32) {
+        self.ambient += other.ambient * share;
+        self.diffuse += other.diffuse * share;
+        self.specular += other.specular * share;
+        self.shine += other.shine * share;
+    }
+
+    /// The light given off whatever the sources do.
+    #[must_use]
+    pub fn glow(&self) -> Vec3 {
+        self.ambient
+    }
+
+    /// The light that a source (unit vector `towards` it) sends to the eye (unit vector `view`
+    /// from the eye) by way of a surface with unit `normal`.
+    #[must_use]
+    pub fn lit(&self, colour: Vec3, normal: Vec3, towards: Vec3, view: Vec3) -> Vec3 {
+        let cosine = normal.dot(towards);
+        if !(cosine > 0.0) {
+            return Vec3::ZERO;
+        }
+        let mut share = self.diffuse * cosine;
+        if self.specular != Vec3::ZERO {
+            let mirrored = normal * (2.0 * cosine) - towards;
+            let glance = -mirrored.dot(view);
+            if glance > 0.0 {
+                share += self.specular * libm::powf(glance, self.shine);
+            }
+        }
+        colour * share
+    }
+}
+
+/// The direction and distance from a point to a light source.
+#[must_use]
+pub fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
+    match light.kind {
+        LightKind::Distant { towards } => {
+            (towards.try_normalize().unwrap_or(DVec3::Z), f64::INFINITY)
+        }
+        LightKind::Point { position } => {
+            let way = position - point;
+            (way.try_normalize().unwrap_or(DVec3::Z), way.length())
+        }
+    }
+}
+
+/// A colour for the screen: gamma-corrected (`value^(1/gamma)`), 8 bits a channel.
+#[must_use]
+pub fn bytes(colour: Vec3, gamma: f32) -> [u8; 3] {
+    let power = if gamma > 0.0 { 1.0 / gamma } else { 1.0 };
+    let byte = |v: f32| {
+        // NaN ends as 0.
+        let v = v.max(0.0).min(1.0);
+        let v = if power == 1.0 {
+            v
+        } else {
+            libm::powf(v, power)
+        };
+        (v * 255.0 + 0.5) as u8
+    };
+    [byte(colour.x), byte(colour.y), byte(colour.z)]
+}

@@ -1,0 +1,298 @@
+//! Where along a beam which primitives need how many spans.
+//!
+//! The part of the beam that the soft surface can reach is halved again and again. In each slab a
+//! primitive is *resolved* when one Hermite span over the slab is certified to be near enough to
+//! it, for all rays of the beam; what is not yet resolved is *pending* and is handed to the halves.
+//! A primitive beyond its depth of influence from the slab is dropped there. So broad or distant
+//! primitives get few long spans and sharp near ones many short spans. The tree grows only where a
+//! ray asks for it, and is shared by all rays of the beam.
+use crate::beam::Beam;
+use crate::bound::Bound;
+use core::ops::Range;
+
+/// How exactly spans follow the field.
+#[derive(Clone, Copy, Debug)]
+pub struct Precision {
+    /// The sum of spans is within this of the field at first …
+    pub first: f64,
+    /// … and within this before a slab in which the surface may lie is decided upon.
+    pub last: f64,
+    /// Whether primitives are dropped beyond their depth of influence.
+    pub truncate: bool,
+}
+
+impl Precision {
+    /// For pictures: near the surface the field changes by about T over a radius, so the surface
+    /// of the spans is within about 1/2000 of a radius of the true one.
+    pub const PICTURE: Self = Self {
+        first: 8e-3,
+        last: 5e-4,
+        truncate: true,
+    };
+    /// For exact answers.
+    pub const EXACT: Self = Self {
+        first: 8e-3,
+        last: 1e-9,
+        truncate: false,
+    };
+}
+
+/// The primitives that a beam can meet, and its slabs so far.
+pub struct Slabs<'a> {
+    bounds: &'a [Bound],
+    beam: Beam,
+    precision: Precision,
+    /// Primitive of each local number.
+    list: Vec<u32>,
+    nodes: Vec<Slab>,
+    /// Local numbers; the slabs' lists are ranges of it.
+    ids: Vec<u32>,
+    scratch: Vec<(u32, f64, f64)>,
+}
+
+/// One slab of a beam.
+#[derive(Clone, Debug)]
+pub struct Slab {
+    /// Ray parameters of its ends.
+    pub from: f64,
+    /// The far end.
+    pub to: f64,
+    /// Local numbers of the primitives that get one span over this slab.
+    pub resolved: Range<u32>,
+    /// Those handed to the halves.
+    pub pending: Range<u32>,
+    /// All terms of this slab (resolved and pending) together are at most this …
+    pub above: f64,
+    /// … and at least minus this.
+    pub below: f64,
+    /// The same for the pending terms alone.
+    pub pending_above: f64,
+    /// The same for the pending terms alone.
+    pub pending_below: f64,
+    /// Bound on the error of all spans over this slab: the resolved ones and the coarser ones.
+    pub error: f64,
+    /// What the errors may add up to.
+    budget: f64,
+    parent: u32,
+    /// The left half; the right one is next to it. 0: not yet made.
+    children: u32,
+    /// The same slab again with finer spans. 0: not yet made.
+    finer: u32,
+    /// How many times halved.
+    pub depth: u32,
+}
+
+const NONE: u32 = u32::MAX;
+
+/// Slabs and list entries above which a tree is thrown away between two packets.
+const LARGE: (usize, usize) = (1 << 14, 1 << 20);
+
+impl<'a> Slabs<'a> {
+    /// The slabs of a beam between two parameters. `list` holds the primitives it can meet.
+    #[must_use]
+    pub fn new(
+        bounds: &'a [Bound],
+        list: Vec<u32>,
+        beam: Beam,
+        [from, to]: [f64; 2],
+        precision: Precision,
+    ) -> Self {
+        let mut slabs = Self {
+            bounds,
+            beam,
+            precision,
+            ids: (0..list.len() as u32).collect(),
+            list,
+            nodes: Vec::new(),
+            scratch: Vec::new(),
+        };
+        let all = 0..slabs.list.len() as u32;
+        slabs.add(all, from, to, NONE, precision.first, 0.0, 0);
+        slabs
+    }
+
+    /// The first slab, over the whole range.
+    #[must_use]
+    pub fn root(&self) -> u32 {
+        0
+    }
+
+    /// A slab.
+    #[must_use]
+    pub fn slab(&self, index: u32) -> &Slab {
+        &self.nodes[index as usize]
+    }
+
+    /// Local numbers in a slab's list.
+    #[must_use]
+    pub fn locals(&self, range: &Range<u32>) -> &[u32] {
+        &self.ids[range.start as usize..range.end as usize]
+    }
+
+    /// How many local numbers there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// The primitive of a local number.
+    #[must_use]
+    pub fn primitive(&self, local: u32) -> u32 {
+        self.list[local as usize]
+    }
+
+    /// Forgets all but the first slab if there are very many. To be called between packets only,
+    /// as what is forgotten is found again, the same.
+    pub fn tidy(&mut self) {
+        if self.nodes.len() > LARGE.0 || self.ids.len() > LARGE.1 {
+            self.nodes.truncate(1);
+            let root = &mut self.nodes[0];
+            root.children = 0;
+            root.finer = 0;
+            self.ids.truncate(root.pending.end as usize);
+        }
+    }
+
+    /// The two halves of a slab.
+    pub fn halves(&mut self, index: u32) -> [u32; 2] {
+        let s = &self.nodes[index as usize];
+        if s.children == 0 {
+            let (from, to, budget, error, depth) = (s.from, s.to, s.budget, s.error, s.depth + 1);
+            let pending = s.pending.clone();
+            let middle = 0.5 * (from + to);
+            let left = self.nodes.len() as u32;
+            self.add(pending.clone(), from, middle, index, budget, error, depth);
+            self.add(pending, middle, to, index, budget, error, depth);
+            self.nodes[index as usize].children = left;
+        }
+        let left = self.nodes[index as usize].children;
+        [left, left + 1]
+    }
+
+    /// Whether a slab's spans are as fine as they get.
+    #[must_use]
+    pub fn is_final(&self, index: u32) -> bool {
+        self.slab(index).error <= self.precision.last
+    }
+
+    /// The same slab from anew, with all its primitives and a smaller error.
+    pub fn finer(&mut self, index: u32) -> u32 {
+        if self.nodes[index as usize].finer == 0 {
+            let start = self.ids.len() as u32;
+            let mut at = index;
+            // What the path to this slab resolved, and what the slab leaves pending.
+            let pending = self.nodes[index as usize].pending.clone();
+            self.ids
+                .extend_from_within(pending.start as usize..pending.end as usize);
+            while at != NONE {
+                let s = &self.nodes[at as usize];
+                let r = s.resolved.clone();
+                at = s.parent;
+                self.ids
+                    .extend_from_within(r.start as usize..r.end as usize);
+            }
+            let all = start..self.ids.len() as u32;
+            let s = &self.nodes[index as usize];
+            let (from, to, depth) = (s.from, s.to, s.depth + 1);
+            let budget = (s.error.min(s.budget) / 16.0).max(self.precision.last);
+            let finer = self.nodes.len() as u32;
+            self.add(all, from, to, NONE, budget, 0.0, depth);
+            self.nodes[index as usize].finer = finer;
+        }
+        self.nodes[index as usize].finer
+    }
+
+    /// Calls `f` with the local number of each primitive that counts in a slab.
+    pub fn each(&self, index: u32, mut f: impl FnMut(u32)) {
+        let s = self.slab(index);
+        self.locals(&s.pending).iter().for_each(|&i| f(i));
+        let mut at = index;
+        while at != NONE {
+            let s = self.slab(at);
+            self.locals(&s.resolved).iter().for_each(|&i| f(i));
+            at = s.parent;
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn add(
+        &mut self,
+        candidates: Range<u32>,
+        from: f64,
+        to: f64,
+        parent: u32,
+        budget: f64,
+        error: f64,
+        depth: u32,
+    ) {
+        let (center, radius) = self.beam.ball(from, to);
+        let h = to - from;
+        let h4 = (h * h) * (h * h) / 384.0;
+        let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);
+        self.scratch.clear();
+        for &local in &self.ids[candidates.start as usize..candidates.end as usize] {
+            let bound = &self.bounds[self.list[local as usize] as usize];
+            let near = bound.nearness(center, radius);
+            if self.precision.truncate && near.distance >= bound.influence {
+                continue;
+            }
+            let magnitude = bound.magnitude(near);
+            if bound.adds() {
+                above += magnitude;
+            }
+            if bound.carves() {
+                below += magnitude;
+            }
+            total += magnitude;
+            // A span is between the values' and slopes' extremes, so it is never further off than
+            // its bound says; a NaN counts as far off.
+            self.scratch
+                .push((local, magnitude, bound.fourth_derivative(near) * h4));
+        }
+        // What is left of the budget is shared out half evenly, half by size. The shares add up
+        // to no more than the whole.
+        let left = (budget - error).max(0.0);
+        let even = 0.5 * left / self.scratch.len().max(1) as f64;
+        let by_size = 0.5 * left / total.max(f64::MIN_POSITIVE);
+        let start = self.ids.len() as u32;
+        let mut sum = error;
+        for &(local, magnitude, span_error) in &self.scratch {
+            if span_error <= even + by_size * magnitude {
+                self.ids.push(local);
+                sum += span_error;
+            }
+        }
+        let middle = self.ids.len() as u32;
+        let (mut pending_above, mut pending_below) = (0.0, 0.0);
+        for &(local, magnitude, span_error) in &self.scratch {
+            if span_error <= even + by_size * magnitude {
+                continue;
+            }
+            self.ids.push(local);
+            let bound = &self.bounds[self.list[local as usize] as usize];
+            if bound.adds() {
+                pending_above += magnitude;
+            }
+            if bound.carves() {
+                pending_below += magnitude;
+            }
+        }
+        let end = self.ids.len() as u32;
+        self.nodes.push(Slab {
+            from,
+            to,
+            resolved: start..middle,
+            pending: middle..end,
+            above,
+            below,
+            pending_above,
+            pending_below,
+            error: sum,
+            budget,
+            parent,
+            children: 0,
+            finer: 0,
+            depth,
+        });
+    }
+}

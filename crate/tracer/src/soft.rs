@@ -1,0 +1,344 @@
+//! The soft surface, made ready: which primitives a beam can meet, where its rays hit, and what
+//! the surface is like there.
+use crate::beam::Beam;
+use crate::bound::Bound;
+use crate::hierarchy::Hierarchy;
+use crate::ray::Ray;
+use crate::roots::bracketed;
+use crate::slabs::{Precision, Slabs};
+use crate::walk::{Found, Memory, Quest, Walk};
+use field::{Primitive, Real, THRESHOLD};
+use glam::DVec3;
+use scene::Scene;
+use wide::f32x8;
+
+/// Rays of one packet.
+pub const PACKET: usize = 8;
+
+/// The soft surface of a scene.
+pub struct Soft {
+    primitives: Vec<Primitive>,
+    /// Material of each primitive.
+    material: Vec<u32>,
+    bounds: Vec<Bound>,
+    tree: Hierarchy,
+    /// Primitives without a bounding ball.
+    everywhere: Vec<u32>,
+}
+
+/// Rays from infinitely wide primitives are followed this far (in units of the scene's size).
+const FAR: f64 = 1e4;
+
+/// Scratch space that is worth keeping between packets.
+#[derive(Default)]
+pub struct Scratch {
+    memory: Vec<Memory<f32x8>>,
+    active: Vec<u32>,
+    stamps: Vec<u32>,
+    stamp: u32,
+    /// Evaluations of one primitive's field at one point, so far.
+    pub evaluations: u64,
+}
+
+/// What the surface is like at the hits of a packet.
+pub struct Flesh {
+    /// Ray parameter of each hit, polished.
+    pub t: [f64; PACKET],
+    /// Gradient of the field.
+    pub gradient: [DVec3; PACKET],
+    /// Materials met, and each one's share of the (positive) field in every lane.
+    pub weights: Vec<(u32, [f32; PACKET])>,
+}
+
+impl Soft {
+    /// Collects a scene's soft elements.
+    #[must_use]
+    pub fn new(scene: &Scene) -> Self {
+        let surface = scene.soft_surface();
+        let material = surface
+            .element
+            .iter()
+            .map(|&e| scene.elements[e].material as u32)
+            .collect();
+        let primitives = surface.field.primitives;
+        let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
+        let mut balls = Vec::new();
+        let mut everywhere = Vec::new();
+        for (i, p) in primitives.iter().enumerate() {
+            match p.bounding_sphere() {
+                Some((center, radius)) => balls.push((i as u32, center, radius)),
+                None => everywhere.push(i as u32),
+            }
+        }
+        Self {
+            primitives,
+            material,
+            bounds,
+            tree: Hierarchy::new(balls),
+            everywhere,
+        }
+    }
+
+    /// Whether there is no soft surface at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.primitives.is_empty()
+    }
+
+    /// The slabs of a beam, up to a parameter; with them the parameter at which the first starts
+    /// to count. `None` if no primitive reaches the beam, or all together never reach T.
+    #[must_use]
+    pub fn slabs(&self, beam: Beam, limit: f64) -> Option<(Slabs<'_>, f64)> {
+        let mut list = self.everywhere.clone();
+        let mut range = if list.is_empty() {
+            [f64::INFINITY, 0.0]
+        } else {
+            [0.0, FAR]
+        };
+        self.tree.search(&beam, |i, center, radius| {
+            let [near, far] = beam.reach(center, radius);
+            if near < limit {
+                list.push(i);
+                range = [range[0].min(near), range[1].max(far)];
+            }
+        });
+        let [from, to] = [range[0], range[1].min(limit)];
+        if list.is_empty() || !(from < to) {
+            return None;
+        }
+        list.sort_unstable();
+        // Parameters are counted from where the first primitive starts to count, so that single
+        // precision does not lose digits to a distant eye.
+        let based = Beam {
+            axis: Ray {
+                origin: beam.axis.at(from),
+                direction: beam.axis.direction,
+            },
+            radius: beam.radius + beam.spread * from,
+            spread: beam.spread,
+        };
+        let slabs = Slabs::new(
+            &self.bounds,
+            list,
+            based,
+            [0.0, to - from],
+            Precision::PICTURE,
+        );
+        (slabs.slab(slabs.root()).above >= THRESHOLD).then_some((slabs, from))
+    }
+
+    /// Walks a packet (at most [`PACKET`] rays) through the slabs of its beam. Rays and limits are
+    /// counted from the slabs' start.
+    pub fn walk(
+        &self,
+        slabs: &mut Slabs<'_>,
+        rays: &[Ray],
+        limits: &[f64],
+        alive: u32,
+        quest: Quest,
+        scratch: &mut Scratch,
+    ) -> Vec<Found> {
+        slabs.tidy();
+        let (found, evaluations) = Walk::<f32x8>::new(
+            &self.primitives,
+            slabs,
+            rays,
+            limits,
+            alive,
+            quest,
+            &mut scratch.memory,
+        )
+        .run();
+        scratch.evaluations += evaluations;
+        found
+    }
+
+    /// Moves the hits of a packet onto the exact surface, and says what it is like there. Lanes
+    /// without a hit carry no meaning.
+    pub fn flesh(
+        &self,
+        slabs: &Slabs<'_>,
+        rays: &[Ray],
+        found: &[Found],
+        scratch: &mut Scratch,
+    ) -> Flesh {
+        // All primitives that count for any of the hits.
+        scratch.stamps.resize(self.primitives.len(), 0);
+        scratch.stamp = scratch.stamp.wrapping_add(1);
+        if scratch.stamp == 0 {
+            scratch.stamps.fill(0);
+            scratch.stamp = 1;
+        }
+        scratch.active.clear();
+        let mut t = [0.0; PACKET];
+        let mut reach = [0.0; PACKET];
+        let mut known = [u32::MAX; PACKET];
+        for hit in found {
+            t[hit.lane] = hit.t;
+            let slab = slabs.slab(hit.slab);
+            reach[hit.lane] = slab.to - slab.from;
+            if known.contains(&hit.slab) {
+                continue;
+            }
+            known[hit.lane] = hit.slab;
+            slabs.each(hit.slab, |local| {
+                let p = slabs.primitive(local);
+                let stamp = &mut scratch.stamps[p as usize];
+                if *stamp != scratch.stamp {
+                    *stamp = scratch.stamp;
+                    scratch.active.push(p);
+                }
+            });
+        }
+        scratch.active.sort_unstable();
+
+        let ray = |i: usize| &rays[i.min(rays.len() - 1)];
+        let origin: [f32x8; 3] = core::array::from_fn(|k| f32x8::from_lanes(|i| ray(i).origin[k]));
+        let direction: [f32x8; 3] =
+            core::array::from_fn(|k| f32x8::from_lanes(|i| ray(i).direction[k]));
+        let start = f32x8::from_lanes(|i| t[i]);
+        let furthest = f32x8::from_lanes(|i| reach[i]);
+        let mut at = start;
+        let mut weights: Vec<(u32, f32x8)> = Vec::new();
+        let mut gradient = [f32x8::splat(0.0); 3];
+        for _ in 0..POLISH {
+            let point = core::array::from_fn(|k| origin[k] + direction[k] * at);
+            let mut value = f32x8::splat(0.0);
+            gradient = [f32x8::splat(0.0); 3];
+            weights.clear();
+            for &p in &scratch.active {
+                let jet = self.primitives[p as usize].jet(point);
+                value += jet.value;
+                for k in 0..3 {
+                    gradient[k] += jet.gradient[k];
+                }
+                let positive = Real::max(jet.value, f32x8::splat(0.0));
+                let material = self.material[p as usize];
+                match weights.last_mut() {
+                    Some((m, w)) if *m == material => *w += positive,
+                    _ => weights.push((material, positive)),
+                }
+            }
+            scratch.evaluations += (scratch.active.len() * PACKET) as u64;
+            let slope = gradient[0] * direction[0]
+                + gradient[1] * direction[1]
+                + gradient[2] * direction[2];
+            let step = (f32x8::splat(THRESHOLD as f32) - value) / slope;
+            // Newton's step; where the ray only grazes the surface it may lead astray, and then
+            // the spans' crossing is kept.
+            let low = Real::max(start - furthest, f32x8::splat(0.0));
+            let next = at + step;
+            let good = next.simd_le(start + furthest) & next.simd_ge(low);
+            at = good.bitselect(next, at);
+        }
+        Flesh {
+            t: core::array::from_fn(|i| Real::lane(at, i)),
+            gradient: core::array::from_fn(|i| {
+                DVec3::new(
+                    Real::lane(gradient[0], i),
+                    Real::lane(gradient[1], i),
+                    Real::lane(gradient[2], i),
+                )
+            }),
+            weights: weights
+                .into_iter()
+                .map(|(m, w)| (m, w.to_array()))
+                .collect(),
+        }
+    }
+
+    /// All crossings of a ray, exactly: where the whole field, with nothing cut off, equals T.
+    /// Pairs (t, gradient), in order of t > 0.
+    #[must_use]
+    pub fn crossings(&self, ray: &Ray) -> Vec<(f64, DVec3)> {
+        let count = self.primitives.len();
+        if count == 0 {
+            return Vec::new();
+        }
+        // Beyond the distance where each primitive is below T/n the sum is below T.
+        let beam = Beam::of_ray(*ray);
+        let share = THRESHOLD / count as f64;
+        let mut range = [f64::INFINITY, 0.0f64];
+        for (p, bound) in self.primitives.iter().zip(&self.bounds) {
+            let [near, far] = match p.bounding_sphere() {
+                Some((center, radius)) => {
+                    let skeleton = radius - bound.influence;
+                    beam.reach(center, skeleton + bound.distance_of(share))
+                }
+                None => [0.0, FAR],
+            };
+            range = [range[0].min(near), range[1].max(far)];
+        }
+        let [from, to] = range;
+        if !(from < to) {
+            return Vec::new();
+        }
+        let based = Ray {
+            origin: ray.at(from),
+            direction: ray.direction,
+        };
+        let mut slabs = Slabs::new(
+            &self.bounds,
+            (0..count as u32).collect(),
+            Beam::of_ray(based),
+            [0.0, to - from],
+            Precision::EXACT,
+        );
+        let (found, _) = Walk::<f64>::new(
+            &self.primitives,
+            &mut slabs,
+            &[based],
+            &[to - from],
+            1,
+            Quest::All,
+            &mut Vec::new(),
+        )
+        .run();
+        // Between neighbouring crossings the exact field has its sign; where it changes from one
+        // such place to the next, there is the exact crossing.
+        let excess = |t: f64| {
+            let (value, gradient) = self.field(based.at(t));
+            (value - THRESHOLD, gradient)
+        };
+        let mut places = vec![0.0];
+        places.extend(found.windows(2).map(|w| 0.5 * (w[0].t + w[1].t)));
+        if !found.is_empty() {
+            places.push(to - from);
+        }
+        let mut crossings = Vec::new();
+        let mut before = excess(0.0).0;
+        for w in places.windows(2) {
+            let after = excess(w[1]).0;
+            if (before < 0.0) != (after < 0.0) {
+                let t = bracketed(
+                    |t| {
+                        let (value, gradient) = excess(t);
+                        (value, gradient.dot(ray.direction))
+                    },
+                    w[0],
+                    w[1],
+                    1e-14 * (1.0 + w[1]),
+                );
+                crossings.push((from + t, excess(t).1));
+            }
+            before = after;
+        }
+        crossings
+    }
+
+    /// The whole field and its gradient.
+    fn field(&self, point: DVec3) -> (f64, DVec3) {
+        let mut value = 0.0;
+        let mut gradient = DVec3::ZERO;
+        for p in &self.primitives {
+            let jet = p.jet(point.to_array());
+            value += jet.value;
+            gradient += DVec3::from_array(jet.gradient);
+        }
+        (value, gradient)
+    }
+}
+
+/// Evaluations at the hits: Newton's step from the first leads onto the surface to single
+/// precision; the second gives the normal and the colours there.
+const POLISH: usize = 2;

@@ -1,0 +1,159 @@
+//! Spans: cubic Hermite interpolants along rays, in Bernstein form.
+//!
+//! A span replaces a function of t between two nodes by the cubic that has its value and slope at
+//! both. Its four Bernstein coefficients bound it from both sides, halving it is exact, and the sum
+//! of spans over the same interval is a span.
+use crate::lanes::Lanes;
+use crate::roots::{Roots, roots};
+
+/// A cubic on an interval, by its Bernstein coefficients.
+#[derive(Clone, Copy, Debug)]
+pub struct Span<L>(pub [L; 4]);
+
+/// Value and slope at a node.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<L> {
+    /// The function's value.
+    pub value: L,
+    /// Its derivative along the ray.
+    pub slope: L,
+}
+
+impl<L: Lanes> Node<L> {
+    /// Zero with slope zero.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self {
+            value: L::splat(0.0),
+            slope: L::splat(0.0),
+        }
+    }
+
+    /// The sum of two functions' nodes at one place.
+    #[inline]
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            slope: self.slope + other.slope,
+        }
+    }
+}
+
+impl<L: Lanes> Span<L> {
+    /// The cubic that is zero.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self([L::splat(0.0); 4])
+    }
+
+    /// The Hermite interpolant over an interval of the given length.
+    #[inline]
+    #[must_use]
+    pub fn hermite(left: Node<L>, right: Node<L>, length: f64) -> Self {
+        let third = L::splat(length / 3.0);
+        Self([
+            left.value,
+            left.value + left.slope * third,
+            right.value - right.slope * third,
+            right.value,
+        ])
+    }
+
+    /// The sum of two cubics on the same interval.
+    #[inline]
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+
+    /// The same cubic on the left and on the right half of its interval (de Casteljau).
+    #[inline]
+    #[must_use]
+    pub fn halves(self) -> [Self; 2] {
+        let half = L::splat(0.5);
+        let mid = |a: L, b: L| (a + b) * half;
+        let [a, b, c, d] = self.0;
+        let (ab, bc, cd) = (mid(a, b), mid(b, c), mid(c, d));
+        let (abc, bcd) = (mid(ab, bc), mid(bc, cd));
+        let m = mid(abc, bcd);
+        [Self([a, ab, abc, m]), Self([m, bcd, cd, d])]
+    }
+
+    /// No value of the cubic is above this.
+    #[inline]
+    #[must_use]
+    pub fn max(self) -> L {
+        let [a, b, c, d] = self.0;
+        a.max(b).max(c.max(d))
+    }
+
+    /// No value of the cubic is below this.
+    #[inline]
+    #[must_use]
+    pub fn min(self) -> L {
+        let [a, b, c, d] = self.0;
+        a.min(b).min(c.min(d))
+    }
+
+    /// One lane's cubic on its own.
+    #[must_use]
+    pub fn lane(self, index: usize) -> Span<f64> {
+        Span(self.0.map(|c| c.lane(index)))
+    }
+}
+
+impl Span<f64> {
+    /// Where in 0..=1 (the interval's ends) the cubic crosses a level, ascending.
+    #[must_use]
+    pub fn crossings(self, level: f64) -> Roots {
+        let [a, b, c, d] = self.0;
+        roots(
+            &[
+                a - level,
+                3.0 * (b - a),
+                3.0 * (a - 2.0 * b + c),
+                d - a + 3.0 * (b - c),
+            ],
+            0.0,
+            1.0,
+        )
+    }
+
+    /// The cubic's value at x in 0..=1.
+    #[cfg(test)]
+    #[must_use]
+    pub fn value(self, x: f64) -> f64 {
+        let [a, b, c, d] = self.0;
+        let y = 1.0 - x;
+        y * y * (y * a + 3.0 * x * b) + x * x * (3.0 * y * c + x * d)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_span_reproduces_cubics_and_bounds_them() {
+        let f = |t: f64| 2.0 - 3.0 * t + 0.5 * t * t + t * t * t;
+        let slope = |t: f64| -3.0 + t + 3.0 * t * t;
+        let (a, b) = (-1.5, 2.0);
+        let node = |t| Node {
+            value: f(t),
+            slope: slope(t),
+        };
+        let span = Span::hermite(node(a), node(b), b - a);
+        let [left, right] = span.halves();
+        for i in 0..=10 {
+            let x = f64::from(i) / 10.0;
+            assert!((span.value(x) - f(a + x * (b - a))).abs() < 1e-12);
+            assert!((left.value(x) - span.value(0.5 * x)).abs() < 1e-12);
+            assert!((right.value(x) - span.value(0.5 + 0.5 * x)).abs() < 1e-12);
+            assert!(span.value(x) <= span.max() && span.value(x) >= span.min());
+        }
+        for &x in span.crossings(1.0).as_slice() {
+            assert!((f(a + x * (b - a)) - 1.0).abs() < 1e-9);
+        }
+    }
+}

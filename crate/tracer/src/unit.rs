@@ -1,0 +1,130 @@
+//! Bringing a scene to unit size around the origin.
+//!
+//! Single precision is used where rays meet the soft surface, so a scene far from the origin, very
+//! large or very small would lose digits. Before tracing it is moved to the origin and scaled by a
+//! power of two (which costs no digits) to about unit size. Nothing else changes: fields, angles
+//! and colours are the same.
+use field::BlobScale;
+use glam::DVec3;
+use scene::{LightKind, Scene, Shape};
+
+/// The map from the world to the unit scene: `scale·(p − center)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    center: DVec3,
+    scale: f64,
+}
+
+impl Unit {
+    /// The map that fits a scene, and the scene mapped. Elements with coordinates that are not
+    /// finite, which no ray can meet, are left out.
+    #[must_use]
+    pub fn fit(scene: &Scene) -> (Self, Scene) {
+        let mut mapped = scene.clone();
+        mapped.elements.retain(|e| {
+            let (low, high) = corners(&e.shape);
+            low.is_finite() && high.is_finite()
+        });
+        let mut low = DVec3::INFINITY;
+        let mut high = DVec3::NEG_INFINITY;
+        for element in &mapped.elements {
+            let (a, b) = corners(&element.shape);
+            let radius = DVec3::splat(scene.radius(element).abs().min(f64::MAX));
+            low = low.min(a - radius);
+            high = high.max(b + radius);
+        }
+        let center = 0.5 * (low + high);
+        let half = (0.5 * (high - low)).max_element();
+        let unit = if center.is_finite() && half.is_finite() {
+            let scale = if half > 1e-200 {
+                libm::exp2(-libm::floor(libm::log2(half)))
+            } else {
+                1.0
+            };
+            Self { center, scale }
+        } else {
+            Self {
+                center: DVec3::ZERO,
+                scale: 1.0,
+            }
+        };
+        unit.apply(&mut mapped);
+        (unit, mapped)
+    }
+
+    fn apply(&self, scene: &mut Scene) {
+        let k = self.scale;
+        for element in &mut scene.elements {
+            match &mut element.shape {
+                Shape::Sphere { center, radius } => {
+                    *center = self.map(*center);
+                    *radius *= k;
+                }
+                Shape::Cylinder { base, apex, radius } => {
+                    *base = self.map(*base);
+                    *apex = self.map(*apex);
+                    *radius *= k;
+                }
+                Shape::Arc {
+                    center,
+                    sweep,
+                    radius,
+                    ..
+                } => {
+                    *center = self.map(*center);
+                    *sweep *= k;
+                    *radius *= k;
+                }
+                Shape::Triangle { corners, radius } => {
+                    *corners = corners.map(|c| self.map(c));
+                    *radius *= k;
+                }
+                Shape::Plane { point, radius, .. } => {
+                    *point = self.map(*point);
+                    *radius *= k;
+                }
+            }
+        }
+        for material in &mut scene.materials {
+            material.radius *= k;
+            // An absolute blobbiness is a squared width, 1/length².
+            if scene.settings.blob_scale == BlobScale::Absolute {
+                material.blobbiness /= k * k;
+            }
+        }
+        for light in &mut scene.lights {
+            if let LightKind::Point { position } = &mut light.kind {
+                *position = self.map(*position);
+            }
+        }
+        scene.camera.eye = self.map(scene.camera.eye);
+        scene.camera.target = self.map(scene.camera.target);
+    }
+
+    /// A point of the world in the unit scene.
+    #[must_use]
+    pub fn map(&self, point: DVec3) -> DVec3 {
+        (point - self.center) * self.scale
+    }
+
+    /// A length in the unit scene, in the world.
+    #[must_use]
+    pub fn length(&self, length: f64) -> f64 {
+        length / self.scale
+    }
+}
+
+/// The corners of a box that holds a shape's skeleton.
+fn corners(shape: &Shape) -> (DVec3, DVec3) {
+    match *shape {
+        Shape::Sphere { center, .. } => (center, center),
+        Shape::Cylinder { base, apex, .. } => (base.min(apex), base.max(apex)),
+        Shape::Arc { center, sweep, .. } => {
+            (center - DVec3::splat(sweep), center + DVec3::splat(sweep))
+        }
+        Shape::Triangle {
+            corners: [a, b, c], ..
+        } => (a.min(b).min(c), a.max(b).max(c)),
+        Shape::Plane { point, .. } => (point, point),
+    }
+}

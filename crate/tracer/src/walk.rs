@@ -1,0 +1,298 @@
+//! The digger: finds where rays cross the soft surface.
+//!
+//! A few rays walk through the slabs of their beam side by side, front to back. Each slab adds its
+//! resolved primitives' spans to the cubics handed down from the longer slabs around it. Where the
+//! cubics and the bounds on what is still pending prove that every ray stays outside (or inside)
+//! the surface, the slab is left at once; where nothing is pending any more, the cubics' roots are
+//! the crossings. Walking stops when every ray has what it wants, so nothing behind the first
+//! hit is ever interpolated.
+use crate::lanes::Lanes;
+use crate::ray::Ray;
+use crate::slabs::Slabs;
+use crate::spans::{Node, Span};
+use field::{Primitive, THRESHOLD};
+
+/// What the rays look for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quest {
+    /// The first crossing, into the surface or, from inside, out of it.
+    First,
+    /// Whether there is any crossing from outside to inside.
+    Entry,
+    /// All crossings.
+    All,
+}
+
+/// A crossing, as exact as the spans.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Ray parameter.
+    pub t: f64,
+    /// The slab it lies in.
+    pub slab: u32,
+    /// The ray's lane.
+    pub lane: usize,
+}
+
+/// Some rays on their way through the slabs of their beam.
+pub struct Walk<'w, 's, L> {
+    primitives: &'w [Primitive],
+    slabs: &'w mut Slabs<'s>,
+    quest: Quest,
+    origin: [L; 3],
+    direction: [L; 3],
+    /// Where each ray ends.
+    limit: L,
+    /// Rays that have not found what they want, a bit each.
+    alive: u32,
+    /// Rays known to be outside and inside at the place reached.
+    outside: u32,
+    inside: u32,
+    memory: &'w mut Vec<Memory<L>>,
+    found: Vec<Found>,
+    /// Work done, see [`MOST_WORK`].
+    work: usize,
+    /// Evaluations of one primitive's field at one point.
+    pub evaluations: u64,
+}
+
+/// The last node at which a primitive was evaluated: slabs that touch share it.
+#[derive(Clone, Copy, Debug)]
+pub struct Memory<L> {
+    t: f64,
+    node: Node<L>,
+}
+
+/// Slabs deeper than this are not halved further: 2⁻⁴⁰ of the beam's length.
+const DEEPEST: u32 = 40;
+
+/// When walking one packet has looked at this many list entries, the slabs left are taken as they
+/// are, uncertified, so that no scene can take unlimited time or memory. A ray through a thousand
+/// overlapping primitives needs about a tenth of it.
+const MOST_WORK: usize = 1 << 21;
+
+impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
+    /// Rays of the slabs' beam, one a lane, each up to its limit. Lanes beyond `rays.len()` repeat
+    /// the last ray and are not followed. `memory` is scratch space.
+    #[must_use]
+    pub fn new(
+        primitives: &'w [Primitive],
+        slabs: &'w mut Slabs<'s>,
+        rays: &[Ray],
+        limits: &[f64],
+        alive: u32,
+        quest: Quest,
+        memory: &'w mut Vec<Memory<L>>,
+    ) -> Self {
+        let ray = |i: usize| &rays[i.min(rays.len() - 1)];
+        memory.clear();
+        memory.resize(
+            slabs.len(),
+            Memory {
+                t: f64::NAN,
+                node: Node::zero(),
+            },
+        );
+        Self {
+            primitives,
+            slabs,
+            quest,
+            origin: core::array::from_fn(|k| L::from_lanes(|i| ray(i).origin[k])),
+            direction: core::array::from_fn(|k| L::from_lanes(|i| ray(i).direction[k])),
+            limit: L::from_lanes(|i| limits[i.min(limits.len() - 1)]),
+            alive,
+            outside: 0,
+            inside: 0,
+            memory,
+            found: Vec::new(),
+            work: 0,
+            evaluations: 0,
+        }
+    }
+
+    /// Walks all the way. The crossings come in order of t for each lane.
+    #[must_use]
+    pub fn run(mut self) -> (Vec<Found>, u64) {
+        let root = self.slabs.root();
+        self.visit(root, Span::zero());
+        (self.found, self.evaluations)
+    }
+
+    fn visit(&mut self, index: u32, base: Span<L>) {
+        let slab = self.slabs.slab(index).clone();
+        // Rays that end before this slab have found nothing.
+        self.alive &= L::splat(slab.from).less(self.limit);
+        if self.alive == 0 || self.rejected(index, base, slab.above, slab.below, slab.error) {
+            return;
+        }
+        self.work += 1 + slab.resolved.len() + slab.pending.len();
+        let mut span = base;
+        if !slab.resolved.is_empty() {
+            span = span.plus(self.span(index, false));
+            if self.rejected(
+                index,
+                span,
+                slab.pending_above,
+                slab.pending_below,
+                slab.error,
+            ) {
+                return;
+            }
+        }
+        let exhausted = self.work > MOST_WORK || slab.depth >= DEEPEST;
+        if exhausted && !slab.pending.is_empty() {
+            span = span.plus(self.span(index, true));
+        }
+        if slab.pending.is_empty() || exhausted {
+            if !exhausted && !self.slabs.is_final(index) && !self.certain(span, slab.error) {
+                let finer = self.slabs.finer(index);
+                self.visit(finer, Span::zero());
+            } else {
+                self.cross(index, span);
+            }
+            return;
+        }
+        let [near, far] = span.halves();
+        let [left, right] = self.slabs.halves(index);
+        self.visit(left, near);
+        if self.alive != 0 {
+            self.visit(right, far);
+        }
+    }
+
+    /// Whether all rays are proved to stay on one side all through a slab; notes the side.
+    fn rejected(&mut self, index: u32, span: Span<L>, above: f64, below: f64, error: f64) -> bool {
+        let outside = span.max().less(L::splat(THRESHOLD - above - error));
+        let inside = L::splat(THRESHOLD + below + error).less(span.min());
+        if self.alive & !(outside | inside) != 0 {
+            return false;
+        }
+        let slab = self.slabs.slab(index);
+        let from = slab.from;
+        self.arrive(index, from, outside, inside);
+        true
+    }
+
+    /// Notes on which side the rays are, at t; a ray that was on the other side crosses there.
+    fn arrive(&mut self, index: u32, t: f64, outside: u32, inside: u32) {
+        let outside = outside & self.alive;
+        let inside = inside & self.alive & !outside;
+        let leaving = outside & self.inside;
+        let entering = inside & self.outside;
+        let mut crossing = leaving | entering;
+        self.outside = (self.outside & !inside) | outside;
+        self.inside = (self.inside & !outside) | inside;
+        while crossing != 0 {
+            let lane = crossing.trailing_zeros() as usize;
+            crossing &= crossing - 1;
+            self.report(lane, t, index, entering >> lane & 1 != 0);
+        }
+    }
+
+    fn report(&mut self, lane: usize, t: f64, slab: u32, enters: bool) {
+        if !(t <= self.limit.lane(lane)) {
+            self.alive &= !(1 << lane);
+            return;
+        }
+        if enters || self.quest != Quest::Entry {
+            self.found.push(Found { t, slab, lane });
+            if self.quest != Quest::All {
+                self.alive &= !(1 << lane);
+            }
+        }
+    }
+
+    /// Whether each ray's cubic tells for certain how often the ray crosses in this slab: never,
+    /// or exactly once.
+    fn certain(&self, span: Span<L>, error: f64) -> bool {
+        let [a, b, c, d] = span.0;
+        let level = L::splat(THRESHOLD);
+        let e = L::splat(error);
+        let never = span.max().less(level - e) | (level + e).less(span.min());
+        // A span's slope is off by at most 3.08·error/length, and the slope's own Bernstein
+        // coefficients are 3/length times these differences.
+        let steep = L::splat(1.03 * error);
+        let rises = a.less(level - e)
+            & (level + e).less(d)
+            & steep.less(b - a)
+            & steep.less(c - b)
+            & steep.less(d - c);
+        let falls = d.less(level - e)
+            & (level + e).less(a)
+            & steep.less(a - b)
+            & steep.less(b - c)
+            & steep.less(c - d);
+        self.alive & !(never | rises | falls) == 0
+    }
+
+    /// The crossings in a slab whose cubics are final.
+    fn cross(&mut self, index: u32, span: Span<L>) {
+        let level = L::splat(THRESHOLD);
+        let (from, to) = {
+            let s = self.slabs.slab(index);
+            (s.from, s.to)
+        };
+        let outside = span.0[0].less(level);
+        self.arrive(index, from, outside, !outside);
+        // Lanes whose coefficients are all on one side have no root.
+        let one_sided = span.max().less(level) | level.less(span.min());
+        let mut lanes = self.alive & !one_sided;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            let cubic = span.lane(lane);
+            for &x in cubic.crossings(THRESHOLD).as_slice() {
+                if self.alive >> lane & 1 == 0 {
+                    break;
+                }
+                // A cubic that starts on the level was said to start inside.
+                if x <= 0.0 {
+                    continue;
+                }
+                let bit = 1u32 << lane;
+                let enters = self.outside & bit != 0;
+                self.outside ^= bit;
+                self.inside ^= bit;
+                self.report(lane, from + x * (to - from), index, enters);
+            }
+        }
+    }
+
+    /// The sum of the spans of a slab's resolved (or pending) primitives.
+    fn span(&mut self, index: u32, pending: bool) -> Span<L> {
+        let s = self.slabs.slab(index);
+        let range = if pending { &s.pending } else { &s.resolved };
+        let (from, to) = (s.from, s.to);
+        let along = |t: f64| {
+            let t = L::splat(t);
+            core::array::from_fn(|k| self.origin[k] + self.direction[k] * t)
+        };
+        let places: [[L; 3]; 2] = [along(from), along(to)];
+        let (mut left, mut right) = (Node::zero(), Node::zero());
+        for &local in self.slabs.locals(range) {
+            let primitive = &self.primitives[self.slabs.primitive(local) as usize];
+            let memory = &mut self.memory[local as usize];
+            if memory.t != from {
+                memory.node = node(primitive, places[0], self.direction);
+                self.evaluations += L::LANES as u64;
+            }
+            left = left.plus(memory.node);
+            memory.node = node(primitive, places[1], self.direction);
+            memory.t = to;
+            self.evaluations += L::LANES as u64;
+            right = right.plus(memory.node);
+        }
+        Span::hermite(left, right, to - from)
+    }
+}
+
+/// A primitive's value and slope along a ray.
+#[inline]
+fn node<L: Lanes>(primitive: &Primitive, point: [L; 3], direction: [L; 3]) -> Node<L> {
+    let jet = primitive.jet(point);
+    let [gx, gy, gz] = jet.gradient;
+    Node {
+        value: jet.value,
+        slope: gx * direction[0] + gy * direction[1] + gz * direction[2],
+    }
+}
