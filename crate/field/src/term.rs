@@ -14,7 +14,7 @@ pub(crate) struct Frame<S> {
 
 impl<S: Copy> Frame<S> {
     #[inline(always)]
-    pub fn to_local<R: Real<Scalar = S>>(&self, p: [R; 3]) -> [R; 3] {
+    pub fn local<R: Real<Scalar = S>>(&self, p: [R; 3]) -> [R; 3] {
         let [x, y, z] = self.origin.map(R::lift);
         let d = [p[0] - x, p[1] - y, p[2] - z];
         self.axes.map(|axis| {
@@ -25,7 +25,7 @@ impl<S: Copy> Frame<S> {
 
     /// A gradient, a covector: derivatives with respect to world coordinates.
     #[inline(always)]
-    pub fn to_world<R: Real<Scalar = S>>(&self, g: [R; 3]) -> [R; 3] {
+    pub fn world<R: Real<Scalar = S>>(&self, g: [R; 3]) -> [R; 3] {
         core::array::from_fn(|i| {
             R::lift(self.axes[0][i]) * g[0]
                 + R::lift(self.axes[1][i]) * g[1]
@@ -42,11 +42,11 @@ impl<S: Copy> Frame<S> {
 }
 
 impl Frame<f64> {
-    pub fn point_to_local(&self, p: DVec3) -> DVec3 {
-        DVec3::from_array(self.to_local(p.to_array()))
+    pub fn local_point(&self, p: DVec3) -> DVec3 {
+        DVec3::from_array(self.local(p.to_array()))
     }
 
-    pub fn vector_to_local(&self, v: DVec3) -> DVec3 {
+    pub fn local_vector(&self, v: DVec3) -> DVec3 {
         let [x, y, z] = self.axes.map(|axis| DVec3::from_array(axis).dot(v));
         DVec3::new(x, y, z)
     }
@@ -124,10 +124,10 @@ impl<S: Copy> Term<S> {
     /// Value and gradient at a position in the world.
     #[inline(always)]
     pub(crate) fn jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
-        let local = self.local_jet(self.frame.to_local(p));
+        let local = self.local_jet(self.frame.local(p));
         Jet {
             value: local.value,
-            gradient: self.frame.to_world(local.gradient),
+            gradient: self.frame.world(local.gradient),
         }
     }
 }

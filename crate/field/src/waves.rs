@@ -69,6 +69,28 @@ impl Waves<f64> {
     }
 }
 
+impl Waves<f64> {
+    /// A bound ω on how fast the factor varies: its k-th derivative is at most ωᵏ times its largest
+    /// value, where it is smooth (along an arc: at the circle's radius).
+    pub fn frequency(&self) -> f64 {
+        let rates = match &self.parameters {
+            Parameters::None => [0.0; 2],
+            Parameters::Linear { gradient, .. } => gradient.map(|[x, y]| (x * x + y * y).sqrt()),
+            Parameters::Angle { radius, rate, .. } => {
+                [if *radius > 0.0 { rate / radius } else { 0.0 }, 0.0]
+            }
+        };
+        let of_wave = |wave: Wave| match wave {
+            Wave::One => 0.0,
+            Wave::X | Wave::Sin | Wave::Cos | Wave::Saw | Wave::Step => 1.0,
+            Wave::Sin2 | Wave::Cos2 | Wave::Hat => 2.0,
+        };
+        (0..2)
+            .map(|i| of_wave(self.waves[i]) * self.scale[i].abs() * rates[i])
+            .sum()
+    }
+}
+
 /// 1/x, or 0 where x is 0: then a parameter has no extent, and stays at its start.
 fn inverse(x: f64) -> f64 {
     if x > 0.0 { 1.0 / x } else { 0.0 }
