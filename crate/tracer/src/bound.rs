@@ -243,19 +243,19 @@ fn point4(x: f64) -> f64 {
     let w = x - 1.0;
     let x2 = x * x;
     let share = (35.0 * w * w - 42.0 * w + 3.0) / x2;
-    (24.0 * share.max(4.2) / (x2 * x2)).min(72.0)
+    (24.0 * (1.005 * share).max(4.3) / (x2 * x2)).min(72.0)
 }
 
 /// Its integral over a line, in units of 1/s.
 fn line4(x: f64) -> f64 {
     let c = 1.0 - 1.0 / x;
-    ((102.0 + 725.0 * c * c * c) / (x * x * x * x.sqrt())).min(89.5)
+    ((103.0 + 729.0 * c * c * c) / (x * x * x * x.sqrt())).min(90.6)
 }
 
 /// Its integral over a plane, in units of 1/s².
 fn plane4(x: f64) -> f64 {
     let c = 1.0 - 1.0 / x;
-    ((120.0 + 770.0 * c * c * c) / (x * x * x)).min(110.0)
+    ((121.0 + 775.0 * c * c * c) / (x * x * x)).min(112.0)
 }
 
 #[cfg(test)]

@@ -8,6 +8,9 @@ use crate::ray::Ray;
 use crate::roots::roots;
 use glam::DVec3;
 
+/// A lid: the direction from the centre to it, and across it outwards, in the (u, v) plane.
+type Lid = ([f64; 2], [f64; 2]);
+
 /// The union of the discs of radius `radius` across the arc
 /// `center + sweep·(cos t·u + sin t·v)`, `0 ≤ t ≤ angle`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +110,7 @@ impl Tube {
             4.0 * b,
             1.0,
         ];
-        // (t, is it a lid, the lid's outward normal)
+        // Where the line is cut, and by which lid if by one.
         let mut cuts = [(0.0, None); 6];
         let mut count = 0;
         for &t in roots(&quartic, -reach, reach).as_slice() {
@@ -115,13 +118,13 @@ impl Tube {
             count += 1;
         }
         if !self.closed {
-            let [cs, sn] = self.end;
             // Outwards at the start is against the arc's direction there, at the end along it.
-            for normal in [[0.0, -1.0], [-sn, cs]] {
+            for (end, out) in [(self.start, -1.0), (self.end, 1.0)] {
+                let normal = [-end[1] * out, end[0] * out];
                 let rate = d[0] * normal[0] + d[1] * normal[1];
                 let t = -(o[0] * normal[0] + o[1] * normal[1]) / rate;
                 if t.is_finite() && t.abs() <= reach {
-                    cuts[count] = (t, Some(normal));
+                    cuts[count] = (t, Some((end, normal)));
                     count += 1;
                 }
             }
@@ -143,9 +146,11 @@ impl Tube {
         }
     }
 
-    fn normal(&self, [x, y, z]: [f64; 3], lid: Option<[f64; 2]>) -> DVec3 {
-        if let Some([nx, ny]) = lid {
-            return self.u * nx + self.v * ny;
+    fn normal(&self, [x, y, z]: [f64; 3], lid: Option<Lid>) -> DVec3 {
+        if let Some(([ex, ey], [nx, ny])) = lid {
+            // Where a fat disc reaches over the axis, it sweeps the other way.
+            let side = if x * ex + y * ey >= 0.0 { 1.0 } else { -1.0 };
+            return (self.u * nx + self.v * ny) * side;
         }
         let rho = (x * x + y * y).sqrt();
         // Outwards from the nearest centre of a disc that has this point on its rim: the arc's own
