@@ -3,12 +3,37 @@
 //! A [`Project`] is a few named texts of which one is run. [`compile`] never fails: it gives the
 //! best [`scene::Scene`] it can make of the text and a list of [`Diagnostic`]s. [`link`] packs a
 //! project and a camera into a short text that fits behind the `#` of an address.
+//!
+//! A text goes through these rooms: [`lexer`] cuts it into tokens, [`parser`] makes a tree of commands
+//! ([`syntax`]), [`evaluator`] runs the tree. Each command's operands are read while it runs
+//! ([`reader`], [`expression`]), because what a word means depends on the variables at that time. What
+//! commands there are stands in one table ([`commands`]), which also serves [`highlight`] and help.
+//! All bounds are in [`limits`].
 
+pub mod colours;
+pub mod commands;
 pub mod compile;
 pub mod diagnostic;
+pub mod evaluator;
+pub mod expression;
+pub mod functions;
+pub mod geometry;
 pub mod highlight;
+pub mod hot;
+pub mod lexer;
+pub mod limits;
 pub mod link;
+pub mod parser;
+pub mod problem;
 pub mod project;
+pub mod random;
+pub mod reader;
+pub mod report;
+pub mod scope;
+pub mod suggest;
+pub mod symbol;
+pub mod syntax;
+pub mod value;
 
 pub use compile::{Compiled, HotValue, HotVariable, compile};
 pub use diagnostic::{Diagnostic, Severity};

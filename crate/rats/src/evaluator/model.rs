@@ -1,0 +1,205 @@
+//! The shapes and objects that a running text has made.
+//!
+//! An object is a range of shapes. Transforms are applied at once to the shapes of their object, which
+//! comes to the same as applying them later: an inner object's before an outer one's.
+
+use crate::geometry::Transform;
+use crate::limits::{MAX_ELEMENTS, MAX_NESTED_OBJECTS, MAX_OBJECTS};
+use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
+use crate::suggest;
+use scene::{Element, Shape};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// A shape and what the language must remember of it.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The shape; its material is an index of the palette.
+    pub element: Element,
+    /// By how much it has been scaled, which its material's radius must follow.
+    pub growth: f64,
+    /// Whether it was written as a pipe.
+    pub is_pipe: bool,
+    /// Whether it has been removed.
+    pub removed: bool,
+}
+
+/// An object that has been begun.
+#[derive(Debug)]
+struct Object<'a> {
+    name: &'a str,
+    start: usize,
+    is_chain: bool,
+}
+
+/// All shapes and objects.
+#[derive(Debug, Default)]
+pub struct Model<'a> {
+    /// All shapes.
+    pub parts: Vec<Part>,
+    open: Vec<Object<'a>>,
+    closed: HashMap<&'a str, Range<usize>>,
+    count: usize,
+    /// The last shape or closed object.
+    last: Option<Range<usize>>,
+    /// The material of the chain that is open.
+    pub chain: Option<Name<'a>>,
+}
+
+impl<'a> Model<'a> {
+    /// Adds a shape.
+    ///
+    /// # Errors
+    /// Fatally, if there are too many.
+    pub fn push(&mut self, part: Part, span: &Range<usize>) -> Outcome<()> {
+        if self.parts.len() >= MAX_ELEMENTS {
+            return Err(Problem::new(
+                span.clone(),
+                format!("stopped here: there are more than {MAX_ELEMENTS} shapes"),
+            )
+            .hint("make fewer shapes, or fewer turns of a loop")
+            .fatal());
+        }
+        self.last = Some(self.parts.len()..self.parts.len() + 1);
+        self.parts.push(part);
+        Ok(())
+    }
+
+    /// Begins an object, or a chain of shapes of one material.
+    ///
+    /// # Errors
+    /// If there are too many.
+    pub fn open(&mut self, name: &Name<'a>, chain: Option<Name<'a>>) -> Outcome<()> {
+        if self.open.len() >= MAX_NESTED_OBJECTS {
+            return Err(Problem::new(
+                name.span.clone(),
+                format!("objects can stand inside each other {MAX_NESTED_OBJECTS} deep at most"),
+            ));
+        }
+        if self.chain.is_some() {
+            return Err(
+                Problem::new(name.span.clone(), "a chain holds shapes only, no objects")
+                    .hint("`close` the chain first"),
+            );
+        }
+        if self.count >= MAX_OBJECTS {
+            return Err(Problem::new(
+                name.span.clone(),
+                format!("there are more than {MAX_OBJECTS} objects"),
+            ));
+        }
+        self.count += 1;
+        self.open.push(Object {
+            name: name.text,
+            start: self.parts.len(),
+            is_chain: chain.is_some(),
+        });
+        self.chain = chain;
+        Ok(())
+    }
+
+    /// Ends the innermost object; gives the name it was begun with, or `None` if there is none.
+    pub fn close(&mut self) -> Option<&'a str> {
+        let object = self.open.pop()?;
+        if object.is_chain {
+            self.chain = None;
+        }
+        let range = object.start..self.parts.len();
+        self.last = Some(range.clone());
+        self.closed.insert(object.name, range);
+        Some(object.name)
+    }
+
+    /// The name of the innermost object that is open.
+    #[must_use]
+    pub fn innermost(&self) -> Option<&'a str> {
+        self.open.last().map(|object| object.name)
+    }
+
+    /// The shapes of an object.
+    ///
+    /// # Errors
+    /// If there is none of this name.
+    pub fn find(&self, name: &Name<'_>) -> Outcome<Range<usize>> {
+        if let Some(range) = self.closed.get(name.text) {
+            return Ok(range.clone());
+        }
+        if self.open.iter().any(|object| object.name == name.text) {
+            return Err(Problem::new(
+                name.span.clone(),
+                format!("the object `{}` is not complete yet", name.text),
+            )
+            .hint("put this after its `close`"));
+        }
+        let suggestion = suggest::hint(name.text, self.closed.keys().copied());
+        Err(Problem::new(
+            name.span.clone(),
+            format!("there is no object `{}`", name.text),
+        )
+        .maybe_hint(suggestion))
+    }
+
+    /// The last shape or closed object.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn last(&self, span: &Range<usize>) -> Outcome<Range<usize>> {
+        self.last.clone().ok_or_else(|| {
+            Problem::new(span.clone(), "there is no object yet")
+                .hint("make an object or a shape first")
+        })
+    }
+
+    /// Applies a transform to shapes.
+    pub fn transform(&mut self, range: Range<usize>, transform: &Transform) {
+        for part in &mut self.parts[range] {
+            part.element.shape = transform.apply(&part.element.shape);
+            part.growth *= transform.growth;
+        }
+    }
+
+    /// Removes shapes.
+    pub fn remove(&mut self, range: Range<usize>) {
+        for part in &mut self.parts[range] {
+            part.removed = true;
+        }
+    }
+
+    /// Copies shapes as a new object, which becomes the last.
+    ///
+    /// # Errors
+    /// Fatally, if there are too many shapes.
+    pub fn copy(&mut self, range: Range<usize>, name: &Name<'a>) -> Outcome<()> {
+        let start = self.parts.len();
+        for index in range {
+            let part = self.parts[index].clone();
+            self.push(part, &name.span)?;
+        }
+        let range = start..self.parts.len();
+        self.last = Some(range.clone());
+        self.closed.insert(name.text, range);
+        Ok(())
+    }
+
+    /// Whether some of these shapes are round, so that only a uniform scale keeps their kind.
+    #[must_use]
+    pub fn has_round(&self, range: Range<usize>) -> bool {
+        self.parts[range].iter().any(|part| {
+            matches!(
+                part.element.shape,
+                Shape::Sphere { .. } | Shape::Arc { .. } | Shape::Cylinder { .. }
+            )
+        })
+    }
+
+    /// Forgets all shapes and objects; objects that are open stay open.
+    pub fn clear(&mut self) {
+        self.parts.clear();
+        self.closed.clear();
+        self.last = None;
+        for object in &mut self.open {
+            object.start = 0;
+        }
+    }
+}

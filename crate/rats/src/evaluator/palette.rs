@@ -1,0 +1,173 @@
+//! The materials and textures that a running text has made.
+//!
+//! A material that is made anew under an old name is a new one: shapes made before keep the old. So a
+//! dataset can vary one material along a row of shapes.
+
+use crate::limits::{MAX_LAYERS, MAX_MATERIALS};
+use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
+use crate::suggest;
+use field::Profile;
+use scene::Material;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+/// A material and what the language must remember of it.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// The material.
+    pub material: Material,
+    /// Whether the text names its kernel.
+    pub kernel_given: bool,
+    /// The file and place of its name.
+    pub origin: (usize, Range<usize>),
+    /// Whether a shape is made of it.
+    pub used: bool,
+}
+
+/// A texture, as far as this version draws it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Texture {
+    /// The profile, if its target is the strength.
+    pub profile: Option<Profile>,
+    /// How many layers it has.
+    pub layers: usize,
+}
+
+/// All materials and textures.
+#[derive(Debug, Default)]
+pub struct Palette<'a> {
+    /// All materials ever made that are or may be used.
+    pub surfaces: Vec<Surface>,
+    by_name: HashMap<&'a str, usize>,
+    textures: HashMap<&'a str, Texture>,
+    broken: HashSet<&'a str>,
+}
+
+impl<'a> Palette<'a> {
+    /// Adds a material under its name.
+    ///
+    /// # Errors
+    /// If there are too many.
+    pub fn insert(&mut self, name: &Name<'a>, surface: Surface) -> Outcome<()> {
+        match self.by_name.get(name.text) {
+            Some(&index) if !self.surfaces[index].used => self.surfaces[index] = surface,
+            _ => {
+                if self.surfaces.len() >= MAX_MATERIALS {
+                    return Err(Problem::new(
+                        name.span.clone(),
+                        format!("there are more than {MAX_MATERIALS} materials"),
+                    ));
+                }
+                self.by_name.insert(name.text, self.surfaces.len());
+                self.surfaces.push(surface);
+            }
+        }
+        Ok(())
+    }
+
+    /// Remembers that a material or texture should have been made here but was not.
+    pub fn insert_broken(&mut self, name: &'a str) {
+        self.broken.insert(name);
+    }
+
+    /// The index of a material.
+    ///
+    /// # Errors
+    /// If there is none of this name.
+    pub fn find(&self, name: &Name<'_>) -> Outcome<usize> {
+        self.by_name.get(name.text).copied().ok_or_else(|| {
+            if self.broken.contains(name.text) {
+                return Problem::follow_up(name.span.clone());
+            }
+            let suggestion = suggest::hint(name.text, self.by_name.keys().copied());
+            Problem::new(
+                name.span.clone(),
+                format!("there is no material `{}` yet", name.text),
+            )
+            .hint(
+                suggestion.unwrap_or_else(|| {
+                    format!("make it before it is used: `surface {} …`", name.text)
+                }),
+            )
+        })
+    }
+
+    /// Adds a texture under its name.
+    ///
+    /// # Errors
+    /// If there are too many.
+    pub fn insert_texture(&mut self, name: &Name<'a>, texture: Texture) -> Outcome<()> {
+        if self.textures.len() >= MAX_MATERIALS && !self.textures.contains_key(name.text) {
+            return Err(Problem::new(
+                name.span.clone(),
+                format!("there are more than {MAX_MATERIALS} textures"),
+            ));
+        }
+        self.textures.insert(name.text, texture);
+        Ok(())
+    }
+
+    /// A texture.
+    ///
+    /// # Errors
+    /// If there is none of this name.
+    pub fn texture(&self, name: &Name<'_>) -> Outcome<&Texture> {
+        self.textures.get(name.text).ok_or_else(|| {
+            if self.broken.contains(name.text) {
+                return Problem::follow_up(name.span.clone());
+            }
+            let suggestion = suggest::hint(name.text, self.textures.keys().copied());
+            Problem::new(
+                name.span.clone(),
+                format!("there is no texture `{}` yet", name.text),
+            )
+            .hint(
+                suggestion.unwrap_or_else(|| {
+                    format!("make it before it is used: `texture {} …`", name.text)
+                }),
+            )
+        })
+    }
+
+    /// The layers `names` put together: the first profile counts, and every layer is counted.
+    ///
+    /// # Errors
+    /// If one does not exist, or there are more than [`MAX_LAYERS`].
+    pub fn layers(&self, names: &[Name<'_>]) -> Outcome<Texture> {
+        let mut together = Texture::default();
+        for name in names {
+            let texture = self.texture(name)?;
+            together.layers += texture.layers;
+            if together.layers > MAX_LAYERS {
+                return Err(Problem::new(
+                    name.span.clone(),
+                    format!("there are more than {MAX_LAYERS} layers of textures"),
+                ));
+            }
+            together.profile = together.profile.or(texture.profile);
+        }
+        Ok(together)
+    }
+
+    /// Forgets the names of all materials; shapes keep theirs.
+    pub fn forget_surfaces(&mut self) {
+        for index in self.by_name.values() {
+            self.surfaces[*index].used = true;
+        }
+        self.by_name.clear();
+    }
+
+    /// Forgets all textures; materials keep their profiles.
+    pub fn forget_textures(&mut self) {
+        self.textures.clear();
+    }
+
+    /// The materials that no shape is made of.
+    pub fn unused(&self) -> impl Iterator<Item = &Surface> {
+        self.by_name
+            .values()
+            .map(|index| &self.surfaces[*index])
+            .filter(|surface| !surface.used)
+    }
+}

@@ -1,0 +1,162 @@
+//! The scene that the commands so far have made, checked: what cannot be drawn is left out with a
+//! warning.
+
+use super::Evaluator;
+use super::model::Part;
+use crate::Severity;
+use crate::limits::MAX_MAGNITUDE;
+use field::BlobScale;
+use scene::{Element, Material, Scene, Shape};
+use std::collections::HashMap;
+
+impl Evaluator<'_> {
+    /// The scene as it is now.
+    pub(super) fn picture(&mut self) -> Scene {
+        let mut scene = Scene {
+            elements: Vec::with_capacity(self.model.parts.len()),
+            materials: self
+                .palette
+                .surfaces
+                .iter()
+                .map(|surface| surface.material.clone())
+                .collect(),
+            lights: self.lights.clone(),
+            background: self.background,
+            camera: self.camera,
+            settings: self.settings,
+        };
+        if scene.materials.is_empty() {
+            scene.materials.push(Material::default());
+        }
+        let parts = std::mem::take(&mut self.model.parts);
+        let mut grown = HashMap::new();
+        for part in parts.iter().filter(|part| !part.removed) {
+            let element = settle(part, &mut scene, &mut grown);
+            match fault(&scene, &element) {
+                None => scene.elements.push(element),
+                Some((message, hint)) => {
+                    let origin = element.origin;
+                    let file = std::mem::replace(&mut self.file, origin.file as usize);
+                    let span = origin.start as usize..origin.end as usize;
+                    self.say(Severity::Warning, span, || (message(), hint));
+                    self.file = file;
+                }
+            }
+        }
+        self.model.parts = parts;
+        if scene.camera.eye == scene.camera.target {
+            let message = "the eye is at the view reference point, so it looks nowhere";
+            self.say(Severity::Warning, 0..0, || {
+                (
+                    message.to_owned(),
+                    Some(String::from("set `eyep` and `vrp` to different points")),
+                )
+            });
+        }
+        scene
+    }
+}
+
+/// A part's element in the scene, with the material that it needs there.
+fn settle(part: &Part, scene: &mut Scene, grown: &mut HashMap<(usize, u64), usize>) -> Element {
+    let mut element = part.element.clone();
+    if part.is_pipe {
+        let Material { radius, .. } = scene.materials[element.material];
+        // The scene knows cylinders only; `fragile pipe` is settled here.
+        if scene.settings.fragile.pipe
+            && scene.materials[element.material].is_soft()
+            && radius > 0.0
+            && let Shape::Cylinder { radius: own, .. } = &mut element.shape
+        {
+            *own = radius * part.growth;
+        }
+    }
+    // What is scaled has flesh scaled alike: the material's radius grows, an absolute width shrinks.
+    if part.growth != 1.0 && scene.materials[element.material].is_soft() {
+        let key = (element.material, part.growth.to_bits());
+        let absolute = scene.settings.blob_scale == BlobScale::Absolute;
+        let materials = &mut scene.materials;
+        element.material = *grown.entry(key).or_insert_with(|| {
+            let mut material = materials[key.0].clone();
+            material.radius *= part.growth;
+            if absolute {
+                material.blobbiness /= part.growth * part.growth;
+            }
+            materials.push(material);
+            materials.len() - 1
+        });
+    }
+    element
+}
+
+type Fault = (fn() -> String, Option<String>);
+
+/// Why an element cannot be drawn, if so.
+fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
+    let hint = |text: &str| Some(text.to_owned());
+    if !is_finite(&element.shape) {
+        return Some((
+            || String::from("this shape lies too far away or is too large, so it is left out"),
+            None,
+        ));
+    }
+    let radius = scene.radius(element);
+    let is_soft = scene
+        .materials
+        .get(element.material)
+        .is_some_and(Material::is_soft);
+    let needs_radius = is_soft
+        || matches!(
+            element.shape,
+            Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Arc { .. }
+        );
+    if needs_radius && radius <= 0.0 {
+        return Some(if is_soft {
+            (
+                || String::from("this soft shape has no radius, so it is left out"),
+                hint("give its material a `radius` above 0"),
+            )
+        } else {
+            (
+                || String::from("this shape's radius is not above 0, so it is left out"),
+                hint("give it a radius above 0"),
+            )
+        });
+    }
+    let degenerate = match element.shape {
+        Shape::Sphere { .. } | Shape::Plane { .. } => false,
+        Shape::Cylinder { base, apex, .. } => base == apex,
+        Shape::Arc { sweep, angle, .. } => sweep <= 0.0 || angle <= 0.0,
+        Shape::Triangle {
+            corners: [a, b, c], ..
+        } => {
+            let (ab, ac) = (b - a, c - a);
+            ab.cross(ac).length() <= 1e-12 * ab.length() * ac.length()
+        }
+    };
+    degenerate.then(|| {
+        let message: fn() -> String = match element.shape {
+            Shape::Cylinder { .. } => {
+                || String::from("this cylinder's ends are the same point, so it is left out")
+            }
+            Shape::Arc { .. } => || {
+                String::from("this arc has no length (sweep radius or width 0), so it is left out")
+            },
+            _ => || String::from("this triangle has no area, so it is left out"),
+        };
+        (message, None)
+    })
+}
+
+fn is_finite(shape: &Shape) -> bool {
+    // Transforms can take a shape beyond what a text may write.
+    let fits = |v: glam::DVec3| v.abs().max_element() <= MAX_MAGNITUDE && v.is_finite();
+    let places = match *shape {
+        Shape::Sphere { center, .. } => fits(center),
+        Shape::Cylinder { base, apex, .. } => fits(base) && fits(apex),
+        Shape::Arc { center, sweep, .. } => fits(center) && sweep.abs() <= MAX_MAGNITUDE,
+        Shape::Triangle { corners, .. } => corners.into_iter().all(fits),
+        Shape::Plane { point, normal, .. } => fits(point) && normal.is_finite(),
+    };
+    places && shape.radius().abs() <= MAX_MAGNITUDE
+}

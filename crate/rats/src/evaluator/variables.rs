@@ -1,0 +1,231 @@
+//! `var` and `seed`.
+
+use super::{Evaluator, Flow};
+use crate::Severity;
+use crate::compile::{HotValue, HotVariable};
+use crate::limits::MAX_MAGNITUDE;
+use crate::problem::{Outcome, Problem};
+use crate::random::Random;
+use crate::reader::Reader;
+use crate::syntax::{Command, Datum};
+use crate::value::Value;
+use glam::DVec3;
+use std::ops::Range;
+
+/// `var name = value [hot] [+= step | *= factor]`
+pub fn var<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    set(run, command).inspect_err(|_| {
+        if let Some((name, _)) = run.reader(command).peek_word() {
+            run.scope.set_broken(name);
+        }
+    })?;
+    Ok(Flow::Next)
+}
+
+fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
+    let mut read = run.reader(command);
+    let Some((name, word)) = read.peek_word() else {
+        return Err(read.expected("the variable's name"));
+    };
+    let spelled = read.name("the variable's name")?;
+    if spelled.text != word {
+        return Err(Problem::new(
+            spelled.span,
+            "a variable's name cannot hold `^`, which is the power in expressions",
+        ));
+    }
+    if is_taken(word) {
+        return Err(
+            Problem::new(spelled.span, format!("`{word}` is a word of the language"))
+                .hint("choose another name"),
+        );
+    }
+    let mut animated = per_frame(&mut read)?;
+    if animated.is_none() && !read.sign(b'=') {
+        return Err(read.expected("`=`"));
+    }
+    if animated.is_some() && read.scope.get(name).is_none() {
+        return Err(
+            Problem::new(spelled.span, format!("`{word}` has no value yet"))
+                .hint(format!("set it first: `var {word} = …`")),
+        );
+    }
+    if animated.is_none() {
+        let (value, literal) = value(&mut read)?;
+        let mut hot = None;
+        loop {
+            let here = read.start();
+            if read.keyword("hot") {
+                hot = Some(read.since(here));
+            } else if let Some(span) = per_frame(&mut read)? {
+                animated = Some(span);
+            } else {
+                break;
+            }
+        }
+        read.end()?;
+        // A colour stays a colour when it is given as three numbers.
+        let value = match (run.scope.get(name), value) {
+            (Some(Value::Colour(_)), Value::Vector(v)) => Value::Colour(v),
+            _ => value,
+        };
+        run.scope.set(name, value);
+        if let Some(span) = hot {
+            make_hot(run, word, value, literal, span);
+        }
+    }
+    if let Some(span) = animated {
+        run.not_carried_out(span, "a change with every frame");
+    }
+    Ok(())
+}
+
+/// Words that would be misread in expressions if they were variables.
+fn is_taken(word: &str) -> bool {
+    ["hot", "to", "step", "and", "or", "not"]
+        .iter()
+        .any(|taken| word.eq_ignore_ascii_case(taken))
+        || crate::functions::constant(word).is_some()
+}
+
+/// `+= step` or `*= factor`; gives its place.
+fn per_frame(read: &mut Reader<'_, '_>) -> Outcome<Option<Range<usize>>> {
+    let start = read.start();
+    let sign = |at: usize| read.items.get(at).map(|item| item.datum);
+    if !matches!(sign(read.at), Some(Datum::Sign(b'+' | b'*')))
+        || sign(read.at + 1) != Some(Datum::Sign(b'='))
+    {
+        return Ok(None);
+    }
+    read.at += 2;
+    read.number("the change with every frame")?;
+    Ok(Some(read.since(start)))
+}
+
+/// One number, three numbers or a colour; and its place if it is written out, so that a slider can
+/// replace it.
+fn value(read: &mut Reader<'_, '_>) -> Outcome<(Value, Option<Range<usize>>)> {
+    let start = read.start();
+    let first = read.at;
+    let mut value = read.value("a value")?;
+    if let Value::Scalar(x) = value
+        && is_number_next(read)
+    {
+        let y = read.number("the second number")?;
+        if !is_number_next(read) {
+            return Err(Problem::new(
+                read.since(start),
+                "a variable is one number, three numbers or a colour; these are two numbers",
+            )
+            .hint("for a difference write `a - b` or `a-b`"));
+        }
+        value = Value::Vector(DVec3::new(x, y, read.number("the third number")?));
+    }
+    let span = read.since(start);
+    if !value.all(|x| x.abs() <= MAX_MAGNITUDE) {
+        return Err(Problem::new(
+            span,
+            "the value comes out as no finite number, or too large",
+        )
+        .hint("look for a division by 0 or a root of a negative number"));
+    }
+    let written_out = is_written_out(read, first..read.at, value);
+    Ok((value, written_out.then_some(span)))
+}
+
+fn is_number_next(read: &mut Reader<'_, '_>) -> bool {
+    read.more()
+        && match read.datum() {
+            Some(Datum::Number(_)) => true,
+            Some(Datum::Sign(b'-' | b'(')) => true,
+            Some(Datum::Sign(b'+')) => {
+                read.items.get(read.at + 1).map(|i| i.datum) != Some(Datum::Sign(b'='))
+            }
+            Some(Datum::Word(symbol)) => {
+                let word = read.scope.symbols.word(symbol);
+                !word.eq_ignore_ascii_case("hot")
+            }
+            _ => false,
+        }
+}
+
+/// Whether operands are plain numbers, a colour's name or `rgb(…)` of plain numbers.
+fn is_written_out(read: &Reader<'_, '_>, operands: Range<usize>, value: Value) -> bool {
+    let items = &read.items[operands];
+    let plain = |items: &[crate::syntax::Item]| {
+        let mut signed = false;
+        items.iter().all(|item| match item.datum {
+            Datum::Number(_) | Datum::Sign(b',' | b'<' | b'>') => {
+                signed = false;
+                true
+            }
+            Datum::Sign(b'-') => !std::mem::replace(&mut signed, true),
+            _ => false,
+        }) && items
+            .iter()
+            .filter(|item| matches!(item.datum, Datum::Number(_)))
+            .count()
+            == match value {
+                Value::Scalar(_) => 1,
+                _ => 3,
+            }
+    };
+    match items {
+        [item] => match item.datum {
+            Datum::Word(symbol) => {
+                let is_colour = crate::colours::find(read.scope.symbols.word(symbol)).is_some();
+                is_colour && read.scope.get(symbol).is_none()
+            }
+            _ => plain(items),
+        },
+        [name, open, inner @ .., close] => match (name.datum, open.datum, close.datum) {
+            (Datum::Word(symbol), Datum::Sign(b'('), Datum::Sign(b')')) => {
+                read.scope.symbols.word(symbol).eq_ignore_ascii_case("rgb") && plain(inner)
+            }
+            _ => plain(items),
+        },
+        _ => plain(items),
+    }
+}
+
+fn make_hot(
+    run: &mut Evaluator<'_>,
+    name: &str,
+    value: Value,
+    literal: Option<Range<usize>>,
+    span: Range<usize>,
+) {
+    if run.repeating > 0 {
+        run.say(Severity::Warning, span, || {
+            (
+                String::from("a variable of a loop or a defined command cannot be hot"),
+                Some(String::from("set it before, outside of the braces")),
+            )
+        });
+        return;
+    }
+    let value = match value {
+        Value::Scalar(x) => HotValue::Scalar(x),
+        Value::Vector(v) => HotValue::Vector(v.to_array()),
+        Value::Colour(c) => HotValue::Colour(c.to_array().map(|x| x as f32)),
+    };
+    let variable = HotVariable {
+        name: name.to_owned(),
+        value,
+        file: run.file,
+        literal,
+    };
+    match run.hot.iter_mut().find(|known| known.name == name) {
+        Some(known) => *known = variable,
+        None => run.hot.push(variable),
+    }
+}
+
+/// `seed n`
+pub fn seed<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let mut read = run.reader(command);
+    let seed = read.number("the seed")?;
+    read.end()?;
+    run.scope.random = Random::new(seed);
+    Ok(Flow::Next)
+}

@@ -1,0 +1,306 @@
+//! Arithmetic in operands.
+//!
+//! From weakest to strongest: `or`, `and`, `not`, comparisons (in conditions only, because elsewhere `<`
+//! and `>` separate), `+ −`, `* /`, a sign, `^` (from the right). Since operands follow each other with
+//! nothing but space between, one rule decides what `−` and `+` mean in a list: with space before and
+//! none after they begin the next operand, otherwise they join two numbers. So `1 -2` is two operands,
+//! `1 - 2`, `1-2` and `(1 -2)` are one.
+
+use crate::functions::{self, Run};
+use crate::limits;
+use crate::problem::{Outcome, Problem};
+use crate::reader::Reader;
+use crate::syntax::Datum;
+use crate::value::Value;
+
+/// Operators that join two values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Operator {
+    Or,
+    And,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    Equal,
+    Unequal,
+    Plus,
+    Minus,
+    Times,
+    Over,
+    Power,
+}
+
+impl Operator {
+    /// Larger binds stronger.
+    fn strength(self) -> u8 {
+        match self {
+            Self::Or => 1,
+            Self::And => 2,
+            Self::Less
+            | Self::LessEqual
+            | Self::Greater
+            | Self::GreaterEqual
+            | Self::Equal
+            | Self::Unequal => 4,
+            Self::Plus | Self::Minus => 5,
+            Self::Times | Self::Over => 6,
+            Self::Power => POWER,
+        }
+    }
+}
+
+const NOT: u8 = 3;
+const SIGN: u8 = 7;
+const POWER: u8 = 8;
+
+impl Reader<'_, '_> {
+    /// An expression's value.
+    ///
+    /// # Errors
+    /// If there is none or it cannot be computed.
+    pub fn value(&mut self, what: &str) -> Outcome<Value> {
+        if !self.more() {
+            return Err(self.expected(what));
+        }
+        self.binary(0, what)
+    }
+
+    /// The truth of a condition: anything but 0 is true.
+    ///
+    /// # Errors
+    /// If there is none or it cannot be computed.
+    pub fn condition(&mut self) -> Outcome<bool> {
+        self.comparing = true;
+        let start = self.here().start;
+        if self.at >= self.items.len() {
+            return Err(self.expected("a condition"));
+        }
+        let value = self.binary(0, "a condition")?;
+        if self.at < self.items.len() {
+            return Err(self.expected("`{` after the condition"));
+        }
+        match value {
+            Value::Scalar(number) => Ok(number != 0.0),
+            _ => Err(Problem::new(
+                self.since(start),
+                format!("a condition must be a number, this is {}", value.kind()),
+            )),
+        }
+    }
+
+    fn binary(&mut self, least: u8, what: &str) -> Outcome<Value> {
+        self.depth += 1;
+        if self.depth > limits::MAX_NESTED_EXPRESSIONS {
+            return Err(Problem::new(
+                self.here(),
+                format!(
+                    "this expression is nested more than {} deep",
+                    limits::MAX_NESTED_EXPRESSIONS
+                ),
+            )
+            .hint("compute parts of it in variables first"));
+        }
+        let start = self.here().start;
+        let mut left = self.prefix(what)?;
+        while let Some((operator, length)) = self.operator() {
+            let strength = operator.strength();
+            if strength < least {
+                break;
+            }
+            self.at += length;
+            // `^` groups from the right: its right side may hold another `^`.
+            let right_least = strength + u8::from(operator != Operator::Power);
+            let right = self.binary(right_least, "a number after the operator")?;
+            left = self.join(left, operator, right, start)?;
+        }
+        self.depth -= 1;
+        Ok(left)
+    }
+
+    /// The operator that stands here and how many items it has.
+    fn operator(&self) -> Option<(Operator, usize)> {
+        let item = self.items.get(self.at)?;
+        let follows_equal = || {
+            self.items
+                .get(self.at + 1)
+                .is_some_and(|next| next.datum == Datum::Sign(b'=') && next.start == item.end)
+        };
+        Some(match item.datum {
+            Datum::Sign(sign @ (b'+' | b'-')) => {
+                if self.listed && item.spaced {
+                    let attached = self.items.get(self.at + 1).is_some_and(|next| !next.spaced);
+                    if attached {
+                        return None;
+                    }
+                }
+                // `+=` belongs to `var`.
+                if follows_equal() {
+                    return None;
+                }
+                if sign == b'+' {
+                    (Operator::Plus, 1)
+                } else {
+                    (Operator::Minus, 1)
+                }
+            }
+            Datum::Sign(b'*') if !follows_equal() => (Operator::Times, 1),
+            Datum::Sign(b'/') => (Operator::Over, 1),
+            Datum::Sign(b'^') => (Operator::Power, 1),
+            Datum::Sign(b'<') if self.comparing && follows_equal() => (Operator::LessEqual, 2),
+            Datum::Sign(b'<') if self.comparing => (Operator::Less, 1),
+            Datum::Sign(b'>') if self.comparing && follows_equal() => (Operator::GreaterEqual, 2),
+            Datum::Sign(b'>') if self.comparing => (Operator::Greater, 1),
+            Datum::Sign(b'=') if self.comparing && follows_equal() => (Operator::Equal, 2),
+            Datum::Sign(b'!') if self.comparing && follows_equal() => (Operator::Unequal, 2),
+            Datum::Word(symbol) if self.comparing => {
+                let word = self.scope.symbols.word(symbol);
+                if word.eq_ignore_ascii_case("and") {
+                    (Operator::And, 1)
+                } else if word.eq_ignore_ascii_case("or") {
+                    (Operator::Or, 1)
+                } else {
+                    return None;
+                }
+            }
+            _ => return None,
+        })
+    }
+
+    fn join(&self, left: Value, operator: Operator, right: Value, start: usize) -> Outcome<Value> {
+        let truth = |b: bool| f64::from(u8::from(b));
+        let scalars = match (left, right) {
+            (Value::Scalar(a), Value::Scalar(b)) => Some((a, b)),
+            _ => None,
+        };
+        let value = match operator {
+            Operator::Plus => left.zip(right, |a, b| a + b),
+            Operator::Minus => left.zip(right, |a, b| a - b),
+            Operator::Times => match (left, right) {
+                (Value::Scalar(s), other) | (other, Value::Scalar(s)) => Some(other.map(|x| x * s)),
+                // Number by number, as light falls on a colour.
+                _ => left.zip(right, |a, b| a * b),
+            },
+            Operator::Over => match right {
+                Value::Scalar(s) => Some(left.map(|x| x / s)),
+                _ => None,
+            },
+            _ => scalars.map(|(a, b)| {
+                Value::Scalar(match operator {
+                    Operator::Power => libm::pow(a, b),
+                    Operator::Or => truth(a != 0.0 || b != 0.0),
+                    Operator::And => truth(a != 0.0 && b != 0.0),
+                    Operator::Less => truth(a < b),
+                    Operator::LessEqual => truth(a <= b),
+                    Operator::Greater => truth(a > b),
+                    Operator::GreaterEqual => truth(a >= b),
+                    Operator::Equal => truth(a == b),
+                    _ => truth(a != b),
+                })
+            }),
+        };
+        value.ok_or_else(|| {
+            Problem::new(
+                self.since(start),
+                format!("{} and {} cannot be joined so", left.kind(), right.kind()),
+            )
+        })
+    }
+
+    fn prefix(&mut self, what: &str) -> Outcome<Value> {
+        match self.datum() {
+            Some(Datum::Sign(sign @ (b'+' | b'-'))) => {
+                self.at += 1;
+                let value = self.binary(SIGN, "a number after the sign")?;
+                Ok(if sign == b'-' {
+                    value.map(|x| -x)
+                } else {
+                    value
+                })
+            }
+            Some(Datum::Word(symbol))
+                if self.comparing
+                    && self.scope.symbols.word(symbol).eq_ignore_ascii_case("not")
+                    && self.scope.get(symbol).is_none() =>
+            {
+                self.at += 1;
+                let value = self.binary(NOT, what)?;
+                Ok(value.map(|x| f64::from(u8::from(x == 0.0))))
+            }
+            _ => self.operand(what),
+        }
+    }
+
+    fn operand(&mut self, what: &str) -> Outcome<Value> {
+        let span = self.here();
+        self.scope.step(1, &span)?;
+        match self.datum() {
+            Some(Datum::Number(number)) => {
+                self.at += 1;
+                Ok(Value::Scalar(number))
+            }
+            Some(Datum::Sign(b'(')) => {
+                self.at += 1;
+                let listed = std::mem::replace(&mut self.listed, false);
+                let value = self.binary(0, "a number")?;
+                self.listed = listed;
+                if self.datum() != Some(Datum::Sign(b')')) {
+                    return Err(self.expected("`)`"));
+                }
+                self.at += 1;
+                Ok(value)
+            }
+            Some(Datum::Word(symbol)) => {
+                let word = self.scope.symbols.word(symbol);
+                let is_variable = self.scope.get(symbol).is_some();
+                if !is_variable && let Some(function) = functions::find(word) {
+                    return self.call(function, span.start);
+                }
+                let value = self.word_value(symbol)?;
+                self.at += 1;
+                Ok(value)
+            }
+            _ => Err(self.expected(what)),
+        }
+    }
+
+    /// A function with its arguments in parentheses, separated by commas.
+    fn call(&mut self, function: &'static functions::Function, start: usize) -> Outcome<Value> {
+        self.at += 1;
+        if self.datum() != Some(Datum::Sign(b'(')) {
+            if matches!(function.run, Run::Random) {
+                return Ok(Value::Scalar(self.scope.random.next()));
+            }
+            return Err(Problem::new(
+                start..self.since(start).end,
+                format!(
+                    "the function `{}` needs its arguments in ( )",
+                    function.name
+                ),
+            )
+            .hint(function.meaning));
+        }
+        self.at += 1;
+        let listed = std::mem::replace(&mut self.listed, false);
+        let mut arguments = Vec::new();
+        if self.datum() != Some(Datum::Sign(b')')) {
+            loop {
+                arguments.push(self.binary(0, "a number")?);
+                if self.datum() != Some(Datum::Sign(b',')) {
+                    break;
+                }
+                self.at += 1;
+            }
+        }
+        self.listed = listed;
+        if self.datum() != Some(Datum::Sign(b')')) {
+            return Err(self.expected("`,` or `)`"));
+        }
+        self.at += 1;
+        if arguments.is_empty() && matches!(function.run, Run::Random) {
+            return Ok(Value::Scalar(self.scope.random.next()));
+        }
+        functions::apply(function, &arguments)
+            .map_err(|message| Problem::new(self.since(start), message).hint(function.meaning))
+    }
+}

@@ -1,0 +1,344 @@
+//! The geometry behind the primitives: an arc's axes, the circle through three points, transforms.
+
+use glam::{DMat3, DVec3};
+use scene::Shape;
+
+/// The local axes u, v of an arc with unit normal `n`: u is the world's x axis made perpendicular to n
+/// (the y axis if n is parallel to x), v = n × u. Angles run from u towards v.
+#[must_use]
+pub fn arc_axes(n: DVec3) -> (DVec3, DVec3) {
+    // Nearer than this the x axis has no direction left that is more than rounding.
+    let parallel = n.cross(DVec3::X).length() < 1e-9;
+    let along = if parallel { DVec3::Y } else { DVec3::X };
+    let u = (along - n * n.dot(along)).normalize_or(DVec3::X);
+    (u, n.cross(u))
+}
+
+/// The arc's shape from the operands of `arc`: angles in degrees, a negative width turns the other way,
+/// more than a full turn is a full turn.
+#[must_use]
+pub fn arc(center: DVec3, normal: DVec3, sweep: f64, radius: f64, start: f64, width: f64) -> Shape {
+    let (x, y) = arc_axes(normal);
+    let (sin, cos) = sin_cos_degrees(start);
+    let u = x * cos + y * sin;
+    let v = (y * cos - x * sin) * width.signum();
+    Shape::Arc {
+        center,
+        u,
+        v,
+        sweep,
+        angle: width.abs().min(360.0).to_radians(),
+        radius,
+    }
+}
+
+/// Sine and cosine of an angle in degrees, exact at multiples of 90°.
+fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+    let turn = degrees - 360.0 * (degrees / 360.0).floor();
+    if turn == 0.0 {
+        (0.0, 1.0)
+    } else if turn == 90.0 {
+        (1.0, 0.0)
+    } else if turn == 180.0 {
+        (0.0, -1.0)
+    } else if turn == 270.0 {
+        (-1.0, 0.0)
+    } else {
+        let radians = turn.to_radians();
+        (libm::sin(radians), libm::cos(radians))
+    }
+}
+
+/// What three points make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ThreePoints {
+    /// A piece of a circle from the first over the second to the third.
+    Arc(Shape),
+    /// They lie on a line; the segment that holds all three.
+    Line(DVec3, DVec3),
+    /// Two of them or all are the same.
+    Same,
+}
+
+/// The arc from `a` over `b` to `c` with a tube of the given radius.
+#[must_use]
+pub fn through(a: DVec3, b: DVec3, c: DVec3, radius: f64) -> ThreePoints {
+    let (ab, ac) = (b - a, c - a);
+    let size = ab.length().max(ac.length());
+    if ab.length().min(ac.length()).min((c - b).length()) <= 1e-12 * size.max(f64::MIN_POSITIVE) {
+        return ThreePoints::Same;
+    }
+    let normal = ab.cross(ac);
+    // The sine of the angle at a, below which the circle's centre is lost in rounding.
+    if normal.length() <= 1e-7 * ab.length() * ac.length() {
+        return straight(a, b, c);
+    }
+    // The circumcentre relative to a.
+    let to_center = (normal.cross(ab) * ac.length_squared()
+        + ac.cross(normal) * ab.length_squared())
+        / (2.0 * normal.length_squared());
+    let center = a + to_center;
+    let sweep = to_center.length();
+    let n = normal.normalize();
+    let u = -to_center / sweep;
+    let v = n.cross(u);
+    // a → b → c turns counter-clockwise about n, so the angle of c is past that of b.
+    let last = c - center;
+    let mut angle = libm::atan2(last.dot(v), last.dot(u));
+    if angle <= 0.0 {
+        angle += std::f64::consts::TAU;
+    }
+    ThreePoints::Arc(Shape::Arc {
+        center,
+        u,
+        v,
+        sweep,
+        angle,
+        radius,
+    })
+}
+
+fn straight(a: DVec3, b: DVec3, c: DVec3) -> ThreePoints {
+    let longest = [(a, c), (a, b), (b, c)]
+        .into_iter()
+        .max_by(|p, q| p.0.distance(p.1).total_cmp(&q.0.distance(q.1)));
+    longest.map_or(ThreePoints::Same, |(base, apex)| {
+        ThreePoints::Line(base, apex)
+    })
+}
+
+/// An affine map: `x ↦ linear·x + shift`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform {
+    /// The linear part.
+    pub linear: DMat3,
+    /// The shift.
+    pub shift: DVec3,
+    /// By how much radii grow: the mean of the scale factors' magnitudes.
+    pub growth: f64,
+    /// Whether all lengths grow alike.
+    pub uniform: bool,
+}
+
+impl Transform {
+    /// Moves by `shift`.
+    #[must_use]
+    pub fn translation(shift: DVec3) -> Self {
+        Self {
+            linear: DMat3::IDENTITY,
+            shift,
+            growth: 1.0,
+            uniform: true,
+        }
+    }
+
+    /// Turns about a unit axis through the origin, right-handed (Rodrigues' formula).
+    #[must_use]
+    pub fn rotation(axis: DVec3, degrees: f64) -> Self {
+        let (sin, cos) = sin_cos_degrees(degrees);
+        let turn = |x: DVec3| x * cos + axis.cross(x) * sin + axis * (axis.dot(x) * (1.0 - cos));
+        Self {
+            linear: DMat3::from_cols(turn(DVec3::X), turn(DVec3::Y), turn(DVec3::Z)),
+            shift: DVec3::ZERO,
+            growth: 1.0,
+            uniform: true,
+        }
+    }
+
+    /// Scales along the axes by factors that are not 0; negative ones mirror.
+    #[must_use]
+    pub fn scaling(factors: DVec3) -> Self {
+        let size = factors.abs();
+        Self {
+            linear: DMat3::from_diagonal(factors),
+            shift: DVec3::ZERO,
+            growth: if size.x == size.y && size.y == size.z {
+                size.x
+            } else {
+                (size.x + size.y + size.z) / 3.0
+            },
+            uniform: size.x == size.y && size.y == size.z,
+        }
+    }
+
+    fn point(&self, point: DVec3) -> DVec3 {
+        self.linear * point + self.shift
+    }
+
+    /// The image of a shape. If the map is not uniform, round shapes stay round, with radii grown by the
+    /// mean factor.
+    #[must_use]
+    pub fn apply(&self, shape: &Shape) -> Shape {
+        match *shape {
+            Shape::Sphere { center, radius } => Shape::Sphere {
+                center: self.point(center),
+                radius: radius * self.growth,
+            },
+            Shape::Cylinder { base, apex, radius } => Shape::Cylinder {
+                base: self.point(base),
+                apex: self.point(apex),
+                radius: radius * self.growth,
+            },
+            Shape::Arc {
+                center,
+                u,
+                v,
+                sweep,
+                angle,
+                radius,
+            } => {
+                let u = (self.linear * u).normalize_or(u);
+                let turned = self.linear * v;
+                Shape::Arc {
+                    center: self.point(center),
+                    u,
+                    // Perpendicular to u again, which rounding or uneven scaling may have spoiled.
+                    v: (turned - u * u.dot(turned)).normalize_or(v),
+                    sweep: sweep * self.growth,
+                    angle,
+                    radius: radius * self.growth,
+                }
+            }
+            Shape::Triangle { corners, radius } => Shape::Triangle {
+                corners: corners.map(|corner| self.point(corner)),
+                radius: radius * self.growth,
+            },
+            Shape::Plane {
+                point,
+                normal,
+                radius,
+            } => Shape::Plane {
+                point: self.point(point),
+                normal: (self.linear.inverse().transpose() * normal).normalize_or(normal),
+                radius: radius * self.growth,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point_at(shape: &Shape, share: f64) -> DVec3 {
+        let Shape::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+            ..
+        } = *shape
+        else {
+            panic!("{shape:?} is no arc");
+        };
+        let t = angle * share;
+        center + (u * libm::cos(t) + v * libm::sin(t)) * sweep
+    }
+
+    fn near(a: DVec3, b: DVec3) -> bool {
+        a.distance(b) < 1e-12
+    }
+
+    #[test]
+    fn axes() {
+        assert_eq!(arc_axes(DVec3::Z), (DVec3::X, DVec3::Y));
+        assert_eq!(arc_axes(DVec3::NEG_Z), (DVec3::X, DVec3::NEG_Y));
+        let (u, v) = arc_axes(DVec3::X);
+        assert_eq!((u, v), (DVec3::Y, DVec3::Z));
+    }
+
+    #[test]
+    fn arcs_turn_as_the_language_says() {
+        // The seahorse's tail: each arc begins where the last one ends.
+        let first = arc(
+            DVec3::new(0.2, -2.0, 0.0),
+            DVec3::NEG_Z,
+            1.0,
+            0.25,
+            90.0,
+            90.0,
+        );
+        let next = arc(
+            DVec3::new(-0.3, -2.0, 0.0),
+            DVec3::NEG_Z,
+            0.5,
+            0.25,
+            180.0,
+            90.0,
+        );
+        assert!(near(point_at(&first, 1.0), point_at(&next, 0.0)));
+        let back = arc(DVec3::ZERO, DVec3::Z, 1.0, 0.1, 90.0, -90.0);
+        assert!(near(point_at(&back, 0.0), DVec3::Y));
+        assert!(near(point_at(&back, 1.0), DVec3::X));
+        let full = arc(DVec3::ZERO, DVec3::Z, 1.0, 0.1, 0.0, 1000.0);
+        assert!(near(point_at(&full, 0.5), DVec3::NEG_X));
+    }
+
+    #[test]
+    fn arcs_pass_their_points() {
+        let cases = [
+            [DVec3::X, DVec3::Y, DVec3::NEG_X],
+            [DVec3::X, DVec3::NEG_Y, DVec3::Y],
+            [
+                DVec3::new(1.0, 2.0, 3.0),
+                DVec3::new(-1.0, 0.5, 2.0),
+                DVec3::new(0.0, 7.0, -2.0),
+            ],
+        ];
+        for [a, b, c] in cases {
+            let ThreePoints::Arc(shape) = through(a, b, c, 0.1) else {
+                panic!("no arc");
+            };
+            assert!(point_at(&shape, 0.0).distance(a) < 1e-12);
+            assert!(point_at(&shape, 1.0).distance(c) < 1e-12);
+            let nearest = (0..=1000)
+                .map(|i| point_at(&shape, f64::from(i) / 1000.0).distance(b))
+                .fold(f64::MAX, f64::min);
+            assert!(nearest < 0.02, "{nearest}");
+        }
+    }
+
+    #[test]
+    fn degenerate_points() {
+        let (a, b) = (DVec3::ZERO, DVec3::ONE);
+        assert_eq!(through(a, a, b, 0.1), ThreePoints::Same);
+        assert_eq!(through(a, b, a, 0.1), ThreePoints::Same);
+        assert_eq!(through(a, a, a, 0.1), ThreePoints::Same);
+        assert_eq!(through(a, b, b * 3.0, 0.1), ThreePoints::Line(a, b * 3.0));
+        assert_eq!(through(a, b * 3.0, b, 0.1), ThreePoints::Line(a, b * 3.0));
+    }
+
+    #[test]
+    fn transforms() {
+        let shape = arc(DVec3::X, DVec3::Z, 2.0, 0.5, 10.0, 80.0);
+        let turn = Transform::rotation(DVec3::Z, 90.0);
+        let turned = turn.apply(&shape);
+        for i in 0..=4 {
+            let share = f64::from(i) / 4.0;
+            assert!(near(
+                point_at(&turned, share),
+                turn.linear * point_at(&shape, share)
+            ));
+        }
+        let mirror = Transform::scaling(DVec3::new(-2.0, 2.0, 2.0));
+        assert!(mirror.uniform);
+        let mirrored = mirror.apply(&shape);
+        assert!(near(
+            point_at(&mirrored, 0.7),
+            mirror.linear * point_at(&shape, 0.7)
+        ));
+        assert_eq!(mirrored.radius(), 1.0);
+        let plane = Shape::Plane {
+            point: DVec3::ZERO,
+            normal: DVec3::new(1.0, 1.0, 0.0).normalize(),
+            radius: 0.0,
+        };
+        let uneven = Transform::scaling(DVec3::new(2.0, 1.0, 1.0));
+        let Shape::Plane { normal, .. } = uneven.apply(&plane) else {
+            panic!("no plane");
+        };
+        // (1, −1, 0) in the plane becomes (2, −1, 0).
+        assert!(normal.dot(DVec3::new(2.0, -1.0, 0.0)).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,43 @@
+//! The limits that keep any text harmless: none can hang, exhaust memory or overflow the stack.
+//!
+//! Each limit has its own clear error; the command that steps over it is dropped and what was built
+//! before stays. The original program stopped at 128 nested files, 512 operands a command, 12 layers a
+//! texture and 16 levels of objects (thesis, appendix C, "Bugs and restrictions").
+
+/// All texts of a project together, bytes.
+pub const MAX_TEXT: usize = 1024 * 1024;
+/// Files in a project.
+pub const MAX_FILES: usize = 64;
+/// Commands run plus operands evaluated, with heavier work charged more. Long before this a person
+/// would have given up waiting; a few tenths of a second at most.
+pub const MAX_STEPS: u64 = 2_000_000;
+/// What one error costs in steps, so that a loop of errors ends soon too.
+pub const STEPS_PER_ERROR: u64 = 500;
+/// Files read from files.
+pub const MAX_NESTED_FILES: usize = 128;
+/// Calls of defined commands inside each other.
+pub const MAX_NESTED_CALLS: usize = 128;
+/// Files, calls and blocks inside each other while running, all together.
+pub const MAX_NESTED: usize = 384;
+/// Blocks inside each other in the text.
+pub const MAX_NESTED_BLOCKS: usize = 64;
+/// Parentheses, signs and powers inside each other in one expression.
+pub const MAX_NESTED_EXPRESSIONS: usize = 64;
+/// Words, numbers and signs of one command.
+pub const MAX_OPERANDS: usize = 4096;
+/// Shapes in a scene.
+pub const MAX_ELEMENTS: usize = 200_000;
+/// Objects and chains in a scene.
+pub const MAX_OBJECTS: usize = 200_000;
+/// Objects inside each other.
+pub const MAX_NESTED_OBJECTS: usize = 16;
+/// Materials in a scene.
+pub const MAX_MATERIALS: usize = 10_000;
+/// Textures on one material or texture.
+pub const MAX_LAYERS: usize = 12;
+/// Lights in a scene.
+pub const MAX_LIGHTS: usize = 256;
+/// Largest magnitude of a number given to a command, so that squares and cubes of it stay finite.
+pub const MAX_MAGNITUDE: f64 = 1e12;
+/// Messages about one project.
+pub const MAX_DIAGNOSTICS: usize = 200;

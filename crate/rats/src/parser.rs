@@ -1,0 +1,428 @@
+//! Tokens to a tree of commands. Whatever is wrong, the rest of the text is still read: a mistake costs
+//! one command or one block, with a message.
+
+use crate::commands;
+use crate::lexer::{Token, TokenKind, lex};
+use crate::limits;
+use crate::problem::{Outcome, Problem};
+use crate::symbol::Symbols;
+use crate::syntax::{Block, Command, Datum, Define, For, If, Item, Node, Syntax};
+use std::ops::Range;
+
+/// Reads a file.
+pub fn parse<'a>(text: &'a str, symbols: &mut Symbols<'a>) -> Syntax {
+    let tokens = lex(text);
+    let braces = match_braces(text, &tokens);
+    let mut parser = Parser {
+        text,
+        tokens: &tokens,
+        braces,
+        at: 0,
+        items: Vec::with_capacity(tokens.len() / 2),
+        problems: Vec::new(),
+        symbols,
+    };
+    let block = parser.block(0);
+    Syntax {
+        block,
+        items: parser.items,
+        problems: parser.problems,
+    }
+}
+
+/// For every `{` token the index of its `}`, if it has one; 0 for all other tokens (a `}` is never first).
+fn match_braces(text: &str, tokens: &[Token]) -> Vec<usize> {
+    let mut partner = vec![0; tokens.len()];
+    let mut open = Vec::new();
+    for (index, token) in tokens.iter().enumerate() {
+        if token.kind != TokenKind::Sign {
+            continue;
+        }
+        match &text[token.range()] {
+            "{" => open.push(index),
+            "}" => {
+                if let Some(start) = open.pop() {
+                    partner[start] = index;
+                }
+            }
+            _ => {}
+        }
+    }
+    partner
+}
+
+struct Parser<'a, 't, 's> {
+    text: &'a str,
+    tokens: &'t [Token],
+    braces: Vec<usize>,
+    at: usize,
+    items: Vec<Item>,
+    problems: Vec<Box<Problem>>,
+    symbols: &'s mut Symbols<'a>,
+}
+
+/// Where a command's operands end.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Ends {
+    /// At the end of the line.
+    Line,
+    /// At the `{` of a block.
+    Brace,
+}
+
+impl<'a> Parser<'a, '_, '_> {
+    fn word(&self, token: Token) -> &'a str {
+        &self.text[token.range()]
+    }
+
+    fn problem(&mut self, span: Range<usize>, message: impl Into<String>, hint: &str) {
+        self.problems.push(Problem::new(span, message).hint(hint));
+    }
+
+    /// Skips space, comments and, if asked, line ends; gives the token that follows.
+    fn peek(&mut self, over_lines: bool) -> Option<Token> {
+        while let Some(&token) = self.tokens.get(self.at) {
+            match token.kind {
+                TokenKind::Space | TokenKind::Comment => self.at += 1,
+                TokenKind::Newline if over_lines => self.at += 1,
+                _ => return Some(token),
+            }
+        }
+        None
+    }
+
+    fn is_sign(&self, token: Token, sign: &str) -> bool {
+        token.kind == TokenKind::Sign && self.word(token) == sign
+    }
+
+    /// To the end of the line, or of the block if that comes first.
+    fn skip_line(&mut self) {
+        while let Some(&token) = self.tokens.get(self.at) {
+            if token.kind == TokenKind::Newline || self.is_sign(token, "}") {
+                break;
+            }
+            self.at += 1;
+        }
+    }
+
+    /// Commands up to the closing brace (`depth` > 0), which is left to the caller, or to the end.
+    fn block(&mut self, depth: usize) -> Block {
+        let mut block = Block::new();
+        while let Some(token) = self.peek(true) {
+            match token.kind {
+                TokenKind::Sign => match self.word(token) {
+                    "}" if depth > 0 => break,
+                    "}" => {
+                        self.at += 1;
+                        self.problem(
+                            token.range(),
+                            "there is no `{` for this `}`",
+                            "remove it, or open the block or list that it should close",
+                        );
+                    }
+                    // `@` only silences the echo of a command, and stray separators mean nothing.
+                    "@" | "," | "<" | ">" => self.at += 1,
+                    _ => self.not_a_command(token),
+                },
+                TokenKind::Word => {
+                    let node = self.node(token, depth);
+                    match node {
+                        Ok(node) => block.extend(node),
+                        Err(problem) => self.problems.push(problem),
+                    }
+                }
+                _ => self.not_a_command(token),
+            }
+        }
+        block
+    }
+
+    fn not_a_command(&mut self, token: Token) {
+        if self.is_sign(token, "{") && self.braces[self.at] > 0 {
+            self.at = self.braces[self.at] + 1;
+        }
+        self.problem(
+            token.range(),
+            "a command was expected here",
+            "every line begins with a command; operands go on in the next line only inside `{ … }`",
+        );
+        self.skip_line();
+    }
+
+    fn node(&mut self, token: Token, depth: usize) -> Outcome<Option<Node>> {
+        let word = self.word(token);
+        if word.eq_ignore_ascii_case("for") {
+            let head = self.head(token)?;
+            let body = self.braced(&head, depth)?;
+            Ok(body.map(|body| Node::For(Box::new(For { head, body }))))
+        } else if word.eq_ignore_ascii_case("if") {
+            self.choice(token, depth)
+        } else if word.eq_ignore_ascii_case("define") {
+            self.define(token, depth)
+        } else if word.eq_ignore_ascii_case("else") {
+            self.at += 1;
+            let problem = Problem::new(token.range(), "this `else` has no `if`")
+                .hint("write `if … { … } else { … }`");
+            let head = self.head_from(token)?;
+            self.braced(&head, depth)?;
+            Err(problem)
+        } else {
+            let command = self.command(token, Ends::Line)?;
+            Ok(Some(Node::Command(command)))
+        }
+    }
+
+    fn choice(&mut self, token: Token, depth: usize) -> Outcome<Option<Node>> {
+        let head = self.head(token)?;
+        let then = self.braced(&head, depth)?;
+        let back = self.at;
+        let mut otherwise = Some(Block::new());
+        match self.peek(true) {
+            Some(next)
+                if next.kind == TokenKind::Word && self.word(next).eq_ignore_ascii_case("else") =>
+            {
+                self.at += 1;
+                match self.peek(true) {
+                    Some(nested)
+                        if nested.kind == TokenKind::Word
+                            && self.word(nested).eq_ignore_ascii_case("if") =>
+                    {
+                        self.too_deep(nested, depth)?;
+                        otherwise = self.choice(nested, depth + 1)?.map(|node| vec![node]);
+                    }
+                    _ => {
+                        let head = self.head_from(next)?;
+                        otherwise = self.braced(&head, depth)?;
+                    }
+                }
+            }
+            _ => self.at = back,
+        }
+        Ok(then.zip(otherwise).map(|(then, otherwise)| {
+            Node::If(Box::new(If {
+                head,
+                then,
+                otherwise,
+            }))
+        }))
+    }
+
+    fn define(&mut self, token: Token, depth: usize) -> Outcome<Option<Node>> {
+        let head = self.head(token)?;
+        let signature = self.signature(&head);
+        let body = self.braced(&head, depth)?;
+        let (name, parameters) = signature?;
+        Ok(body.map(|body| {
+            Node::Define(Box::new(Define {
+                head,
+                name,
+                parameters,
+                body,
+            }))
+        }))
+    }
+
+    /// `name(a, b, …)`.
+    fn signature(
+        &self,
+        head: &Command,
+    ) -> Outcome<(crate::symbol::Symbol, Vec<(crate::symbol::Symbol, bool)>)> {
+        const HINT: &str =
+            "write `define name(a, b) { … }`; a parameter in CAPITALS takes a triple";
+        let items = &self.items[head.items.clone()];
+        let Some(Item {
+            datum: Datum::Word(name),
+            ..
+        }) = items.first()
+        else {
+            return Err(Problem::new(head.span.clone(), "`define` needs a name").hint(HINT));
+        };
+        let word = self.symbols.word(*name);
+        if commands::find(word).is_some() {
+            return Err(Problem::new(
+                items[0].span(),
+                format!("`{word}` is already a command of the language"),
+            )
+            .hint("choose another name"));
+        }
+        let mut parameters = Vec::new();
+        for item in &items[1..] {
+            match item.datum {
+                Datum::Word(parameter) => {
+                    let word = self.symbols.word(parameter);
+                    let triple = word.chars().any(char::is_alphabetic)
+                        && !word.chars().any(char::is_lowercase);
+                    parameters.push((parameter, triple));
+                }
+                Datum::Sign(b'(' | b')' | b',') => {}
+                _ => {
+                    return Err(Problem::new(
+                        item.span(),
+                        "only names of parameters can stand here",
+                    )
+                    .hint(HINT));
+                }
+            }
+        }
+        Ok((*name, parameters))
+    }
+
+    /// The head of a block structure, up to its `{`.
+    fn head(&mut self, token: Token) -> Outcome<Command> {
+        let head = self.command(token, Ends::Brace)?;
+        Ok(head)
+    }
+
+    /// An empty head (of `else`).
+    fn head_from(&mut self, token: Token) -> Outcome<Command> {
+        Ok(Command {
+            word: self.symbols.intern(self.word(token)),
+            word_span: token.range(),
+            spec: commands::find(self.word(token)),
+            items: 0..0,
+            span: token.range(),
+        })
+    }
+
+    fn too_deep(&mut self, token: Token, depth: usize) -> Outcome<()> {
+        if depth < limits::MAX_NESTED_BLOCKS {
+            return Ok(());
+        }
+        self.skip_line();
+        Err(Problem::new(
+            token.range(),
+            format!(
+                "blocks can stand inside each other {} deep at most",
+                limits::MAX_NESTED_BLOCKS
+            ),
+        )
+        .hint("move the inner commands into a `define`"))
+    }
+
+    /// `{ … }` after a head; `None` if it is never closed, which has been said.
+    fn braced(&mut self, head: &Command, depth: usize) -> Outcome<Option<Block>> {
+        let back = self.at;
+        let word = self.symbols.word(head.word);
+        let Some(open) = self.peek(true).filter(|t| self.is_sign(*t, "{")) else {
+            self.at = back;
+            return Err(
+                Problem::new(head.span.clone(), format!("`{word}` needs a block"))
+                    .hint("put the commands in `{ … }`"),
+            );
+        };
+        let close = self.braces[self.at];
+        if depth >= limits::MAX_NESTED_BLOCKS {
+            // Over the whole block, so that what is inside is not read as if it stood outside.
+            self.at = if close == 0 {
+                self.tokens.len()
+            } else {
+                close + 1
+            };
+            return self.too_deep(open, depth).map(|()| None);
+        }
+        self.at += 1;
+        let block = self.block(depth + 1);
+        if self.at < self.tokens.len() {
+            self.at += 1;
+        }
+        if close == 0 {
+            self.problem(
+                open.range(),
+                format!("this `{{` of `{word}` is never closed"),
+                "add a `}` where the block ends",
+            );
+            return Ok(None);
+        }
+        Ok(Some(block))
+    }
+
+    /// A command's word and operands.
+    fn command(&mut self, token: Token, ends: Ends) -> Outcome<Command> {
+        self.at += 1;
+        let word = self.word(token);
+        let first = self.items.len();
+        let mut end = token.end;
+        let mut depth = 0_usize;
+        let mut spaced = false;
+        while let Some(&token) = self.tokens.get(self.at) {
+            let text = self.word(token);
+            let datum = match token.kind {
+                TokenKind::Space | TokenKind::Comment => {
+                    spaced = true;
+                    self.at += 1;
+                    continue;
+                }
+                TokenKind::Newline => {
+                    if depth == 0 {
+                        break;
+                    }
+                    spaced = true;
+                    self.at += 1;
+                    continue;
+                }
+                TokenKind::Word => Datum::Word(self.symbols.intern(text)),
+                TokenKind::Number => Datum::Number(text.parse().unwrap_or(f64::NAN)),
+                TokenKind::Unknown => Datum::Unknown,
+                TokenKind::Sign => match text.as_bytes()[0] {
+                    b'{' if ends == Ends::Brace => break,
+                    b'{' => {
+                        if self.braces[self.at] == 0 {
+                            self.problem(
+                                token.range(),
+                                "this `{` is never closed",
+                                "add a `}` where the list ends",
+                            );
+                        } else {
+                            depth += 1;
+                        }
+                        spaced = true;
+                        self.at += 1;
+                        continue;
+                    }
+                    b'}' => {
+                        if depth == 0 {
+                            break;
+                        }
+                        depth -= 1;
+                        spaced = true;
+                        end = token.end;
+                        self.at += 1;
+                        continue;
+                    }
+                    // The typeset minus.
+                    b if !b.is_ascii() => Datum::Sign(b'-'),
+                    b => Datum::Sign(b),
+                },
+            };
+            self.items.push(Item {
+                datum,
+                start: u32::try_from(token.start).unwrap_or(u32::MAX),
+                end: u32::try_from(token.end).unwrap_or(u32::MAX),
+                spaced,
+            });
+            spaced = false;
+            end = token.end;
+            self.at += 1;
+        }
+        let items = first..self.items.len();
+        if items.len() > limits::MAX_OPERANDS {
+            self.items.truncate(first);
+            return Err(Problem::new(
+                token.range(),
+                format!(
+                    "`{word}` has {} operands; {} is the limit",
+                    items.len(),
+                    limits::MAX_OPERANDS
+                ),
+            )
+            .hint("split it into several commands"));
+        }
+        Ok(Command {
+            word: self.symbols.intern(word),
+            word_span: token.range(),
+            spec: commands::find(word),
+            items,
+            span: token.start..end,
+        })
+    }
+}

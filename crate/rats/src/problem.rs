@@ -1,0 +1,62 @@
+//! What goes wrong with one command, before it becomes a [`crate::Diagnostic`].
+
+use std::ops::Range;
+
+/// Why a command was dropped.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The place in the file that is being run.
+    pub span: Range<usize>,
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// What to do about it.
+    pub hint: Option<String>,
+    /// Whether the run ends here (a limit was met).
+    pub fatal: bool,
+    /// Whether nothing is said, because an error that was already reported caused this one.
+    pub quiet: bool,
+}
+
+/// Boxed so that the many results that pass through the reader stay small.
+pub type Outcome<T> = Result<T, Box<Problem>>;
+
+impl Problem {
+    /// A problem without a hint.
+    pub fn new(span: Range<usize>, message: impl Into<String>) -> Box<Self> {
+        Box::new(Self {
+            span,
+            message: message.into(),
+            hint: None,
+            fatal: false,
+            quiet: false,
+        })
+    }
+
+    /// The follow-up of an error that was already reported.
+    pub fn follow_up(span: Range<usize>) -> Box<Self> {
+        let mut problem = Self::new(span, String::new());
+        problem.quiet = true;
+        problem
+    }
+
+    /// With a hint.
+    #[must_use]
+    pub fn hint(mut self: Box<Self>, hint: impl Into<String>) -> Box<Self> {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// With a hint, if there is one.
+    #[must_use]
+    pub fn maybe_hint(mut self: Box<Self>, hint: Option<String>) -> Box<Self> {
+        self.hint = hint;
+        self
+    }
+
+    /// The run ends here.
+    #[must_use]
+    pub fn fatal(mut self: Box<Self>) -> Box<Self> {
+        self.fatal = true;
+        self
+    }
+}

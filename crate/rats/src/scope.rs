@@ -1,0 +1,174 @@
+//! What a running text knows besides the scene: variables, random numbers and how long it has run.
+
+use crate::limits;
+use crate::problem::{Outcome, Problem};
+use crate::random::Random;
+use crate::symbol::{Symbol, Symbols};
+use crate::value::Value;
+use std::ops::Range;
+
+/// A variable's slot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Slot {
+    /// Never set.
+    #[default]
+    Empty,
+    /// Its command failed, which was reported; uses of it are not reported again.
+    Broken,
+    /// Set.
+    Full(Value),
+}
+
+/// The variables, the random stream and the step counter.
+#[derive(Debug)]
+pub struct Scope<'a> {
+    /// The words of all texts.
+    pub symbols: Symbols<'a>,
+    /// The stream of `rand`.
+    pub random: Random,
+    globals: Vec<Slot>,
+    /// Parameters and variables of the running calls; the innermost call's begin at `frame`.
+    locals: Vec<(Symbol, Value)>,
+    frame: usize,
+    calls: usize,
+    steps: u64,
+}
+
+/// What to restore when a call ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    start: usize,
+}
+
+impl<'a> Scope<'a> {
+    /// A scope without variables.
+    #[must_use]
+    pub fn new(symbols: Symbols<'a>) -> Self {
+        let globals = vec![Slot::Empty; symbols.len()];
+        Self {
+            symbols,
+            random: Random::new(0.0),
+            globals,
+            locals: Vec::new(),
+            frame: 0,
+            calls: 0,
+            steps: 0,
+        }
+    }
+
+    /// Counts work.
+    ///
+    /// # Errors
+    /// Fatally, when the text has done more than [`limits::MAX_STEPS`].
+    pub fn step(&mut self, cost: u64, span: &Range<usize>) -> Outcome<()> {
+        self.steps += cost;
+        if self.steps <= limits::MAX_STEPS {
+            return Ok(());
+        }
+        Err(Problem::new(
+            span.clone(),
+            format!(
+                "stopped here: the text took more than {} steps",
+                limits::MAX_STEPS
+            ),
+        )
+        .hint("make the loops shorter")
+        .fatal())
+    }
+
+    /// The value of a variable: of the running call, else of the whole text.
+    #[must_use]
+    pub fn get(&self, name: Symbol) -> Option<Value> {
+        if let Some((_, value)) = self.locals[self.frame..]
+            .iter()
+            .rev()
+            .find(|(local, _)| *local == name)
+        {
+            return Some(*value);
+        }
+        match self.globals.get(name.index()) {
+            Some(Slot::Full(value)) => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// Whether the command that should have set a variable failed.
+    #[must_use]
+    pub fn is_broken(&self, name: Symbol) -> bool {
+        self.globals.get(name.index()) == Some(&Slot::Broken)
+    }
+
+    /// Sets a variable: of the running call if there is one, else of the whole text.
+    pub fn set(&mut self, name: Symbol, value: Value) {
+        if self.calls == 0 {
+            if let Some(slot) = self.globals.get_mut(name.index()) {
+                *slot = Slot::Full(value);
+            }
+        } else if let Some((_, slot)) = self.locals[self.frame..]
+            .iter_mut()
+            .rev()
+            .find(|(local, _)| *local == name)
+        {
+            *slot = value;
+        } else {
+            self.locals.push((name, value));
+        }
+    }
+
+    /// Marks a variable that should have been set but was not, unless it has a value already.
+    pub fn set_broken(&mut self, name: Symbol) {
+        if let Some(slot @ Slot::Empty) = self.globals.get_mut(name.index()) {
+            *slot = Slot::Broken;
+        }
+    }
+
+    /// Puts a variable back to what it was, possibly nothing (at the end of a loop).
+    pub fn restore(&mut self, name: Symbol, value: Option<Value>) {
+        if let Some(value) = value {
+            self.set(name, value);
+        } else if self.calls == 0 {
+            self.globals[name.index()] = Slot::Empty;
+        } else if let Some(index) = self.locals[self.frame..]
+            .iter()
+            .rposition(|(local, _)| *local == name)
+        {
+            self.locals.remove(self.frame + index);
+        }
+    }
+
+    /// Forgets the variables of the whole text.
+    pub fn clear(&mut self) {
+        self.globals.fill(Slot::Empty);
+    }
+
+    /// Begins a call with these parameters.
+    pub fn enter(&mut self, parameters: impl Iterator<Item = (Symbol, Value)>) -> Frame {
+        let before = Frame { start: self.frame };
+        self.frame = self.locals.len();
+        self.locals.extend(parameters);
+        self.calls += 1;
+        before
+    }
+
+    /// Ends the call that [`Self::enter`] began.
+    pub fn leave(&mut self, before: Frame) {
+        self.locals.truncate(self.frame);
+        self.frame = before.start;
+        self.calls -= 1;
+    }
+
+    /// The number of calls that are running.
+    #[must_use]
+    pub fn calls(&self) -> usize {
+        self.calls
+    }
+
+    /// The names of all variables that are set, for suggestions.
+    pub fn names(&self) -> impl Iterator<Item = &'a str> {
+        let locals = self.locals[self.frame..].iter().map(|(name, _)| *name);
+        let globals = (0..self.globals.len())
+            .filter(|index| matches!(self.globals[*index], Slot::Full(_)))
+            .map(|index| self.symbols.at(index));
+        locals.map(|name| self.symbols.word(name)).chain(globals)
+    }
+}

@@ -1,0 +1,115 @@
+//! The commands of one file as a tree, still without meaning.
+
+use crate::commands::CommandSpec;
+use crate::problem::Problem;
+use crate::symbol::Symbol;
+use std::ops::Range;
+
+/// One file, parsed.
+#[derive(Debug)]
+pub struct Syntax {
+    /// Its commands.
+    pub block: Block,
+    /// The operands of all its commands, which commands index by ranges.
+    pub items: Vec<Item>,
+    /// What is wrong with its form.
+    pub problems: Vec<Box<Problem>>,
+}
+
+/// Commands that are run one after the other.
+pub type Block = Vec<Node>;
+
+/// A word, number or sign of a command.
+#[derive(Clone, Copy, Debug)]
+pub struct Item {
+    /// What it is.
+    pub datum: Datum,
+    /// First byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+    /// Whether white space comes before it.
+    pub spaced: bool,
+}
+
+impl Item {
+    /// Its byte range.
+    #[must_use]
+    pub fn span(&self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
+/// What an item is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Datum {
+    /// A number.
+    Number(f64),
+    /// A word.
+    Word(Symbol),
+    /// A sign; `−` has become `-`.
+    Sign(u8),
+    /// Characters without meaning.
+    Unknown,
+}
+
+/// A command or a structure of commands.
+#[derive(Debug)]
+pub enum Node {
+    /// A plain command.
+    Command(Command),
+    /// `for HEAD { … }`.
+    For(Box<For>),
+    /// `if HEAD { … } else { … }`.
+    If(Box<If>),
+    /// `define name(…) { … }`.
+    Define(Box<Define>),
+}
+
+/// An opcode and its operands.
+#[derive(Clone, Debug)]
+pub struct Command {
+    /// The opcode as written.
+    pub word: Symbol,
+    /// Where the opcode is.
+    pub word_span: Range<usize>,
+    /// What is known of it; `None` for commands that the text defines, and for mistakes.
+    pub spec: Option<&'static CommandSpec>,
+    /// The operands, a range of [`Syntax::items`].
+    pub items: Range<usize>,
+    /// From the opcode to the last operand.
+    pub span: Range<usize>,
+}
+
+/// A loop; `head.items` is `i = a to b [step c]`.
+#[derive(Debug)]
+pub struct For {
+    /// `for` and what stands before the brace.
+    pub head: Command,
+    /// What is repeated.
+    pub body: Block,
+}
+
+/// A choice; `head.items` is the condition.
+#[derive(Debug)]
+pub struct If {
+    /// `if` and what stands before the brace.
+    pub head: Command,
+    /// Run if the condition holds.
+    pub then: Block,
+    /// Run if not.
+    pub otherwise: Block,
+}
+
+/// A command made of commands.
+#[derive(Debug)]
+pub struct Define {
+    /// `define` and what stands before the brace.
+    pub head: Command,
+    /// The new command's name.
+    pub name: Symbol,
+    /// The names of its parameters. One written in capitals takes a triple, any other a number.
+    pub parameters: Vec<(Symbol, bool)>,
+    /// What it does.
+    pub body: Block,
+}

@@ -1,0 +1,78 @@
+//! The values that variables hold and expressions give: numbers, vectors and colours.
+
+use glam::DVec3;
+
+/// A value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Scalar(f64),
+    /// Three numbers.
+    Vector(DVec3),
+    /// A colour: red, green, blue, 1 being full.
+    Colour(DVec3),
+}
+
+impl Value {
+    /// What kind of value it is, for messages.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Scalar(_) => "a number",
+            Self::Vector(_) => "a vector",
+            Self::Colour(_) => "a colour",
+        }
+    }
+
+    /// Applies a function to every number in it.
+    #[must_use]
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        let each = |v: DVec3| DVec3::new(f(v.x), f(v.y), f(v.z));
+        match self {
+            Self::Scalar(x) => Self::Scalar(f(x)),
+            Self::Vector(v) => Self::Vector(each(v)),
+            Self::Colour(c) => Self::Colour(each(c)),
+        }
+    }
+
+    /// Whether all its numbers have a property.
+    #[must_use]
+    pub fn all(&self, property: impl Fn(f64) -> bool) -> bool {
+        match self {
+            Self::Scalar(x) => property(*x),
+            Self::Vector(v) | Self::Colour(v) => v.to_array().into_iter().all(property),
+        }
+    }
+
+    /// Joins two values number by number: scalars with scalars, triples with triples of any kind (a
+    /// vector and a colour give a colour).
+    ///
+    /// # Errors
+    /// `None` for a scalar and a triple.
+    #[must_use]
+    pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Option<Self> {
+        let each = |a: DVec3, b: DVec3| DVec3::new(f(a.x, b.x), f(a.y, b.y), f(a.z, b.z));
+        Some(match (self, other) {
+            (Self::Scalar(a), Self::Scalar(b)) => Self::Scalar(f(a, b)),
+            (Self::Vector(a), Self::Vector(b)) => Self::Vector(each(a, b)),
+            (Self::Colour(a) | Self::Vector(a), Self::Colour(b) | Self::Vector(b)) => {
+                Self::Colour(each(a, b))
+            }
+            _ => return None,
+        })
+    }
+
+    /// `x`, `y` or `z` of a triple.
+    #[must_use]
+    pub fn component(self, name: &str) -> Option<f64> {
+        let (Self::Vector(v) | Self::Colour(v)) = self else {
+            return None;
+        };
+        match name {
+            "x" | "r" => Some(v.x),
+            "y" | "g" => Some(v.y),
+            "z" | "b" => Some(v.z),
+            _ => None,
+        }
+    }
+}
