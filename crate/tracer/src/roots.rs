@@ -40,7 +40,7 @@ pub fn roots(coefficients: &[f64], from: f64, to: f64) -> Roots {
     let n = coefficients.len().min(MAX_DEGREE + 1);
     let c = &coefficients[..n];
     let mut found = Roots::default();
-    if n < 2 || !(from <= to) {
+    if n < 2 || from.is_nan() || to.is_nan() || from > to {
         return found;
     }
     if n == 2 {

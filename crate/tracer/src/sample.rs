@@ -30,5 +30,7 @@ pub fn differ(a: &Sample, b: &Sample, contrast: Vec3, jump: f32) -> bool {
         return false;
     }
     let allowed = contrast * (a.colour + b.colour).min(Vec3::ONE);
-    difference.cmpgt(allowed).any() || a.key != b.key || !((a.depth - b.depth).abs() <= jump)
+    // Two misses are at the same, infinite, distance.
+    let apart = a.depth != b.depth && (a.depth - b.depth).abs() > jump;
+    difference.cmpgt(allowed).any() || a.key != b.key || apart
 }

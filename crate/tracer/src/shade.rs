@@ -45,7 +45,7 @@ impl Finish {
     #[must_use]
     pub fn lit(&self, colour: Vec3, normal: Vec3, towards: Vec3, view: Vec3) -> Vec3 {
         let cosine = normal.dot(towards);
-        if !(cosine > 0.0) {
+        if cosine.is_nan() || cosine <= 0.0 {
             return Vec3::ZERO;
         }
         let mut share = self.diffuse * cosine;
@@ -79,8 +79,8 @@ pub fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
 pub fn bytes(colour: Vec3, gamma: f32) -> [u8; 3] {
     let power = if gamma > 0.0 { 1.0 / gamma } else { 1.0 };
     let byte = |v: f32| {
-        // NaN ends as 0.
-        let v = v.max(0.0).min(1.0);
+        // A NaN ends as 0.
+        let v = v.max(0.0).clamp(0.0, 1.0);
         let v = if power == 1.0 {
             v
         } else {

@@ -89,6 +89,9 @@ impl Soft {
     /// to count. `None` if no primitive reaches the beam, or all together never reach T.
     #[must_use]
     pub fn slabs(&self, beam: Beam, limit: f64) -> Option<(Slabs<'_>, f64)> {
+        if !(beam.axis.origin.is_finite() && beam.axis.direction.is_finite()) {
+            return None;
+        }
         let mut list = self.everywhere.clone();
         let mut range = if list.is_empty() {
             [f64::INFINITY, 0.0]
@@ -103,7 +106,7 @@ impl Soft {
             }
         });
         let [from, to] = [range[0], range[1].min(limit)];
-        if list.is_empty() || !(from < to) {
+        if list.is_empty() || from.is_nan() || to.is_nan() || from >= to {
             return None;
         }
         list.sort_unstable();
@@ -209,8 +212,8 @@ impl Soft {
             for &p in &scratch.active {
                 let jet = self.primitives[p as usize].jet(point);
                 value += jet.value;
-                for k in 0..3 {
-                    gradient[k] += jet.gradient[k];
+                for (sum, part) in gradient.iter_mut().zip(jet.gradient) {
+                    *sum += part;
                 }
                 let positive = Real::max(jet.value, f32x8::splat(0.0));
                 let material = self.material[p as usize];
@@ -270,7 +273,7 @@ impl Soft {
             range = [range[0].min(near), range[1].max(far)];
         }
         let [from, to] = range;
-        if !(from < to) {
+        if from.is_nan() || to.is_nan() || from >= to {
             return Vec::new();
         }
         let based = Ray {

@@ -52,6 +52,7 @@ pub struct Walk<'w, 's, L> {
     found: Vec<Found>,
     /// Work done, see [`MOST_WORK`].
     work: usize,
+    most: usize,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
 }
@@ -66,10 +67,12 @@ pub struct Memory<L> {
 /// Slabs deeper than this are not halved further: 2⁻⁴⁰ of the beam's length.
 const DEEPEST: u32 = 40;
 
-/// When walking one packet has looked at this many list entries, the slabs left are taken as they
-/// are, uncertified, so that no scene can take unlimited time or memory. A ray through a thousand
-/// overlapping primitives needs about a tenth of it.
-const MOST_WORK: usize = 1 << 21;
+/// When walking one packet has looked at this many list entries, or at [`MOST_VISITS`] times all
+/// primitives of the beam, the slabs left are taken as they are, uncertified, so that no scene can
+/// take unlimited time or memory. A packet of the published scenes looks at a few hundred.
+const MOST_WORK: usize = 1 << 17;
+/// See [`MOST_WORK`].
+const MOST_VISITS: usize = 64;
 
 impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     /// Rays of the slabs' beam, one a lane, each up to its limit. Lanes beyond `rays.len()` repeat
@@ -85,9 +88,10 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         memory: &'w mut Vec<Memory<L>>,
     ) -> Self {
         let ray = |i: usize| &rays[i.min(rays.len() - 1)];
+        let count = slabs.len();
         memory.clear();
         memory.resize(
-            slabs.len(),
+            count,
             Memory {
                 t: f64::NAN,
                 node: Node::zero(),
@@ -106,6 +110,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             memory,
             found: Vec::new(),
             work: 0,
+            most: MOST_WORK.max(MOST_VISITS * count),
             evaluations: 0,
         }
     }
@@ -139,7 +144,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 return;
             }
         }
-        let exhausted = self.work > MOST_WORK || slab.depth >= DEEPEST;
+        let exhausted = self.work > self.most || slab.depth >= DEEPEST;
         if exhausted && !slab.pending.is_empty() {
             span = span.plus(self.span(index, true));
         }
@@ -190,7 +195,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     }
 
     fn report(&mut self, lane: usize, t: f64, slab: u32, enters: bool) {
-        if !(t <= self.limit.lane(lane)) {
+        if t > self.limit.lane(lane) {
             self.alive &= !(1 << lane);
             return;
         }

@@ -58,7 +58,11 @@ fn check(numbers: &mut Numbers, solid: &Solid, inside: &dyn Fn(DVec3) -> bool) -
             assert!((c.normal.length() - 1.0).abs() < 1e-6, "{solid:?}");
             // Pairs: in against the normal, out along it.
             let facing = c.normal.dot(ray.direction);
-            let proper = if i % 2 == 0 { facing <= 1e-9 } else { facing >= -1e-9 };
+            let proper = if i % 2 == 0 {
+                facing <= 1e-9
+            } else {
+                facing >= -1e-9
+            };
             assert!(proper, "{solid:?} {ray:?} {i} {crossings:?} {facing}");
             if facing.abs() > 0.05 {
                 assert!(inside(p - c.normal * 1e-6) || !inside(p - c.normal * 1e-3));

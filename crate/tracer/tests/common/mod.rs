@@ -1,0 +1,133 @@
+//! Random scenes for tests.
+#![allow(dead_code)]
+use core::f64::consts::TAU;
+use glam::DVec3;
+use scene::{Camera, Element, Light, LightKind, Material, Origin, Scene, Shape};
+
+/// A small deterministic generator, enough for test inputs.
+pub struct Numbers(pub u64);
+
+impl Numbers {
+    /// Between 0 and 1.
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Coordinates between −1 and 1.
+    pub fn vector(&mut self) -> DVec3 {
+        DVec3::new(
+            self.between(-1.0, 1.0),
+            self.between(-1.0, 1.0),
+            self.between(-1.0, 1.0),
+        )
+    }
+
+    pub fn shape(&mut self, kind: u64) -> Shape {
+        let radius = self.between(0.1, 0.4);
+        match kind % 5 {
+            0 => Shape::Sphere {
+                center: self.vector(),
+                radius,
+            },
+            1 => Shape::Cylinder {
+                base: self.vector(),
+                apex: self.vector(),
+                radius,
+            },
+            2 => {
+                let u = self.vector().normalize();
+                Shape::Arc {
+                    center: self.vector() * 0.5,
+                    u,
+                    v: u.cross(self.vector()).normalize(),
+                    sweep: self.between(0.2, 1.2),
+                    angle: self.between(0.3, TAU),
+                    radius,
+                }
+            }
+            3 => Shape::Triangle {
+                corners: [self.vector(), self.vector(), self.vector()],
+                radius,
+            },
+            _ => Shape::Plane {
+                point: self.vector(),
+                normal: self.vector().normalize(),
+                radius,
+            },
+        }
+    }
+}
+
+pub fn element(shape: Shape, material: usize) -> Element {
+    Element {
+        shape,
+        material,
+        origin: Origin::default(),
+    }
+}
+
+/// A soft material of radius 0.25.
+pub fn soft(blobbiness: f64, strength: f64) -> Material {
+    Material {
+        blobbiness,
+        strength,
+        radius: 0.25,
+        specular: [0.5; 3],
+        shine: 20.0,
+        ..Material::default()
+    }
+}
+
+/// A scene looking at the origin from (0, 0, 4), with one light and no elements.
+pub fn empty() -> Scene {
+    let mut scene = Scene {
+        camera: Camera {
+            eye: DVec3::new(0.0, 0.0, 4.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            fov: 50.0,
+        },
+        ..Scene::default()
+    };
+    scene.lights.push(Light {
+        kind: LightKind::Point {
+            position: DVec3::new(4.0, 5.0, 6.0),
+        },
+        colour: [1.0; 3],
+        shadow: true,
+    });
+    scene
+}
+
+/// Some soft elements of all kinds, a few of them carving.
+pub fn blend(seed: u64, count: usize) -> Scene {
+    let mut n = Numbers(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+    let mut scene = empty();
+    scene.materials = vec![
+        Material {
+            diffuse: [0.9, 0.3, 0.1],
+            ..soft(-0.5, 1.0)
+        },
+        Material {
+            diffuse: [0.1, 0.5, 0.9],
+            ..soft(-4.0, 1.0)
+        },
+        soft(-1.0, -0.7),
+    ];
+    for _ in 0..count {
+        let kind = (n.unit() * 5.0) as u64;
+        let kind = if kind == 4 && n.unit() < 0.7 { 0 } else { kind };
+        let material = (n.unit() * 2.4) as usize;
+        let shape = n.shape(kind);
+        scene.elements.push(element(shape, material));
+    }
+    scene
+}

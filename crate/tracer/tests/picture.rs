@@ -1,0 +1,309 @@
+//! Pictures: independence of tiles, passes, shadows, limits.
+mod common;
+use common::{blend, element, empty, soft};
+use glam::DVec3;
+use scene::{Material, Scene, Shape};
+use std::cell::Cell;
+use tracer::{Pass, Picture, Stats, Tile, render, tiles};
+
+fn whole(scene: &Scene, size: [u32; 2], side: u32, pass: Pass) -> (Vec<u8>, Stats) {
+    let picture = Picture::new(scene, size);
+    let mut pixels = vec![0; 4 * (size[0] * size[1]) as usize];
+    let mut stats = Stats::default();
+    for tile in tiles(size[0], size[1], side) {
+        let part = picture.trace(tile, pass, &|| false, &mut stats).unwrap();
+        let row = 4 * tile.width as usize;
+        assert_eq!(part.len(), row * tile.height as usize);
+        for (y, line) in (tile.y..).zip(part.chunks_exact(row)) {
+            let at = 4 * (y * size[0] + tile.x) as usize;
+            pixels[at..at + row].copy_from_slice(line);
+        }
+    }
+    (pixels, stats)
+}
+
+/// A mixed scene: soft elements of all kinds and hard ones.
+fn mixed(seed: u64) -> Scene {
+    let mut scene = blend(seed, 7);
+    scene.materials.push(Material {
+        diffuse: [0.2, 0.9, 0.3],
+        ..Material::default()
+    });
+    let mut n = common::Numbers(seed + 77);
+    for kind in 0..4 {
+        let shape = n.shape(kind);
+        scene.elements.push(element(shape, 3));
+    }
+    scene.settings.samples = 3;
+    scene
+}
+
+#[test]
+fn a_picture_does_not_depend_on_its_tiles_or_threads() {
+    let size = [83, 61];
+    for seed in 0..3 {
+        let scene = mixed(seed);
+        for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
+            let (once, _) = whole(&scene, size, 128, pass);
+            for side in [16, 32, 64, 11] {
+                assert!(once == whole(&scene, size, side, pass).0, "{pass:?} {side}");
+            }
+            assert!(once == render(&scene, size, 3, pass, &|_| ()).0);
+            assert!(once.chunks_exact(4).all(|p| p[3] == 255));
+        }
+    }
+}
+
+#[test]
+fn pictures_agree_with_exact_hits() {
+    // Ambient light only, and a white background: a pixel tells whether its ray hit.
+    for seed in 0..8 {
+        let mut scene = blend(seed, 6);
+        scene.lights.clear();
+        scene.background = [1.0; 3];
+        // Rays that leave through the far end of a plane are beyond what is compared.
+        scene
+            .elements
+            .retain(|e| !matches!(e.shape, Shape::Plane { .. }));
+        let size = [48, 40];
+        let (pixels, stats) = whole(&scene, size, 64, Pass::Full);
+        assert_eq!(stats.primary_rays, 48 * 40);
+        let picture = Picture::new(&scene, size);
+        let projection = scene.camera.projection(size[0], size[1]);
+        let mut differing = 0;
+        for (i, p) in pixels.chunks_exact(4).enumerate() {
+            let (x, y) = (i as u32 % size[0], i as u32 / size[0]);
+            let direction = projection.direction(
+                (f64::from(x) + 0.5) / f64::from(size[0]),
+                (f64::from(y) + 0.5) / f64::from(size[1]),
+            );
+            let hit = !picture.hits(projection.eye, direction).is_empty();
+            let seen = p[..3] != [255; 3];
+            differing += usize::from(hit != seen);
+        }
+        // Depth of influence and precision may move an outline by a small part of a pixel.
+        assert!(
+            differing <= 4,
+            "{differing} pixels of {}",
+            size[0] * size[1]
+        );
+    }
+}
+
+#[test]
+fn a_coarse_block_has_the_colour_of_its_middle() {
+    let scene = mixed(2);
+    let (coarse, stats) = whole(&scene, [64, 64], 64, Pass::Coarse);
+    assert_eq!(stats.primary_rays, 64);
+    for (i, p) in coarse.chunks_exact(4).enumerate() {
+        let (x, y) = (i % 64 / 8 * 8, i / 64 / 8 * 8);
+        let corner = 4 * (y * 64 + x);
+        assert_eq!(p, &coarse[corner..corner + 4]);
+    }
+}
+
+#[test]
+fn smoothing_touches_edges_only_and_tends_to_the_true_coverage() {
+    let mut scene = empty();
+    scene.lights.clear();
+    scene.background = [0.0; 3];
+    scene.materials = vec![Material {
+        ambient: [1.0; 3],
+        ..Material::default()
+    }];
+    scene.elements.push(element(
+        Shape::Sphere {
+            center: DVec3::ZERO,
+            radius: 1.0,
+        },
+        0,
+    ));
+    let size = [64, 64];
+    let (full, _) = whole(&scene, size, 64, Pass::Full);
+    let brightness = |p: &[u8]| p.chunks_exact(4).map(|p| f64::from(p[0])).sum::<f64>() / 255.0;
+    // The ball's outline is a circle in the picture: a cone of half angle asin(1/4).
+    let tangent = (0.25f64 / (1.0 - 0.0625f64).sqrt()) / libm::tan(25f64.to_radians());
+    let exact = core::f64::consts::PI * (tangent * 32.0).powi(2);
+    let mut previous = f64::INFINITY;
+    for samples in [2, 4, 8] {
+        scene.settings.samples = samples;
+        let (smooth, stats) = whole(&scene, size, 64, Pass::Smooth);
+        let mut changed = 0;
+        for (a, b) in full.chunks_exact(4).zip(smooth.chunks_exact(4)) {
+            changed += usize::from(a != b);
+        }
+        assert!(changed > 60 && changed < 300, "{changed}");
+        let refined = (stats.primary_rays - 64 * 64) / u64::from(samples * samples);
+        assert!(refined >= changed as u64 && refined < 500);
+        let error = (brightness(&smooth) - exact).abs();
+        assert!(error < previous.max(0.5), "{samples}: {error}");
+        previous = error;
+    }
+    scene.settings.samples = 1;
+    assert!(full == whole(&scene, size, 64, Pass::Smooth).0);
+}
+
+#[test]
+fn a_ball_casts_a_shadow_on_a_slab_and_not_on_itself() {
+    for material in [0, 1] {
+        let mut scene = empty();
+        scene.materials = vec![soft(-4.0, 1.0), Material::default()];
+        scene.materials[0].specular = [0.0; 3];
+        // Light straight along z, past the eye; eye from the side.
+        scene.lights[0].kind = scene::LightKind::Distant { towards: DVec3::Z };
+        scene.camera.eye = DVec3::new(0.0, -4.0, 4.0);
+        scene.camera.fov = 20.0;
+        let center = DVec3::new(0.0, 0.0, 1.0);
+        scene.elements.push(element(
+            Shape::Sphere {
+                center,
+                radius: 0.25,
+            },
+            material,
+        ));
+        scene.elements.push(element(
+            Shape::Plane {
+                point: DVec3::ZERO,
+                normal: DVec3::Z,
+                radius: 0.0,
+            },
+            1,
+        ));
+        let size = [96, 96];
+        let projection = scene.camera.projection(size[0], size[1]);
+        let picture = Picture::new(&scene, size);
+        let (dark, shadows) = whole(&scene, size, 32, Pass::Full);
+        assert!(shadows.shadow_rays > 1000);
+        scene.lights[0].shadow = false;
+        let (bright, none) = whole(&scene, size, 32, Pass::Full);
+        assert_eq!(none.shadow_rays, 0);
+        let mut shaded = 0;
+        for i in 0..(size[0] * size[1]) as usize {
+            let (x, y) = (i as u32 % size[0], i as u32 / size[0]);
+            let direction =
+                projection.direction((f64::from(x) + 0.5) / 96.0, (f64::from(y) + 0.5) / 96.0);
+            let hit = picture.hits(projection.eye, direction)[0];
+            let on_slab = hit.position.z.abs() < 1e-9;
+            let away = hit.position.truncate().length() / 0.25;
+            let is_dark = dark[4 * i] < bright[4 * i];
+            shaded += usize::from(is_dark);
+            if on_slab && away < 0.98 {
+                assert!(is_dark, "{hit:?}");
+            } else if !on_slab || away > 1.02 {
+                // The ball's own lit side must be free of false shadow.
+                assert!(!is_dark, "{material} {hit:?}");
+            }
+        }
+        assert!(shaded > 100, "{shaded}");
+    }
+}
+
+#[test]
+fn a_tile_is_given_up_when_asked_to_stop() {
+    let scene = mixed(1);
+    let picture = Picture::new(&scene, [256, 256]);
+    let tile = Tile {
+        x: 0,
+        y: 0,
+        width: 256,
+        height: 256,
+    };
+    for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
+        let asked = Cell::new(0);
+        let stop = || {
+            asked.set(asked.get() + 1);
+            asked.get() > 3
+        };
+        let mut stats = Stats::default();
+        assert!(picture.trace(tile, pass, &stop, &mut stats).is_none());
+        assert_eq!(asked.get(), 4);
+        assert!(stats.primary_rays < 1000);
+    }
+}
+
+#[test]
+fn seen_from_inside_the_surface_is_lit() {
+    let mut scene = empty();
+    scene.materials = vec![soft(-0.5, 1.0)];
+    scene.background = [0.0, 0.0, 1.0];
+    scene.camera.eye = DVec3::ZERO;
+    scene.camera.target = DVec3::X;
+    scene.lights[0].kind = scene::LightKind::Point {
+        position: DVec3::ZERO,
+    };
+    let radius = 0.25;
+    let center = DVec3::ZERO;
+    scene
+        .elements
+        .push(element(Shape::Sphere { center, radius }, 0));
+    let (pixels, _) = whole(&scene, [16, 16], 16, Pass::Full);
+    for p in pixels.chunks_exact(4) {
+        assert!(p[0] > 200 && p[0] == p[2], "{p:?}");
+    }
+}
+
+#[test]
+fn strange_scenes_end() {
+    let mut scenes = vec![Scene::default()];
+    for bad in [0.0, -1.0, 1e-300, 1e300, f64::NAN, f64::INFINITY] {
+        let mut scene = mixed(4);
+        scene.camera.eye.x = bad;
+        scenes.push(scene);
+        let mut scene = mixed(4);
+        scene.camera.eye = DVec3::splat(bad);
+        scene.camera.target = DVec3::splat(bad);
+        scene.camera.up = DVec3::ZERO;
+        scene.camera.fov = bad;
+        scenes.push(scene);
+        let mut scene = mixed(5);
+        for material in &mut scene.materials {
+            material.radius = bad;
+            material.shine = bad as f32;
+            material.diffuse = [bad as f32; 3];
+        }
+        scene.settings.fragile = scene::Fragile::ALL;
+        scene.settings.gamma = bad as f32;
+        scene.settings.contrast = [bad as f32; 3];
+        scenes.push(scene);
+        let mut scene = mixed(6);
+        for material in &mut scene.materials[..3] {
+            material.blobbiness = bad;
+            material.strength = bad;
+        }
+        scenes.push(scene);
+        let mut scene = mixed(7);
+        for (i, e) in scene.elements.iter_mut().enumerate() {
+            match &mut e.shape {
+                Shape::Sphere { center, .. } if i % 2 == 0 => center.y = bad,
+                Shape::Cylinder { radius, apex, base } => {
+                    *radius = bad;
+                    if i % 3 == 0 {
+                        *apex = *base;
+                    }
+                }
+                Shape::Arc { sweep, angle, .. } => {
+                    if i % 2 == 0 {
+                        *sweep = bad;
+                    } else {
+                        *angle = bad;
+                    }
+                }
+                Shape::Triangle { corners, .. } => corners[1] = corners[0] + bad,
+                Shape::Plane { normal, .. } => *normal *= bad,
+                Shape::Sphere { radius, .. } => *radius = bad,
+            }
+        }
+        scene.lights[0].kind = scene::LightKind::Point {
+            position: DVec3::splat(bad),
+        };
+        scenes.push(scene);
+    }
+    for (i, scene) in scenes.iter().enumerate() {
+        let start = std::time::Instant::now();
+        let (pixels, _) = whole(scene, [17, 9], 16, Pass::Smooth);
+        assert_eq!(pixels.len(), 4 * 17 * 9);
+        let seconds = start.elapsed().as_secs_f64();
+        assert!(seconds < 20.0, "scene {i} took {seconds} s");
+        let _ = Picture::new(scene, [4, 4]).hits(DVec3::new(0.1, 0.2, 5.0), DVec3::NEG_Z);
+    }
+}
