@@ -10,6 +10,7 @@ pub mod boot;
 pub mod history;
 pub mod indent;
 pub mod picture;
+pub mod pool;
 pub mod session;
 pub mod software;
 pub mod storage;

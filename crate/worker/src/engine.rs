@@ -9,6 +9,8 @@ use tracer::{Picture, Stats};
 #[derive(Default)]
 pub struct Engine {
     generation: u64,
+    /// Whether the generation is new and the page not yet told that we know.
+    new: bool,
     /// Set until the scene has been prepared.
     wanted: Option<(Box<Scene>, [u32; 2])>,
     picture: Option<Picture>,
@@ -20,7 +22,7 @@ pub struct Engine {
 pub enum Step {
     /// There was nothing to do.
     Idle,
-    /// Work was done and given up, or was for an older picture: nothing to tell.
+    /// A tile was given up.
     Dropped,
     /// Something to send.
     Answer(Answer),
@@ -35,8 +37,7 @@ impl Engine {
                 scene,
                 size,
             } => {
-                self.forget();
-                self.generation = generation;
+                self.forget(generation);
                 self.wanted = Some((scene, size));
             }
             Request::Trace(order) => {
@@ -44,21 +45,27 @@ impl Engine {
                     self.queue.push_back(order);
                 }
             }
-            Request::Stop => self.forget(),
+            Request::Stop { generation } => self.forget(generation),
         }
     }
 
     /// Whether [`Engine::step`] would find nothing to do.
     #[must_use]
     pub fn is_idle(&self) -> bool {
-        self.wanted.is_none() && self.queue.is_empty()
+        !self.new && self.wanted.is_none() && self.queue.is_empty()
     }
 
-    /// Prepares the picture if that was not done yet, else traces the next tile.
+    /// Takes note of a new picture, prepares it if that was not done yet, or traces the next
+    /// tile.
     ///
     /// `stop` is asked while tracing; when it says true the tile is given up. `clock` tells seconds
     /// since some fixed moment.
     pub fn step(&mut self, stop: &dyn Fn() -> bool, clock: &dyn Fn() -> f64) -> Step {
+        if std::mem::take(&mut self.new) {
+            return Step::Answer(Answer::Noted {
+                generation: self.generation,
+            });
+        }
         if let Some((scene, size)) = self.wanted.take() {
             self.picture = Some(Picture::new(&scene, size));
             return Step::Answer(Answer::Prepared {
@@ -82,9 +89,96 @@ impl Engine {
         }
     }
 
-    fn forget(&mut self) {
+    fn forget(&mut self, generation: u64) {
+        self.generation = generation;
+        self.new = true;
         self.wanted = None;
         self.picture = None;
         self.queue.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracer::{Pass, Tile};
+
+    fn begin(generation: u64) -> Request {
+        Request::Begin {
+            generation,
+            scene: Box::default(),
+            size: [8, 8],
+        }
+    }
+
+    fn order(generation: u64) -> Order {
+        Order {
+            generation,
+            tile: Tile {
+                x: 0,
+                y: 0,
+                width: 8,
+                height: 8,
+            },
+            pass: Pass::Full,
+        }
+    }
+
+    fn step(engine: &mut Engine) -> Step {
+        engine.step(&|| false, &|| 0.0)
+    }
+
+    #[test]
+    fn a_tile_is_traced_once_its_scene_is_prepared() {
+        let mut engine = Engine::default();
+        assert_eq!(step(&mut engine), Step::Idle);
+        engine.accept(begin(1));
+        engine.accept(Request::Trace(order(1)));
+        assert_eq!(
+            step(&mut engine),
+            Step::Answer(Answer::Noted { generation: 1 })
+        );
+        assert_eq!(
+            step(&mut engine),
+            Step::Answer(Answer::Prepared { generation: 1 })
+        );
+        let Step::Answer(Answer::Traced {
+            order: done,
+            pixels,
+            ..
+        }) = step(&mut engine)
+        else {
+            panic!("no tile");
+        };
+        assert_eq!((done, pixels.len()), (order(1), 8 * 8 * 4));
+        assert!(engine.is_idle());
+    }
+
+    #[test]
+    fn older_pictures_are_dropped_unbegun() {
+        let mut engine = Engine::default();
+        engine.accept(begin(1));
+        engine.accept(Request::Trace(order(1)));
+        engine.accept(begin(2));
+        engine.accept(Request::Trace(order(1)));
+        assert_eq!(
+            step(&mut engine),
+            Step::Answer(Answer::Noted { generation: 2 })
+        );
+        engine.accept(Request::Stop { generation: 3 });
+        assert_eq!(
+            step(&mut engine),
+            Step::Answer(Answer::Noted { generation: 3 })
+        );
+        assert_eq!(step(&mut engine), Step::Idle);
+    }
+
+    #[test]
+    fn messages_survive_packing_and_other_bytes_are_refused() {
+        let request = begin(7);
+        let bytes = crate::message::pack(&request).unwrap();
+        assert_eq!(crate::message::unpack::<Request>(&bytes), Ok(request));
+        assert!(crate::message::unpack::<Request>(&[9, 9, 9]).is_err());
+        assert!(crate::message::unpack::<Request>(&[]).is_err());
     }
 }

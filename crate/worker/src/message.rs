@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use tracer::{Pass, Stats, Tile};
 
 /// One tile to trace.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Order {
     /// The picture it belongs to.
     pub generation: u64,
@@ -30,7 +30,10 @@ pub enum Request {
     /// Trace this tile after those already queued.
     Trace(Order),
     /// Forget whatever is queued, and the picture.
-    Stop,
+    Stop {
+        /// A number larger than those before.
+        generation: u64,
+    },
 }
 
 /// What a worker answers.
@@ -38,6 +41,12 @@ pub enum Request {
 pub enum Answer {
     /// The worker runs and takes requests. Sent once.
     Started,
+    /// A [`Request::Begin`] or [`Request::Stop`] was taken note of: whatever the worker was at before
+    /// is over. Left out if another one has come in meanwhile.
+    Noted {
+        /// Its number.
+        generation: u64,
+    },
     /// The picture is ready for tracing. Sent once for each [`Request::Begin`] that was not
     /// overtaken by a later one.
     Prepared {

@@ -1,0 +1,147 @@
+//! What the pools of web workers and of threads share: the scheduler, the scene, finished tiles.
+
+use super::scheduler::{Command, Plan, Scheduler};
+use super::{Job, Progress, TileDone};
+use worker::message::pack;
+use worker::{Answer, Request};
+
+/// Something that runs workers. What they answer goes to [`Core::answer`], together with the index.
+pub trait Workers {
+    /// Starts a worker, ending the one that had this index. Nothing may be heard of that one again.
+    fn restart(&mut self, index: usize) -> Result<(), String>;
+    /// Ends a worker.
+    fn end(&mut self, index: usize);
+    /// Sends a packed [`Request`] to a worker that runs.
+    fn send(&mut self, index: usize, request: &[u8]);
+}
+
+/// A pool, but for the workers.
+pub struct Core<W> {
+    pub scheduler: Scheduler,
+    pub workers: W,
+    /// The packed request that begins the present picture.
+    begin: Vec<u8>,
+    done: Vec<TileDone>,
+}
+
+impl<W: Workers> Core<W> {
+    pub fn new(count: usize, workers: W) -> Self {
+        Self {
+            scheduler: Scheduler::new(count),
+            workers,
+            begin: Vec::new(),
+            done: Vec::new(),
+        }
+    }
+
+    pub fn start(&mut self, job: Job<'_>, now: f64) {
+        self.done.clear();
+        let plan = Plan {
+            generation: job.generation,
+            size: job.size,
+            samples: job.scene.settings.samples,
+        };
+        self.scheduler.start(plan, now);
+        let request = Request::Begin {
+            generation: self.scheduler.number(),
+            scene: Box::new(job.scene.clone()),
+            size: job.size,
+        };
+        match pack(&request) {
+            Ok(bytes) => self.begin = bytes,
+            Err(error) => self.scheduler.unavailable(&error.to_string(), now),
+        }
+        self.carry_out(now);
+    }
+
+    pub fn cancel(&mut self, now: f64) {
+        self.scheduler.cancel(now);
+        self.carry_out(now);
+    }
+
+    pub fn launch(&mut self, now: f64) {
+        self.scheduler.launch(now);
+        self.carry_out(now);
+    }
+
+    pub fn tick(&mut self, now: f64) {
+        self.scheduler.tick(now);
+        self.carry_out(now);
+    }
+
+    /// A worker has answered. Says whether something can now be seen that could not be before.
+    pub fn answer(&mut self, index: usize, answer: Answer, now: f64) -> bool {
+        let mut news = false;
+        match answer {
+            Answer::Started => self.scheduler.started(index, now),
+            Answer::Noted { generation } => self.scheduler.noted(index, generation, now),
+            Answer::Prepared { generation } => self.scheduler.prepared(index, generation, now),
+            Answer::Traced {
+                order,
+                pixels,
+                stats,
+                seconds,
+            } => {
+                news = self.scheduler.traced(index, order, &stats, seconds, now);
+                if let (true, Some(generation)) = (news, self.scheduler.generation()) {
+                    self.done.push(TileDone {
+                        generation,
+                        pass: order.pass,
+                        tile: order.tile,
+                        pixels,
+                    });
+                }
+            }
+            Answer::Failed(reason) => {
+                self.scheduler.died(index, &reason, now);
+                news = true;
+            }
+        }
+        self.carry_out(now);
+        news
+    }
+
+    /// The tiles finished since the last call.
+    pub fn take(&mut self) -> Vec<TileDone> {
+        std::mem::take(&mut self.done)
+    }
+
+    pub fn progress(&self, now: f64) -> Progress {
+        self.scheduler.progress(now)
+    }
+
+    /// Does what the scheduler decided. A worker that cannot be started changes its mind, so this
+    /// goes on until there is nothing left to do; the scheduler gives up after some attempts.
+    fn carry_out(&mut self, now: f64) {
+        loop {
+            let commands = self.scheduler.commands();
+            if commands.is_empty() {
+                return;
+            }
+            for command in commands {
+                match command {
+                    Command::Restart(index) => {
+                        if let Err(reason) = self.workers.restart(index) {
+                            self.scheduler.died(index, &reason, now);
+                        }
+                    }
+                    Command::End(index) => self.workers.end(index),
+                    Command::Begin(index) => self.workers.send(index, &self.begin),
+                    Command::Trace(index, order) => self.send(index, &Request::Trace(order)),
+                    Command::Stop(index) => {
+                        let generation = self.scheduler.number();
+                        self.send(index, &Request::Stop { generation });
+                    }
+                }
+            }
+        }
+    }
+
+    fn send(&mut self, index: usize, request: &Request) {
+        // Packing fails only when memory runs out; the worker then misses a message, hangs as far as
+        // the scheduler can see, and is replaced.
+        if let Ok(bytes) = pack(request) {
+            self.workers.send(index, &bytes);
+        }
+    }
+}

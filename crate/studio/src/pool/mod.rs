@@ -1,0 +1,66 @@
+//! The workers that trace the picture.
+//!
+//! A [`Pool`] keeps one tracer per processor core: web workers in the page, threads in native
+//! builds (tests). [`Pool::start`] cuts the picture into small tiles, coarse first, then every
+//! pixel, then anti-aliased, the centre of the picture before its edges, and hands them out;
+//! finished ones are fetched with [`Pool::poll`]. Starting a picture cancels the one before.
+//!
+//! Who does what, and what happens when a worker dies or hangs, is decided in [`scheduler`], which
+//! knows nothing of workers and is tested by itself; `browser` and `threads` carry it out.
+
+mod core;
+pub mod progress;
+pub mod scheduler;
+
+#[cfg(target_arch = "wasm32")]
+mod browser;
+#[cfg(target_arch = "wasm32")]
+pub use browser::Pool;
+#[cfg(not(target_arch = "wasm32"))]
+mod threads;
+#[cfg(not(target_arch = "wasm32"))]
+pub use threads::Pool;
+
+pub use progress::Progress;
+
+use scene::Scene;
+use tracer::{Pass, Tile};
+
+/// Longest side of a tile in pixels: small enough that a tile takes milliseconds, large enough that
+/// sending it takes a small share of that.
+pub const TILE: u32 = 32;
+/// Most workers, whatever the machine has: each holds its own copy of the scene.
+pub const MAX_WORKERS: usize = 16;
+
+/// A picture to trace.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<'a> {
+    /// What to draw. With `settings.samples` 1 there is no [`Pass::Smooth`]: it would equal
+    /// [`Pass::Full`].
+    pub scene: &'a Scene,
+    /// Width and height in pixels. A side of 0 gives an empty picture, finished at once.
+    pub size: [u32; 2],
+    /// The caller's number for it, given back with each tile.
+    pub generation: u64,
+}
+
+/// A finished tile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TileDone {
+    /// The number of the [`Job`].
+    pub generation: u64,
+    /// How finely it was traced.
+    pub pass: Pass,
+    /// Where it belongs. Each pass has the same tiles.
+    pub tile: Tile,
+    /// RGBA, rows from the top.
+    pub pixels: Vec<u8>,
+}
+
+/// How many workers to start on a machine with so many cores.
+fn worker_count(cores: usize) -> usize {
+    cores.clamp(1, MAX_WORKERS)
+}
+
+#[cfg(all(test, not(target_arch = "wasm32")))]
+mod tests;

@@ -1,0 +1,123 @@
+//! How far a picture has come.
+
+use std::collections::VecDeque;
+use tracer::{Pass, Stats};
+
+/// How far the picture has come, for the progress bar and for scripts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// The number of the picture, if one was ever started.
+    pub generation: Option<u64>,
+    /// Share of the work done, 0 … 1. Never falls while one picture is traced.
+    pub fraction: f64,
+    /// The pass that is being traced; `None` when nothing is being done.
+    pub pass: Option<Pass>,
+    /// Whether all tiles of all passes are done, or given up.
+    pub finished: bool,
+    /// About how long it will still take; `None` until enough was measured.
+    pub remaining_seconds: Option<f64>,
+    /// Seconds from the start to now, or to the end of the picture.
+    pub seconds: f64,
+    /// When each pass was complete, seconds after the start: coarse, full, smooth.
+    pub pass_seconds: [Option<f64>; 3],
+    /// Workers that run or are being started.
+    pub workers: usize,
+    /// Workers replaced because they died or hung, since the page was opened.
+    pub restarted: u32,
+    /// Tiles given up because three workers failed at them.
+    pub failed_tiles: u32,
+    /// The work done for this picture.
+    pub stats: Stats,
+    /// What went wrong, if anything did, in words for the user.
+    pub error: Option<String>,
+}
+
+/// Typical cost of a tile in the passes, in units of the coarse one; used until it is measured.
+const TYPICAL: [f64; 3] = [1.0, 30.0, 45.0];
+/// Tiles that must have been measured before a time is foretold.
+const ENOUGH: u32 = 4;
+
+/// Measured time of the tiles of one pass.
+#[derive(Clone, Debug, Default)]
+struct Measured {
+    tiles: u32,
+    seconds: f64,
+}
+
+/// What the tiles of a picture cost: measured where possible, else guessed from other passes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Costs {
+    passes: [Measured; 3],
+    recent: VecDeque<f64>,
+    /// Most seconds any tile took for each of its rays.
+    slowest_ray: f64,
+}
+
+impl Costs {
+    /// Notes that a tile of `rays` rays took so long.
+    pub fn add(&mut self, pass: usize, rays: f64, seconds: f64) {
+        self.passes[pass].tiles += 1;
+        self.passes[pass].seconds += seconds;
+        self.slowest_ray = self.slowest_ray.max(seconds / rays);
+        self.recent.push_back(seconds);
+        if self.recent.len() > 16 {
+            self.recent.pop_front();
+        }
+    }
+
+    /// Expected seconds of one tile of a pass; an arbitrary unit if nothing was measured.
+    pub fn expected(&self, pass: usize) -> f64 {
+        let known = |i: &usize| self.passes[*i].tiles > 0;
+        // The pass itself, else the finest one measured.
+        let base = Some(pass)
+            .filter(known)
+            .or_else(|| (0..3).rev().find(known));
+        base.map_or(TYPICAL[pass], |i| {
+            let mean = self.passes[i].seconds / f64::from(self.passes[i].tiles);
+            mean.max(1e-6) * TYPICAL[pass] / TYPICAL[i]
+        })
+    }
+
+    /// Mean seconds of the tiles that were finished last.
+    pub fn recent(&self) -> Option<f64> {
+        (!self.recent.is_empty())
+            .then(|| self.recent.iter().sum::<f64>() / self.recent.len() as f64)
+    }
+
+    /// Most seconds any tile took for each of its rays; 0 if none was measured.
+    pub fn slowest_ray(&self) -> f64 {
+        self.slowest_ray
+    }
+
+    /// Whether enough was measured to foretell a time.
+    pub fn enough(&self) -> bool {
+        self.passes.iter().map(|pass| pass.tiles).sum::<u32>() >= ENOUGH
+    }
+}
+
+/// Adds the work of one tile to that of the picture.
+pub(super) fn add_stats(sum: &mut Stats, stats: &Stats) {
+    sum.primary_rays += stats.primary_rays;
+    sum.shadow_rays += stats.shadow_rays;
+    sum.field_evaluations += stats.field_evaluations;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn costs_are_measured_or_scaled_from_what_was_measured() {
+        let mut costs = Costs::default();
+        assert!(costs.recent().is_none() && !costs.enough());
+        costs.add(0, 16.0, 0.002);
+        costs.add(0, 16.0, 0.004);
+        assert!((costs.expected(0) - 0.003).abs() < 1e-12);
+        assert!((costs.expected(1) - 0.003 * TYPICAL[1]).abs() < 1e-12);
+        costs.add(1, 1024.0, 0.05);
+        assert!((costs.expected(2) - 0.05 * TYPICAL[2] / TYPICAL[1]).abs() < 1e-12);
+        assert!((costs.slowest_ray() - 0.004 / 16.0).abs() < 1e-12);
+        costs.add(1, 1024.0, 0.05);
+        assert!(costs.enough());
+    }
+}

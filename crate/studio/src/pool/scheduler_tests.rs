@@ -1,0 +1,429 @@
+//! The scheduler against a crowd of imagined workers and an imagined clock.
+
+use super::*;
+
+const STATS: Stats = Stats {
+    primary_rays: 1,
+    shadow_rays: 2,
+    field_evaluations: 3,
+};
+
+fn plan(generation: u64) -> Plan {
+    Plan {
+        generation,
+        size: [128, 96],
+        samples: 3,
+    }
+}
+
+/// Workers that do what they are told when [`Crowd::work`] is called, unless they hang.
+struct Crowd {
+    scheduler: Scheduler,
+    now: f64,
+    /// Queued messages to the page of each worker, first the one that comes first.
+    desks: Vec<VecDeque<Job>>,
+    /// Tiles at which a worker dies.
+    deadly: HashSet<Order>,
+    /// Workers that answer nothing.
+    hanging: HashSet<usize>,
+    restarts: usize,
+    done: Vec<Order>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Job {
+    Start,
+    Note(u64),
+    Prepare(u64),
+    Tile(Order),
+}
+
+impl Crowd {
+    fn new(workers: usize) -> Self {
+        let mut crowd = Self {
+            scheduler: Scheduler::new(workers),
+            now: 0.0,
+            desks: vec![VecDeque::new(); workers],
+            deadly: HashSet::new(),
+            hanging: HashSet::new(),
+            restarts: 0,
+            done: Vec::new(),
+        };
+        crowd.scheduler.launch(0.0);
+        crowd.obey();
+        crowd
+    }
+
+    fn obey(&mut self) {
+        for command in self.scheduler.commands() {
+            let number = self.scheduler.number();
+            match command {
+                Command::Restart(i) => {
+                    self.restarts += 1;
+                    self.hanging.remove(&i);
+                    self.desks[i] = VecDeque::from([Job::Start]);
+                }
+                Command::End(i) => self.desks[i].clear(),
+                Command::Begin(i) => {
+                    self.desks[i].retain(|job| matches!(job, Job::Start));
+                    self.desks[i].extend([Job::Note(number), Job::Prepare(number)]);
+                }
+                Command::Trace(i, order) => self.desks[i].push_back(Job::Tile(order)),
+                Command::Stop(i) => {
+                    self.desks[i].clear();
+                    self.desks[i].push_back(Job::Note(number));
+                }
+            }
+        }
+    }
+
+    fn start(&mut self, generation: u64) {
+        self.scheduler.start(plan(generation), self.now);
+        self.obey();
+    }
+
+    /// Every worker does one job, which takes a millisecond. Says whether anyone had one.
+    fn work(&mut self) -> bool {
+        let mut any = false;
+        self.now += 1e-3;
+        for i in 0..self.desks.len() {
+            if self.hanging.contains(&i) {
+                continue;
+            }
+            let Some(job) = self.desks[i].pop_front() else {
+                continue;
+            };
+            any = true;
+            match job {
+                Job::Start => self.scheduler.started(i, self.now),
+                Job::Note(number) => self.scheduler.noted(i, number, self.now),
+                Job::Prepare(number) => self.scheduler.prepared(i, number, self.now),
+                Job::Tile(order) if self.deadly.contains(&order) => {
+                    self.scheduler.died(i, "deadly", self.now);
+                }
+                Job::Tile(order) => {
+                    if self.scheduler.traced(i, order, &STATS, 1e-3, self.now) {
+                        self.done.push(order);
+                    }
+                }
+            }
+            self.obey();
+        }
+        any
+    }
+
+    fn work_off(&mut self) {
+        while self.work() {
+            assert!(self.now < 1e4, "endless");
+        }
+    }
+
+    /// Time passes without any work; the pool looks at the clock now and then.
+    fn wait(&mut self, seconds: f64) {
+        let end = self.now + seconds;
+        while self.now < end {
+            self.now += 0.1;
+            self.scheduler.tick(self.now);
+            self.obey();
+        }
+    }
+
+    fn progress(&self) -> Progress {
+        self.scheduler.progress(self.now)
+    }
+}
+
+#[test]
+fn every_tile_is_done_once_in_each_pass_the_centre_first() {
+    let mut crowd = Crowd::new(3);
+    crowd.start(7);
+    let mut fraction = 0.0;
+    while crowd.work() {
+        let progress = crowd.progress();
+        assert!(progress.fraction >= fraction, "the bar fell");
+        fraction = progress.fraction;
+    }
+    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE);
+    assert_eq!(crowd.done.len(), 3 * tiles.len());
+    assert_eq!(
+        crowd.done.iter().collect::<HashSet<_>>().len(),
+        3 * tiles.len()
+    );
+    assert_eq!(
+        (crowd.done[0].tile, crowd.done[0].pass),
+        (tiles[0], Pass::Coarse)
+    );
+    // Passes may overlap by what the workers hold ahead, not more.
+    let last_coarse = crowd.done.iter().rposition(|o| o.pass == Pass::Coarse);
+    assert!(last_coarse.unwrap() < tiles.len() + 3 * MOST_AHEAD);
+    let progress = crowd.progress();
+    assert!(progress.finished && progress.fraction == 1.0 && progress.pass.is_none());
+    assert_eq!(progress.generation, Some(7));
+    assert_eq!(progress.stats.field_evaluations, 3 * 3 * tiles.len() as u64);
+    assert!(progress.pass_seconds.iter().all(Option::is_some));
+    assert_eq!((progress.restarted, progress.error), (0, None));
+    assert!(!crowd.scheduler.is_busy());
+}
+
+#[test]
+fn one_ray_a_pixel_needs_no_third_pass() {
+    let mut crowd = Crowd::new(2);
+    let samples = 1;
+    crowd.scheduler.start(Plan { samples, ..plan(1) }, 0.0);
+    crowd.obey();
+    crowd.work_off();
+    assert!(crowd.progress().finished);
+    assert!(crowd.done.iter().all(|order| order.pass != Pass::Smooth));
+}
+
+#[test]
+fn an_empty_picture_is_finished_at_once() {
+    let mut crowd = Crowd::new(2);
+    let size = [0, 96];
+    crowd.scheduler.start(Plan { size, ..plan(1) }, 0.0);
+    assert!(crowd.progress().finished);
+}
+
+#[test]
+fn time_left_is_told_once_measured() {
+    let mut crowd = Crowd::new(2);
+    crowd.start(1);
+    assert_eq!(crowd.progress().remaining_seconds, None);
+    for _ in 0..20 {
+        crowd.work();
+    }
+    let progress = crowd.progress();
+    assert!(progress.remaining_seconds.unwrap() > 0.0);
+    assert!(progress.pass.is_some());
+}
+
+#[test]
+fn a_new_picture_takes_the_place_of_the_old_one() {
+    let mut crowd = Crowd::new(2);
+    crowd.start(1);
+    for _ in 0..6 {
+        crowd.work();
+    }
+    let before = crowd.done.len();
+    assert!(before > 0);
+    crowd.start(1); // the same number again: tiles of the first run must not be mixed in
+    crowd.work_off();
+    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE).len();
+    assert_eq!(crowd.done.len(), before + 3 * tiles);
+    assert!(crowd.progress().finished);
+}
+
+#[test]
+fn a_worker_still_at_the_old_picture_is_replaced_without_blame() {
+    let mut crowd = Crowd::new(2);
+    crowd.start(1);
+    for _ in 0..6 {
+        crowd.work();
+    }
+    crowd.hanging.insert(0);
+    crowd.start(2);
+    let restarts = crowd.restarts;
+    crowd.work();
+    crowd.wait(PATIENCE + 0.2);
+    assert_eq!(crowd.restarts, restarts + 1);
+    crowd.work_off();
+    let progress = crowd.progress();
+    assert!(progress.finished);
+    assert_eq!((progress.restarted, progress.failed_tiles), (0, 0));
+}
+
+#[test]
+fn an_answer_that_waited_for_a_busy_page_saves_the_worker() {
+    let mut crowd = Crowd::new(1);
+    crowd.start(1);
+    crowd.work();
+    crowd.work();
+    crowd.start(2);
+    let restarts = crowd.restarts;
+    crowd.now += 5.0; // the page was busy; the timer comes before the worker's message
+    crowd.scheduler.tick(crowd.now);
+    crowd.obey();
+    crowd.work_off();
+    crowd.wait(1.0);
+    assert_eq!(crowd.restarts, restarts);
+    assert!(crowd.progress().finished);
+}
+
+#[test]
+fn cancel_ends_everything() {
+    let mut crowd = Crowd::new(2);
+    crowd.start(1);
+    for _ in 0..6 {
+        crowd.work();
+    }
+    crowd.scheduler.cancel(crowd.now);
+    crowd.obey();
+    let before = crowd.done.len();
+    crowd.work_off();
+    assert_eq!(crowd.done.len(), before);
+    assert!(!crowd.scheduler.is_busy());
+    let progress = crowd.progress();
+    assert!(!progress.finished && progress.pass.is_none());
+    let seconds = progress.seconds;
+    crowd.wait(1.0);
+    assert_eq!(crowd.progress().seconds, seconds);
+}
+
+#[test]
+fn a_worker_that_dies_is_replaced_and_its_tiles_done_again() {
+    let mut crowd = Crowd::new(3);
+    crowd.start(1);
+    for _ in 0..8 {
+        crowd.work();
+    }
+    crowd.desks[1].clear();
+    crowd.scheduler.died(1, "killed", crowd.now);
+    crowd.obey();
+    crowd.work_off();
+    let progress = crowd.progress();
+    assert!(progress.finished);
+    assert_eq!((progress.restarted, progress.failed_tiles), (1, 0));
+    assert_eq!(
+        crowd.done.iter().collect::<HashSet<_>>().len(),
+        3 * tracer::tile::tiles(128, 96, crate::pool::TILE).len()
+    );
+}
+
+#[test]
+fn a_worker_that_hangs_is_replaced_in_the_end() {
+    let mut crowd = Crowd::new(2);
+    crowd.start(1);
+    for _ in 0..6 {
+        crowd.work();
+    }
+    crowd.hanging.insert(1);
+    crowd.work_off();
+    assert!(!crowd.progress().finished);
+    crowd.wait(TILE_LIMIT - 1.0);
+    assert_eq!(crowd.progress().restarted, 0);
+    crowd.wait(2.0);
+    crowd.work_off();
+    let progress = crowd.progress();
+    assert!(progress.finished);
+    assert_eq!((progress.restarted, progress.failed_tiles), (1, 0));
+}
+
+#[test]
+fn slow_tiles_get_more_time() {
+    let run_limit = |seconds: f64| {
+        let mut crowd = Crowd::new(1);
+        crowd.start(1);
+        for _ in 0..3 {
+            crowd.work();
+        }
+        let Some(Job::Tile(order)) = crowd.desks[0].pop_front() else {
+            panic!("no tile");
+        };
+        crowd.scheduler.traced(0, order, &STATS, seconds, crowd.now);
+        crowd.obey();
+        let run = crowd.scheduler.run.as_ref().unwrap();
+        run.limit(run.tiles.len())
+    };
+    assert_eq!(run_limit(1e-3), TILE_LIMIT);
+    assert_eq!(run_limit(0.016), SLACK * 1024.0 * 1e-3);
+    assert_eq!(run_limit(100.0), LONGEST_LIMIT);
+}
+
+#[test]
+fn a_deadly_tile_is_given_up_and_reported() {
+    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE);
+    for workers in [1, 4] {
+        let mut crowd = Crowd::new(workers);
+        crowd.start(1); // the first picture has the number 1
+        for pass in [Pass::Full, Pass::Smooth] {
+            let tile = tiles[2];
+            crowd.deadly.insert(Order {
+                generation: 1,
+                tile,
+                pass,
+            });
+        }
+        crowd.work_off();
+        let progress = crowd.progress();
+        assert!(progress.finished);
+        assert_eq!(progress.failed_tiles, 1);
+        // A worker may have taken the tile for the next pass before it was given up in this one.
+        assert!(
+            (3..=6).contains(&progress.restarted),
+            "{}",
+            progress.restarted
+        );
+        assert!(progress.error.unwrap().contains("deadly"));
+    }
+}
+
+#[test]
+fn nothing_is_tried_forever() {
+    // Every tile kills.
+    let mut crowd = Crowd::new(2);
+    crowd.start(1);
+    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE);
+    for &tile in &tiles {
+        for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
+            crowd.deadly.insert(Order {
+                generation: 1,
+                tile,
+                pass,
+            });
+        }
+    }
+    crowd.work_off();
+    let progress = crowd.progress();
+    assert!(progress.error.is_some() && progress.pass.is_none());
+    assert!(crowd.restarts < 100);
+
+    // No worker starts.
+    let mut scheduler = Scheduler::new(2);
+    scheduler.launch(0.0);
+    scheduler.start(plan(1), 0.0);
+    let mut restarts = 0;
+    loop {
+        let commands = scheduler.commands();
+        if commands.is_empty() {
+            break;
+        }
+        for command in commands {
+            if let Command::Restart(i) = command {
+                restarts += 1;
+                scheduler.died(i, "no such file", 0.0);
+            }
+        }
+    }
+    assert_eq!(restarts, 2 * ATTEMPTS);
+    let progress = scheduler.progress(0.0);
+    assert_eq!(progress.workers, 0);
+    assert!(progress.error.unwrap().contains("no such file"));
+
+    // No worker can prepare the scene.
+    let mut scheduler = Scheduler::new(1);
+    scheduler.launch(0.0);
+    scheduler.start(plan(1), 0.0);
+    for _ in 0..ATTEMPTS {
+        scheduler.started(0, 0.0);
+        scheduler.died(0, "too big", 0.0);
+    }
+    let progress = scheduler.progress(0.0);
+    assert!(progress.error.unwrap().contains("too big"));
+    assert!(progress.pass.is_none());
+    // The next picture is tried all the same.
+    scheduler.commands();
+    scheduler.start(plan(2), 0.0);
+    assert!(scheduler.commands().contains(&Command::Restart(0)));
+    assert_eq!(scheduler.progress(0.0).error, None);
+}
+
+#[test]
+fn pictures_wait_until_workers_can_be_started() {
+    let mut scheduler = Scheduler::new(1);
+    scheduler.start(plan(1), 0.0);
+    assert!(scheduler.commands().is_empty());
+    scheduler.launch(1.0);
+    assert_eq!(scheduler.commands(), [Command::Restart(0)]);
+    scheduler.started(0, 1.1);
+    assert_eq!(scheduler.commands()[0], Command::Begin(0));
+}
