@@ -95,9 +95,10 @@ impl Boot {
                 canvas.clone(),
                 options,
                 Box::new(move |context| {
-                    watch_device(context, backend, app);
                     if backend == Backend::None {
-                        software::install(&context.egui_ctx);
+                        software::install(&context.egui_ctx, &app)?;
+                    } else {
+                        watch_device(context, backend, app);
                     }
                     Ok((boot.create)(context, backend))
                 }),

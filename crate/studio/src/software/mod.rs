@@ -1,12 +1,21 @@
 //! Draws the window on the processor, for browsers with neither WebGPU nor WebGL2.
 //!
-//! eframe only paints with a GPU, so it is given a wgpu device that does nothing ([`device`]),
-//! while a plugin ([`screen`]) takes what egui wants painted.
+//! eframe only paints with a GPU. So it is given a wgpu device that does nothing ([`device`]),
+//! while a plugin of egui ([`screen`]) takes the shapes that egui wants painted, and puts them on
+//! the canvas. [`painter`] finds the tiles of the window that changed since the last frame and
+//! redraws them alone; [`raster`] fills triangles and rectangles; [`texture`] keeps the pictures.
+//! Only the last two know how a pixel gets its colour, and they follow egui's own shader: colours
+//! are sRGB values multiplied by their alpha, and are blended as such.
 
 #[cfg(target_arch = "wasm32")]
 mod device;
+pub mod painter;
+mod raster;
 #[cfg(target_arch = "wasm32")]
-pub use device::setup;
+mod screen;
+mod texture;
 
 #[cfg(target_arch = "wasm32")]
-pub fn install(_: &egui::Context) {}
+pub use device::setup;
+#[cfg(target_arch = "wasm32")]
+pub use screen::install;

@@ -1,0 +1,486 @@
+//! Fills triangles and rectangles of pixels, by the rules of GPUs.
+//!
+//! A pixel belongs to a triangle when its centre lies inside; on an edge, when the edge is a top or
+//! a left one, so that neighbours neither leave gaps nor blend twice. Corners are snapped to 1/256
+//! of a pixel and the edges are evaluated in integers, so this is exact.
+
+use std::hash::{Hash, Hasher};
+
+use egui::Color32;
+
+use super::texture::{Tap, Texture};
+
+/// Steps in a pixel to which corners are snapped, as on GPUs.
+const STEPS: i32 = 256;
+/// Corners further out than this, in pixels, are moved here, so that integers do not overflow.
+const FAR: f32 = (1 << 21) as f32;
+
+/// The pixels x0 ≤ x < x1, y0 ≤ y < y1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Area {
+    /// First column.
+    pub x0: i32,
+    /// First row.
+    pub y0: i32,
+    /// After the last column.
+    pub x1: i32,
+    /// After the last row.
+    pub y1: i32,
+}
+
+impl Area {
+    /// The pixels in both areas.
+    #[must_use]
+    pub fn intersect(self, other: Self) -> Self {
+        Self {
+            x0: self.x0.max(other.x0),
+            y0: self.y0.max(other.y0),
+            x1: self.x1.min(other.x1),
+            y1: self.y1.min(other.y1),
+        }
+    }
+
+    /// Whether there is no pixel in it.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self.x0 >= self.x1 || self.y0 >= self.y1
+    }
+}
+
+/// A corner of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Corner {
+    /// Position in steps of 1/256 pixel.
+    position: [i32; 2],
+    /// Texture coordinates in texels.
+    pub texel: [f32; 2],
+    /// The tint of the texture, multiplied by its alpha.
+    pub tint: Color32,
+}
+
+impl Hash for Corner {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.position.hash(state);
+        self.texel.map(f32::to_bits).hash(state);
+        self.tint.hash(state);
+    }
+}
+
+impl Corner {
+    /// A corner at a position in pixels; `None` if a coordinate is not a number.
+    pub fn new(position: [f32; 2], texel: [f32; 2], tint: Color32) -> Option<Self> {
+        let defined = position.iter().chain(&texel).all(|c| !c.is_nan());
+        defined.then(|| Self {
+            position: position.map(|c| (c.clamp(-FAR, FAR) * STEPS as f32).round() as i32),
+            texel,
+            tint,
+        })
+    }
+}
+
+/// The first pixel whose centre is not before a position in steps.
+fn first_pixel(position: i64) -> i32 {
+    // ⌈(position − 128) / 256⌉
+    let pixel = position
+        .saturating_add(i64::from(STEPS) / 2 - 1)
+        .div_euclid(i64::from(STEPS));
+    pixel.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+}
+
+/// A rectangle along the axes with one tint, as glyphs and pictures are.
+#[derive(Clone, Copy, Debug)]
+pub struct Quad {
+    /// The left upper and the right lower corner.
+    corners: [Corner; 2],
+}
+
+impl Quad {
+    /// The rectangle which the corners left top, right top, left bottom, right bottom make, if
+    /// they do.
+    pub fn new([a, b, c, d]: [Corner; 4]) -> Option<Self> {
+        let is_quad = is_box([a, b, c, d].map(|corner| corner.position))
+            && is_box([a, b, c, d].map(|corner| corner.texel))
+            && [b, c, d].iter().all(|corner| corner.tint == a.tint)
+            && (0..2).all(|axis| a.position[axis] < d.position[axis]);
+        is_quad.then_some(Self { corners: [a, d] })
+    }
+
+    /// The pixels covered.
+    pub fn area(&self) -> Area {
+        let [from, to] = self
+            .corners
+            .map(|corner| corner.position.map(|c| first_pixel(i64::from(c))));
+        Area {
+            x0: from[0],
+            y0: from[1],
+            x1: to[0],
+            y1: to[1],
+        }
+    }
+
+    /// Texels per pixel along an axis.
+    fn scale(&self, axis: usize) -> f32 {
+        let [from, to] = self.corners;
+        let pixels = (to.position[axis] - from.position[axis]) as f32 / STEPS as f32;
+        (to.texel[axis] - from.texel[axis]) / pixels
+    }
+
+    /// The texture coordinate at the centre of a pixel.
+    fn texel(&self, axis: usize, pixel: i32) -> f32 {
+        let from = self.corners[0];
+        let offset = pixel as f32 + 0.5 - from.position[axis] as f32 / STEPS as f32;
+        from.texel[axis] + offset * self.scale(axis)
+    }
+
+    /// Its left upper and right lower corner.
+    pub fn corners(&self) -> &[Corner] {
+        &self.corners
+    }
+
+    /// The rectangle of texels (from, to) seen in an area.
+    pub fn texels(&self, area: Area) -> [[f32; 2]; 2] {
+        let ends = [
+            [self.texel(0, area.x0), self.texel(0, area.x1 - 1)],
+            [self.texel(1, area.y0), self.texel(1, area.y1 - 1)],
+        ];
+        [ends.map(|[a, b]| a.min(b)), ends.map(|[a, b]| a.max(b))]
+    }
+}
+
+/// Whether the points left top, right top, left bottom, right bottom make a box along the axes.
+fn is_box<T: PartialEq>([a, b, c, d]: [[T; 2]; 4]) -> bool {
+    a[1] == b[1] && c[1] == d[1] && a[0] == c[0] && b[0] == d[0]
+}
+
+/// A value that changes linearly over the window.
+#[derive(Clone, Copy)]
+struct Plane {
+    origin: f64,
+    dx: f64,
+    dy: f64,
+}
+
+impl Plane {
+    /// At the centre of a pixel.
+    fn at(self, x: i32, y: i32) -> f32 {
+        (self.origin + (f64::from(x) + 0.5) * self.dx + (f64::from(y) + 0.5) * self.dy) as f32
+    }
+}
+
+/// A picture being drawn on: red, green, blue, alpha in rows from the top.
+#[derive(Debug, Default)]
+pub struct Sheet {
+    width: usize,
+    height: usize,
+    pixels: Vec<[u8; 4]>,
+    /// Kept to save allocations.
+    columns: Vec<Tap>,
+}
+
+impl Sheet {
+    /// A sheet of undefined content.
+    pub fn new(width: usize, height: usize) -> Self {
+        Self {
+            width,
+            height,
+            pixels: vec![[0; 4]; width * height],
+            columns: Vec::new(),
+        }
+    }
+
+    /// Width and height.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// All of it.
+    pub fn area(&self) -> Area {
+        Area {
+            x0: 0,
+            y0: 0,
+            x1: self.width as i32,
+            y1: self.height as i32,
+        }
+    }
+
+    /// The bytes of all pixels.
+    pub fn bytes(&self) -> &[u8] {
+        self.pixels.as_flattened()
+    }
+
+    /// Sets the pixels of an area.
+    pub fn clear(&mut self, area: Area, color: Color32) {
+        let area = area.intersect(self.area());
+        for y in area.y0..area.y1 {
+            self.span(y, area.x0, area.x1).fill(color.to_array());
+        }
+    }
+
+    /// The pixels x0 ≤ x < x1 of a row; they must lie within the sheet.
+    fn span(&mut self, y: i32, x0: i32, x1: i32) -> &mut [[u8; 4]] {
+        let row = y as usize * self.width;
+        &mut self.pixels[row + x0 as usize..row + x1 as usize]
+    }
+
+    /// Draws the part of a rectangle that lies in an area.
+    pub fn quad(&mut self, quad: &Quad, texture: &Texture, area: Area) {
+        let area = area.intersect(quad.area()).intersect(self.area());
+        if area.is_empty() {
+            return;
+        }
+        let tint = quad.corners[0].tint.to_array();
+        let smooth = texture.is_smooth(quad.scale(0).abs().max(quad.scale(1).abs()));
+        let mut columns = std::mem::take(&mut self.columns);
+        columns.clear();
+        columns.extend((area.x0..area.x1).map(|x| texture.tap(0, quad.texel(0, x), smooth)));
+        let whole_columns = columns.iter().all(|tap| tap.weight == 0);
+        for y in area.y0..area.y1 {
+            let row = texture.tap(1, quad.texel(1, y), smooth);
+            let span = self.span(y, area.x0, area.x1);
+            if whole_columns && row.weight == 0 {
+                // Texels on pixels, as nearly all text is.
+                let texels = texture.row(row.near);
+                for (pixel, column) in span.iter_mut().zip(&columns) {
+                    blend(pixel, tinted(texels[column.near].to_array(), tint));
+                }
+            } else {
+                for (pixel, &column) in span.iter_mut().zip(&columns) {
+                    blend(pixel, tinted(texture.sample(column, row), tint));
+                }
+            }
+        }
+        self.columns = columns;
+    }
+
+    /// Draws the part of a triangle that lies in an area.
+    pub fn triangle(&mut self, corners: &[Corner; 3], texture: &Texture, area: Area) {
+        let area = area.intersect(self.area());
+        let Some(triangle) = Triangle::new(corners) else {
+            return;
+        };
+        let [a, b, c] = corners;
+        if a.texel != b.texel || a.texel != c.texel {
+            self.pictured(&triangle, texture, area);
+            return;
+        }
+        // Shapes without a picture show one white texel everywhere.
+        let smooth = texture.is_smooth(0.0);
+        let texel = texture.sample(
+            texture.tap(0, a.texel[0], smooth),
+            texture.tap(1, a.texel[1], smooth),
+        );
+        if a.tint == b.tint && a.tint == c.tint {
+            self.solid(&triangle, tinted(texel, a.tint.to_array()), area);
+        } else {
+            self.shaded(&triangle, texel, area);
+        }
+    }
+
+    /// Fills a triangle with one colour.
+    fn solid(&mut self, triangle: &Triangle, color: [u8; 4], area: Area) {
+        triangle.rows(area, |y, x0, x1| {
+            let span = self.span(y, x0, x1);
+            if color[3] == 255 {
+                span.fill(color);
+            } else {
+                span.iter_mut().for_each(|pixel| blend(pixel, color));
+            }
+        });
+    }
+
+    /// Fills a triangle with a texel and a tint that changes.
+    fn shaded(&mut self, triangle: &Triangle, texel: [u8; 4], area: Area) {
+        let tint = triangle.tint();
+        let factor = texel.map(|channel| f32::from(channel) / 255.0);
+        let step: [f32; 4] = std::array::from_fn(|c| tint[c].dx as f32 * factor[c]);
+        triangle.rows(area, |y, x0, x1| {
+            let start: [f32; 4] = std::array::from_fn(|c| tint[c].at(x0, y) * factor[c]);
+            for (i, pixel) in self.span(y, x0, x1).iter_mut().enumerate() {
+                let i = i as f32;
+                blend_exact(pixel, std::array::from_fn(|c| start[c] + i * step[c]));
+            }
+        });
+    }
+
+    /// Fills a triangle with a part of a picture and a tint.
+    fn pictured(&mut self, triangle: &Triangle, texture: &Texture, area: Area) {
+        let tint = triangle.tint();
+        let texel: [Plane; 2] = std::array::from_fn(|axis| triangle.plane(|c| c.texel[axis]));
+        let length = |[u, v]: [f64; 2]| (u * u + v * v).sqrt();
+        let smooth = texture.is_smooth(
+            length(texel.map(|plane| plane.dx)).max(length(texel.map(|plane| plane.dy))) as f32,
+        );
+        let step = tint.map(|plane| plane.dx as f32);
+        triangle.rows(area, |y, x0, x1| {
+            let start = tint.map(|plane| plane.at(x0, y));
+            for (i, pixel) in self.span(y, x0, x1).iter_mut().enumerate() {
+                let [u, v] = texel.map(|plane| plane.at(x0 + i as i32, y));
+                let color = texture.sample(texture.tap(0, u, smooth), texture.tap(1, v, smooth));
+                let i = i as f32;
+                blend_exact(
+                    pixel,
+                    std::array::from_fn(|c| (start[c] + i * step[c]) * f32::from(color[c]) / 255.0),
+                );
+            }
+        });
+    }
+}
+
+/// A triangle with an area.
+struct Triangle {
+    corners: [Corner; 3],
+    edges: [Edge; 3],
+    /// Twice the area in pixels, negative if the corners go round against the clock.
+    twice_area: f64,
+}
+
+impl Triangle {
+    fn new(corners: &[Corner; 3]) -> Option<Self> {
+        let [a, b, c] = corners.map(|corner| corner.position);
+        let side = |to: [i32; 2]| [0, 1].map(|axis| i64::from(to[axis]) - i64::from(a[axis]));
+        let [[bx, by], [cx, cy]] = [side(b), side(c)];
+        let twice = bx * cy - cx * by;
+        let edges = match twice {
+            0 => return None,
+            1.. => [Edge::new(a, b), Edge::new(b, c), Edge::new(c, a)],
+            _ => [Edge::new(a, c), Edge::new(c, b), Edge::new(b, a)],
+        };
+        Some(Self {
+            corners: *corners,
+            edges,
+            twice_area: twice as f64 / f64::from(STEPS * STEPS),
+        })
+    }
+
+    /// The value that goes linearly from corner to corner.
+    fn plane(&self, value: impl Fn(&Corner) -> f32) -> Plane {
+        let [a, b, c] = self
+            .corners
+            .map(|corner| corner.position.map(|c| f64::from(c) / f64::from(STEPS)));
+        let [va, vb, vc] = self.corners.map(|corner| f64::from(value(&corner)));
+        let (b, c) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+        let (vb, vc) = (vb - va, vc - va);
+        let dx = (vb * c[1] - vc * b[1]) / self.twice_area;
+        let dy = (vc * b[0] - vb * c[0]) / self.twice_area;
+        Plane {
+            origin: va - a[0] * dx - a[1] * dy,
+            dx,
+            dy,
+        }
+    }
+
+    /// The channels of the tint.
+    fn tint(&self) -> [Plane; 4] {
+        std::array::from_fn(|channel| self.plane(|c| f32::from(c.tint.to_array()[channel])))
+    }
+
+    /// Tells the spans of pixels (row, first, after the last) that are in the triangle and an area.
+    fn rows(&self, area: Area, mut draw: impl FnMut(i32, i32, i32)) {
+        let area = area.intersect(bounds(&self.corners));
+        for y in area.y0..area.y1 {
+            let (x0, x1) = self
+                .edges
+                .iter()
+                .fold((area.x0, area.x1), |span, edge| edge.narrow(span, y));
+            if x0 < x1 {
+                draw(y, x0, x1);
+            }
+        }
+    }
+}
+
+/// An edge of a triangle: the inside is where `constant − slope·x + along·y` ≥ 0, with x and y in
+/// steps.
+struct Edge {
+    along: i64,
+    slope: i64,
+    constant: i64,
+}
+
+impl Edge {
+    /// From `from` to `to` with the inside on the right hand (the y axis points down).
+    fn new(from: [i32; 2], to: [i32; 2]) -> Self {
+        let [ax, ay] = from.map(i64::from);
+        let [bx, by] = to.map(i64::from);
+        let (along, slope) = (bx - ax, by - ay);
+        let is_top_or_left = slope < 0 || (slope == 0 && along > 0);
+        Self {
+            along,
+            slope,
+            constant: slope * ax - along * ay - i64::from(!is_top_or_left),
+        }
+    }
+
+    /// What of a span of pixels in row `y` is inside.
+    fn narrow(&self, (x0, x1): (i32, i32), y: i32) -> (i32, i32) {
+        let centre = i64::from(y) * i64::from(STEPS) + i64::from(STEPS) / 2;
+        let value = self.constant + self.along * centre;
+        match self.slope {
+            0 if value >= 0 => (x0, x1),
+            0 => (x0, x0),
+            slope if slope > 0 => {
+                // x ≤ ⌊value / slope⌋
+                let end = first_pixel(value.div_euclid(slope) + 1);
+                (x0, x1.min(end))
+            }
+            slope => {
+                // x ≥ ⌈value / slope⌉ = −⌊value / −slope⌋
+                let start = first_pixel(-value.div_euclid(-slope));
+                (x0.max(start), x1)
+            }
+        }
+    }
+}
+
+/// The pixels that a triangle may cover.
+pub fn bounds(corners: &[Corner; 3]) -> Area {
+    let [x, y]: [[i32; 3]; 2] =
+        std::array::from_fn(|axis| corners.map(|corner| corner.position[axis]));
+    let least = |values: [i32; 3]| values[0].min(values[1]).min(values[2]);
+    let most = |values: [i32; 3]| values[0].max(values[1]).max(values[2]);
+    Area {
+        x0: first_pixel(i64::from(least(x))),
+        y0: first_pixel(i64::from(least(y))),
+        // A centre on the last edge may belong to the triangle only if that is a top or left edge.
+        x1: first_pixel(i64::from(most(x)) + 1),
+        y1: first_pixel(i64::from(most(y)) + 1),
+    }
+}
+
+/// ⌊x/255 + ½⌋ for 0 ≤ x ≤ 255².
+#[inline]
+fn over_255(x: u32) -> u32 {
+    ((x + 128) * 257) >> 16
+}
+
+/// A texel in the tint of the shape.
+#[inline]
+fn tinted(texel: [u8; 4], tint: [u8; 4]) -> [u8; 4] {
+    if tint == [255; 4] {
+        return texel;
+    }
+    std::array::from_fn(|c| over_255(u32::from(texel[c]) * u32::from(tint[c])) as u8)
+}
+
+/// Puts a colour, multiplied by its alpha, over a pixel.
+#[inline]
+fn blend(pixel: &mut [u8; 4], color: [u8; 4]) {
+    match color {
+        [0, 0, 0, 0] => {}
+        [_, _, _, 255] => *pixel = color,
+        _ => {
+            let rest = 255 - u32::from(color[3]);
+            *pixel = std::array::from_fn(|c| {
+                (u32::from(color[c]) + over_255(u32::from(pixel[c]) * rest)).min(255) as u8
+            });
+        }
+    }
+}
+
+/// [`blend`] with a colour of channels from 0 to 255 that is not rounded yet.
+#[inline]
+fn blend_exact(pixel: &mut [u8; 4], color: [f32; 4]) {
+    let rest = 1.0 - color[3] * (1.0 / 255.0);
+    // The cast saturates.
+    *pixel = std::array::from_fn(|c| (color[c] + f32::from(pixel[c]) * rest + 0.5) as u8);
+}
