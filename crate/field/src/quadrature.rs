@@ -1,7 +1,7 @@
 //! Numerical integration: the reference that the closed forms are tested against.
 //!
 //! [`value`] integrates the kernel over the skeleton adaptively, and shares nothing with the closed
-//! forms but the definition of the field. It is slow (10³ to 10⁶ kernel evaluations).
+//! forms but the definition of the field. It is slow (10² to 10⁵ kernel evaluations).
 use crate::{Field, Kernel, Primitive, Profile, Skeleton, Wave};
 use glam::DVec3;
 
@@ -33,19 +33,15 @@ const NODES: [(f64, f64, f64); 8] = [
 /// Deepest bisection; a panel is then 2⁻⁴⁰ of the whole.
 const DEPTH: u32 = 40;
 
-/// `∫ₐᵇ f`, by bisection until Gauss and Kronrod agree to `tolerance` (relative to the whole).
+/// The integral of f from the first to the last of `breaks`, by bisection of the panels between
+/// them until Gauss and Kronrod agree to `tolerance` (relative to the integral of |f|).
 ///
-/// Good to about that for functions that are smooth between a and b; a function with a jump costs
-/// time, not correctness.
-pub fn integral(f: &mut impl FnMut(f64) -> f64, a: f64, b: f64, tolerance: f64) -> f64 {
-    // A first look, for the scale that the tolerance is relative to.
-    let pieces = 8;
-    let step = (b - a) / f64::from(pieces);
-    let panels: Vec<_> = (0..pieces)
-        .map(|i| {
-            let (low, high) = (a + step * f64::from(i), a + step * f64::from(i + 1));
-            (low, high, panel(f, low, high))
-        })
+/// Good to better than that where f is smooth between breaks; a jump or a kink costs time. Breaks
+/// must be close enough that a first look with 15 nodes a panel finds every peak.
+pub fn integral(f: &mut impl FnMut(f64) -> f64, breaks: &[f64], tolerance: f64) -> f64 {
+    let panels: Vec<_> = breaks
+        .windows(2)
+        .map(|ends| (ends[0], ends[1], panel(f, ends[0], ends[1])))
         .collect();
     let scale: f64 = panels.iter().map(|(_, _, p)| p.size).sum();
     panels
@@ -112,11 +108,12 @@ fn kernel(kernel: Kernel, s: f64, square: f64) -> f64 {
 pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
     let s = primitive.width;
     let h = |q: DVec3| kernel(primitive.kernel, s, q.distance_squared(point));
+    let grain = |length: f64| 1.0 / (s * length);
     let integral = match primitive.skeleton {
         Skeleton::Point { center } => h(center),
         Skeleton::Segment { base, apex } => {
             let d = apex - base;
-            d.length() * split(|t| h(base + d * t), near(base, d, point), 1e-13)
+            d.length() * split(|t| h(base + d * t), near(base, d, point), grain(d.length()))
         }
         Skeleton::Arc {
             center,
@@ -131,7 +128,7 @@ pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
             };
             let d = point - center;
             let azimuth = libm::atan2(d.dot(v), d.dot(u)).rem_euclid(core::f64::consts::TAU);
-            radius * angle * split(|t| h(on(t)), azimuth / angle, 1e-13)
+            radius * angle * split(|t| h(on(t)), azimuth / angle, grain(radius * angle))
         }
         Skeleton::Triangle { corners: [a, b, c] } => {
             // Strips parallel to the longest side, so that they do not become needles.
@@ -149,9 +146,9 @@ pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
             let strip = |t: f64| {
                 let (p, q) = (a + (c - a) * t, b + (c - b) * t);
                 let d = q - p;
-                d.length() * split(|w| h(p + d * w), near(p, d, point), 1e-13)
+                d.length() * split(|w| h(p + d * w), near(p, d, point), grain(d.length()))
             };
-            altitude.length() * split(strip, near(foot, altitude, point), 1e-12)
+            altitude.length() * split(strip, near(foot, altitude, point), grain(altitude.length()))
         }
         Skeleton::Plane { point: p, normal } => {
             let d = (point - p).dot(normal.normalize());
@@ -161,7 +158,7 @@ pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
                 let stretch = 1.0 / ((1.0 - t) * (1.0 - t) * s);
                 core::f64::consts::TAU * r * stretch * kernel(primitive.kernel, s, d * d + r * r)
             };
-            split(ring, 0.5, 1e-13)
+            split(ring, 0.5, 1.0)
         }
     };
     let factor = primitive
@@ -176,26 +173,30 @@ pub fn sum(field: &Field, point: DVec3) -> f64 {
     field.primitives.iter().map(|p| value(p, point)).sum()
 }
 
-/// `∫₀¹`, with the peak at `peak` not inside a panel, however narrow it is.
-fn split(mut f: impl FnMut(f64) -> f64, peak: f64, tolerance: f64) -> f64 {
+/// `∫₀¹` of a function with a peak at `peak`, of about the width `grain`: panels grow fourfold away
+/// from there.
+fn split(mut f: impl FnMut(f64) -> f64, peak: f64, grain: f64) -> f64 {
     let peak = if peak.is_finite() {
         peak.clamp(0.0, 1.0)
     } else {
         0.0
     };
-    // Panels that grow away from the peak, tenfold each.
-    let mut total = 0.0;
-    for (side, reach) in [(-1.0, peak), (1.0, 1.0 - peak)] {
-        let mut from = 0.0;
-        let mut to = reach * 1e-6;
-        while from < reach {
-            let (a, b) = (peak + side * from, peak + side * to);
-            total += integral(&mut f, a.min(b), a.max(b), tolerance);
-            from = to;
-            to = (to * 10.0).min(reach);
-        }
+    let grain = grain.max(1e-9);
+    let mut breaks = vec![peak];
+    let mut reach = grain;
+    while reach < peak {
+        breaks.push(peak - reach);
+        reach *= 4.0;
     }
-    total
+    breaks.push(0.0);
+    breaks.reverse();
+    reach = grain;
+    while reach < 1.0 - peak {
+        breaks.push(peak + reach);
+        reach *= 4.0;
+    }
+    breaks.push(1.0);
+    integral(&mut f, &breaks, 1e-13)
 }
 
 /// Where on `base + t·d` the point's perpendicular falls.

@@ -104,12 +104,12 @@ impl Skeleton {
                 let d = point - a;
                 let v = normal.dot(e1.cross(d)) / area;
                 let u = normal.dot(d.cross(e2)) / area;
-                if area > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
-                    return a + e1 * u + e2 * v;
-                }
+                // The edges are asked in any case: of a needle's inside, u and v are uncertain.
+                let inside = area > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0;
                 [(a, b), (b, c), (c, a)]
                     .map(|(p, q)| nearest_on_segment(point, p, q))
                     .into_iter()
+                    .chain(inside.then(|| a + e1 * u + e2 * v))
                     .min_by(|p, q| {
                         p.distance_squared(point)
                             .total_cmp(&q.distance_squared(point))

@@ -1,0 +1,259 @@
+//! Random primitives and points, equal on every platform.
+#![allow(dead_code)] // Each test file uses its part.
+
+use core::f64::consts::{PI, TAU};
+use field::{BlobScale, Jet, Kernel, Primitive, Profile, Real, Shaping, Skeleton};
+use glam::DVec3;
+
+/// Tests that run natively and, by the same names, in WebAssembly.
+#[macro_export]
+macro_rules! tests {
+    ($($(#[$attribute:meta])* fn $name:ident() $body:block)*) => {$(
+        $(#[$attribute])*
+        #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+        #[cfg_attr(not(target_arch = "wasm32"), test)]
+        fn $name() $body
+    )*};
+}
+
+/// The five kinds of skeleton.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Point,
+    Segment,
+    Arc,
+    Triangle,
+    Plane,
+}
+
+pub const KINDS: [Kind; 5] = [
+    Kind::Point,
+    Kind::Segment,
+    Kind::Arc,
+    Kind::Triangle,
+    Kind::Plane,
+];
+
+/// A splitmix64 generator.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^= z >> 31;
+        (z >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn range(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// 10 to a random power.
+    pub fn decades(&mut self, low: f64, high: f64) -> f64 {
+        libm::exp10(self.range(low, high))
+    }
+
+    pub fn pick<T: Copy>(&mut self, of: &[T]) -> T {
+        of[(self.unit() * of.len() as f64) as usize]
+    }
+
+    pub fn vector(&mut self, size: f64) -> DVec3 {
+        DVec3::new(
+            self.range(-size, size),
+            self.range(-size, size),
+            self.range(-size, size),
+        )
+    }
+
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            let v = self.vector(1.0);
+            if (0.1..1.0).contains(&v.length()) {
+                return v.normalize();
+            }
+        }
+    }
+
+    /// Three orthonormal vectors.
+    pub fn axes(&mut self) -> [DVec3; 3] {
+        let x = self.direction();
+        let y = loop {
+            if let Some(y) = x.cross(self.direction()).try_normalize() {
+                break y;
+            }
+        };
+        [x, y, x.cross(y)]
+    }
+
+    /// A skeleton near the origin, of about this size.
+    pub fn skeleton(&mut self, kind: Kind, size: f64) -> Skeleton {
+        let [x, y, _] = self.axes();
+        let shift = self.vector(0.5 * size);
+        match kind {
+            Kind::Point => Skeleton::Point { center: shift },
+            Kind::Segment => Skeleton::Segment {
+                base: shift - x * (size / 2.0),
+                apex: shift + x * (size / 2.0),
+            },
+            Kind::Arc => {
+                let small = self.decades(-6.0, 0.0);
+                let any = self.range(0.0, TAU);
+                let angle = self.pick(&[TAU, TAU - small, small, PI, PI + small, any, any, any]);
+                Skeleton::Arc {
+                    // A short arc is near its own middle.
+                    center: shift - if angle < 1.0 { x * size } else { DVec3::ZERO },
+                    u: x,
+                    v: y,
+                    radius: size,
+                    angle,
+                }
+            }
+            Kind::Triangle => {
+                let thin = self.decades(-4.0, 0.0);
+                let width = size * self.pick(&[1.0, 1.0, thin]);
+                let along = self.range(-1.0, 1.0);
+                let mut corners = [
+                    -x * (size / 2.0),
+                    x * (size / 2.0),
+                    x * (size * along) + y * width,
+                ]
+                .map(|p| p + shift);
+                let turn = (self.unit() * 3.0) as usize;
+                corners.rotate_left(turn);
+                Skeleton::Triangle { corners }
+            }
+            Kind::Plane => Skeleton::Plane {
+                point: shift,
+                normal: x,
+            },
+        }
+    }
+
+    /// A point on the skeleton or in a natural place of it (an end, an axis, a centre).
+    pub fn place(&mut self, skeleton: &Skeleton) -> DVec3 {
+        let (inside, around) = (self.unit(), self.range(-0.5, 1.5));
+        match *skeleton {
+            Skeleton::Point { center } => center,
+            Skeleton::Segment { base, apex } => {
+                base + (apex - base) * self.pick(&[0.0, 1.0, 0.5, inside, around])
+            }
+            Skeleton::Arc {
+                center,
+                u,
+                v,
+                radius,
+                angle,
+            } => {
+                let t = angle * self.pick(&[0.0, 1.0, 0.5, inside, around]);
+                let r = radius * self.pick(&[1.0, 1.0, 0.0, inside, around]);
+                let (sine, cosine) = libm::sincos(t);
+                center + r * (u * cosine + v * sine)
+            }
+            Skeleton::Triangle { corners: [a, b, c] } => {
+                let other = self.unit();
+                let (s, t) = self.pick(&[
+                    (0.0, 0.0),
+                    (1.0, 0.0),
+                    (0.0, 1.0),
+                    (inside, 0.0),
+                    (inside, 1.0 - inside),
+                    (inside, other * (1.0 - inside)),
+                    (around, other),
+                ]);
+                a + (b - a) * s + (c - a) * t
+            }
+            Skeleton::Plane { point, .. } => point,
+        }
+    }
+
+    /// A point at a distance of these decades from such a place.
+    pub fn near(&mut self, skeleton: &Skeleton, low: f64, high: f64) -> DVec3 {
+        let place = self.place(skeleton);
+        let direction = match *skeleton {
+            Skeleton::Segment { base, apex } => (apex - base).normalize_or_zero(),
+            Skeleton::Arc { u, v, .. } => u.cross(v),
+            Skeleton::Triangle { corners: [a, b, c] } => (b - a).cross(c - a).normalize_or_zero(),
+            _ => DVec3::ZERO,
+        };
+        let any = self.direction();
+        let direction = self.pick(&[direction, any, any, DVec3::ZERO]);
+        place + direction * self.decades(low, high)
+    }
+
+    /// A shaping of width about 1/R.
+    pub fn shaping(&mut self, radius: f64) -> Shaping {
+        Shaping {
+            blobbiness: -self.decades(-1.0, 1.0),
+            strength: self.pick(&[1.0, 1.0, 1.5, -1.0]),
+            ..shaping(radius, 1.0)
+        }
+    }
+}
+
+/// Relative blobbiness, strength 1, ε = 1e-3.
+pub fn shaping(radius: f64, blobbiness: f64) -> Shaping {
+    Shaping {
+        kernel: Kernel::Cauchy,
+        radius,
+        blobbiness,
+        blob_scale: BlobScale::Relative,
+        strength: 1.0,
+        influence: 1e-3,
+    }
+}
+
+pub fn primitive(skeleton: Skeleton, shaping: &Shaping, profile: Option<Profile>) -> Primitive {
+    Primitive::new(skeleton, shaping, profile)
+        .unwrap_or_else(|| panic!("no flesh: {skeleton:?} {shaping:?}"))
+}
+
+/// Value and gradient by one evaluator, as doubles.
+pub fn jet<R: Real>(primitive: &Primitive, point: DVec3) -> (f64, DVec3) {
+    let Jet { value, gradient } = primitive.jet(point.to_array().map(R::splat));
+    (
+        value.lane(0),
+        DVec3::from_array(gradient.map(|g| g.lane(0))),
+    )
+}
+
+/// The nearest point with coordinates of single precision.
+pub fn single(point: DVec3) -> DVec3 {
+    DVec3::from_array(point.to_array().map(|x| f64::from(x as f32)))
+}
+
+/// What one rounding of the input changes: the value's change when the point and the skeleton's
+/// corners move by one part in 1 of their size.
+///
+/// Errors are measured against it: `error ≤ n·ε·(|f| + sensitivity)` says that a result is exact
+/// for inputs that differ by n units in the last place from those given.
+pub fn sensitivity(primitive: &Primitive, point: DVec3) -> f64 {
+    let size = extent(&primitive.skeleton);
+    let slope = jet::<f64>(primitive, point).1.length();
+    let mut sum = slope * (point.length() + size);
+    if let Skeleton::Triangle { corners: [a, b, c] } = primitive.skeleton {
+        // A needle's width is uncertain by its length: so is the field, by a line's of that width.
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        let q = 1.0 + (primitive.width * primitive.skeleton.distance(point)).powi(2);
+        let line = longest.min(PI / 2.0 * q.sqrt() / primitive.width) / (q * q);
+        sum += primitive.height.abs() * longest * line;
+    }
+    sum
+}
+
+/// The largest coordinate of a skeleton.
+pub fn extent(skeleton: &Skeleton) -> f64 {
+    match *skeleton {
+        Skeleton::Point { center } => center.length(),
+        Skeleton::Segment { base, apex } => base.length().max(apex.length()),
+        Skeleton::Arc { center, radius, .. } => center.length() + radius,
+        Skeleton::Triangle { corners } => corners.iter().fold(0.0, |l, p| p.length().max(l)),
+        Skeleton::Plane { point, .. } => point.length(),
+    }
+}
