@@ -1,1 +1,29 @@
-//! To be written.
+//! The instant draft: what a scene looks like, as fast as a GPU can draw it.
+//!
+//! Every element is drawn as its *offset surface* – a ball, a cylinder, a piece of a torus, a
+//! prism, a slab of the radius that counts for it ([`scene::Scene::radius`]) – and not as a mesh:
+//! the GPU rasterises a box around the element, and a shader (see `shaders/`) casts the viewing
+//! ray of each pixel at the exact shape inside. Silhouettes are smooth at any distance, shapes
+//! that pass through each other meet in the right curve, and nothing is prepared when the text
+//! changes but a list of numbers. The draft and the tracer share the projection
+//! ([`scene::Camera::projection`]) and Phong's model, so the traced picture falls into place over
+//! the draft. What the draft leaves out: the blending of soft elements, and shadows.
+//!
+//! [`Draft`] draws; [`orbit`] moves a camera with the pointer, or to where it sees everything.
+//!
+//! It runs wherever wgpu does, WebGL2 included: no storage buffers, no compute shaders.
+
+mod bounds;
+mod draft;
+mod instance;
+mod materials;
+pub mod orbit;
+mod pipelines;
+mod solid;
+mod targets;
+mod view;
+
+pub use bounds::Bounds;
+pub use draft::{Draft, Drawn, MAX_ELEMENTS};
+pub use targets::Sampling;
+pub use view::MAX_LIGHTS;

@@ -1,0 +1,76 @@
+//! The materials' colours, as a texture that the shaders look them up in. A texture, because a
+//! scene may have thousands of materials and WebGL2 has no storage buffers.
+
+use scene::{Material, Rgb, Scene};
+
+/// Materials in a row of the texture; as in `shaders/element.wgsl`. Three texels each: 1536 wide,
+/// less than the 2048 that every device can do.
+const MATERIALS_A_ROW: usize = 512;
+const TEXELS: usize = 3;
+
+/// Makes the texture. Materials beyond the last row that the device can do are left out; elements
+/// made of them get the last of [`Table::count`].
+pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) -> Table {
+    let rows_limit = device.limits().max_texture_dimension_2d as usize;
+    let kept = scene.materials.len().min(rows_limit * MATERIALS_A_ROW - 1);
+    let fallback = Material::default();
+    let rows = (kept + 1).div_ceil(MATERIALS_A_ROW);
+    let mut texels = vec![[0.0f32; 4]; rows * MATERIALS_A_ROW * TEXELS];
+    let all = scene.materials[..kept].iter().chain([&fallback]);
+    for (texel, material) in texels.chunks_exact_mut(TEXELS).zip(all) {
+        texel[0] = with(material.ambient, finite(material.shine).max(0.0));
+        texel[1] = with(material.diffuse, 0.0);
+        texel[2] = with(material.specular, 0.0);
+    }
+    let size = wgpu::Extent3d {
+        width: (MATERIALS_A_ROW * TEXELS) as u32,
+        height: rows as u32,
+        depth_or_array_layers: 1,
+    };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("materials"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    queue.write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(&texels),
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(size.width * 16),
+            rows_per_image: None,
+        },
+        size,
+    );
+    Table {
+        view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+        count: kept,
+    }
+}
+
+/// The uploaded materials.
+pub(crate) struct Table {
+    pub(crate) view: wgpu::TextureView,
+    count: usize,
+}
+
+impl Table {
+    /// Where in the table a material is; the default material for an index that has none.
+    pub(crate) fn slot(&self, material: usize) -> u32 {
+        material.min(self.count) as u32
+    }
+}
+
+fn with([red, green, blue]: Rgb, fourth: f32) -> [f32; 4] {
+    [finite(red), finite(green), finite(blue), fourth]
+}
+
+/// The number, or 0 for what is none: a GPU may do anything with it.
+pub(crate) fn finite(x: f32) -> f32 {
+    if x.is_finite() { x } else { 0.0 }
+}

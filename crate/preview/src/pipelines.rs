@@ -1,0 +1,279 @@
+//! The shaders and how they are bound. Shader code is fixed when the program is built: nothing
+//! that a person types ever becomes part of it.
+
+use crate::instance::Instance;
+use crate::solid::Kind;
+use crate::view::View;
+
+/// Format of the draft's picture: not sRGB, because the gamma of the dataset is applied already.
+pub(crate) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Format of its depth: a float, because nearer is larger and farther is near zero.
+pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+impl Kind {
+    pub(crate) fn label(self) -> &'static str {
+        match self {
+            Self::Sphere => "spheres",
+            Self::Cylinder => "cylinders",
+            Self::Arc => "arcs",
+            Self::Triangle => "triangles",
+            Self::Plane => "planes",
+        }
+    }
+
+    fn code(self) -> &'static str {
+        macro_rules! element {
+            ($name:literal) => {
+                concat!(
+                    include_str!("../../../shaders/element.wgsl"),
+                    include_str!(concat!("../../../shaders/", $name))
+                )
+            };
+        }
+        match self {
+            Self::Sphere => element!("sphere.wgsl"),
+            Self::Cylinder => element!("cylinder.wgsl"),
+            Self::Arc => element!("arc.wgsl"),
+            Self::Triangle => element!("triangle.wgsl"),
+            Self::Plane => element!("plane.wgsl"),
+        }
+    }
+
+    /// The vertex shader, and how many vertices it makes of one instance.
+    pub(crate) fn cover(self) -> (&'static str, u32) {
+        match self {
+            Self::Plane => ("cover_picture", 3),
+            _ => ("cover_box", 36),
+        }
+    }
+}
+
+/// Pipelines and buffers that live as long as the device.
+pub(crate) struct Pipelines {
+    pub(crate) elements: [wgpu::RenderPipeline; Kind::COUNT],
+    pub(crate) resolve: wgpu::RenderPipeline,
+    /// Holds one [`View`].
+    pub(crate) view: wgpu::Buffer,
+    /// Holds the gamma for the resolve pass.
+    pub(crate) tone: wgpu::Buffer,
+    element_layout: wgpu::BindGroupLayout,
+    resolve_layout: wgpu::BindGroupLayout,
+}
+
+impl Pipelines {
+    pub(crate) fn new(device: &wgpu::Device) -> Self {
+        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let fragment = wgpu::ShaderStages::FRAGMENT;
+        let element_layout = layout(
+            device,
+            "element",
+            &[uniform(0, stages), unfiltered_texture(1, fragment)],
+        );
+        let resolve_layout = layout(
+            device,
+            "resolve",
+            &[unfiltered_texture(0, fragment), uniform(1, fragment)],
+        );
+        Self {
+            elements: Kind::ALL.map(|kind| element_pipeline(device, kind, &element_layout)),
+            resolve: resolve_pipeline(device, &resolve_layout),
+            view: uniform_buffer(device, "view", size_of::<View>()),
+            tone: uniform_buffer(device, "tone", 16),
+            element_layout,
+            resolve_layout,
+        }
+    }
+
+    /// Binds the view and a table of materials for the element pipelines.
+    pub(crate) fn bind_materials(
+        &self,
+        device: &wgpu::Device,
+        materials: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("element"),
+            layout: &self.element_layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: self.view.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(materials),
+                },
+            ],
+        })
+    }
+
+    /// Binds the samples to be averaged for the resolve pipeline.
+    pub(crate) fn bind_samples(
+        &self,
+        device: &wgpu::Device,
+        samples: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("resolve"),
+            layout: &self.resolve_layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(samples),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: self.tone.as_entire_binding(),
+                },
+            ],
+        })
+    }
+}
+
+fn uniform_buffer(device: &wgpu::Device, label: &str, size: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn uniform(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+fn unfiltered_texture(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+fn layout(
+    device: &wgpu::Device,
+    label: &str,
+    entries: &[wgpu::BindGroupLayoutEntry],
+) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries,
+    })
+}
+
+fn element_pipeline(
+    device: &wgpu::Device,
+    kind: Kind,
+    bindings: &wgpu::BindGroupLayout,
+) -> wgpu::RenderPipeline {
+    let (cover, _) = kind.cover();
+    pipeline(
+        device,
+        Stages {
+            label: kind.label(),
+            code: kind.code(),
+            vertex: cover,
+            fragment: "draw",
+        },
+        bindings,
+        &[Some(wgpu::VertexBufferLayout {
+            array_stride: size_of::<Instance>() as u64,
+            step_mode: wgpu::VertexStepMode::Instance,
+            attributes: &Instance::ATTRIBUTES,
+        })],
+        // The back faces of a box are drawn; the triangle over the whole picture has only one.
+        (kind != Kind::Plane).then_some(wgpu::Face::Front),
+        Some(wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+    )
+}
+
+fn resolve_pipeline(
+    device: &wgpu::Device,
+    bindings: &wgpu::BindGroupLayout,
+) -> wgpu::RenderPipeline {
+    pipeline(
+        device,
+        Stages {
+            label: "resolve",
+            code: include_str!("../../../shaders/resolve.wgsl"),
+            vertex: "cover",
+            fragment: "resolve",
+        },
+        bindings,
+        &[],
+        None,
+        None,
+    )
+}
+
+/// The code of a pipeline and the names of its two functions.
+struct Stages {
+    label: &'static str,
+    code: &'static str,
+    vertex: &'static str,
+    fragment: &'static str,
+}
+
+fn pipeline(
+    device: &wgpu::Device,
+    stages: Stages,
+    bindings: &wgpu::BindGroupLayout,
+    buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
+    cull_mode: Option<wgpu::Face>,
+    depth_stencil: Option<wgpu::DepthStencilState>,
+) -> wgpu::RenderPipeline {
+    let label = Some(stages.label);
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label,
+        source: wgpu::ShaderSource::Wgsl(stages.code.into()),
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label,
+        bind_group_layouts: &[Some(bindings)],
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(stages.vertex),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers,
+        },
+        primitive: wgpu::PrimitiveState {
+            cull_mode,
+            ..wgpu::PrimitiveState::default()
+        },
+        depth_stencil,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(stages.fragment),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(COLOUR.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

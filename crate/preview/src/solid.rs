@@ -1,0 +1,239 @@
+//! What a shape's offset surface is to the draft: an oriented box, and a few numbers that describe
+//! the shape inside it. Everything is computed in `f64`; [`crate::instance`] packs it for the GPU.
+
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use scene::{Element, Scene, Shape};
+
+/// Which shader draws a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Sphere,
+    Cylinder,
+    Arc,
+    Triangle,
+    Plane,
+}
+
+impl Kind {
+    pub(crate) const COUNT: usize = 5;
+    pub(crate) const ALL: [Self; Self::COUNT] = [
+        Self::Sphere,
+        Self::Cylinder,
+        Self::Arc,
+        Self::Triangle,
+        Self::Plane,
+    ];
+}
+
+/// An element's offset surface in coordinates of its own, where its size is about 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Solid {
+    pub(crate) kind: Kind,
+    /// World position of the own coordinates' origin.
+    pub(crate) origin: DVec3,
+    /// The own axes in the world.
+    pub(crate) rotation: DQuat,
+    /// World length of one unit of the own coordinates.
+    pub(crate) unit: f64,
+    /// The box around the solid, own coordinates. Means nothing for a plane.
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
+    /// Numbers that the shape's shader explains.
+    pub(crate) a: [f64; 4],
+    pub(crate) b: [f64; 4],
+}
+
+impl Solid {
+    /// The solid that the draft shows for an element of a scene; none where there is nothing to
+    /// see: no radius, no length, numbers that are not finite, or a soft element that adds no
+    /// flesh because its strength is not positive.
+    pub(crate) fn of(scene: &Scene, element: &Element) -> Option<Self> {
+        let strength = scene.materials.get(element.material).map(|m| m.strength);
+        if scene.is_soft(element) && strength.is_none_or(|s| s <= 0.0) {
+            return None;
+        }
+        Self::new(&element.shape, scene.radius(element))
+    }
+
+    /// The offset surface of a shape at the given radius.
+    pub(crate) fn new(shape: &Shape, radius: f64) -> Option<Self> {
+        if !radius.is_finite() {
+            return None;
+        }
+        let solid = match *shape {
+            Shape::Sphere { center, .. } => Self::sphere(center, radius),
+            Shape::Cylinder { base, apex, .. } => Self::cylinder(base, apex, radius),
+            Shape::Arc {
+                center,
+                u,
+                v,
+                sweep,
+                angle,
+                ..
+            } => Self::arc(center, u, v, sweep, angle, radius),
+            Shape::Triangle { corners, .. } => Self::triangle(corners, radius),
+            Shape::Plane { point, normal, .. } => Self::plane(point, normal, radius),
+        }?;
+        let numbers = solid.a.iter().chain(&solid.b);
+        (solid.origin.is_finite()
+            && solid.rotation.is_finite()
+            && solid.unit.is_finite()
+            && solid.unit > 0.0
+            && solid.low.is_finite()
+            && solid.high.is_finite()
+            && numbers.copied().all(f64::is_finite))
+        .then_some(solid)
+    }
+
+    /// World corners of the axis-parallel box around the solid; none for a plane, which has no end.
+    pub(crate) fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        if self.kind == Kind::Plane {
+            return None;
+        }
+        let middle = self.origin + self.rotation * ((self.low + self.high) * 0.5 * self.unit);
+        let half = (self.high - self.low) * 0.5 * self.unit;
+        let axes = DMat3::from_quat(self.rotation);
+        let reach =
+            axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
+        Some((middle - reach, middle + reach))
+    }
+
+    /// The same solid with its origin, where that is free, as near to a point as possible: a plane
+    /// looks the same from anywhere along it, but digits are best where the scene is.
+    pub(crate) fn anchored(mut self, point: DVec3) -> Self {
+        if self.kind == Kind::Plane {
+            let normal = self.rotation * DVec3::Z;
+            self.origin = point - normal * normal.dot(point - self.origin);
+        }
+        self
+    }
+
+    fn sphere(center: DVec3, radius: f64) -> Option<Self> {
+        (radius > 0.0).then_some(Self {
+            kind: Kind::Sphere,
+            origin: center,
+            rotation: DQuat::IDENTITY,
+            unit: radius,
+            low: DVec3::NEG_ONE,
+            high: DVec3::ONE,
+            a: [1.0, 0.0, 0.0, 0.0],
+            b: [0.0; 4],
+        })
+    }
+
+    fn cylinder(base: DVec3, apex: DVec3, radius: f64) -> Option<Self> {
+        let length = base.distance(apex);
+        if radius <= 0.0 || length <= 0.0 {
+            return None;
+        }
+        let unit = radius.max(0.5 * length);
+        let high = DVec3::new(radius, radius, 0.5 * length) / unit;
+        Some(Self {
+            kind: Kind::Cylinder,
+            origin: base.midpoint(apex),
+            rotation: with_z(apex - base)?,
+            unit,
+            low: -high,
+            high,
+            a: [radius / unit, 0.5 * length / unit, 0.0, 0.0],
+            b: [0.0; 4],
+        })
+    }
+
+    fn arc(center: DVec3, u: DVec3, v: DVec3, sweep: f64, angle: f64, radius: f64) -> Option<Self> {
+        if radius <= 0.0 || sweep <= 0.0 || angle.is_nan() || angle <= 0.0 {
+            return None;
+        }
+        let full = core::f64::consts::TAU;
+        // A ring that all but closes has lids which nothing can be seen of.
+        let ring = angle >= full * (1.0 - 1e-9);
+        let half_angle = 0.5 * angle.min(full);
+        let (sine, cosine) = libm::sincos(half_angle);
+        let u = u.try_normalize()?;
+        let v = v.reject_from_normalized(u).try_normalize()?;
+        let x = u * cosine + v * sine;
+        let y = v * cosine - u * sine;
+        let z = u.cross(v);
+
+        let inner = (sweep - radius).max(0.0);
+        let outer = sweep + radius;
+        // The reach towards the circle's centre. 1 − cos is written without cancellation: of a
+        // slightly bent arc of an enormous circle, the bend is what is seen.
+        let half_sine = libm::sin(0.5 * half_angle);
+        let bend = 2.0 * half_sine * half_sine;
+        let low_x = if cosine >= 0.0 {
+            (inner - sweep) - inner * bend
+        } else {
+            (outer - sweep) - outer * bend
+        };
+        let high_y = if cosine <= 0.0 { outer } else { outer * sine };
+        let unit = radius.max(high_y).max(-low_x);
+        Some(Self {
+            kind: Kind::Arc,
+            origin: center + x * sweep,
+            rotation: DQuat::from_mat3(&DMat3::from_cols(x, y, z)).normalize(),
+            unit,
+            low: DVec3::new(low_x, -high_y, -radius) / unit,
+            high: DVec3::new(radius, high_y, radius) / unit,
+            a: [sweep / unit, radius / unit, sine, cosine],
+            b: [sweep * sine / unit, f64::from(u8::from(ring)), 0.0, 0.0],
+        })
+    }
+
+    fn triangle(corners: [DVec3; 3], radius: f64) -> Option<Self> {
+        let half = radius.max(0.0);
+        // The longest edge becomes the x-axis, so the box is tight.
+        let longest = (0..3).max_by(|&i, &j| {
+            let length = |k: usize| corners[k].distance_squared(corners[(k + 1) % 3]);
+            length(i).total_cmp(&length(j))
+        })?;
+        let [p, q, r] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
+        let x = (q - p).try_normalize()?;
+        let aside = (r - p).reject_from_normalized(x);
+        let length = q.distance(p);
+        // Corners on one line span no face.
+        if aside.length() <= 1e-12 * length {
+            return None;
+        }
+        let y = aside.try_normalize()?;
+        let z = x.cross(y);
+        let peak = DVec2::new((r - p).dot(x), aside.length());
+        let middle = DVec2::new(length, peak.y) * 0.5;
+        let unit = half.max(middle.max_element());
+        let [p2, q2, r2] =
+            [DVec2::ZERO, DVec2::new(length, 0.0), peak].map(|corner| (corner - middle) / unit);
+        let high = middle.extend(half) / unit;
+        Some(Self {
+            kind: Kind::Triangle,
+            origin: p + x * middle.x + y * middle.y,
+            rotation: DQuat::from_mat3(&DMat3::from_cols(x, y, z)).normalize(),
+            unit,
+            low: -high,
+            high,
+            a: [p2.x, p2.y, q2.x, q2.y],
+            b: [r2.x, r2.y, half / unit, 0.0],
+        })
+    }
+
+    fn plane(point: DVec3, normal: DVec3, radius: f64) -> Option<Self> {
+        let half = radius.max(0.0);
+        let unit = if half > 0.0 { half } else { 1.0 };
+        Some(Self {
+            kind: Kind::Plane,
+            origin: point,
+            rotation: with_z(normal)?,
+            unit,
+            low: DVec3::NEG_ONE,
+            high: DVec3::ONE,
+            a: [half / unit, 0.0, 0.0, 0.0],
+            b: [0.0; 4],
+        })
+    }
+}
+
+/// A rotation that takes the z-axis to a direction; none for a direction without length.
+fn with_z(direction: DVec3) -> Option<DQuat> {
+    let z = direction.try_normalize()?;
+    let x = z.any_orthonormal_vector();
+    Some(DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize())
+}

@@ -1,0 +1,127 @@
+//! What the GPU is told about the camera and the lights.
+
+use crate::instance::Units;
+use crate::materials::finite;
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+use scene::{Camera, Light, LightKind, Scene};
+
+/// Lights that the draft can take. Of more, the strongest count.
+pub const MAX_LIGHTS: usize = 8;
+
+/// The distance, in draft units, below which depths are no longer told apart. So small that it
+/// matters to nobody; depths are quotients of it, and `f32` has the exponents for that.
+const NEAREST: f32 = 1e-9;
+
+/// Colours as the draft writes them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tone {
+    pub(crate) gamma: f32,
+    pub(crate) background: [f64; 3],
+}
+
+impl Tone {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let gamma = scene.settings.gamma;
+        // A gamma that makes no sense is none; within the range, powers stay finite.
+        let gamma = if gamma.is_finite() && gamma > 0.0 {
+            gamma.clamp(1e-2, 1e2)
+        } else {
+            1.0
+        };
+        Self {
+            gamma,
+            background: scene
+                .background
+                .map(|channel| f64::from(libm::powf(finite(channel).clamp(0.0, 1.0), 1.0 / gamma))),
+        }
+    }
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct PackedLight {
+    place: [f32; 4],
+    colour: [f32; 4],
+}
+
+/// The uniform `view` of `shaders/element.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct View {
+    right: [f32; 4],
+    up: [f32; 4],
+    forward: [f32; 4],
+    eye_high: [f32; 4],
+    eye_low: [f32; 4],
+    picture: [f32; 4],
+    lights: [PackedLight; MAX_LIGHTS],
+}
+
+impl View {
+    /// The view of a camera onto a picture of the size `frame`, which is drawn with `samples`
+    /// samples across and down.
+    pub(crate) fn new(
+        camera: &Camera,
+        frame: [u32; 2],
+        samples: [u32; 2],
+        units: Units,
+        tone: Tone,
+        lights: &Lights,
+    ) -> Self {
+        let projection = camera.projection(frame[0], frame[1]);
+        let axes = projection.world_from_view;
+        let pack = |v: DVec3, w: f32| {
+            let v = v.as_vec3();
+            [v.x, v.y, v.z, w]
+        };
+        let (high, low) = units.place(projection.eye);
+        Self {
+            right: pack(axes.x_axis, projection.half_width as f32),
+            up: pack(axes.y_axis, projection.half_height as f32),
+            forward: pack(-axes.z_axis, NEAREST),
+            eye_high: [high[0], high[1], high[2], 0.0],
+            eye_low: [low[0], low[1], low[2], 0.0],
+            picture: [
+                1.0 / samples[0] as f32,
+                1.0 / samples[1] as f32,
+                tone.gamma,
+                lights.count as f32,
+            ],
+            lights: lights.packed,
+        }
+    }
+}
+
+/// The lights that count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lights {
+    packed: [PackedLight; MAX_LIGHTS],
+    count: usize,
+}
+
+impl Lights {
+    /// Packs the strongest lights, and tells how many were left out.
+    pub(crate) fn new(lights: &[Light], units: Units) -> (Self, usize) {
+        let strength = |light: &Light| light.colour.map(finite).into_iter().sum::<f32>();
+        let mut order: Vec<&Light> = lights.iter().collect();
+        // Stable: of equally strong lights the first ones count.
+        order.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+        let mut packed = [PackedLight::zeroed(); MAX_LIGHTS];
+        for (slot, light) in packed.iter_mut().zip(&order) {
+            let (place, w) = match light.kind {
+                LightKind::Point { position } => (units.place(position).0, 1.0),
+                LightKind::Distant { towards } => {
+                    (towards.normalize_or_zero().as_vec3().to_array(), 0.0)
+                }
+            };
+            let [red, green, blue] = light.colour.map(finite);
+            *slot = PackedLight {
+                place: [place[0], place[1], place[2], w],
+                colour: [red, green, blue, 0.0],
+            };
+        }
+        let count = order.len().min(MAX_LIGHTS);
+        (Self { packed, count }, order.len() - count)
+    }
+}

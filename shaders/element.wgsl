@@ -1,0 +1,245 @@
+// What the draft's five shapes share: the camera, the box that covers an element on the screen,
+// the viewing ray in the element's own coordinates, and the shading of the point it meets.
+//
+// A shape's file is appended to this one. It defines
+//     fn meet(ray: Ray, solid: Varying) -> Hit
+// which finds the nearest point of the shape in front of the eye.
+//
+// Lengths are in *draft units*: the scene is moved and scaled so that its middle is the origin and
+// its radius 1, whatever units the author chose. Every element has its own coordinates besides, in
+// which its size is about 1, so that neither tiny nor huge elements run out of f32's digits.
+
+struct Light {
+    // w = 1: where a point light stands. w = 0: the direction towards a distant light.
+    place: vec4f,
+    colour: vec4f,
+}
+
+struct View {
+    // Unit vector to the right in the picture; w: tangent of half the horizontal angle of view.
+    right: vec4f,
+    // Unit vector up in the picture; w: tangent of half the vertical angle of view.
+    up: vec4f,
+    // Unit vector into the picture; w: distance of the nearest depth that can be told apart.
+    forward: vec4f,
+    // The eye as a sum of two numbers: its f32 value, and what that leaves out.
+    eye_high: vec4f,
+    eye_low: vec4f,
+    // x, y: one over the number of samples across and down; z: gamma; w: how many lights count.
+    picture: vec4f,
+    lights: array<Light, 8>,
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+// Three texels a material: ambient and shine, diffuse, specular.
+@group(0) @binding(1) var materials: texture_2d<f32>;
+
+// As in crate/preview/src/materials.rs.
+const MATERIALS_A_ROW: u32 = 512u;
+
+struct Instance {
+    @location(0) origin_high: vec3f,
+    @location(1) material: u32,
+    @location(2) origin_low: vec3f,
+    // Draft units per unit of the element's own coordinates.
+    @location(3) unit: f32,
+    // Quaternion from the element's own axes to the world's.
+    @location(4) rotation: vec4f,
+    // Numbers that the shape's file explains.
+    @location(5) a: vec4f,
+    @location(6) b: vec4f,
+    // The box around the element, in its own coordinates.
+    @location(7) low: vec3f,
+    @location(8) high: vec3f,
+}
+
+struct Varying {
+    @builtin(position) position: vec4f,
+    // xyz: the eye in the element's coordinates; w: draft units per unit of them.
+    @location(0) @interpolate(flat, either) eye: vec4f,
+    @location(1) @interpolate(flat, either) rotation: vec4f,
+    @location(2) @interpolate(flat, either) a: vec4f,
+    @location(3) @interpolate(flat, either) b: vec4f,
+    @location(4) @interpolate(flat, either) low: vec3f,
+    @location(5) @interpolate(flat, either) high: vec3f,
+    @location(6) @interpolate(flat, either) material: u32,
+}
+
+// A viewing ray in an element's coordinates: the points origin + s * direction.
+struct Ray {
+    // The point of the ray's line nearest to the element's own origin: seen from far off, the
+    // coefficients of the equations stay small.
+    origin: vec3f,
+    // Unit vector.
+    direction: vec3f,
+    // The value of s at the eye; what lies before it is behind the eye.
+    start: f32,
+}
+
+struct Hit {
+    met: bool,
+    s: f32,
+    // Not necessarily of unit length, nor turned to the eye.
+    normal: vec3f,
+}
+
+const MISS: Hit = Hit(false, 0.0, vec3f(0.0));
+
+fn rotate(q: vec4f, v: vec3f) -> vec3f {
+    return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
+}
+
+fn unrotate(q: vec4f, v: vec3f) -> vec3f {
+    return rotate(vec4f(-q.xyz, q.w), v);
+}
+
+// The element's origin seen from the eye. Near elements lose no digits, because differences of
+// equal-sized numbers are exact.
+fn from_eye(instance: Instance) -> vec3f {
+    return (instance.origin_high - view.eye_high.xyz) + (instance.origin_low - view.eye_low.xyz);
+}
+
+fn vary(instance: Instance, offset: vec3f, position: vec4f) -> Varying {
+    var out: Varying;
+    out.position = position;
+    out.eye = vec4f(unrotate(instance.rotation, -offset) / instance.unit, instance.unit);
+    out.rotation = instance.rotation;
+    out.a = instance.a;
+    out.b = instance.b;
+    out.low = instance.low;
+    out.high = instance.high;
+    out.material = instance.material;
+    return out;
+}
+
+// Corner 0 … 35 of the twelve triangles of the unit cube, counter-clockwise seen from outside.
+fn cube_corner(index: u32) -> vec3f {
+    let face = index / 6u;
+    let corner = index % 6u;
+    let outer = f32(face / 3u);
+    var along = vec2f(
+        select(0.0, 1.0, corner == 1u || corner == 2u || corner == 4u),
+        select(0.0, 1.0, corner == 2u || corner == 4u || corner == 5u),
+    );
+    if face < 3u {
+        along = along.yx;
+    }
+    switch face % 3u {
+        case 0u: { return vec3f(outer, along.x, along.y); }
+        case 1u: { return vec3f(along.y, outer, along.x); }
+        default: { return vec3f(along.x, along.y, outer); }
+    }
+}
+
+// A little room around the box, so that rounding never cuts a silhouette.
+const BOX_ROOM: f32 = 1e-3;
+
+// The box of an element. Its back faces are drawn, which are there even for an eye inside it.
+@vertex
+fn cover_box(@builtin(vertex_index) index: u32, instance: Instance) -> Varying {
+    let offset = from_eye(instance);
+    let corner = mix(
+        instance.low - vec3f(BOX_ROOM),
+        instance.high + vec3f(BOX_ROOM),
+        cube_corner(index),
+    );
+    let seen = offset + rotate(instance.rotation, corner * instance.unit);
+    let distance = dot(seen, view.forward.xyz);
+    // The depth is written per fragment; half of w is never clipped, near or far.
+    let position = vec4f(
+        dot(seen, view.right.xyz) / view.right.w,
+        dot(seen, view.up.xyz) / view.up.w,
+        0.5 * distance,
+        distance,
+    );
+    return vary(instance, offset, position);
+}
+
+// The whole picture in one triangle, for what has no end.
+@vertex
+fn cover_picture(@builtin(vertex_index) index: u32, instance: Instance) -> Varying {
+    let corner = vec2f(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
+    return vary(instance, from_eye(instance), vec4f(corner, 0.5, 1.0));
+}
+
+// Colour of the point seen: Phong's model with all lights, without shadows. `seen` leads from the
+// eye to the point, `normal` is turned to the eye.
+fn phong(material: u32, seen: vec3f, normal: vec3f) -> vec3f {
+    let texel = vec2u((material % MATERIALS_A_ROW) * 3u, material / MATERIALS_A_ROW);
+    let ambient = textureLoad(materials, texel, 0);
+    let diffuse = textureLoad(materials, texel + vec2u(1u, 0u), 0).rgb;
+    let specular = textureLoad(materials, texel + vec2u(2u, 0u), 0).rgb;
+    let shine = ambient.w;
+    let place = view.eye_high.xyz + seen;
+    let mirrored = reflect(normalize(seen), normal);
+    var colour = ambient.rgb;
+    for (var i = 0u; i < 8u; i++) {
+        if f32(i) >= view.picture.w {
+            break;
+        }
+        let light = view.lights[i];
+        let way = light.place.xyz - light.place.w * place;
+        let towards = way / max(length(way), 1e-30);
+        let slope = dot(normal, towards);
+        if slope <= 0.0 {
+            continue;
+        }
+        // pow(0, 0) is undefined on a GPU; an exponent of 0 means a highlight everywhere.
+        let gleam = max(dot(mirrored, towards), 0.0);
+        let highlight = select(pow(max(gleam, 1e-20), shine), 1.0, shine == 0.0);
+        colour += light.colour.rgb * (diffuse * slope + specular * highlight);
+    }
+    return colour;
+}
+
+struct Fragment {
+    @location(0) colour: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn draw(solid: Varying) -> Fragment {
+    // The ray of the projection that the tracer uses too: through the middle of the sample.
+    let across = vec2f(2.0, -2.0) * (solid.position.xy * view.picture.xy) + vec2f(-1.0, 1.0);
+    let gaze = normalize(
+        view.forward.xyz
+            + across.x * view.right.w * view.right.xyz
+            + across.y * view.up.w * view.up.xyz,
+    );
+    var ray: Ray;
+    ray.direction = unrotate(solid.rotation, gaze);
+    ray.start = dot(solid.eye.xyz, ray.direction);
+    ray.origin = solid.eye.xyz - ray.start * ray.direction;
+
+    let hit = meet(ray, solid);
+    if !hit.met || hit.s <= ray.start {
+        discard;
+    }
+    let distance = (hit.s - ray.start) * solid.eye.w;
+    let outward = normalize(rotate(solid.rotation, hit.normal));
+    let normal = select(outward, -outward, dot(outward, gaze) > 0.0);
+    let light = phong(solid.material, distance * gaze, normal);
+
+    var out: Fragment;
+    out.colour = vec4f(pow(clamp(light, vec3f(0.0), vec3f(1.0)), vec3f(1.0 / view.picture.z)), 1.0);
+    // Nearer is larger. The quotient keeps f32's full relative precision at every distance.
+    out.depth = min(view.forward.w / max(distance * dot(gaze, view.forward.xyz), 1e-30), 1.0);
+    return out;
+}
+
+// The first s in front of the eye of a convex solid that the ray enters at `near` and leaves at
+// `far`: where it enters it, or for an eye inside, where it leaves it.
+fn boundary(ray: Ray, near: f32, far: f32) -> f32 {
+    return select(far, near, near > ray.start);
+}
+
+// Where a line is between two parallel planes: the values of s at which origin + s * slope is
+// -half and half, in order. A parallel line is between them always or never.
+fn between(origin: f32, slope: f32, half: f32) -> vec2f {
+    if abs(slope) < 1e-12 {
+        return select(vec2f(1.0, -1.0), vec2f(-1.0, 1.0), abs(origin) <= half) * 1e30;
+    }
+    let middle = -origin / slope;
+    let reach = half / abs(slope);
+    return vec2f(middle - reach, middle + reach);
+}
