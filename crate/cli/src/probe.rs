@@ -73,7 +73,7 @@ fn jet(field: &Field, point: DVec3, precision: Precision) -> Jet<f64> {
     match precision {
         Precision::F64 => field.jet(point),
         Precision::F32 => {
-            let jet = field.jet32(point);
+            let jet = field.jet32(point.as_vec3().to_array());
             Jet {
                 value: f64::from(jet.value),
                 gradient: jet.gradient.map(f64::from),

@@ -80,10 +80,13 @@ impl Render {
         };
 
         let start = Instant::now();
-        let picture = tracer::Picture::new(scene, [width, height]);
-        let prepare = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        let (pixels, stats) = tracer::render(&picture, tracer::Pass::Smooth, threads);
+        let (pixels, stats) = tracer::render(
+            scene,
+            [width, height],
+            threads,
+            tracer::Pass::Smooth,
+            &|_| (),
+        );
         let trace = start.elapsed().as_secs_f64();
         let start = Instant::now();
         write_png(&self.output, width, height, &pixels)?;
@@ -101,7 +104,7 @@ impl Render {
                 "rays": { "primary": stats.primary_rays, "shadow": stats.shadow_rays },
                 "field_evaluations": stats.field_evaluations,
                 "threads": threads,
-                "seconds": { "compile": loaded.compile_seconds, "prepare": prepare, "trace": trace, "write": write },
+                "seconds": { "compile": loaded.compile_seconds, "trace": trace, "write": write },
             });
             println!("{summary}");
         } else {
