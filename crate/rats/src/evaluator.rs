@@ -4,6 +4,7 @@
 //! modules below, one for each group of the table in [`crate::commands`].
 
 pub mod camera;
+mod later;
 pub mod materials;
 pub mod model;
 pub mod objects;
@@ -20,7 +21,7 @@ use crate::commands::{self, Action};
 use crate::compile::HotVariable;
 use crate::limits;
 use crate::problem::{Outcome, Problem};
-use crate::reader::Reader;
+use crate::reader::{Name, Reader};
 use crate::report::Report;
 use crate::scope::Scope;
 use crate::symbol::Symbol;
@@ -57,6 +58,8 @@ pub struct Evaluator<'a> {
     lights: Vec<Light>,
     background: scene::Rgb,
     camera: Camera,
+    /// The file and place of the last `eyep` or `vrp`.
+    aimed_at: (usize, Range<usize>),
     /// A vertical angle of view that differs from the horizontal one, and where it was given.
     vertical: Option<(f64, usize, Range<usize>)>,
     settings: Settings,
@@ -91,6 +94,7 @@ impl<'a> Evaluator<'a> {
             lights: Vec::new(),
             background: scene::DEFAULT_BACKGROUND,
             camera: Camera::default(),
+            aimed_at: (0, 0..0),
             vertical: None,
             settings: Settings::default(),
             definitions: HashMap::new(),
@@ -318,6 +322,21 @@ impl<'a> Evaluator<'a> {
         );
         let defined = self.definitions.keys().map(|s| self.scope.symbols.word(*s));
         problem.maybe_hint(commands::suggestion(word, defined))
+    }
+
+    /// The index of a material. If it is made further down, the hint says so.
+    fn material(&self, name: &Name<'a>) -> Outcome<usize> {
+        self.palette.find(name).map_err(|problem| {
+            if problem.quiet {
+                return problem;
+            }
+            match later::line_of_material(self.syntaxes, self.project, self.file, name) {
+                Some(line) => problem.hint(format!(
+                    "it is made further down, in line {line}: move that up"
+                )),
+                None => problem,
+            }
+        })
     }
 
     /// One level deeper.

@@ -104,9 +104,14 @@ pub fn decode(fragment: &str) -> Result<Shared, LinkError> {
     if fragment.len() > MAX_FRAGMENT {
         return Err(LinkError::TooLong);
     }
-    let bytes = URL_SAFE_NO_PAD
-        .decode(fragment)
-        .map_err(|_| LinkError::NotALink)?;
+    let bytes = URL_SAFE_NO_PAD.decode(fragment).map_err(|_| {
+        // What begins as our links do was one before it was cut or changed.
+        let start = fragment.get(..4).map(|start| URL_SAFE_NO_PAD.decode(start));
+        match start {
+            Some(Ok(bytes)) if bytes[0] == VERSION => LinkError::Damaged,
+            _ => LinkError::NotALink,
+        }
+    })?;
     let deflated = match bytes.split_first() {
         None | Some((0, _)) => return Err(LinkError::NotALink),
         Some((&VERSION, rest)) => rest,

@@ -32,6 +32,9 @@ pub enum Share {
     Percent(f32),
 }
 
+/// Largest number of a colour.
+const MAX_COLOUR: f64 = 1e4;
+
 /// Reads the operands of one command.
 #[derive(Debug)]
 pub struct Reader<'e, 'a> {
@@ -126,12 +129,16 @@ impl<'e, 'a> Reader<'e, 'a> {
         self.spec.map(CommandSpec::usage)
     }
 
+    /// The text of the next item.
+    fn found(&self) -> Option<&'a str> {
+        self.items.get(self.at).map(|item| &self.text[item.span()])
+    }
+
     /// The problem that `what` is missing or something else stands there.
     pub(crate) fn expected(&self, what: &str) -> Box<Problem> {
-        let found = self.items.get(self.at).map(|item| &self.text[item.span()]);
-        let message = match found {
-            Some(found) => format!("expected {what} here, found `{found}`"),
-            None => format!("{what} is missing at the end"),
+        let message = match self.found() {
+            Some(found) => format!("expected {what}, found `{found}`"),
+            None => format!("expected {what}, but the command ends here"),
         };
         Problem::new(self.here(), message).maybe_hint(self.usage())
     }
@@ -259,13 +266,15 @@ impl<'e, 'a> Reader<'e, 'a> {
         if number.abs() <= MAX_MAGNITUDE {
             return Ok(number);
         }
-        let message = if number.is_finite() {
-            format!("{what} is too large: the limit is {MAX_MAGNITUDE:e}")
+        let problem = |message| Problem::new(self.since(start), message);
+        Err(if number.is_finite() {
+            problem(format!(
+                "{what} is too large: the limit is {MAX_MAGNITUDE:e}"
+            ))
         } else {
-            format!("{what} comes out as no finite number")
-        };
-        Err(Problem::new(self.since(start), message)
-            .hint("look for a division by 0 or a root of a negative number"))
+            problem(format!("{what} comes out as no finite number"))
+                .hint("look for a division by 0 or a root of a negative number")
+        })
     }
 
     /// Three numbers, or a vector or colour.
@@ -303,16 +312,20 @@ impl<'e, 'a> Reader<'e, 'a> {
     /// The second or third number of a triple.
     fn number_after(&mut self, what: &str) -> Outcome<f64> {
         let start = self.start();
-        let problem = self.expected(&format!("{what} takes three numbers: another number"));
-        match self.value(what) {
-            Ok(Value::Scalar(number)) => Ok(number),
-            Ok(_) => Err(problem),
+        let at = self.at;
+        let inner = match self.value(what) {
+            Ok(Value::Scalar(number)) => return Ok(number),
             // Something that is no value at all: better say what is missing here.
-            Err(inner) if inner.span.start == start && !inner.quiet && !inner.fatal => {
-                Err(problem.maybe_hint(inner.hint.or_else(|| self.usage())))
-            }
-            Err(inner) => Err(inner),
-        }
+            Err(inner) if inner.span.start == start && !inner.quiet && !inner.fatal => inner.hint,
+            Err(inner) => return Err(inner),
+            Ok(_) => None,
+        };
+        self.at = at;
+        let message = match self.found() {
+            Some(found) => format!("{what} takes three numbers, found `{found}`"),
+            None => format!("{what} takes three numbers, but the command ends here"),
+        };
+        Err(Problem::new(self.here(), message).maybe_hint(inner.or_else(|| self.usage())))
     }
 
     /// A direction: a vector that is not 0.
@@ -341,12 +354,12 @@ impl<'e, 'a> Reader<'e, 'a> {
     }
 
     fn to_colour(&self, vector: DVec3, start: usize, what: &str) -> Outcome<[f32; 3]> {
-        if vector.min_element() < 0.0 || vector.max_element() > 1e4 {
+        if vector.min_element() < 0.0 || vector.max_element() > MAX_COLOUR {
             return Err(Problem::new(
                 self.since(start),
                 format!("{what} needs numbers from 0 (none) to 1 (full)"),
             )
-            .hint("for numbers from 0 to 255, divide by 255"));
+            .hint(format!("more than 1 glares; {MAX_COLOUR} is the limit")));
         }
         Ok(vector.to_array().map(|c| c as f32))
     }
@@ -504,6 +517,9 @@ impl<'e, 'a> Reader<'e, 'a> {
         );
         known.extend(colours::names().map(|name| -> &'a str { name }));
         let suggestion = suggest::hint(word, known);
+        if word.starts_with(|c: char| c.is_ascii_digit()) {
+            return Err(Problem::new(span, format!("`{word}` is no number")));
+        }
         let hint =
             suggestion.unwrap_or_else(|| format!("set it before it is used: `var {word} = …`"));
         Err(Problem::new(span, format!("there is no variable or colour `{word}`")).hint(hint))

@@ -43,7 +43,7 @@ impl Report {
             problem.span.end,
             severity as usize,
         );
-        if unwanted || problem.quiet || self.seen.contains(&place) {
+        if unwanted || problem.quiet || (self.seen.contains(&place) && !problem.fatal) {
             return;
         }
         let rank = severity as usize;
@@ -70,6 +70,12 @@ impl Report {
         !self
             .seen
             .contains(&(file, span.start, span.end, severity as usize))
+    }
+
+    /// Whether there is an error.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.kept[Severity::Error as usize] > 0
     }
 
     /// The messages in the order of the text; at most [`MAX_DIAGNOSTICS`], errors before warnings before

@@ -11,6 +11,7 @@ pub fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
     let eye = read.vector("the eye's position")?;
     read.end()?;
     run.camera.eye = eye;
+    run.aimed_at = (run.file, command.span.clone());
     Ok(Flow::Next)
 }
 
@@ -20,6 +21,7 @@ pub fn vrp<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let target = read.vector("the view reference point")?;
     read.end()?;
     run.camera.target = target;
+    run.aimed_at = (run.file, command.span.clone());
     Ok(Flow::Next)
 }
 

@@ -41,7 +41,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         None
     };
     let mut surface = match &old {
-        Some(old) => run.palette.surfaces[run.palette.find(old)?].clone(),
+        Some(old) => run.palette.surfaces[run.material(old)?].clone(),
         None => Surface {
             material: Material::default(),
             kernel_given: false,
@@ -192,8 +192,11 @@ fn settle_colours(material: &mut Material, fields: &Fields<'_>, is_copy: bool) {
 }
 
 impl Evaluator<'_> {
-    /// Notes the materials that nothing is made of.
+    /// Notes the materials that nothing is made of, unless the reason may be an error.
     pub(super) fn note_unused_materials(&mut self) {
+        if self.report.has_errors() {
+            return;
+        }
         let unused: Vec<_> = self
             .palette
             .unused()

@@ -14,7 +14,7 @@ pub fn chain<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
     let material = read.name("the material's name")?;
     let name = read.name("the chain's name")?;
     read.end()?;
-    run.palette.find(&material)?;
+    run.material(&material)?;
     run.model.open(&name, Some(material))?;
     Ok(Flow::Next)
 }

@@ -71,6 +71,12 @@ impl<'a> Palette<'a> {
         self.broken.insert(name);
     }
 
+    /// Whether there is a material of this name.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.by_name.contains_key(name)
+    }
+
     /// The index of a material.
     ///
     /// # Errors

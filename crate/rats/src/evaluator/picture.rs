@@ -45,13 +45,15 @@ impl Evaluator<'_> {
         }
         self.model.parts = parts;
         if scene.camera.eye == scene.camera.target {
-            let message = "the eye is at the view reference point, so it looks nowhere";
-            self.say(Severity::Warning, 0..0, || {
+            let (place, span) = self.aimed_at.clone();
+            let file = std::mem::replace(&mut self.file, place);
+            self.say(Severity::Warning, span, || {
                 (
-                    message.to_owned(),
+                    String::from("the eye is at the view reference point, so it looks nowhere"),
                     Some(String::from("set `eyep` and `vrp` to different points")),
                 )
             });
+            self.file = file;
         }
         scene
     }

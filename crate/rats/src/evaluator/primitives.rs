@@ -3,6 +3,7 @@
 use super::model::Part;
 use super::{Evaluator, Flow};
 use crate::Severity;
+use crate::commands::CommandSpec;
 use crate::geometry::{self, ThreePoints};
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
@@ -16,11 +17,23 @@ fn operands<'a, T>(
     rest: impl FnOnce(&mut Reader<'_, 'a>) -> Outcome<T>,
 ) -> Outcome<(Name<'a>, T)> {
     let chain = run.model.chain.clone();
-    let mut read = run.reader(command);
+    let in_chain = chain.is_some();
     let name = match chain {
         Some(name) => name,
-        None => read.name("the material's name")?,
+        None => run.reader(command).name("the material's name")?,
     };
+    // `sphere 1 0 0 0`: better say this than that a coordinate is missing at the end.
+    if name.text.parse::<f64>().is_ok() && !run.palette.has(name.text) {
+        return Err(Problem::new(
+            name.span,
+            format!("expected the material's name, found `{}`", name.text),
+        )
+        .maybe_hint(command.spec.map(CommandSpec::usage)));
+    }
+    let mut read = run.reader(command);
+    if !in_chain {
+        read.name("the material's name")?;
+    }
     let rest = rest(&mut read)?;
     read.end()?;
     Ok((name, rest))
@@ -28,7 +41,7 @@ fn operands<'a, T>(
 
 impl<'a> Evaluator<'a> {
     fn add(&mut self, command: &'a Command, name: &Name<'a>, shape: Shape) -> Outcome<Flow> {
-        let material = self.palette.find(name)?;
+        let material = self.material(name)?;
         self.add_of(command, material, shape, false)
     }
 
@@ -85,7 +98,7 @@ pub fn cylinder<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
 /// `pipe sn r BASE APEX`: drawn with lids, which soft ones do not show.
 pub fn pipe<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let (name, shape) = cylinder_operands(run, command)?;
-    let material = run.palette.find(&name)?;
+    let material = run.material(&name)?;
     if !run.palette.surfaces[material].material.is_soft() {
         run.say(Severity::Warning, command.word_span.clone(), || {
             (
@@ -202,7 +215,7 @@ fn of_other_kernel<'a>(
     rest: fn(&mut Reader<'_, 'a>) -> Outcome<Shape>,
 ) -> Outcome<Flow> {
     let (name, mut shape) = operands(run, command, rest)?;
-    let material = run.palette.find(&name)?;
+    let material = run.material(&name)?;
     let surface = &run.palette.surfaces[material];
     if !surface.kernel_given {
         let word = run.scope.symbols.word(command.word);

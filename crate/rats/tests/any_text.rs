@@ -1,0 +1,267 @@
+//! Whatever is typed or sent: nothing panics, nothing hangs, nothing comes out broken.
+
+use arbtest::arbitrary::{Result, Unstructured};
+use arbtest::arbtest;
+use rats::link::{self, Shared};
+use rats::{File, Project, commands, compile, highlight};
+use std::time::{Duration, Instant};
+
+/// Far above what any text may take on the slowest machine that runs the tests, unoptimised.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+fn check(project: &Project) {
+    let begin = Instant::now();
+    let compiled = compile(project);
+    assert!(begin.elapsed() < PATIENCE, "{:?}", begin.elapsed());
+    assert!(compiled.diagnostics.len() <= rats::limits::MAX_DIAGNOSTICS);
+    for d in &compiled.diagnostics {
+        let file = project.files.iter().find(|f| f.name == d.file);
+        let text = &file.expect("the file that is named").text;
+        assert!(text.get(d.span.clone()).is_some(), "{d:?}");
+        assert!(d.line >= 1 && d.column >= 1, "{d:?}");
+        assert!(!d.message.is_empty(), "{d:?}");
+    }
+    for hot in &compiled.hot {
+        if let Some(range) = &hot.literal {
+            assert!(project.files[hot.file].text.get(range.clone()).is_some());
+        }
+    }
+    let scene = &compiled.scene;
+    assert!(!scene.materials.is_empty());
+    for element in &scene.elements {
+        assert!(element.material < scene.materials.len());
+        let origin = element.origin;
+        let text = &project.files[origin.file as usize].text;
+        assert!(
+            text.get(origin.start as usize..origin.end as usize)
+                .is_some()
+        );
+    }
+    // JSON knows no infinity and no NaN, so this finds them anywhere in the scene.
+    let json = serde_json::to_string(scene).expect("a scene");
+    assert!(!json.contains("null") || json.matches("null").count() == profiles_missing(scene));
+}
+
+fn profiles_missing(scene: &scene::Scene) -> usize {
+    scene
+        .materials
+        .iter()
+        .filter(|m| m.profile.is_none())
+        .count()
+}
+
+fn one_file(text: String) -> Project {
+    Project {
+        files: vec![File {
+            name: String::from("main.rat"),
+            text,
+        }],
+    }
+}
+
+fn check_highlight(text: &str) {
+    let mut end = 0;
+    for (range, _) in highlight::highlight(text) {
+        assert!(
+            text[end..range.start].trim().is_empty() || text[end..range.start].contains('\u{feff}')
+        );
+        assert!(range.start < range.end);
+        end = range.end;
+    }
+    assert!(text[end..].trim_matches('\u{feff}').trim().is_empty());
+}
+
+#[test]
+fn any_bytes() {
+    arbtest(|u| {
+        let bytes: Vec<u8> = u.arbitrary()?;
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        check_highlight(&text);
+        check(&one_file(text));
+        Ok(())
+    })
+    .budget_ms(1500);
+}
+
+/// A text of words of the language in any order.
+fn soup(u: &mut Unstructured<'_>) -> Result<String> {
+    const WORDS: &[&str] = &[
+        "1",
+        "-2",
+        "0.5",
+        "1e9",
+        "1e-300",
+        "1e308",
+        "0",
+        "a",
+        "b",
+        "P",
+        "s1",
+        "hot",
+        "=",
+        "+",
+        "-",
+        "*",
+        "/",
+        "^",
+        "(",
+        ")",
+        "{",
+        "}",
+        "{",
+        "}",
+        "<",
+        ">",
+        ",",
+        "%",
+        "@",
+        "#",
+        "!",
+        "to",
+        "step",
+        "Red",
+        "Gold",
+        "rand",
+        "sin(1)",
+        "sin",
+        "pi",
+        "diff",
+        "blob -1",
+        "rad .1",
+        "text",
+        "strength sin one",
+        "all",
+        "\n",
+        "\n",
+        "\n",
+        "\n",
+        "var a = 1\n",
+        "surface s1 diff Red\n",
+        "sphere s1 1 0 0 0\n",
+        "for i = 1 to 3 {",
+        "if a < 2 {",
+        "else {",
+        "define b(P r) {",
+        "b 1 2 3 4\n",
+        "read other.rat\n",
+        "object A\n",
+        "close\n",
+        "vec(1,2,3)",
+        "1e400",
+        "🐚",
+        "−",
+        "\t",
+    ];
+    let mut text = String::new();
+    for _ in 0..u.int_in_range(0..=120)? {
+        match u.int_in_range(0..=3)? {
+            0 => text += commands::COMMANDS[u.choose_index(commands::COMMANDS.len())?].name,
+            1 => {
+                let spec = &commands::COMMANDS[u.choose_index(commands::COMMANDS.len())?];
+                text += spec.options.first().map_or("1", |option| option.name);
+            }
+            _ => text += u.choose(WORDS)?,
+        }
+        if u.ratio(9, 10)? {
+            text.push(' ');
+        }
+    }
+    Ok(text)
+}
+
+#[test]
+fn any_words() {
+    arbtest(|u| {
+        let text = soup(u)?;
+        check_highlight(&text);
+        let mut project = one_file(text);
+        project.files.push(File {
+            name: String::from("other.rat"),
+            text: soup(u)?,
+        });
+        check(&project);
+        Ok(())
+    })
+    .budget_ms(4000);
+}
+
+#[test]
+fn any_slip_in_an_example() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../www/examples");
+    let texts: Vec<String> = std::fs::read_dir(folder)
+        .expect("the examples")
+        .map(|entry| std::fs::read_to_string(entry.expect("an entry").path()).expect("a text"))
+        .collect();
+    arbtest(|u| {
+        let mut text = u.choose(&texts)?.clone();
+        for _ in 0..u.int_in_range(1..=4)? {
+            let mut boundaries = text.char_indices().map(|(i, _)| i).chain([text.len()]);
+            let count = boundaries.clone().count();
+            let at = boundaries.nth(u.choose_index(count)?).unwrap_or(0);
+            match u.int_in_range(0..=2)? {
+                0 => text.truncate(at),
+                1 => text.insert_str(at, u.choose(&["{", "}", "9", "-", "x", "\n", "(", " "])?),
+                _ => {
+                    if let Some(c) = text[at..].chars().next() {
+                        text.replace_range(at..at + c.len_utf8(), "");
+                    }
+                }
+            }
+        }
+        check_highlight(&text);
+        check(&one_file(text));
+        Ok(())
+    })
+    .budget_ms(4000);
+}
+
+#[test]
+fn any_link() {
+    arbtest(|u| {
+        let text: String = u.arbitrary()?;
+        let _ = link::decode(&text);
+        let bytes: Vec<u8> = u.arbitrary()?;
+        use base64::Engine;
+        let coder = base64::engine::general_purpose::URL_SAFE_NO_PAD;
+        let _ = link::decode(&coder.encode(&bytes));
+        let mut framed = vec![1];
+        framed.extend(miniz_oxide::deflate::compress_to_vec(&bytes, 1));
+        let _ = link::decode(&coder.encode(framed));
+        Ok(())
+    })
+    .budget_ms(1000);
+}
+
+#[test]
+fn any_project_comes_back() {
+    arbtest(|u| {
+        let mut files = Vec::new();
+        for index in 0..u.int_in_range(1..=4)? {
+            files.push(File {
+                name: format!("{index}{}", u.choose(&["", ".rat", " ü/x"])?),
+                text: u.arbitrary()?,
+            });
+        }
+        let mut number = || -> Result<f64> { Ok(f64::from(u.arbitrary::<i32>()?) / 1000.0) };
+        let mut point = || Ok(glam::DVec3::new(number()?, number()?, number()?));
+        let (eye, target, up) = (point()?, point()?, point()?);
+        let shared = Shared {
+            project: Project { files },
+            camera: u.ratio(1, 2)?.then_some(scene::Camera {
+                eye,
+                target,
+                up,
+                fov: 45.5,
+            }),
+        };
+        let fragment = link::encode(&shared).expect("a small project");
+        assert!(
+            fragment
+                .bytes()
+                .all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_')
+        );
+        assert_eq!(link::decode(&fragment), Ok(shared));
+        Ok(())
+    })
+    .budget_ms(1500);
+}

@@ -1,0 +1,262 @@
+//! Every limit is met, with a message, in good time.
+
+use rats::limits::*;
+use rats::{Compiled, File, Project, Severity, compile};
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+fn run(text: impl Into<String>) -> Compiled {
+    compile(&Project {
+        files: vec![File {
+            name: String::from("main.rat"),
+            text: text.into(),
+        }],
+    })
+}
+
+/// Compiles on a stack as small as a browser's worker has, and gives the messages of errors.
+fn errors(text: impl Into<String>) -> String {
+    let text = text.into();
+    let worker = std::thread::Builder::new().stack_size(1024 * 1024);
+    let begin = Instant::now();
+    let compiled = worker
+        .spawn(move || run(text))
+        .expect("a thread")
+        .join()
+        .expect("no panic");
+    // A few tenths of a second optimised; tests run unoptimised and side by side.
+    assert!(
+        begin.elapsed() < Duration::from_secs(10),
+        "{:?}",
+        begin.elapsed()
+    );
+    assert!(compiled.diagnostics.len() <= MAX_DIAGNOSTICS);
+    compiled
+        .diagnostics
+        .iter()
+        .filter(|d| d.severity == Severity::Error)
+        .map(|d| format!("{}:{} {}\n", d.line, d.column, d.message))
+        .collect()
+}
+
+#[track_caller]
+fn fails(text: impl Into<String>, message: &str) {
+    let errors = errors(text);
+    assert!(
+        errors.contains(message),
+        "expected `{message}`, got `{errors}`"
+    );
+}
+
+#[test]
+fn text() {
+    fails("#".repeat(MAX_TEXT + 1), "is the limit");
+    assert_eq!(errors("#".repeat(MAX_TEXT)), "");
+}
+
+#[test]
+fn files() {
+    let file = |i: usize| File {
+        name: i.to_string(),
+        text: String::new(),
+    };
+    let files = |n| Project {
+        files: (0..n).map(file).collect(),
+    };
+    assert!(compile(&files(MAX_FILES)).diagnostics.is_empty());
+    assert_eq!(compile(&files(MAX_FILES + 1)).diagnostics.len(), 1);
+    assert!(compile(&Project::default()).diagnostics.is_empty());
+}
+
+#[test]
+fn steps() {
+    fails("for i = 1 to 1e12 { }", "steps");
+    fails("for i = 1 to 1e12 { var x = i*2 }", "steps");
+    fails(
+        "for i = 1 to 1e5 { for j = 1 to 1e5 { if i > j { var x = rand } } }",
+        "steps",
+    );
+    // A loop of errors costs more than a loop of commands.
+    fails("for i = 1 to 1e12 { wibble }", "steps");
+    fails("for i = 1 to 1e12 { sphere nosuch 1 0 0 0 }", "steps");
+    fails("for i = 1 to 1e12 { var y = nosuch }", "steps");
+    fails("for i = 1 to 1e12 { surface s diff nosuch }", "steps");
+    // Turning many shapes again and again.
+    fails(
+        "surface s diff Red\nobject A\nfor i = 1 to 10000 { sphere s 1 0 0 0 }\nclose\n\
+         for i = 1 to 1e9 { rotate 0 0 1 1 A }",
+        "steps",
+    );
+    fails(
+        "define f(x) { f2 x\nf2 x }\ndefine f2(x) { f3 x\nf3 x }\ndefine f3(x) { for i = 1 to 1e4 { f4 x } }\n\
+         define f4(x) { for i = 1 to 1e4 { var y = x } }\nf 1",
+        "steps",
+    );
+}
+
+#[test]
+fn a_large_scene_is_made_in_time() {
+    let compiled = run("surface s diff Red\nfor i = 1 to 100000 { sphere s 1 i 0 0 }");
+    assert!(compiled.diagnostics.is_empty());
+    assert_eq!(compiled.scene.elements.len(), 100_000);
+}
+
+#[test]
+fn elements() {
+    let text = format!("surface s diff Red\nfor i = 0 to {MAX_ELEMENTS} {{ plane s V V }}");
+    fails(format!("var V = 1 1 1\n{text}"), "shapes");
+}
+
+#[test]
+fn instances() {
+    fails(
+        "surface s diff Red\nobject A\nsphere s 1 0 0 0\nclose\n\
+         for i = 1 to 1e3 { instance A B\nobject A\ninstance B\ninstance B\nclose A }",
+        "shapes",
+    );
+}
+
+#[test]
+fn objects() {
+    let mut text = String::new();
+    for _ in 0..=MAX_NESTED_OBJECTS {
+        text += "object A\n";
+    }
+    fails(text, "deep at most");
+    fails("for i = 1 to 300000 { object A\nclose }", "objects");
+}
+
+#[test]
+fn materials() {
+    let text = "for i = 1 to 20000 { surface s diff Red\nsphere s 1 0 0 0 }";
+    fails(text, "materials");
+    // Making one again that nothing uses costs nothing.
+    assert_eq!(errors("for i = 1 to 20000 { surface s diff Red }"), "");
+}
+
+#[test]
+fn lights() {
+    fails("for i = 1 to 1000 { light White pos 1 1 1 }", "lights");
+}
+
+#[test]
+fn layers() {
+    let text = "texture T strength sin one\ntexture T texture T + T\n".to_owned()
+        + &"texture T texture T + T\n".repeat(4);
+    fails(text, "layers");
+}
+
+#[test]
+fn operands() {
+    fails(
+        format!("contrast {}", "1 ".repeat(MAX_OPERANDS + 1)),
+        "operands",
+    );
+}
+
+#[test]
+fn nested_expressions() {
+    for (open, close) in [("(", ")"), ("-", ""), ("sin(", ")"), ("2^", ""), ("+", "")] {
+        let deep = open.repeat(1000) + "1" + &close.repeat(1000);
+        fails(format!("var x = {deep}"), "nested");
+    }
+    fails(format!("if {} 1 {{ }}", "not ".repeat(1000)), "nested");
+    let fine = "(".repeat(30) + "1" + &")".repeat(30);
+    assert_eq!(errors(format!("var x = {fine}")), "");
+    // Long is not deep.
+    assert_eq!(errors(format!("var x = {}1", "1 + ".repeat(1000))), "");
+}
+
+#[test]
+fn nested_blocks() {
+    for open in ["for i = 1 to 1 {", "if 1 {", "define f() {"] {
+        let deep = open.repeat(10_000) + &"}".repeat(10_000);
+        fails(deep, "inside each other");
+        errors(open.repeat(10_000));
+    }
+    fails("if 0 { } else ".repeat(10_000) + "{ }", "inside each other");
+    errors("if 0 { } else ".repeat(10_000));
+    errors("else ".repeat(10_000));
+    errors("{".repeat(100_000));
+    errors("}".repeat(100_000));
+    errors("x {\n".repeat(100_000));
+}
+
+#[test]
+fn nested_calls() {
+    fails("define f() { f }\nf", "deep");
+    // The deepest nest of blocks in the deepest nest of calls.
+    let body = "if 1 {".repeat(40) + "f" + &"}".repeat(40);
+    fails(format!("define f() {{ {body} }}\nf"), "deep");
+    let body = "for i = 1 to 1 {".repeat(2) + "f" + &"}".repeat(2);
+    fails(format!("define f() {{ {body} }}\nf"), "deep");
+}
+
+#[test]
+fn nested_files() {
+    // Each file reads the next one; there are fewer files than the limit of nesting, so a call in between
+    // is what can go deeper.
+    let files = (0..MAX_FILES)
+        .map(|i| File {
+            name: format!("{i}.rat"),
+            text: format!("read {}.rat", i + 1),
+        })
+        .collect();
+    let compiled = compile(&Project { files });
+    assert_eq!(compiled.diagnostics.len(), 1);
+    assert!(compiled.diagnostics[0].message.contains("no file"));
+}
+
+#[test]
+fn magnitudes() {
+    fails("eyep 2e12 0 0", "too large");
+    fails("var x = 1e13", "too large");
+    fails("var x = 1e400", "finite");
+    let text = "surface s diff Red\nobject A\nsphere s 1 1 0 0\nclose\nfor i = 1 to 400 { scale 10 10 10 }";
+    let compiled = run(text);
+    assert!(compiled.scene.elements.is_empty());
+    assert_eq!(compiled.diagnostics.len(), 1);
+    assert_eq!(compiled.diagnostics[0].severity, Severity::Warning);
+}
+
+#[test]
+fn messages() {
+    let mut text = String::new();
+    for i in 0..500 {
+        let _ = writeln!(text, "focus {i}");
+    }
+    for _ in 0..300 {
+        text += "wibble\n";
+    }
+    let compiled = run(text);
+    assert_eq!(compiled.diagnostics.len(), MAX_DIAGNOSTICS);
+    let errors = compiled
+        .diagnostics
+        .iter()
+        .filter(|d| d.severity == Severity::Error)
+        .count();
+    assert_eq!(errors, MAX_DIAGNOSTICS, "errors are kept before warnings");
+    let last = compiled.diagnostics.last().map(|d| d.message.as_str());
+    assert_eq!(last, Some("… and 601 more messages"));
+    // One error among many warnings is not lost.
+    let compiled = run("focus 1\n".repeat(1000) + "wibble");
+    assert!(
+        compiled
+            .diagnostics
+            .iter()
+            .any(|d| d.severity == Severity::Error)
+    );
+    assert_eq!(compiled.diagnostics.len(), MAX_DIAGNOSTICS);
+}
+
+#[test]
+fn long_lines_and_words() {
+    errors("a".repeat(500_000));
+    errors("1".repeat(500_000));
+    errors(format!("sphere {} 1 0 0 0", "s".repeat(500_000)));
+    errors(format!("var x = {}", "9".repeat(500_000)));
+    errors("surface s diff Red ".repeat(20_000));
+    errors("wibble ".repeat(100_000));
+    errors("wibble\n".repeat(100_000));
+    errors("🐚".repeat(100_000));
+}
