@@ -44,7 +44,7 @@ pub(crate) fn fourth_derivative(form: &Form<f64>, d: f64) -> f64 {
 /// A bound on |∇f|.
 pub(crate) fn slope(form: &Form<f64>) -> f64 {
     // |h′| is largest at r = 1/√5.
-    const KERNEL: f64 = 1.035_2;
+    const KERNEL: f64 = 1.035_22;
     // Across a line at most that of the infinite one (at r = ½), along it the difference of the
     // kernel at two points.
     const ACROSS_LINE: f64 = 1.348_8;
