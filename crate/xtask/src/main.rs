@@ -1,2 +1,61 @@
-//! To be written.
-fn main() {}
+//! Builds, serves, packs and tests Sinew: `cargo xtask COMMAND`.
+//!
+//! Every command installs what it lacks where that can be done without asking (Rust's wasm target,
+//! node packages, tools in `.tools/`, on Debian and Ubuntu the browser), says what it runs, and
+//! otherwise fails with a sentence that says what to install.
+
+mod check;
+mod dist;
+mod examples;
+mod page;
+mod serve;
+mod shell;
+mod tools;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "Builds, serves, packs and tests Sinew.")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Build the page and serve it on this machine.
+    Serve {
+        /// The port; another one is taken if it is in use and was not asked for.
+        #[arg(long)]
+        port: Option<u16>,
+        /// Build as for a release: slower to build, faster to use.
+        #[arg(long)]
+        release: bool,
+    },
+    /// Write dist/, a folder that any static host can serve from any path.
+    Dist,
+    /// Run all tests, or one part of them.
+    Test {
+        /// Only this part.
+        part: Option<check::Part>,
+    },
+    /// Draw the thumbnails of the examples, www/examples/*.png, with our own renderer.
+    Examples,
+}
+
+fn main() -> ExitCode {
+    let done = match Arguments::parse().command {
+        Command::Serve { port, release } => serve::serve(port, release),
+        Command::Dist => dist::dist().map(|_| ()),
+        Command::Test { part } => check::test(part),
+        Command::Examples => examples::draw(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("\nxtask: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Building the page: two packages of wasm, and the files of `www/`.
+
+use crate::shell::{cargo, command, root, run, target};
+use crate::tools;
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use wasm_bindgen_cli_support::Bindgen;
+
+/// How a page is built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Build {
+    /// Quickly. The tracer is optimised all the same: without, pictures take minutes.
+    Development,
+    /// Small and fast.
+    Release,
+}
+
+/// Builds the page into a folder, which is emptied first.
+pub fn build(build: Build, folder: &Path) -> Result<()> {
+    tools::wasm_target()?;
+    let profile = match build {
+        Build::Development => "dev",
+        Build::Release => "page",
+    };
+    let app = compile("studio", profile, &[])?;
+    // A feature of the worker is wanted here that the app must not have: hence two builds.
+    let tracer = compile("worker", "release", &["--features", "entry"])?;
+
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("{} is in use", folder.display()))?;
+    }
+    fs::create_dir_all(folder)?;
+    copy(&root().join("index.html"), &folder.join("index.html"))?;
+    copy(&root().join("www"), folder)?;
+    bind(&app, "studio", folder)?;
+    bind(&tracer, "tracer", folder)?;
+    if build == Build::Release
+        && let Some(wasm_opt) = tools::wasm_opt()
+    {
+        let wasm_opt = wasm_opt.to_string_lossy();
+        for (name, level) in [("studio", "-O1"), ("tracer", "-O3")] {
+            let file = folder.join(format!("{name}_bg.wasm"));
+            let file = file.to_string_lossy();
+            run(&mut command(
+                "node",
+                &[&wasm_opt, &file, level, "-o", &file],
+            ))?;
+        }
+    }
+    Ok(())
+}
+
+/// Compiles a package to wasm and gives the file.
+fn compile(package: &str, profile: &str, arguments: &[&str]) -> Result<PathBuf> {
+    // Only a cdylib: with an rlib beside it, link-time optimisation is silently left out.
+    let fixed = [
+        "rustc",
+        "--package",
+        package,
+        "--lib",
+        "--crate-type",
+        "cdylib",
+        "--target",
+        tools::WASM,
+        "--profile",
+        profile,
+        "--message-format",
+        "json-render-diagnostics",
+    ];
+    let mut command = cargo(&[&fixed, arguments].concat());
+    eprintln!(
+        "$ cargo rustc --package {package} --target {} --profile {profile}",
+        tools::WASM
+    );
+    let output = command.stderr(Stdio::inherit()).output()?;
+    if !output.status.success() {
+        bail!("{package} does not compile");
+    }
+    String::from_utf8_lossy(&output.stdout)
+        .lines()
+        .filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
+        .filter(|message| message["reason"] == "compiler-artifact")
+        .flat_map(|message| message["filenames"].as_array().cloned().unwrap_or_default())
+        .filter_map(|file| file.as_str().map(PathBuf::from))
+        .rfind(|file| {
+            file.extension().is_some_and(|e| e == "wasm")
+                && file.file_stem().is_some_and(|stem| stem == package)
+        })
+        .with_context(|| format!("cargo made no wasm of {package}"))
+}
+
+/// Writes NAME.js and NAME_bg.wasm.
+fn bind(wasm: &Path, name: &str, folder: &Path) -> Result<()> {
+    Bindgen::new()
+        .input_path(wasm)
+        .web(true)?
+        .typescript(false)
+        .out_name(name)
+        .generate(folder)
+        .with_context(|| format!("wasm-bindgen could not read {}", wasm.display()))
+}
+
+/// Copies a file, or what is in a folder.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    if !from.is_dir() {
+        fs::copy(from, to).with_context(|| format!("{} is missing", from.display()))?;
+        return Ok(());
+    }
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        copy(&entry.path(), &to.join(entry.file_name()))?;
+    }
+    Ok(())
+}
+
+/// Where `serve` builds the page.
+pub fn served() -> PathBuf {
+    target().join("page")
+}

@@ -1,0 +1,163 @@
+//! Installing what is missing.
+
+use crate::shell::{cargo, command, find, read, root, run};
+use anyhow::{Context, Result, bail};
+use std::path::{Path, PathBuf};
+
+/// The target of everything that runs in the page.
+pub const WASM: &str = "wasm32-unknown-unknown";
+
+/// Makes sure that Rust can compile for [`WASM`].
+pub fn wasm_target() -> Result<()> {
+    let installed = read(&mut command(
+        "rustc",
+        &["--print", "target-libdir", "--target", WASM],
+    ))
+    .is_some_and(|folder| Path::new(&folder).is_dir());
+    if installed {
+        return Ok(());
+    }
+    run(&mut command("rustup", &["target", "add", WASM])).context(
+        "The wasm32-unknown-unknown target of Rust is missing. Install rustup (https://rustup.rs), \
+         then run: rustup target add wasm32-unknown-unknown",
+    )
+}
+
+/// The version of wasm-bindgen in Cargo.lock.
+fn wasm_bindgen_version() -> Result<String> {
+    let lock = std::fs::read_to_string(root().join("Cargo.lock"))?;
+    lock.split("[[package]]")
+        .find(|package| package.contains("name = \"wasm-bindgen\"\n"))
+        .and_then(|package| package.split("version = \"").nth(1)?.split('"').next())
+        .map(str::to_owned)
+        .context("Cargo.lock names no wasm-bindgen")
+}
+
+/// The runner of wasm tests, of the locked version, installed into `.tools/` if it is missing.
+pub fn wasm_test_runner() -> Result<PathBuf> {
+    let version = wasm_bindgen_version()?;
+    let fits = |program: &Path| {
+        read(command(program, &["--version"]).env_remove("RUST_LOG"))
+            .is_some_and(|answer| answer.ends_with(&version))
+    };
+    let name = "wasm-bindgen-test-runner";
+    let local = root()
+        .join(".tools/bin")
+        .join(name)
+        .with_extension(std::env::consts::EXE_EXTENSION);
+    if let Some(found) = find(name)
+        .into_iter()
+        .chain([local.clone()])
+        .find(|p| fits(p))
+    {
+        return Ok(found);
+    }
+    let tools = root().join(".tools");
+    run(&mut cargo(&[
+        "install",
+        "--debug",
+        "--root",
+        &tools.to_string_lossy(),
+        &format!("wasm-bindgen-cli@{version}"),
+    ]))
+    .with_context(|| {
+        format!("The runner of wasm tests is missing. Install it: cargo install wasm-bindgen-cli@{version}")
+    })?;
+    Ok(local)
+}
+
+/// The node packages of tests/package.json (browser driver, wasm optimiser). Gives their folder.
+pub fn node_packages() -> Result<PathBuf> {
+    if find("node").is_none() || find("npm").is_none() {
+        bail!("Node.js is missing. Install Node.js 20 or newer with npm (https://nodejs.org).");
+    }
+    let tests = root().join("tests");
+    let modules = tests.join("node_modules");
+    // npm keeps a copy of the lock file of what it has installed.
+    let wanted = std::fs::metadata(tests.join("package-lock.json"))?.modified()?;
+    let installed = std::fs::metadata(modules.join(".package-lock.json"))
+        .and_then(|file| file.modified())
+        .ok();
+    if installed.is_none_or(|installed| installed < wanted) {
+        run(command("npm", &["ci", "--no-audit", "--no-fund"]).current_dir(&tests))
+            .context("The node packages could not be installed; npm needs the network for it")?;
+    }
+    Ok(modules)
+}
+
+/// The optimiser of wasm, if node is there.
+pub fn wasm_opt() -> Option<PathBuf> {
+    match node_packages() {
+        Ok(modules) => Some(modules.join("binaryen/bin/wasm-opt")),
+        Err(error) => {
+            eprintln!("The wasm is not made smaller with wasm-opt: {error:#}");
+            None
+        }
+    }
+}
+
+/// A Chromium that tests can drive, installed with apt-get on Debian, by playwright elsewhere.
+pub fn chromium() -> Result<PathBuf> {
+    if let Some(chosen) = std::env::var_os("CHROMIUM") {
+        return Ok(chosen.into());
+    }
+    let present = || {
+        [
+            "chromium",
+            "chromium-browser",
+            "google-chrome-stable",
+            "google-chrome",
+        ]
+        .into_iter()
+        .find_map(find)
+        // Ubuntu's /usr/bin/chromium-browser only says that there is a snap.
+        .filter(|path| read(&mut command(path, &["--version"])).is_some())
+    };
+    if let Some(path) = present() {
+        return Ok(path);
+    }
+    let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
+    let is = |name: &str| release.lines().any(|line| line == format!("ID={name}"));
+    let root_user = read(&mut command("id", &["-u"])).is_some_and(|id| id == "0");
+    if is("debian") {
+        let sudo: &[&str] = if root_user { &[] } else { &["sudo", "-n"] };
+        let apt = |arguments: &[&str]| {
+            let words = [
+                sudo,
+                &["apt-get", "-o", "DPkg::Lock::Timeout=500"],
+                arguments,
+            ]
+            .concat();
+            run(command(words[0], &words[1..]).env("DEBIAN_FRONTEND", "noninteractive"))
+        };
+        // The second package draws without a graphics card.
+        let packages = [
+            "install",
+            "-y",
+            "--no-install-recommends",
+            "chromium",
+            "mesa-vulkan-drivers",
+        ];
+        apt(&["update"]).and_then(|()| apt(&packages)).context(
+            "The browser is missing. Install it: apt-get install chromium mesa-vulkan-drivers",
+        )?;
+        return present().context("apt-get installed no chromium that runs");
+    }
+    if is("ubuntu") {
+        // Ubuntu's own package is a snap, which does not run everywhere.
+        let cli = node_packages()?.join("playwright-core/cli.js");
+        let cli = cli.to_string_lossy();
+        let with_libraries = run(&mut command(
+            "node",
+            &[&cli, "install", "--with-deps", "chromium"],
+        ));
+        with_libraries
+            .or_else(|_| run(&mut command("node", &[&cli, "install", "chromium"])))
+            .context("The browser is missing. Install Chromium or Google Chrome, or set CHROMIUM to its path")?;
+        let script = "console.log(require('playwright-core').chromium.executablePath())";
+        return read(command("node", &["-e", script]).current_dir(root().join("tests")))
+            .map(PathBuf::from)
+            .context("playwright does not say where it installed the browser");
+    }
+    bail!("The browser is missing. Install Chromium or Google Chrome, or set CHROMIUM to its path.")
+}

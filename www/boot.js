@@ -1,0 +1,22 @@
+// Loads the program, and says so in words if it cannot run. Everything else is Rust.
+import init from './studio.js';
+
+const loading = document.getElementById('loading');
+const message = document.getElementById('message');
+
+function fail(reason) {
+  console.error(reason);
+  loading.className = 'failed';
+  message.textContent =
+    `Sinew could not start: ${reason?.message ?? reason}\n` +
+    'It needs a browser with WebAssembly SIMD (every one since 2023). What you wrote here before is kept.';
+}
+
+try {
+  await init();
+  await window.sinew.ready;
+  loading.className = 'done';
+  setTimeout(() => loading.remove(), 300);
+} catch (reason) {
+  fail(reason);
+}
