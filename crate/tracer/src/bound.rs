@@ -18,6 +18,10 @@ pub struct Bound {
     axis: DVec3,
     /// Length of a segment or arc, area of a triangle.
     measure: f64,
+    /// Sine and cosine of an arc's angle.
+    turn: (f64, f64),
+    /// sin(φ/2)/(φ/2) for an arc's largest φ, see [`Bound::nearness`].
+    sag: f64,
     /// s².
     width2: f64,
     width: f64,
@@ -66,6 +70,16 @@ impl Bound {
             }
             Skeleton::Plane { normal, .. } => (normal, f64::INFINITY),
         };
+        let (mut turn, mut sag) = ((0.0, 1.0), 1.0);
+        if let Skeleton::Arc { angle, .. } = primitive.skeleton {
+            turn = libm::sincos(angle);
+            let half = 0.5 * angle.min(core::f64::consts::PI);
+            sag = if half > 1e-9 {
+                libm::sin(half) / half
+            } else {
+                1.0
+            };
+        }
         // The Cauchy kernel is the only one yet; its width parameter is s.
         let Kernel::Cauchy = primitive.kernel;
         let (low, high) = primitive.profile.map_or((1.0, 1.0), |p| {
@@ -81,6 +95,8 @@ impl Bound {
             skeleton: primitive.skeleton,
             axis,
             measure,
+            turn,
+            sag,
             width2: primitive.width * primitive.width,
             width: primitive.width,
             height: primitive.height.abs() * low.abs().max(high.abs()),
@@ -116,9 +132,8 @@ impl Bound {
                 let rho = (x * x + y * y).sqrt();
                 // A point of the arc at angle φ from the foot is no nearer than if the arc were
                 // straight but shorter by the factor sin(φ/2)/(φ/2)·√(ρ/sweep).
-                let half = 0.5 * angle.min(core::f64::consts::PI);
-                let shrink = libm::sin(half) / half * ((rho - radius).max(0.0) / sweep).sqrt();
-                let (sin, cos) = libm::sincos(angle);
+                let shrink = self.sag * ((rho - radius).max(0.0) / sweep).sqrt();
+                let (sin, cos) = self.turn;
                 let before = x * sin - y * cos >= 0.0;
                 let swept = if angle > core::f64::consts::PI {
                     y >= 0.0 || before
