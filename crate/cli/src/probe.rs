@@ -19,16 +19,14 @@ enum Precision {
 
 /// `sinew probe FILE --points - | --rays -`.
 #[derive(Args)]
-#[group(required = true, multiple = false, id = "what")]
 pub struct Probe {
     /// The dataset
-    #[arg(group = "always")]
     file: PathBuf,
     /// Evaluate the field at points: lines `x y z` from a file, or `-` for the standard input
-    #[arg(long, value_name = "FILE", group = "what")]
+    #[arg(long, value_name = "FILE", required_unless_present = "rays")]
     points: Option<PathBuf>,
     /// Intersect rays with the surfaces: lines `ox oy oz dx dy dz`
-    #[arg(long, value_name = "FILE", group = "what")]
+    #[arg(long, value_name = "FILE", conflicts_with = "points")]
     rays: Option<PathBuf>,
     /// Arithmetic of the point evaluations
     #[arg(long, default_value = "f64")]

@@ -40,12 +40,12 @@ impl Folder {
 
     /// Writes a file and gives its path.
     pub fn write(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name);
+        let path = self.path(name);
         std::fs::write(&path, text).expect("written");
-        path.to_str().expect("UTF-8 path").to_owned()
+        path
     }
 
-    /// The path of a file in the folder.
+    /// The path of a file in the folder, there or not.
     pub fn path(&self, name: &str) -> String {
         self.0.join(name).to_str().expect("UTF-8 path").to_owned()
     }
