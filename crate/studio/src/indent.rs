@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(tab("ab", 1..1), (String::from("a  b"), 3..3));
         assert_eq!(tab("a\n\nb", 0..4).0, "  a\n\n  b");
         assert_eq!(back_tab("  a\n b\nc", 0..8).0, "a\nb\nc");
-        assert_eq!(back_tab("x\n  äb", 5..5), (String::from("x\näb"), 3..3));
+        assert_eq!(back_tab("x\n  äb", 6..6), (String::from("x\näb"), 4..4));
     }
 
     #[test]

@@ -4,15 +4,48 @@
 //! What the user works on ([`session`], [`history`], [`picture`], [`storage`], [`share`]) knows
 //! nothing of windows and is tested without one. [`app::App`] ties it to the widgets.
 
+pub mod app;
 pub mod backend;
+pub mod bar;
 #[cfg(target_arch = "wasm32")]
 pub mod boot;
+pub mod code;
+pub mod command;
+#[cfg(target_arch = "wasm32")]
+pub mod crash;
+pub mod draft;
+pub mod editor;
+#[cfg(target_arch = "wasm32")]
+pub mod entry;
+pub mod examples;
+pub mod gallery;
+#[cfg(target_arch = "wasm32")]
+pub mod handle;
+pub mod help;
 pub mod history;
+pub mod icon;
 pub mod indent;
+pub mod layout;
+pub mod marks;
+pub mod notice;
 pub mod picture;
+pub mod places;
+pub mod platform;
 pub mod pool;
+pub mod problems;
+pub mod render;
+pub mod report;
+pub mod request;
 pub mod session;
+pub mod settings;
+pub mod share;
+pub mod size;
+pub mod sliders;
 pub mod software;
+pub mod status;
 pub mod storage;
+pub mod theme;
+pub mod view;
+pub mod work;
 
 pub use backend::Backend;

@@ -95,6 +95,7 @@ pub struct Session {
     revision: u64,
     generation: u64,
     compiling: bool,
+    compile_seconds: f64,
 }
 
 impl Session {
@@ -115,6 +116,7 @@ impl Session {
             revision: 0,
             generation: 0,
             compiling: compile,
+            compile_seconds: 0.0,
         };
         session.open(kept);
         session
@@ -313,6 +315,12 @@ impl Session {
         }
     }
 
+    /// How long compiling the present text took.
+    #[must_use]
+    pub fn compile_seconds(&self) -> f64 {
+        self.compile_seconds
+    }
+
     /// Rises with every change of the text.
     #[must_use]
     pub fn revision(&self) -> u64 {
@@ -351,16 +359,35 @@ impl Session {
         if !self.compiling {
             return;
         }
+        let start = crate::platform::stopwatch();
         self.compiled = rats::compile(&self.project);
+        self.compile_seconds = crate::platform::stopwatch() - start;
         let clean = self.errors() == 0;
         if clean || self.good.is_none() {
             let scene = &self.compiled.scene;
-            if self.good.as_ref() != Some(scene) {
-                self.good = Some(scene.clone());
-                self.generation += 1;
-            }
+            let same = self
+                .good
+                .as_ref()
+                .is_some_and(|good| same_picture(good, scene));
+            self.good = Some(scene.clone());
+            self.generation += u64::from(!same);
         }
     }
+}
+
+/// Whether two scenes look the same. Where in the text the elements were written does not matter:
+/// a remark above them draws no new picture.
+fn same_picture(a: &Scene, b: &Scene) -> bool {
+    a.elements.len() == b.elements.len()
+        && a.elements
+            .iter()
+            .zip(&b.elements)
+            .all(|(a, b)| a.shape == b.shape && a.material == b.material)
+        && a.materials == b.materials
+        && a.lights == b.lights
+        && a.background == b.background
+        && a.camera == b.camera
+        && a.settings == b.settings
 }
 
 /// The file and the byte in the new text where it starts to differ from the old one.

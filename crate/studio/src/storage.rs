@@ -19,7 +19,6 @@ const HISTORY_BYTES: usize = 512 * 1024;
 const DOCUMENT: &str = "sinew/document/";
 const CURRENT: &str = "sinew/current";
 const SETTINGS: &str = "sinew/settings";
-const CRASHED: &str = "sinew/crashed";
 
 /// A place that keeps texts under keys.
 pub trait Store {
@@ -216,21 +215,6 @@ impl Shelf {
         if let Ok(json) = serde_json::to_string(settings) {
             // Settings that cannot be stored last until the page closes, which is harmless.
             let _ = self.store.set(SETTINGS, &json);
-        }
-    }
-
-    /// Whether the program stopped in the middle of its work the last time.
-    #[must_use]
-    pub fn crashed(&self) -> bool {
-        self.store.get(CRASHED).is_some()
-    }
-
-    /// Notes that the program stopped (or, with `false`, that it works again).
-    pub fn set_crashed(&mut self, crashed: bool) {
-        if crashed {
-            let _ = self.store.set(CRASHED, "1");
-        } else {
-            self.store.remove(CRASHED);
         }
     }
 

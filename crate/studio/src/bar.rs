@@ -1,0 +1,143 @@
+//! The strip at the top: examples, the name of the work, undo, and above all Share.
+
+use crate::command::Command;
+use crate::icon::{self, Icon};
+use crate::work::{Origin, Work};
+use crate::{places, theme};
+use egui::{Align, Button, Layout, RichText, TextEdit, Ui};
+
+/// Shows the bar.
+pub fn show(
+    ui: &mut Ui,
+    work: &Work,
+    theme_choice: theme::Choice,
+    narrow: bool,
+    commands: &mut Vec<Command>,
+) {
+    let palette = theme::palette(ui.visuals());
+    ui.horizontal_centered(|ui| {
+        ui.add_space(if narrow { 6.0 } else { 12.0 });
+        icon::mark(ui);
+        if !narrow {
+            ui.label(RichText::new("Sinew").size(17.0).color(palette.strong));
+            ui.add_space(6.0);
+        }
+        let gallery = ui
+            .button("Examples")
+            .on_hover_text("Pick a model to start from, or one of your own");
+        places::note(ui.ctx(), "examples", gallery.rect);
+        if gallery.clicked() {
+            commands.push(Command::ShowGallery);
+        }
+        if !narrow {
+            name(ui, work, commands);
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add_space(if narrow { 6.0 } else { 12.0 });
+            let share = Button::new(RichText::new("Share").color(palette.on_accent).size(14.5))
+                .fill(palette.accent);
+            let share = ui
+                .add(share)
+                .on_hover_text("Copy a link that carries the text and the view");
+            places::note(ui.ctx(), "share", share.rect);
+            if share.clicked() {
+                commands.push(Command::Share);
+            }
+            if narrow {
+                more(ui, theme_choice, commands);
+            } else {
+                if icon::button(ui, Icon::Help, "How it works", true).clicked() {
+                    commands.push(Command::ShowHelp);
+                }
+                let next = other_theme(ui);
+                let tip = format!("Colours: {}", theme_label(theme_choice));
+                if icon::button(ui, Icon::Theme, &tip, true).clicked() {
+                    commands.push(Command::SetTheme(next));
+                }
+            }
+            ui.spacing_mut().item_spacing.x = 2.0;
+            let redo = icon::button(
+                ui,
+                Icon::Redo,
+                "Redo (Ctrl+Shift+Z)",
+                work.session.can_redo(),
+            );
+            if redo.clicked() {
+                commands.push(Command::Redo);
+            }
+            let undo = icon::button(ui, Icon::Undo, "Undo (Ctrl+Z)", work.session.can_undo());
+            places::note(ui.ctx(), "undo", undo.rect);
+            if undo.clicked() {
+                commands.push(Command::Undo);
+            }
+        });
+    });
+}
+
+fn name(ui: &mut Ui, work: &Work, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let mut name = work.name.clone();
+    let field = TextEdit::singleline(&mut name)
+        .id(egui::Id::unique("work name"))
+        .desired_width(150.0)
+        .char_limit(60)
+        .text_color(palette.text)
+        .frame(egui::Frame::new().inner_margin(egui::Margin::symmetric(6, 3)))
+        .hint_text("Untitled");
+    let field = ui
+        .add(field)
+        .on_hover_text("Name of this work: click to change it");
+    let kind = match work.origin {
+        Origin::Own => "",
+        Origin::Example => "example",
+        Origin::Link => "shared with you",
+    };
+    if !kind.is_empty() {
+        ui.label(RichText::new(kind).color(palette.weak).size(12.5));
+    }
+    if field.changed() {
+        commands.push(Command::Rename(name));
+    }
+}
+
+fn more(ui: &mut Ui, choice: theme::Choice, commands: &mut Vec<Command>) {
+    let button = icon::button(ui, Icon::More, "More", true);
+    places::note(ui.ctx(), "more", button.rect);
+    egui::Popup::menu(&button).show(|ui| {
+        ui.set_min_width(190.0);
+        if ui.button("How it works").clicked() {
+            commands.push(Command::ShowHelp);
+        }
+        if ui.button("Save picture").clicked() {
+            commands.push(Command::SavePng);
+        }
+        ui.separator();
+        for theme in [
+            theme::Choice::System,
+            theme::Choice::Dark,
+            theme::Choice::Light,
+        ] {
+            let label = format!("Colours: {}", theme_label(theme));
+            if ui.selectable_label(choice == theme, label).clicked() {
+                commands.push(Command::SetTheme(theme));
+            }
+        }
+    });
+}
+
+fn theme_label(choice: theme::Choice) -> &'static str {
+    match choice {
+        theme::Choice::System => "as the system",
+        theme::Choice::Dark => "dark",
+        theme::Choice::Light => "light",
+    }
+}
+
+/// The other palette than the one on the screen.
+fn other_theme(ui: &Ui) -> theme::Choice {
+    if ui.visuals().dark_mode {
+        theme::Choice::Light
+    } else {
+        theme::Choice::Dark
+    }
+}

@@ -1,0 +1,63 @@
+//! The colours of the text.
+
+use crate::theme::{CODE_SIZE, Palette};
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Color32, FontId};
+use rats::highlight::{TokenKind, highlight};
+
+/// Lays out a text with coloured words, wrapped at `width`. The last result is kept, because the
+/// same text is asked for at every frame.
+#[derive(Default)]
+pub struct Colouring {
+    text: String,
+    dark: bool,
+    job: LayoutJob,
+}
+
+impl Colouring {
+    /// The layout job for a text.
+    pub fn job(&mut self, text: &str, palette: &Palette, dark: bool, width: f32) -> LayoutJob {
+        if self.text != text || self.dark != dark || self.job.is_empty() {
+            text.clone_into(&mut self.text);
+            self.dark = dark;
+            self.job = colour(text, palette);
+        }
+        let mut job = self.job.clone();
+        job.wrap.max_width = width;
+        job
+    }
+}
+
+fn colour(text: &str, palette: &Palette) -> LayoutJob {
+    let mut job = LayoutJob {
+        keep_trailing_whitespace: true,
+        ..LayoutJob::default()
+    };
+    let format = |color: Color32| TextFormat {
+        line_height: Some(CODE_SIZE * 1.45),
+        ..TextFormat::simple(FontId::monospace(CODE_SIZE), color)
+    };
+    let mut done = 0;
+    for (range, kind) in highlight(text) {
+        let (Some(gap), Some(word)) = (text.get(done..range.start), text.get(range.clone())) else {
+            continue;
+        };
+        job.append(gap, 0.0, format(palette.text));
+        job.append(word, 0.0, format(token_colour(palette, kind)));
+        done = range.end;
+    }
+    job.append(&text[done..], 0.0, format(palette.text));
+    job
+}
+
+fn token_colour(palette: &Palette, kind: TokenKind) -> Color32 {
+    match kind {
+        TokenKind::Command => palette.command,
+        TokenKind::Option => palette.option,
+        TokenKind::Number => palette.number,
+        TokenKind::Colour => palette.colour,
+        TokenKind::Name => palette.text,
+        TokenKind::Comment => palette.comment,
+        TokenKind::Sign => palette.sign,
+    }
+}

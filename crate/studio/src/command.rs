@@ -1,0 +1,78 @@
+//! What the widgets ask the app to do. Widgets only read the state and list commands; the app
+//! carries them out after the frame, in one place ([`crate::app`]).
+
+use crate::{size, theme, view::Show};
+use scene::Camera;
+use std::ops::Range;
+
+/// One wish of the user.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Replace the text of a file.
+    SetText {
+        /// Index of the file.
+        file: usize,
+        /// Its new text.
+        text: String,
+    },
+    /// Replace a piece of a file.
+    Replace {
+        /// Index of the file.
+        file: usize,
+        /// Byte range.
+        range: Range<usize>,
+        /// What comes there.
+        with: String,
+    },
+    /// A gesture that is one undo step begins.
+    Hold,
+    /// The gesture ends.
+    Release,
+    /// One step back.
+    Undo,
+    /// One step forth.
+    Redo,
+    /// Put the cursor at a place of the text.
+    Jump {
+        /// Index of the file.
+        file: usize,
+        /// Byte range to select.
+        range: Range<usize>,
+    },
+    /// See the scene from here; `None`: from where the text says.
+    SetCamera(Option<Camera>),
+    /// Stop the picture.
+    Cancel,
+    /// Trace the picture again.
+    Again,
+    /// Draft, picture, or both in turn.
+    SetShow(Show),
+    /// Another picture size.
+    SetSize(size::Choice),
+    /// Another palette.
+    SetTheme(theme::Choice),
+    /// Write the picture to a file.
+    SavePng,
+    /// Make a link, copy it, and put it into the address bar.
+    Share,
+    /// Open an example.
+    OpenExample(usize),
+    /// Open a saved work.
+    OpenSaved(String),
+    /// Delete a saved work.
+    Delete(String),
+    /// Begin an empty work.
+    New,
+    /// Give the work another name.
+    Rename(String),
+    /// Go back to the own work that a link took the place of.
+    GoBack,
+    /// Compile and trace again after a failed start.
+    Enable,
+    /// Show the gallery.
+    ShowGallery,
+    /// Show the help.
+    ShowHelp,
+    /// Close the gallery, the help, or the notice.
+    Close,
+}

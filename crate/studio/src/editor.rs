@@ -1,0 +1,277 @@
+//! The text editor: colours, line numbers, underlined mistakes, indentation.
+
+use crate::code::Colouring;
+use crate::command::Command;
+use crate::indent::{self, Edited};
+use crate::marks::Marks;
+use crate::problems;
+use crate::session::Session;
+use crate::theme::{self, Palette};
+use egui::text::{CCursor, CCursorRange};
+use egui::{
+    Align, FontId, Galley, Id, Key, Margin, Modifiers, Pos2, Rect, RichText, ScrollArea,
+    TextBuffer, TextEdit, Ui, pos2,
+};
+use std::ops::Range;
+
+/// The state of the editor that is not part of the user's work.
+#[derive(Default)]
+pub struct Editor {
+    /// The file on show.
+    pub file: usize,
+    buffer: String,
+    synced: Option<(u64, usize)>,
+    colouring: Colouring,
+    marks: Marks,
+    jump: Option<Range<usize>>,
+    place: Option<usize>,
+    /// The line of the cursor, from 1.
+    line: usize,
+}
+
+/// The id of the text widget, the same at every frame and size.
+fn id() -> Id {
+    Id::unique("editor")
+}
+
+impl Editor {
+    /// Shows the cursor at a byte range of the file on show, at the next frame.
+    pub fn jump(&mut self, file: usize, range: Range<usize>) {
+        self.file = file;
+        self.jump = Some(range);
+    }
+
+    /// Takes the session's text again: the last edit was refused.
+    pub fn resync(&mut self) {
+        self.synced = None;
+    }
+
+    /// Shows a byte of a file, without taking the focus from where it is.
+    pub fn show_place(&mut self, file: usize, byte: usize) {
+        self.file = file;
+        self.place = Some(byte);
+    }
+
+    /// Another piece of work is open: its first file, from the top.
+    pub fn reset(&mut self, ctx: &egui::Context) {
+        self.file = 0;
+        self.synced = None;
+        self.jump = None;
+        ctx.data_mut(|data| data.remove::<egui::text_edit::TextEditState>(id()));
+    }
+
+    /// Shows the editor in all the space of `ui`.
+    pub fn show(&mut self, ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+        self.file = self
+            .file
+            .min(session.project().files.len().saturating_sub(1));
+        if self.synced != Some((session.revision(), self.file)) {
+            session.text(self.file).clone_into(&mut self.buffer);
+            self.synced = Some((session.revision(), self.file));
+        }
+        self.marks.update(
+            session.revision(),
+            session.project(),
+            self.file,
+            session.diagnostics(),
+        );
+        let palette = theme::palette(ui.visuals());
+        ui.painter().rect_filled(ui.max_rect(), 0.0, palette.paper);
+        let keyed = self.keys(ui);
+        let height = ui.available_height();
+        let lines = self.buffer.bytes().filter(|byte| *byte == b'\n').count() + 1;
+        let digits = lines.to_string().len().max(2);
+        let gutter = digits as f32 * theme::CODE_SIZE * 0.6 + 26.0;
+        let changed = ScrollArea::vertical()
+            .id_salt(("editor", self.file))
+            .auto_shrink(false)
+            .show(ui, |ui| self.text(ui, palette, session, gutter, height))
+            .inner;
+        if keyed || changed {
+            commands.push(Command::SetText {
+                file: self.file,
+                text: self.buffer.clone(),
+            });
+        }
+    }
+
+    fn text(
+        &mut self,
+        ui: &mut Ui,
+        palette: &'static Palette,
+        session: &Session,
+        gutter: f32,
+        height: f32,
+    ) -> bool {
+        let dark = ui.visuals().dark_mode;
+        let colouring = &mut self.colouring;
+        let mut layouter = |ui: &Ui, text: &dyn TextBuffer, width: f32| {
+            let job = colouring.job(text.as_str(), palette, dark, width);
+            ui.fonts_mut(|fonts| fonts.layout_job(job))
+        };
+        let margin = Margin {
+            left: gutter.min(120.0) as i8,
+            right: 12,
+            top: 10,
+            bottom: 40,
+        };
+        let output = TextEdit::multiline(&mut self.buffer)
+            .id(id())
+            .code_editor()
+            .frame(egui::Frame::new().inner_margin(margin))
+            .desired_width(f32::INFINITY)
+            .min_size(egui::vec2(0.0, height))
+            .hint_text("Write a dataset here, or pick an example.")
+            .layouter(&mut layouter)
+            .show(ui);
+        let (galley, origin) = (output.galley.clone(), output.galley_pos);
+        let changed = output.response.response.changed();
+        let mut state = output.state;
+        if let Some(range) = self.jump.take() {
+            let start = to_chars(&self.buffer, range.start);
+            let end = to_chars(&self.buffer, range.end);
+            let selected = CCursorRange::two(CCursor::new(start), CCursor::new(end));
+            state.cursor.set_char_range(Some(selected));
+            state.store(ui.ctx(), id());
+            ui.memory_mut(|memory| memory.request_focus(id()));
+            let place = galley.pos_from_cursor(CCursor::new(start));
+            ui.scroll_to_rect(place.translate(origin.to_vec2()), Some(Align::Center));
+        } else if let Some(byte) = self.place.take() {
+            let cursor = CCursor::new(to_chars(&self.buffer, byte));
+            state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
+            state.store(ui.ctx(), id());
+            let place = galley.pos_from_cursor(cursor);
+            ui.scroll_to_rect(place.translate(origin.to_vec2()), None);
+        } else if let Some(range) = output.cursor_range {
+            let byte = to_bytes(&self.buffer, range.primary.index.0);
+            self.line = self.buffer[..byte].matches('\n').count() + 1;
+        }
+        self.marks.paint(ui.painter(), palette, &galley, origin);
+        let focused = ui.memory(|memory| memory.has_focus(id()));
+        self.line_numbers(ui, palette, &galley, origin, focused);
+        self.tooltip(&output.response.response, session, &galley, origin);
+        changed
+    }
+
+    /// Tab, Shift+Tab, Enter and Ctrl+/ while the text has the focus. Gives whether it changed.
+    fn keys(&mut self, ui: &Ui) -> bool {
+        if !ui.memory(|memory| memory.has_focus(id())) {
+            return false;
+        }
+        let Some(mut state) = TextEdit::load_state(ui.ctx(), id()) else {
+            return false;
+        };
+        let action: Option<fn(&str, Range<usize>) -> Edited> = ui.input_mut(|input| {
+            if input.consume_key(Modifiers::SHIFT, Key::Tab) {
+                Some(indent::back_tab as _)
+            } else if input.consume_key(Modifiers::NONE, Key::Tab) {
+                Some(indent::tab as _)
+            } else if input.consume_key(Modifiers::COMMAND, Key::Slash) {
+                Some(indent::comment as _)
+            } else if input.consume_key(Modifiers::NONE, Key::Enter) {
+                Some(indent::enter as _)
+            } else {
+                None
+            }
+        });
+        let Some(action) = action else {
+            return false;
+        };
+        let selected = state.cursor.char_range().map_or(0..0, |range| {
+            range.as_sorted_char_range().start.0..range.as_sorted_char_range().end.0
+        });
+        let selected = to_bytes(&self.buffer, selected.start)..to_bytes(&self.buffer, selected.end);
+        let (text, selected) = action(&self.buffer, selected);
+        self.buffer = text;
+        let selected = CCursorRange::two(
+            CCursor::new(to_chars(&self.buffer, selected.start)),
+            CCursor::new(to_chars(&self.buffer, selected.end)),
+        );
+        state.cursor.set_char_range(Some(selected));
+        state.store(ui.ctx(), id());
+        true
+    }
+
+    fn line_numbers(
+        &self,
+        ui: &Ui,
+        palette: &Palette,
+        galley: &Galley,
+        origin: Pos2,
+        focused: bool,
+    ) {
+        let painter = ui.painter();
+        let clip = painter.clip_rect();
+        let font = FontId::monospace(11.5);
+        let mut line = 1;
+        let mut starts = true;
+        for row in &galley.rows {
+            let rect = row.rect().translate(origin.to_vec2());
+            if starts && rect.bottom() >= clip.top() && rect.top() <= clip.bottom() {
+                let here = focused && line == self.line;
+                let colour = if here { palette.text } else { palette.comment };
+                painter.text(
+                    pos2(origin.x - 14.0, rect.center().y),
+                    egui::Align2::RIGHT_CENTER,
+                    line,
+                    font.clone(),
+                    colour.gamma_multiply(if here { 1.0 } else { 0.75 }),
+                );
+                if let Some(severity) = self.marks.of_line(line) {
+                    painter.circle_filled(
+                        pos2(origin.x - 7.0, rect.center().y),
+                        2.5,
+                        problems::colour(palette, severity),
+                    );
+                }
+            }
+            starts = row.ends_with_newline;
+            line += usize::from(starts);
+        }
+    }
+
+    fn tooltip(&self, response: &egui::Response, session: &Session, galley: &Galley, origin: Pos2) {
+        let Some(pointer) = response.hover_pos() else {
+            return;
+        };
+        let inside = Rect::from_min_size(origin, galley.size()).expand(4.0);
+        if !inside.contains(pointer) {
+            return;
+        }
+        let char = galley.cursor_from_pos(pointer - origin).index.0;
+        let messages: Vec<usize> = self.marks.at(char).take(5).collect();
+        if messages.is_empty() {
+            return;
+        }
+        egui::Tooltip::always_open(
+            response.ctx.clone(),
+            response.layer_id,
+            id().with("tooltip"),
+            egui::PopupAnchor::Pointer,
+        )
+        .gap(14.0)
+        .show(|ui| {
+            let palette = theme::palette(ui.visuals());
+            for index in messages {
+                let Some(diagnostic) = session.diagnostics().get(index) else {
+                    continue;
+                };
+                let colour = problems::colour(palette, diagnostic.severity);
+                ui.label(RichText::new(&diagnostic.message).color(colour));
+                if let Some(hint) = &diagnostic.hint {
+                    ui.label(RichText::new(hint).color(palette.weak));
+                }
+            }
+        });
+    }
+}
+
+fn to_bytes(text: &str, char: usize) -> usize {
+    text.char_indices()
+        .nth(char)
+        .map_or(text.len(), |(byte, _)| byte)
+}
+
+fn to_chars(text: &str, byte: usize) -> usize {
+    text[..text.floor_char_boundary(byte)].chars().count()
+}

@@ -1,0 +1,90 @@
+//! Where the page's program begins.
+
+use crate::app::{App, Parts};
+use crate::request::Request;
+use crate::{boot, crash, handle, platform};
+use wasm_bindgen::prelude::*;
+
+/// The id of the page's canvas.
+const CANVAS: &str = "canvas";
+
+/// Called once by the page's script.
+///
+/// # Errors
+/// If the page is not one that a program can run in.
+#[wasm_bindgen(start)]
+pub fn start() -> Result<(), JsValue> {
+    let parts = Parts::new();
+    crash::install(parts.clone());
+    let not_ready = handle::install(&parts)?;
+    listen(&parts)?;
+    wasm_bindgen_futures::spawn_local(async move {
+        let started = boot::start(CANVAS, move |context, backend| {
+            let state = context.wgpu_render_state.clone();
+            App::new(&context.egui_ctx, state, backend, parts.clone())
+        })
+        .await;
+        if let Err(reason) = started {
+            let error = js_sys::Error::new(&reason);
+            // The function of a promise never throws.
+            let _ = not_ready.call1(&JsValue::UNDEFINED, &error);
+            if let Err(error) = crash::show(&reason) {
+                web_sys::console::error_1(&error);
+            }
+        }
+    });
+    Ok(())
+}
+
+/// Listens to what the browser says about the page.
+fn listen(parts: &Parts) -> Result<(), JsValue> {
+    let window = web_sys::window().ok_or(JsValue::NULL)?;
+    let requests = parts.requests.clone();
+    on(&window, "hashchange", move || {
+        requests.ask(Request::HashChanged);
+    })?;
+    // A page that goes out of sight may never come back; phones end it without another word.
+    for event in ["pagehide", "visibilitychange"] {
+        let shelf = parts.shelf.clone();
+        let target: web_sys::EventTarget = if event == "pagehide" {
+            window.clone().into()
+        } else {
+            window.document().ok_or(JsValue::NULL)?.into()
+        };
+        on(&target, event, move || {
+            if event == "pagehide" {
+                platform::set_troubled(false);
+            }
+            if let Ok(mut shelf) = shelf.try_borrow_mut() {
+                // What is refused here was already reported, or will be at the next edit.
+                let _ = shelf.flush(platform::unix_time());
+            }
+        })?;
+    }
+    Ok(())
+}
+
+fn on(
+    target: &web_sys::EventTarget,
+    event: &str,
+    action: impl Fn() + 'static,
+) -> Result<(), JsValue> {
+    let action = Closure::<dyn Fn()>::new(action);
+    target.add_event_listener_with_callback(event, action.as_ref().unchecked_ref())?;
+    action.forget();
+    Ok(())
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.tick(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+}

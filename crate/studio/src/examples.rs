@@ -1,0 +1,121 @@
+//! The datasets of the gallery, with thumbnails made by our own renderer.
+
+use rats::{File, Project};
+
+/// One dataset of the gallery.
+pub struct Example {
+    /// Its title.
+    pub title: &'static str,
+    /// What it shows, in a few words.
+    pub about: &'static str,
+    /// Its file name.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+    /// Its thumbnail, a PNG file.
+    pub thumbnail: &'static [u8],
+}
+
+impl Example {
+    /// As a project.
+    #[must_use]
+    pub fn project(&self) -> Project {
+        Project {
+            files: vec![File {
+                name: self.name.to_owned(),
+                text: self.text.to_owned(),
+            }],
+        }
+    }
+}
+
+macro_rules! example {
+    ($title:literal, $about:literal, $name:literal) => {
+        Example {
+            title: $title,
+            about: $about,
+            name: concat!($name, ".rat"),
+            text: include_str!(concat!("../../../www/examples/", $name, ".rat")),
+            thumbnail: include_bytes!(concat!("../../../www/examples/", $name, ".png")),
+        }
+    };
+}
+
+/// All of them. The first one is what a first visit shows.
+pub const ALL: [Example; 6] = [
+    example!("Cowrie", "a spiny shell: arcs and random spikes", "cowrie"),
+    example!("Seahorse", "the classic: 43 arcs", "seahorse"),
+    example!("Starfish", "arms made by a loop", "starfish"),
+    example!("Sphereflake", "balls on balls, by recursion", "sphereflake"),
+    example!("T-shape", "two bars that melt together", "tshape"),
+    example!("Icicle", "a first little dataset", "icicle"),
+];
+
+/// What a new work begins with.
+pub const BLANK: &str = "\
+eyep 0 0 8
+vrp 0 0 0
+vup 0 1 0
+fov 40 40
+framesize 640 480
+sample 2
+
+light White point, position 4 6 8
+
+surface clay, diffuse Coral, specular White, shine 40, blobbiness -2
+
+var r = 0.6 hot
+
+cylinder clay r, -1.5 0 0, 1.5 0 0
+cylinder clay r, 0 -1.5 0, 0 1.5 0
+";
+
+/// A thumbnail's size and pixels, RGBA.
+#[must_use]
+pub fn decode(png: &[u8]) -> Option<crate::picture::Image> {
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(png));
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info().ok()?;
+    let mut bytes = vec![0; reader.output_buffer_size()?];
+    let info = reader.next_frame(&mut bytes).ok()?;
+    bytes.truncate(info.buffer_size());
+    let rgba = match info.color_type {
+        png::ColorType::Rgba => bytes,
+        png::ColorType::Rgb => bytes
+            .chunks_exact(3)
+            .flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255])
+            .collect(),
+        _ => return None,
+    };
+    Some(crate::picture::Image {
+        size: [info.width, info.height],
+        rgba,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_example_compiles_cleanly_and_has_a_thumbnail() {
+        for example in &ALL {
+            let compiled = rats::compile(&example.project());
+            assert_eq!(compiled.diagnostics, [], "{}", example.title);
+            assert!(!compiled.scene.elements.is_empty(), "{}", example.title);
+            let thumbnail = decode(example.thumbnail).expect(example.title);
+            assert!(thumbnail.size[0] >= 160, "{}", example.title);
+        }
+    }
+
+    #[test]
+    fn a_new_work_compiles_cleanly() {
+        let file = File {
+            name: String::from("untitled.rat"),
+            text: String::from(BLANK),
+        };
+        let compiled = rats::compile(&Project { files: vec![file] });
+        assert_eq!(compiled.diagnostics, []);
+        assert_eq!(compiled.hot.len(), 1);
+    }
+}

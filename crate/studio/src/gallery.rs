@@ -1,0 +1,224 @@
+//! The gallery: examples, and the user's own works.
+
+use crate::command::Command;
+use crate::examples;
+use crate::storage::Entry;
+use crate::theme;
+use egui::{
+    Align2, Button, Color32, ColorImage, FontId, Rect, RichText, ScrollArea, Sense, TextureHandle,
+    TextureOptions, Ui, Vec2, pos2, vec2,
+};
+
+/// The gallery's thumbnails, decoded when it is first opened.
+#[derive(Default)]
+pub struct Gallery {
+    thumbnails: Vec<Option<TextureHandle>>,
+    /// The saved works, read when the gallery opens.
+    entries: Vec<Entry>,
+    /// The work whose deletion waits for a second click.
+    doomed: Option<String>,
+}
+
+impl Gallery {
+    /// Reads the list of saved works anew.
+    pub fn refresh(&mut self, entries: Vec<Entry>) {
+        self.entries = entries;
+        self.doomed = None;
+    }
+
+    /// Shows the gallery; `open` is the id of the open work, `now` milliseconds since 1970.
+    pub fn show(&mut self, ui: &mut Ui, open: Option<&str>, now: f64, commands: &mut Vec<Command>) {
+        let palette = theme::palette(ui.visuals());
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("Examples").heading().color(palette.strong));
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button("Close").clicked() {
+                    commands.push(Command::Close);
+                }
+                if ui
+                    .button("New")
+                    .on_hover_text("Begin with an almost empty dataset")
+                    .clicked()
+                {
+                    commands.push(Command::New);
+                }
+            });
+        });
+        ui.add_space(8.0);
+        ScrollArea::vertical()
+            .auto_shrink([false, true])
+            .show(ui, |ui| {
+                self.examples(ui, commands);
+                if !self.entries.is_empty() {
+                    ui.add_space(14.0);
+                    ui.label(RichText::new("My work").heading().color(palette.strong));
+                    ui.add_space(4.0);
+                    self.works(ui, open, now, commands);
+                }
+            });
+    }
+
+    fn examples(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if self.thumbnails.is_empty() {
+            self.thumbnails = examples::ALL
+                .iter()
+                .map(|example| {
+                    let image = examples::decode(example.thumbnail)?;
+                    let size = image.size.map(|side| side as usize);
+                    let pixels = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
+                    Some(ui.load_texture(example.name, pixels, TextureOptions::LINEAR))
+                })
+                .collect();
+        }
+        let gap = 12.0;
+        let columns = ((ui.available_width() + gap) / (190.0 + gap))
+            .floor()
+            .clamp(2.0, 4.0);
+        let width = ((ui.available_width() + gap) / columns - gap).floor();
+        let indices: Vec<usize> = (0..examples::ALL.len()).collect();
+        for row in indices.chunks(columns as usize) {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = gap;
+                for &index in row {
+                    if self.card(ui, index, width) {
+                        commands.push(Command::OpenExample(index));
+                    }
+                }
+            });
+            ui.add_space(gap - ui.spacing().item_spacing.y);
+        }
+    }
+
+    fn card(&self, ui: &mut Ui, index: usize, width: f32) -> bool {
+        let palette = theme::palette(ui.visuals());
+        let example = &examples::ALL[index];
+        let picture = vec2(width, (width * 0.72).floor());
+        let (rect, response) = ui.allocate_exact_size(picture + vec2(0.0, 44.0), Sense::click());
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Open {}", example.title))
+        });
+        let hot = response.hovered() || response.has_focus();
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 8.0, if hot { palette.hover } else { palette.button });
+        let place = Rect::from_min_size(rect.min, picture);
+        if let Some(Some(texture)) = self.thumbnails.get(index) {
+            egui::Image::from_texture(texture)
+                .uv(crop(texture.size_vec2(), picture))
+                .corner_radius(egui::CornerRadius {
+                    nw: 8,
+                    ne: 8,
+                    sw: 0,
+                    se: 0,
+                })
+                .paint_at(ui, place);
+        }
+        let text = place.left_bottom() + vec2(10.0, 6.0);
+        painter.text(
+            text,
+            Align2::LEFT_TOP,
+            example.title,
+            FontId::proportional(14.0),
+            palette.strong,
+        );
+        painter.text(
+            text + vec2(0.0, 18.0),
+            Align2::LEFT_TOP,
+            example.about,
+            FontId::proportional(11.5),
+            palette.weak,
+        );
+        response
+            .on_hover_cursor(egui::CursorIcon::PointingHand)
+            .clicked()
+    }
+
+    fn works(&mut self, ui: &mut Ui, open: Option<&str>, now: f64, commands: &mut Vec<Command>) {
+        let palette = theme::palette(ui.visuals());
+        for entry in &self.entries {
+            let is_open = open == Some(entry.id.as_str());
+            ui.horizontal(|ui| {
+                let name = if entry.name.is_empty() {
+                    "Untitled"
+                } else {
+                    &entry.name
+                };
+                let button = Button::new(RichText::new(name).color(palette.text))
+                    .selected(is_open)
+                    .truncate();
+                let width = (ui.available_width() - 190.0).max(120.0);
+                if ui
+                    .add_sized(vec2(width, ui.spacing().interact_size.y), button)
+                    .clicked()
+                {
+                    commands.push(Command::OpenSaved(entry.id.clone()));
+                }
+                ui.label(
+                    RichText::new(ago(now - entry.saved))
+                        .color(palette.weak)
+                        .size(12.5),
+                );
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if is_open {
+                        ui.label(RichText::new("open").color(palette.weak).size(12.5));
+                        return;
+                    }
+                    let doomed = self.doomed.as_ref() == Some(&entry.id);
+                    let (text, colour) = if doomed {
+                        ("Really delete?", palette.error)
+                    } else {
+                        ("Delete", palette.weak)
+                    };
+                    let button = Button::new(RichText::new(text).color(colour).size(12.5))
+                        .fill(Color32::TRANSPARENT);
+                    if ui.add(button).clicked() {
+                        if doomed {
+                            commands.push(Command::Delete(entry.id.clone()));
+                        }
+                        self.doomed = Some(entry.id.clone());
+                    }
+                });
+            });
+        }
+    }
+}
+
+/// The middle part of a picture that has the proportions of its place.
+fn crop(picture: Vec2, place: Vec2) -> Rect {
+    let scale = (place.x / picture.x.max(1.0)).max(place.y / picture.y.max(1.0));
+    let part = place / (picture * scale).max(Vec2::splat(1e-3));
+    Rect::from_center_size(pos2(0.5, 0.5), part)
+}
+
+/// How long ago, in words.
+fn ago(milliseconds: f64) -> String {
+    let minutes = (milliseconds / 60_000.0).max(0.0);
+    if minutes < 1.0 {
+        String::from("just now")
+    } else if minutes < 60.0 {
+        format!("{minutes:.0} min ago")
+    } else if minutes < 48.0 * 60.0 {
+        format!("{:.0} h ago", minutes / 60.0)
+    } else {
+        format!("{:.0} days ago", minutes / 1440.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thumbnails_are_cropped_in_the_middle() {
+        let part = crop(vec2(400.0, 100.0), vec2(100.0, 100.0));
+        assert!((part.width() - 0.25).abs() < 1e-6 && part.height() == 1.0);
+        assert_eq!(part.center(), pos2(0.5, 0.5));
+    }
+
+    #[test]
+    fn times_are_rough() {
+        assert_eq!(ago(10.0), "just now");
+        assert_eq!(ago(-1e9), "just now");
+        assert_eq!(ago(5.0 * 60_000.0), "5 min ago");
+        assert_eq!(ago(72.0 * 3_600_000.0), "3 days ago");
+    }
+}

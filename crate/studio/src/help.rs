@@ -1,0 +1,103 @@
+//! A short help: enough of the language to change an example, and the keys.
+
+use crate::command::Command;
+use crate::theme;
+use egui::{RichText, ScrollArea, Ui};
+
+const LANGUAGE: [(&str, &str); 9] = [
+    (
+        "surface flesh, diffuse Coral, specular White, shine 40, blobbiness -2",
+        "a material; blobbiness makes what is made of it soft",
+    ),
+    ("sphere flesh 0.5, 0 0 0", "a ball: radius, centre"),
+    (
+        "cylinder flesh 0.3, 0 0 0, 2 0 0",
+        "a bar: radius, both ends",
+    ),
+    (
+        "arc flesh 1 0.2, 0 0 0, 0 0 1, 0 180",
+        "a bent bar: radius of the bend and of the bar, centre, normal, from angle, by angle",
+    ),
+    ("light White point, position 4 6 8", "a light"),
+    (
+        "eyep 0 0 8",
+        "where you look from; vrp: what you look at; fov: how wide",
+    ),
+    (
+        "var r = 0.3 hot",
+        "a number with a name; hot makes it a slider",
+    ),
+    (
+        "for i = 1 to 10 { sphere flesh 0.2, i 0 0 }",
+        "repeats; numbers can be computed: 2*r, sin(i), rand(i)",
+    ),
+    ("# words", "a remark"),
+];
+
+const KEYS: [(&str, &str); 7] = [
+    ("drag", "turn the model"),
+    ("shift-drag, right-drag, two fingers", "move it"),
+    ("wheel, pinch", "zoom"),
+    ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
+    ("Ctrl+/", "turn lines into remarks and back"),
+    ("Tab, Shift+Tab", "indent"),
+    ("Ctrl+S", "save the picture as PNG"),
+];
+
+/// Shows the help.
+pub fn show(ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    ui.horizontal(|ui| {
+        ui.label(
+            RichText::new("How it works")
+                .heading()
+                .color(palette.strong),
+        );
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if ui.button("Close").clicked() {
+                commands.push(Command::Close);
+            }
+        });
+    });
+    ui.add_space(6.0);
+    ScrollArea::vertical()
+        .auto_shrink([false, true])
+        .show(ui, |ui| {
+            ui.label(
+                "A model is a text: a list of shapes made of materials. Soft shapes melt into each \
+                 other where they come near. Change a number and the picture follows; the link \
+                 behind Share carries everything.",
+            );
+            heading(ui, "Words");
+            for (code, meaning) in LANGUAGE {
+                ui.label(
+                    RichText::new(code)
+                        .monospace()
+                        .size(12.5)
+                        .color(palette.command),
+                );
+                ui.label(RichText::new(meaning).color(palette.weak).size(13.0));
+                ui.add_space(5.0);
+            }
+            heading(ui, "Hands");
+            egui::Grid::new("keys").spacing([18.0, 5.0]).show(ui, |ui| {
+                for (key, meaning) in KEYS {
+                    ui.label(RichText::new(key).color(palette.text).size(13.0));
+                    ui.label(RichText::new(meaning).color(palette.weak).size(13.0));
+                    ui.end_row();
+                }
+            });
+            heading(ui, "Yours");
+            ui.label(
+                "What you write stays in this browser, under My work in the gallery. A link that \
+                 someone sends you never overwrites it.",
+            );
+        });
+}
+
+fn heading(ui: &mut Ui, text: &str) {
+    let palette = theme::palette(ui.visuals());
+    ui.add_space(12.0);
+    ui.label(RichText::new(text).color(palette.strong).size(15.0));
+    ui.add_space(2.0);
+}

@@ -1,0 +1,142 @@
+//! Buttons with small drawn pictures, so that they look the same whatever fonts there are.
+
+use crate::theme;
+use egui::{Painter, Pos2, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
+
+/// What a button shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Icon {
+    /// An arrow that bends back.
+    Undo,
+    /// An arrow that bends forth.
+    Redo,
+    /// A half-filled disc: the palette.
+    Theme,
+    /// A question mark.
+    Help,
+    /// An arrow into a tray.
+    Save,
+    /// A house: back to the text's camera.
+    Home,
+    /// Three dots.
+    More,
+    /// A cross.
+    Close,
+}
+
+/// A square button; `name` is its tooltip and its name for screen readers.
+pub fn button(ui: &mut Ui, icon: Icon, name: &str, enabled: bool) -> Response {
+    let side = ui.spacing().interact_size.y.max(28.0);
+    let sense = if enabled {
+        Sense::click()
+    } else {
+        Sense::hover()
+    };
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), sense);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
+    if ui.is_rect_visible(rect) {
+        let palette = theme::palette(ui.visuals());
+        let colour = if !enabled {
+            palette.weak.gamma_multiply(0.45)
+        } else if response.hovered() || response.has_focus() {
+            ui.painter()
+                .rect_filled(rect, f32::from(theme::ROUND), palette.hover);
+            palette.strong
+        } else {
+            palette.text
+        };
+        paint(ui.painter(), icon, rect.center(), Stroke::new(1.5, colour));
+    }
+    if enabled {
+        response.on_hover_text(name)
+    } else {
+        response
+    }
+}
+
+fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
+    let line = |points: &[(f32, f32)]| {
+        let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
+        painter.add(Shape::line(points, stroke));
+    };
+    match icon {
+        Icon::Undo | Icon::Redo => {
+            let side = if icon == Icon::Undo { 1.0 } else { -1.0 };
+            let bend: Vec<(f32, f32)> = (0..=12)
+                .map(|step| {
+                    let angle = (-90.0 + 180.0 * step as f64 / 12.0).to_radians();
+                    let (y, x) = (libm::sin(angle) as f32, libm::cos(angle) as f32);
+                    (side * (1.5 + 4.0 * x), 1.0 + 4.0 * y)
+                })
+                .collect();
+            let mut path = vec![(side * -5.5, -3.0)];
+            path.extend(bend);
+            path.push((side * -2.0, 5.0));
+            line(&path);
+            line(&[(side * -2.5, -6.0), (side * -5.5, -3.0), (side * -2.5, 0.0)]);
+        }
+        Icon::Theme => {
+            painter.circle_stroke(at, 6.0, stroke);
+            let mut half: Vec<Pos2> = (0..=16)
+                .map(|step| {
+                    let angle = (-90.0 + 180.0 * step as f64 / 16.0).to_radians();
+                    at + 6.0 * vec2(libm::cos(angle) as f32, libm::sin(angle) as f32)
+                })
+                .collect();
+            half.push(half[0]);
+            painter.add(Shape::convex_polygon(half, stroke.color, Stroke::NONE));
+        }
+        Icon::Help => {
+            painter.circle_stroke(at, 7.0, stroke);
+            let font = egui::FontId::proportional(12.0);
+            painter.text(
+                at + vec2(0.0, 0.5),
+                egui::Align2::CENTER_CENTER,
+                "?",
+                font,
+                stroke.color,
+            );
+        }
+        Icon::Save => {
+            line(&[(0.0, -6.5), (0.0, 2.0)]);
+            line(&[(-3.5, -1.5), (0.0, 2.0), (3.5, -1.5)]);
+            line(&[(-6.0, 2.5), (-6.0, 6.0), (6.0, 6.0), (6.0, 2.5)]);
+        }
+        Icon::Home => {
+            line(&[(-6.5, 0.0), (0.0, -6.0), (6.5, 0.0)]);
+            line(&[(-4.5, -1.5), (-4.5, 6.0), (4.5, 6.0), (4.5, -1.5)]);
+        }
+        Icon::More => {
+            for x in [-5.0, 0.0, 5.0] {
+                painter.circle_filled(at + vec2(x, 0.0), 1.6, stroke.color);
+            }
+        }
+        Icon::Close => {
+            line(&[(-4.0, -4.0), (4.0, 4.0)]);
+            line(&[(-4.0, 4.0), (4.0, -4.0)]);
+        }
+    }
+}
+
+/// The mark of the program: two balls that melt together.
+pub fn mark(ui: &mut Ui) {
+    let palette = theme::palette(ui.visuals());
+    let (rect, _) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::hover());
+    let painter = ui.painter();
+    let (a, b) = (
+        rect.center() + vec2(-4.0, 3.0),
+        rect.center() + vec2(5.0, -4.0),
+    );
+    painter.circle_filled(a, 6.5, palette.accent);
+    painter.circle_filled(b, 4.5, palette.accent);
+    // The neck between them: the outer tangents, drawn in a little.
+    let axis = (b - a).normalized();
+    let side = vec2(-axis.y, axis.x);
+    let neck = vec![
+        a + side * 4.6,
+        b + side * 3.0,
+        b - side * 3.0,
+        a - side * 4.6,
+    ];
+    painter.add(Shape::convex_polygon(neck, palette.accent, Stroke::NONE));
+}

@@ -1,0 +1,432 @@
+//! Where the parts of the page stand. Wide: text on the left, picture on the right, with a split
+//! that can be dragged. Narrow: the picture on top, and text, sliders and problems in turn below.
+
+use crate::app::{App, Dialog, Tab};
+use crate::command::Command;
+use crate::icon::{self, Icon};
+use crate::theme::{self, STRIP};
+use crate::view::{self, Scenery, Show};
+use crate::{bar, help, notice, places, platform, problems, size, status};
+use egui::{
+    Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Rect, RichText,
+    ScrollArea, Stroke, Ui, UiBuilder, pos2, vec2,
+};
+
+/// Below this width in points the parts stand on top of each other.
+pub const NARROW: f32 = 700.0;
+
+/// Whether the page is narrow.
+#[must_use]
+pub fn is_narrow(ctx: &Context) -> bool {
+    ctx.content_rect().width() < NARROW
+}
+
+/// Draws everything.
+pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    places::clear(ui.ctx());
+    let narrow = is_narrow(ui.ctx());
+    let palette = theme::palette(ui.visuals());
+    let line = Stroke::new(1.0, palette.line);
+    let flat = Frame::new().fill(palette.panel);
+    let bar_height = if narrow { 52.0 } else { 46.0 };
+    Panel::top("bar")
+        .exact_size(bar_height)
+        .frame(flat)
+        .show(ui, |ui| {
+            bar::show(ui, &app.work, app.settings.theme, narrow, commands);
+        });
+    Panel::bottom("status")
+        .exact_size(if narrow { 40.0 } else { 32.0 })
+        .frame(flat)
+        .show(ui, |ui| {
+            let enabled = app.work.session.enabled();
+            places::note(ui.ctx(), "status", ui.max_rect());
+            status::show(ui, &app.renderer, app.backend, enabled, narrow, commands);
+        });
+    if narrow {
+        stacked(app, ui, commands);
+    } else {
+        let width = ui.available_width();
+        let panel = Panel::left("text")
+            .default_size((width * app.settings.split).clamp(300.0, 640.0))
+            .size_range(260.0..=(width - 260.0).max(260.0))
+            .show_separator_line(true)
+            .frame(flat);
+        let side = panel.show(ui, |ui| text_side(app, ui, commands));
+        app.settings.split = (side.response.rect.width() / width.max(1.0)).clamp(0.15, 0.85);
+        CentralPanel::no_frame().show(ui, |ui| {
+            let all = ui.max_rect();
+            let head = Rect::from_min_size(all.min, vec2(all.width(), STRIP));
+            picture_head(app, ui, head, commands);
+            ui.painter().hline(all.x_range(), head.bottom(), line);
+            stage(
+                app,
+                ui,
+                Rect::from_min_max(head.left_bottom(), all.max),
+                commands,
+            );
+        });
+    }
+    dialogs(app, ui.ctx(), commands);
+}
+
+/// The left side of a wide page: files, text, sliders, problems.
+fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let inset = Frame::new()
+        .fill(palette.panel)
+        .inner_margin(Margin::symmetric(12, 8));
+    Panel::top("files")
+        .exact_size(STRIP)
+        .frame(Frame::new().fill(palette.panel))
+        .show(ui, |ui| files(app, ui, true));
+    if !app.work.session.diagnostics().is_empty() {
+        Panel::bottom("problems")
+            .resizable(true)
+            .default_size(130.0)
+            .size_range(64.0..=420.0)
+            .frame(inset)
+            .show(ui, |ui| problem_list(app, ui, commands));
+    }
+    if !app.work.session.compiled().hot.is_empty() {
+        let rows = app.work.session.compiled().hot.len().min(6) as f32;
+        let row = ui.spacing().interact_size.y + ui.spacing().item_spacing.y;
+        Panel::bottom("sliders")
+            .exact_size(rows * row + 40.0)
+            .frame(inset)
+            .show(ui, |ui| slider_list(app, ui, commands));
+    }
+    CentralPanel::no_frame().show(ui, |ui| {
+        places::note(ui.ctx(), "editor", ui.max_rect());
+        app.editor.show(ui, &app.work.session, commands);
+    });
+}
+
+fn files(app: &mut App, ui: &mut Ui, summary: bool) {
+    let palette = theme::palette(ui.visuals());
+    ui.horizontal_centered(|ui| {
+        ui.add_space(10.0);
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let files = &app.work.session.project().files;
+        for (index, file) in files.iter().enumerate() {
+            let open = index == app.editor.file;
+            let colour = if open { palette.strong } else { palette.weak };
+            let tab = Button::new(RichText::new(&file.name).size(13.0).color(colour)).fill(
+                if open && files.len() > 1 {
+                    palette.button
+                } else {
+                    Color32::TRANSPARENT
+                },
+            );
+            if ui.add(tab).clicked() {
+                app.editor.file = index;
+            }
+        }
+        if !summary {
+            return;
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add_space(12.0);
+            let diagnostics = app.work.session.diagnostics();
+            let text = problems::summary(diagnostics);
+            if !text.is_empty() {
+                let worst = diagnostics.iter().map(|d| d.severity).max();
+                let colour = worst.map_or(palette.weak, |worst| problems::colour(palette, worst));
+                ui.label(RichText::new(text).size(12.5).color(colour));
+            }
+        });
+    });
+}
+
+fn problem_list(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    places::note(ui.ctx(), "problems", ui.max_rect());
+    ScrollArea::vertical()
+        .id_salt("problems")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            let session = &app.work.session;
+            problems::show(ui, session.project(), session.diagnostics(), commands);
+        });
+}
+
+fn slider_list(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    places::note(ui.ctx(), "sliders", ui.max_rect());
+    ui.label(RichText::new("Sliders").size(12.5).color(palette.weak))
+        .on_hover_text("Variables marked hot in the text");
+    ScrollArea::vertical()
+        .id_salt("sliders")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            let hot = &app.work.session.compiled().hot;
+            app.sliders.show(ui, hot, commands);
+        });
+}
+
+/// The strip above the picture: what to show, size, save.
+fn picture_head(app: &App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    ui.painter().rect_filled(place, 0.0, palette.panel);
+    let builder = UiBuilder::new()
+        .max_rect(place)
+        .layout(Layout::left_to_right(Align::Center));
+    let mut ui = ui.new_child(builder);
+    ui.add_space(10.0);
+    if app.draft.is_some() {
+        show_choice(app, &mut ui, commands);
+    }
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        ui.add_space(10.0);
+        if icon::button(ui, Icon::Save, "Save the picture as PNG (Ctrl+S)", true).clicked() {
+            commands.push(Command::SavePng);
+        }
+        size_menu(app, ui, commands);
+        reset_view(app, ui, commands);
+    });
+}
+
+fn show_choice(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    Frame::new()
+        .fill(palette.button)
+        .corner_radius(theme::ROUND)
+        .inner_margin(2)
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            ui.spacing_mut().interact_size.y -= 4.0;
+            for (show, text, tip) in [
+                (
+                    Show::Auto,
+                    "Auto",
+                    "The draft while you edit and turn, then the traced picture",
+                ),
+                (
+                    Show::Draft,
+                    "Draft",
+                    "Only the instant draft: shapes before they melt together",
+                ),
+                (Show::Traced, "Traced", "Only the ray-traced picture"),
+            ] {
+                let chosen = app.settings.show == show;
+                let colour = if chosen { palette.strong } else { palette.weak };
+                let button = Button::new(RichText::new(text).size(12.5).color(colour))
+                    .corner_radius(theme::ROUND - 1)
+                    .fill(if chosen {
+                        palette.raised
+                    } else {
+                        Color32::TRANSPARENT
+                    });
+                if ui.add(button).on_hover_text(tip).clicked() {
+                    commands.push(Command::SetShow(show));
+                }
+            }
+        });
+}
+
+fn size_menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let label = RichText::new(app.settings.size.label()).size(12.5);
+    let menu = ui.menu_button(label, |ui| {
+        ui.set_min_width(170.0);
+        let [width, height] = app.work.session.frame();
+        for choice in size::Choice::ALL {
+            let text = match choice {
+                size::Choice::Fit => choice.label().to_owned(),
+                size::Choice::Frame => format!("{} ({width} × {height})", choice.label()),
+                size::Choice::Double => {
+                    format!("{} ({} × {})", choice.label(), 2 * width, 2 * height)
+                }
+            };
+            if ui
+                .selectable_label(app.settings.size == choice, text)
+                .clicked()
+            {
+                commands.push(Command::SetSize(choice));
+            }
+        }
+    });
+    menu.response.on_hover_text("Size of the traced picture");
+}
+
+fn reset_view(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    if app.work.session.chosen_camera().is_some() {
+        let reset = ui.button(RichText::new("Reset view").size(12.5));
+        places::note(ui.ctx(), "reset view", reset.rect);
+        if reset
+            .on_hover_text("Look from where the text says")
+            .clicked()
+        {
+            commands.push(Command::SetCamera(None));
+        }
+    }
+}
+
+/// The picture in its place.
+fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let narrow = is_narrow(ui.ctx());
+    ui.painter().rect_filled(place, 0.0, palette.stage);
+    let margin = if narrow { 0.0 } else { 18.0 };
+    let rect = view::fit(place.shrink(margin), app.work.session.frame());
+    let scale = ui.ctx().pixels_per_point();
+    // Sizes are taken in whole pixels, so that a picture is not traced anew for a rounding error.
+    app.place = [
+        (rect.width() * scale).round(),
+        (rect.height() * scale).round(),
+    ];
+    places::note(ui.ctx(), "picture", rect);
+    let now = platform::now(ui.ctx());
+    let session = &app.work.session;
+    let draft = match &mut app.draft {
+        Some(draft) if view::needs_draft(app.settings.show, session, &app.renderer, now) => {
+            draft.texture(session, app.place)
+        }
+        _ => None,
+    };
+    let scenery = Scenery {
+        session,
+        renderer: &app.renderer,
+        draft,
+        show: app.settings.show,
+        now,
+        hint: !app.settings.turned,
+    };
+    view::show(ui, rect, &scenery, commands);
+    if let Some(notice) = &app.notice {
+        notice::show(ui, place, notice, commands);
+    }
+}
+
+/// A narrow page below the bar.
+fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let all = ui.available_rect_before_wrap();
+    let [w, h] = app.work.session.frame().map(|side| side as f32);
+    // With the keyboard up there is little room; the text then matters more.
+    let share = if all.height() < 420.0 { 0.34 } else { 0.46 };
+    let height = (all.width() * h / w).min(all.height() * share).max(80.0);
+    let split = all.top() + height;
+    stage(
+        app,
+        ui,
+        Rect::from_min_max(all.min, pos2(all.right(), split)),
+        commands,
+    );
+    let tabs = Rect::from_min_size(pos2(all.left(), split), vec2(all.width(), 48.0));
+    ui.painter().rect_filled(tabs, 0.0, palette.panel);
+    let builder = UiBuilder::new()
+        .max_rect(tabs)
+        .layout(Layout::left_to_right(Align::Center));
+    tab_row(app, &mut ui.new_child(builder), commands);
+    let below = Rect::from_min_max(tabs.left_bottom(), all.max);
+    ui.painter().rect_filled(below, 0.0, palette.panel);
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(below).id_salt("below"));
+    match app.tab {
+        Tab::Text => {
+            if app.work.session.project().files.len() > 1 {
+                let builder = UiBuilder::new()
+                    .max_rect(Rect::from_min_size(below.min, vec2(below.width(), 46.0)));
+                files(app, &mut ui.new_child(builder), false);
+                ui.add_space(46.0);
+            }
+            places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
+            app.editor.show(&mut ui, &app.work.session, commands);
+        }
+        Tab::Sliders => {
+            Frame::new().inner_margin(14).show(&mut ui, |ui| {
+                if app.work.session.compiled().hot.is_empty() {
+                    ui.weak("Write “hot” after a variable, as in  var r = 0.3 hot,  and it gets a slider here.");
+                } else {
+                    slider_list(app, ui, commands);
+                }
+            });
+        }
+        Tab::Problems => {
+            Frame::new().inner_margin(10).show(&mut ui, |ui| {
+                if app.work.session.diagnostics().is_empty() {
+                    ui.weak("No problems.");
+                } else {
+                    problem_list(app, ui, commands);
+                }
+            });
+        }
+    }
+}
+
+fn tab_row(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    ui.add_space(8.0);
+    ui.spacing_mut().item_spacing.x = 4.0;
+    let problems = app.work.session.diagnostics().len();
+    let errors = app.work.session.errors() > 0;
+    let sliders = app.work.session.compiled().hot.len();
+    let count = |text: &str, number: usize| match number {
+        0 => text.to_owned(),
+        number => format!("{text} {number}"),
+    };
+    for (tab, text) in [
+        (Tab::Text, String::from("Text")),
+        (Tab::Sliders, count("Sliders", sliders)),
+        (Tab::Problems, count("Problems", problems)),
+    ] {
+        let open = app.tab == tab;
+        let colour = match (open, tab == Tab::Problems && errors) {
+            (_, true) => palette.error,
+            (true, _) => palette.strong,
+            (false, _) => palette.weak,
+        };
+        let button = Button::new(RichText::new(&text).color(colour)).fill(if open {
+            palette.button
+        } else {
+            Color32::TRANSPARENT
+        });
+        let button = ui.add(button);
+        places::note(ui.ctx(), format!("tab {tab:?}").to_lowercase(), button.rect);
+        if button.clicked() {
+            app.tab = tab;
+        }
+    }
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        ui.add_space(6.0);
+        let moved = app.work.session.chosen_camera().is_some();
+        if moved && icon::button(ui, Icon::Home, "Look from where the text says", true).clicked() {
+            commands.push(Command::SetCamera(None));
+        }
+    });
+}
+
+fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
+    let Some(dialog) = app.dialog else {
+        return;
+    };
+    let screen = ctx.content_rect();
+    let size = vec2(
+        (screen.width() - 24.0).min(if dialog == Dialog::Gallery {
+            860.0
+        } else {
+            640.0
+        }),
+        (screen.height() - 48.0).min(720.0),
+    );
+    let modal = egui::Modal::new(egui::Id::unique("dialog"))
+        .backdrop_color(Color32::from_black_alpha(130))
+        .frame(
+            Frame::window(&ctx.global_style()).inner_margin(if is_narrow(ctx) { 14 } else { 20 }),
+        )
+        .show(ctx, |ui| {
+            let inner = if is_narrow(ui.ctx()) { 28.0 } else { 40.0 };
+            ui.set_width(size.x - inner);
+            ui.set_max_height(size.y - inner);
+            match dialog {
+                Dialog::Gallery => {
+                    let shelf = app.work.shelf().borrow();
+                    app.gallery
+                        .show(ui, shelf.opened(), platform::unix_time(), commands);
+                }
+                Dialog::Help => help::show(ui, commands),
+            }
+        });
+    places::note(ctx, "dialog", modal.response.rect);
+    if modal.backdrop_response.clicked() {
+        commands.push(Command::Close);
+    }
+}

@@ -1,0 +1,92 @@
+//! One message at a time across the top of the picture: what went wrong or what was done, and
+//! perhaps one thing to do about it.
+
+use crate::command::Command;
+use crate::icon::{self, Icon};
+use crate::{places, theme};
+use egui::{Align, Button, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, vec2};
+
+/// A message.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Notice {
+    /// What it says.
+    pub text: String,
+    /// Whether something went wrong.
+    pub bad: bool,
+    /// A button: its text and what it does.
+    pub action: Option<(String, Command)>,
+    /// When it goes by itself, seconds on the app's clock.
+    pub until: Option<f64>,
+}
+
+impl Notice {
+    /// Something was done; goes after some seconds.
+    #[must_use]
+    pub fn done(text: impl Into<String>, now: f64) -> Self {
+        Self {
+            text: text.into(),
+            bad: false,
+            action: None,
+            until: Some(now + 6.0),
+        }
+    }
+
+    /// Something went wrong; stays until closed.
+    #[must_use]
+    pub fn trouble(text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            bad: true,
+            action: None,
+            until: None,
+        }
+    }
+
+    /// With a button.
+    #[must_use]
+    pub fn offering(mut self, text: &str, command: Command) -> Self {
+        self.action = Some((text.to_owned(), command));
+        self
+    }
+}
+
+/// Shows a message at the top of a place.
+pub fn show(ui: &mut Ui, place: Rect, notice: &Notice, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let width = (place.width() - 24.0).min(620.0);
+    let top = place.center_top() + vec2(-width / 2.0, 12.0);
+    let mut ui = ui.new_child(
+        UiBuilder::new()
+            .max_rect(Rect::from_min_size(top, vec2(width, 10.0)))
+            .layout(Layout::top_down(Align::Min)),
+    );
+    let edge = if notice.bad {
+        palette.error
+    } else {
+        palette.accent
+    };
+    let frame = Frame::new()
+        .fill(palette.raised)
+        .stroke(egui::Stroke::new(1.0, edge))
+        .corner_radius(10)
+        .shadow(ui.visuals().popup_shadow)
+        .inner_margin(Margin::symmetric(14, 8));
+    let shown = frame.show(&mut ui, |ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if icon::button(ui, Icon::Close, "Close this message", true).clicked() {
+                commands.push(Command::Close);
+            }
+            if let Some((text, command)) = &notice.action {
+                let button =
+                    Button::new(RichText::new(text).color(palette.on_accent)).fill(palette.accent);
+                if ui.add(button).clicked() {
+                    commands.push(command.clone());
+                }
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(Label::new(RichText::new(&notice.text).color(palette.text)).wrap());
+            });
+        });
+    });
+    places::note(ui.ctx(), "notice", shown.response.rect);
+}

@@ -1,0 +1,85 @@
+//! Stand-ins for tests: an address and a storage in memory, for each thread its own.
+
+use crate::storage::Store;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+thread_local! {
+    static HASH: RefCell<String> = const { RefCell::new(String::new()) };
+    static DOWNLOAD: RefCell<Option<(String, Vec<u8>)>> = const { RefCell::new(None) };
+}
+
+/// Seconds on a clock that never goes back.
+#[must_use]
+pub fn now(ctx: &egui::Context) -> f64 {
+    ctx.input(|input| input.time)
+}
+
+/// Seconds on a clock for measuring how long something takes.
+#[must_use]
+pub fn stopwatch() -> f64 {
+    unix_time() / 1000.0
+}
+
+/// Milliseconds since 1970.
+#[must_use]
+pub fn unix_time() -> f64 {
+    std::time::SystemTime::now()
+        .duration_since(std::time::UNIX_EPOCH)
+        .map_or(0.0, |time| time.as_millis() as f64)
+}
+
+/// A word that differs between tabs.
+#[must_use]
+pub fn random_word() -> String {
+    String::from("native")
+}
+
+/// The page's address without its fragment.
+#[must_use]
+pub fn page() -> String {
+    String::from("https://sinew.example/")
+}
+
+/// The fragment of the address, with `#`, or empty.
+#[must_use]
+pub fn hash() -> String {
+    HASH.with_borrow(Clone::clone)
+}
+
+/// Changes the fragment without loading anything and without a new entry in the history.
+pub fn set_hash(hash: &str) {
+    HASH.set(hash.to_owned());
+}
+
+/// The storage.
+#[must_use]
+pub fn store() -> Box<dyn Store> {
+    Box::<BTreeMap<String, String>>::default()
+}
+
+/// Gives the user a file.
+pub fn download(name: &str, _mime: &str, bytes: &[u8]) {
+    DOWNLOAD.set(Some((name.to_owned(), bytes.to_vec())));
+}
+
+/// The file that was given last, for tests.
+#[must_use]
+pub fn downloaded() -> Option<(String, Vec<u8>)> {
+    DOWNLOAD.take()
+}
+
+thread_local! {
+    static TROUBLED: RefCell<bool> = const { RefCell::new(false) };
+}
+
+/// Whether the program stopped unexpectedly the last time in this tab.
+#[must_use]
+pub fn troubled() -> bool {
+    TROUBLED.with_borrow(|troubled| *troubled)
+}
+
+/// Notes that the program may stop unexpectedly, or with `false` that it works.
+pub fn set_troubled(troubled: bool) {
+    TROUBLED.set(troubled);
+}

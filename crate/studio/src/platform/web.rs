@@ -1,0 +1,146 @@
+//! The browser.
+
+use crate::storage::Store;
+use std::collections::BTreeMap;
+use wasm_bindgen::{JsCast, JsValue};
+
+fn window() -> web_sys::Window {
+    web_sys::window().expect("the app runs in a page, not in a worker")
+}
+
+/// Seconds on a clock that never goes back. egui's own stands still while the tab is hidden.
+#[must_use]
+pub fn now(_ctx: &egui::Context) -> f64 {
+    stopwatch()
+}
+
+/// Seconds on a clock for measuring how long something takes.
+#[must_use]
+pub fn stopwatch() -> f64 {
+    window()
+        .performance()
+        .map_or_else(js_sys::Date::now, |performance| performance.now())
+        / 1000.0
+}
+
+/// Milliseconds since 1970.
+#[must_use]
+pub fn unix_time() -> f64 {
+    js_sys::Date::now()
+}
+
+/// A word that differs between tabs.
+#[must_use]
+pub fn random_word() -> String {
+    let random = js_sys::Math::random() * 2.0_f64.powi(48);
+    format!("{:x}{:x}", unix_time() as u64, random as u64)
+}
+
+/// The page's address without its fragment.
+#[must_use]
+pub fn page() -> String {
+    let href = window().location().href().unwrap_or_default();
+    href.split('#').next().unwrap_or_default().to_owned()
+}
+
+/// The fragment of the address, with `#`, or empty.
+#[must_use]
+pub fn hash() -> String {
+    window().location().hash().unwrap_or_default()
+}
+
+/// Changes the fragment without loading anything and without a new entry in the history.
+pub fn set_hash(hash: &str) {
+    if self::hash() == hash {
+        return;
+    }
+    let address = format!("{}{hash}", page());
+    // Refused in some sandboxes; then the address bar stays as it is and the link can be copied.
+    if let Ok(history) = window().history() {
+        let _ = history.replace_state_with_url(&JsValue::NULL, "", Some(&address));
+    }
+}
+
+/// Local storage, or memory where the browser allows none.
+#[must_use]
+pub fn store() -> Box<dyn Store> {
+    match window().local_storage() {
+        Ok(Some(storage)) => Box::new(Local(storage)),
+        _ => Box::<BTreeMap<String, String>>::default(),
+    }
+}
+
+struct Local(web_sys::Storage);
+
+impl Store for Local {
+    fn get(&self, key: &str) -> Option<String> {
+        self.0.get_item(key).ok().flatten()
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+        self.0.set_item(key, value).map_err(|_| {
+            String::from(
+                "The browser's storage is full, so your latest changes live in this tab only. Delete old works in the gallery, or keep a link.",
+            )
+        })
+    }
+
+    fn remove(&mut self, key: &str) {
+        let _ = self.0.remove_item(key);
+    }
+
+    fn keys(&self) -> Vec<String> {
+        let count = self.0.length().unwrap_or(0);
+        (0..count)
+            .filter_map(|index| self.0.key(index).ok().flatten())
+            .collect()
+    }
+}
+
+/// Gives the user a file.
+pub fn download(name: &str, mime: &str, bytes: &[u8]) {
+    let save = || -> Result<(), JsValue> {
+        let url = web_sys::Url::create_object_url_with_blob(&blob(mime, bytes)?)?;
+        let document = window().document().ok_or(JsValue::NULL)?;
+        let anchor: web_sys::HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
+        anchor.set_href(&url);
+        anchor.set_download(name);
+        anchor.click();
+        web_sys::Url::revoke_object_url(&url)
+    };
+    if let Err(error) = save() {
+        web_sys::console::error_1(&error);
+    }
+}
+
+/// Bytes as the browser's file object.
+///
+/// # Errors
+/// If the browser has no memory for it.
+pub fn blob(mime: &str, bytes: &[u8]) -> Result<web_sys::Blob, JsValue> {
+    let parts = js_sys::Array::of1(&js_sys::Uint8Array::from(bytes));
+    let options = web_sys::BlobPropertyBag::new();
+    options.set_type(mime);
+    web_sys::Blob::new_with_u8_array_sequence_and_options(&parts, &options)
+}
+
+const TROUBLED: &str = "sinew/troubled";
+
+/// Whether the program stopped unexpectedly the last time in this tab. Kept for the tab alone, so
+/// that another tab that is just starting is not taken for one that stopped.
+#[must_use]
+pub fn troubled() -> bool {
+    matches!(window().session_storage(), Ok(Some(storage)) if matches!(storage.get_item(TROUBLED), Ok(Some(_))))
+}
+
+/// Notes that the program may stop unexpectedly, or with `false` that it works.
+pub fn set_troubled(troubled: bool) {
+    if let Ok(Some(storage)) = window().session_storage() {
+        // Where nothing is stored, a bad start is simply tried again.
+        let _ = if troubled {
+            storage.set_item(TROUBLED, "1")
+        } else {
+            storage.remove_item(TROUBLED)
+        };
+    }
+}

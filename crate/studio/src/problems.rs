@@ -1,0 +1,159 @@
+//! The list of what the compiler has to say, all of it at once. A click goes to the place.
+
+use crate::command::Command;
+use crate::theme::{self, Palette};
+use egui::{Color32, RichText, Sense, Ui, vec2};
+use rats::{Diagnostic, Project, Severity};
+
+/// Rows shown; a text can have thousands of mistakes.
+const MOST: usize = 200;
+
+/// The colour of a severity.
+#[must_use]
+pub fn colour(palette: &Palette, severity: Severity) -> Color32 {
+    match severity {
+        Severity::Error => palette.error,
+        Severity::Warning => palette.warning,
+        Severity::Note => palette.note,
+    }
+}
+
+/// How many errors, warnings and notes there are, in words; empty if there are none.
+#[must_use]
+pub fn summary(diagnostics: &[Diagnostic]) -> String {
+    let count = |severity| {
+        diagnostics
+            .iter()
+            .filter(|diagnostic| diagnostic.severity == severity)
+            .count()
+    };
+    let mut parts = Vec::new();
+    for (severity, one, many) in [
+        (Severity::Error, "error", "errors"),
+        (Severity::Warning, "warning", "warnings"),
+        (Severity::Note, "note", "notes"),
+    ] {
+        match count(severity) {
+            0 => {}
+            1 => parts.push(format!("1 {one}")),
+            n => parts.push(format!("{n} {many}")),
+        }
+    }
+    parts.join(", ")
+}
+
+/// Shows the list.
+pub fn show(
+    ui: &mut Ui,
+    project: &Project,
+    diagnostics: &[Diagnostic],
+    commands: &mut Vec<Command>,
+) {
+    let palette = theme::palette(ui.visuals());
+    ui.spacing_mut().item_spacing.y = 2.0;
+    for (index, diagnostic) in diagnostics.iter().take(MOST).enumerate() {
+        let row = ui
+            .push_id(("problem", index), |ui| {
+                row(ui, palette, project, diagnostic)
+            })
+            .inner;
+        if row.clicked()
+            && let Some(file) = project
+                .files
+                .iter()
+                .position(|file| file.name == diagnostic.file)
+        {
+            commands.push(Command::Jump {
+                file,
+                range: diagnostic.span.clone(),
+            });
+        }
+    }
+    if diagnostics.len() > MOST {
+        ui.weak(format!("… and {} more", diagnostics.len() - MOST));
+    }
+}
+
+fn row(
+    ui: &mut Ui,
+    palette: &Palette,
+    project: &Project,
+    diagnostic: &Diagnostic,
+) -> egui::Response {
+    let several = project.files.len() > 1;
+    let place = if several {
+        format!(
+            "{}:{}:{}",
+            diagnostic.file, diagnostic.line, diagnostic.column
+        )
+    } else {
+        format!("{}:{}", diagnostic.line, diagnostic.column)
+    };
+    let background = ui.painter().add(egui::Shape::Noop);
+    let inner = ui.scope(|ui| {
+        ui.set_width(ui.available_width());
+        ui.add_space(3.0);
+        ui.horizontal_top(|ui| {
+            ui.add_space(4.0);
+            let (dot, _) = ui.allocate_exact_size(vec2(8.0, 18.0), Sense::hover());
+            ui.painter()
+                .circle_filled(dot.center(), 3.5, colour(palette, diagnostic.severity));
+            ui.vertical(|ui| {
+                ui.spacing_mut().item_spacing.y = 1.0;
+                ui.horizontal_wrapped(|ui| {
+                    ui.spacing_mut().item_spacing.x = 8.0;
+                    ui.label(
+                        RichText::new(place)
+                            .monospace()
+                            .size(12.0)
+                            .color(palette.weak),
+                    );
+                    ui.label(RichText::new(&diagnostic.message).color(palette.text));
+                });
+                if let Some(hint) = &diagnostic.hint {
+                    ui.label(RichText::new(hint).size(12.5).color(palette.weak));
+                }
+            });
+        });
+        ui.add_space(3.0);
+    });
+    let name = format!("Problem at {}:{}", diagnostic.line, diagnostic.column);
+    let response = ui
+        .interact(
+            inner.response.rect,
+            ui.scope_id().with("row"),
+            Sense::click(),
+        )
+        .on_hover_cursor(egui::CursorIcon::PointingHand);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name.as_str()));
+    if response.hovered() {
+        let shape = egui::Shape::rect_filled(response.rect, f32::from(theme::ROUND), palette.hover);
+        ui.painter().set(background, shape);
+    }
+    response
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_summary_counts_each_kind() {
+        let one = |severity| Diagnostic {
+            severity,
+            message: String::new(),
+            file: String::new(),
+            span: 0..0,
+            line: 1,
+            column: 1,
+            hint: None,
+        };
+        assert_eq!(summary(&[]), "");
+        let list = [
+            one(Severity::Error),
+            one(Severity::Note),
+            one(Severity::Error),
+        ];
+        assert_eq!(summary(&list), "2 errors, 1 note");
+    }
+}

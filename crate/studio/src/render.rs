@@ -1,0 +1,289 @@
+//! When to trace, and the traced picture on its way to the screen.
+//!
+//! A change is traced after a short pause, so that typing does not begin a picture at every key; the
+//! running picture is given up at the change itself, which frees the workers for the next one.
+
+use crate::picture::{self, Assembly, Change, Image};
+use crate::pool::{Job, Pool, Progress};
+use egui::{ColorImage, TextureHandle, TextureOptions};
+use scene::Scene;
+use tracer::Pass;
+
+/// Seconds of quiet before a change is traced.
+pub const DEBOUNCE: f64 = 0.15;
+/// Seconds of quiet before a new size of the view is traced: the split is being dragged.
+pub const RESIZE_DEBOUNCE: f64 = 0.35;
+/// Seconds in which a new picture fades in over the draft.
+pub const FADE: f64 = 0.22;
+
+/// Where the picture stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Nothing to draw yet.
+    Idle,
+    /// Waiting for the text or the camera to come to rest.
+    Waiting,
+    /// Tiles are coming.
+    Tracing,
+    /// The picture is finished.
+    Done,
+    /// The user stopped it.
+    Cancelled,
+}
+
+impl Phase {
+    /// Its name in the page handle's status.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Idle => "idle",
+            Self::Waiting => "waiting",
+            Self::Tracing => "tracing",
+            Self::Done => "done",
+            Self::Cancelled => "cancelled",
+        }
+    }
+}
+
+/// Seconds from the start of the picture to its milestones.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Timings {
+    /// Every pixel there, coarsely.
+    pub coarse: Option<f64>,
+    /// Finished.
+    pub done: Option<f64>,
+}
+
+/// Traces the present scene and keeps the picture.
+pub struct Renderer {
+    pool: Pool,
+    assembly: Assembly,
+    texture: Option<TextureHandle>,
+    phase: Phase,
+    /// What was asked for last: the session's generation and the size.
+    wanted: Option<(u64, [u32; 2])>,
+    due: f64,
+    /// Number of the running picture. Sizes change too, so it is not the session's generation.
+    number: u64,
+    /// The session's generation of the running picture, and when it began.
+    running: (u64, f64),
+    /// The session's generation of the picture on the screen.
+    shown: Option<u64>,
+    appeared: f64,
+    progress: Progress,
+    timings: Timings,
+}
+
+impl Renderer {
+    /// A renderer without a picture.
+    #[must_use]
+    pub fn new(pool: Pool) -> Self {
+        Self {
+            pool,
+            assembly: Assembly::default(),
+            texture: None,
+            phase: Phase::Idle,
+            wanted: None,
+            due: 0.0,
+            number: 0,
+            running: (0, 0.0),
+            shown: None,
+            appeared: f64::NEG_INFINITY,
+            progress: Progress::default(),
+            timings: Timings::default(),
+        }
+    }
+
+    /// Says what should be on the screen. When that differs from what is coming, the running
+    /// picture is given up and a new one begins after a pause.
+    pub fn want(&mut self, generation: u64, size: [u32; 2], now: f64) {
+        let Some((old_generation, old_size)) = self.wanted else {
+            self.wanted = Some((generation, size));
+            self.due = now;
+            self.phase = Phase::Waiting;
+            return;
+        };
+        if (old_generation, old_size) == (generation, size) {
+            return;
+        }
+        self.wanted = Some((generation, size));
+        if generation != old_generation {
+            self.pool.cancel();
+            self.phase = Phase::Waiting;
+            self.due = now + DEBOUNCE;
+        } else if self.phase != Phase::Cancelled {
+            self.phase = Phase::Waiting;
+            self.due = now + RESIZE_DEBOUNCE;
+        }
+    }
+
+    /// Seconds until [`Renderer::tick`] has something to do, if it waits for a time.
+    #[must_use]
+    pub fn wait(&self, now: f64) -> Option<f64> {
+        (self.phase == Phase::Waiting).then_some((self.due - now).max(0.0))
+    }
+
+    /// Begins the wanted picture when its time has come, and takes in tiles. Gives whether
+    /// something changed.
+    pub fn tick(
+        &mut self,
+        ctx: &egui::Context,
+        now: f64,
+        scene: impl FnOnce() -> Option<Scene>,
+    ) -> bool {
+        let mut changed = false;
+        if self.phase == Phase::Waiting
+            && now >= self.due
+            && let Some((generation, size)) = self.wanted
+            && let Some(scene) = scene()
+        {
+            self.number += 1;
+            self.running = (generation, now);
+            self.timings = Timings::default();
+            self.assembly.begin(self.number, size);
+            self.pool.start(Job {
+                scene: &scene,
+                size,
+                generation: self.number,
+            });
+            self.phase = Phase::Tracing;
+            changed = true;
+        }
+        for tile in self.pool.poll() {
+            changed = true;
+            let change = self
+                .assembly
+                .put(tile.generation, tile.tile, tile.pass, &tile.pixels);
+            match change {
+                Change::Nothing => {}
+                Change::Whole => {
+                    self.timings.coarse = Some(now - self.running.1);
+                    self.shown = Some(self.running.0);
+                    self.appeared = now;
+                    self.upload(ctx);
+                }
+                Change::Tile(tile) => self.upload_tile(tile),
+            }
+        }
+        let progress = self.pool.progress();
+        changed |= progress != self.progress;
+        self.progress = progress;
+        if self.phase == Phase::Tracing
+            && self.progress.finished
+            && self.progress.generation == Some(self.number)
+        {
+            self.phase = if self.progress.error.is_some() {
+                Phase::Cancelled
+            } else {
+                self.timings.done = Some(now - self.running.1);
+                Phase::Done
+            };
+        }
+        changed
+    }
+
+    /// Stops the running picture; what is there stays.
+    pub fn cancel(&mut self) {
+        if matches!(self.phase, Phase::Tracing | Phase::Waiting) {
+            self.pool.cancel();
+            self.phase = Phase::Cancelled;
+        }
+    }
+
+    /// Traces the wanted picture (again) now.
+    pub fn again(&mut self, now: f64) {
+        if self.wanted.is_some() {
+            self.pool.cancel();
+            self.phase = Phase::Waiting;
+            self.due = now;
+        }
+    }
+
+    /// Forgets the picture: another piece of work is open.
+    pub fn clear(&mut self) {
+        self.pool.cancel();
+        self.assembly.clear();
+        self.texture = None;
+        self.wanted = None;
+        self.shown = None;
+        self.phase = Phase::Idle;
+    }
+
+    /// Where the picture stands.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// How far the running picture is.
+    #[must_use]
+    pub fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
+    /// How long its milestones took.
+    #[must_use]
+    pub fn timings(&self) -> Timings {
+        self.timings
+    }
+
+    /// The picture on the screen.
+    #[must_use]
+    pub fn image(&self) -> Option<&Image> {
+        self.assembly.shown().map(|(_, image)| image)
+    }
+
+    /// The texture of the picture on the screen, and the session's generation it shows.
+    #[must_use]
+    pub fn texture(&self) -> Option<(&TextureHandle, u64)> {
+        Some((self.texture.as_ref()?, self.shown?))
+    }
+
+    /// How far the picture has faded in over the draft, 0 … 1.
+    #[must_use]
+    pub fn faded(&self, now: f64) -> f32 {
+        ((now - self.appeared) / FADE).clamp(0.0, 1.0) as f32
+    }
+
+    /// Ends a worker, for tests.
+    pub fn kill_worker(&mut self, index: usize) -> bool {
+        self.pool.kill_worker(index)
+    }
+
+    fn upload(&mut self, ctx: &egui::Context) {
+        let Some((_, image)) = self.assembly.shown() else {
+            return;
+        };
+        let size = image.size.map(|side| side as usize);
+        let pixels = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
+        match &mut self.texture {
+            Some(texture) => texture.set(pixels, TextureOptions::LINEAR),
+            None => {
+                self.texture = Some(ctx.load_texture("picture", pixels, TextureOptions::LINEAR));
+            }
+        }
+    }
+
+    fn upload_tile(&mut self, tile: tracer::Tile) {
+        let (Some(texture), Some((_, image))) = (&mut self.texture, self.assembly.shown()) else {
+            return;
+        };
+        let size = [tile.width as usize, tile.height as usize];
+        let pixels = ColorImage::from_rgba_unmultiplied(size, &picture::cut(image, tile));
+        texture.set_partial(
+            [tile.x as usize, tile.y as usize],
+            pixels,
+            TextureOptions::LINEAR,
+        );
+    }
+}
+
+/// The name of a pass for people.
+#[must_use]
+pub fn pass_label(pass: Pass) -> &'static str {
+    match pass {
+        Pass::Coarse => "coarse",
+        Pass::Full => "full",
+        Pass::Smooth => "smooth",
+    }
+}

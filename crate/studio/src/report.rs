@@ -1,0 +1,99 @@
+//! What the page tells scripts about its state.
+
+use rats::{Diagnostic, Project};
+use scene::Camera;
+use serde::Serialize;
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// The state after a tick.
+#[derive(Clone, Debug, Default, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Report {
+    /// `idle`, `waiting`, `tracing`, `done` or `cancelled`.
+    pub phase: &'static str,
+    /// Share of the picture's work that is done, 0 … 1.
+    pub progress: f64,
+    /// `coarse`, `full` or `smooth` while tracing.
+    pub pass: Option<&'static str>,
+    /// Seconds until the picture is finished, once that can be guessed.
+    pub remaining: Option<f64>,
+    /// `webgpu`, `webgl2` or `none`.
+    pub backend: &'static str,
+    /// Workers that run.
+    pub workers: usize,
+    /// Workers replaced since the page was opened.
+    pub replaced: u32,
+    /// Why tracing does not work, if so.
+    pub failure: Option<String>,
+    /// Whether the picture on the screen is of the present text and camera.
+    pub fresh: bool,
+    /// How many of the diagnostics are errors.
+    pub errors: usize,
+    /// What the compiler says.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Milestones of the picture.
+    pub timings: Timings,
+    /// Size of the picture on the screen.
+    pub picture: Option<Size>,
+    /// Counts of work for the picture.
+    pub stats: Stats,
+    /// Names of the variables marked `hot`.
+    pub hot: Vec<String>,
+    /// Rises when the text changes.
+    pub revision: u64,
+    /// Name of the open work.
+    pub name: String,
+    /// Whether all changes are written to the browser's storage.
+    pub saved: bool,
+}
+
+/// Seconds from the start of the picture.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Timings {
+    /// Every pixel there, coarsely.
+    pub coarse: Option<f64>,
+    /// Finished.
+    pub done: Option<f64>,
+    /// What compiling the text took.
+    pub compile: f64,
+}
+
+/// Pixels.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Size {
+    /// Width.
+    pub width: u32,
+    /// Height.
+    pub height: u32,
+}
+
+/// Counts of work.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Stats {
+    /// Rays from the eye.
+    pub primary_rays: u64,
+    /// Rays towards lights.
+    pub shadow_rays: u64,
+    /// Evaluations of one primitive's field at one point.
+    pub field_evaluations: u64,
+}
+
+/// What scripts can read at any time.
+#[derive(Clone, Default)]
+pub struct Outbox {
+    /// The state.
+    pub report: Report,
+    /// The texts.
+    pub project: Rc<Project>,
+    /// The camera chosen by hand.
+    pub chosen: Option<Camera>,
+    /// The camera in use.
+    pub camera: Camera,
+    /// Where the widgets are, in points.
+    pub places: crate::places::Places,
+}
+
+/// Shared between the app and the handle.
+pub type Shared = Rc<RefCell<Outbox>>;

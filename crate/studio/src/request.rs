@@ -1,0 +1,60 @@
+//! What comes from outside the window: scripts of the page (`handle`) and the browser itself.
+
+use crate::picture::Image;
+use egui::Context;
+use rats::Project;
+use scene::Camera;
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// One wish from outside. The app carries it out at its next tick.
+pub enum Request {
+    /// Answer when the app runs.
+    Ready(Box<dyn FnOnce()>),
+    /// The fragment of the page's address changed.
+    HashChanged,
+    /// Open these texts; the answer is given when they are compiled.
+    Load(Project, Box<dyn FnOnce(Result<(), String>)>),
+    /// See the scene from here; `None`: from where the text says.
+    SetCamera(Option<Camera>),
+    /// Give the traced picture.
+    Picture(Box<dyn FnOnce(Option<&Image>)>),
+    /// Answer when the picture of the present text and camera is finished, or was stopped.
+    Finished(Box<dyn FnOnce()>),
+    /// Stop tracing.
+    Cancel,
+    /// Trace again.
+    Again,
+    /// Trace at this size; `None`: at the size the user chose. For tests.
+    PictureSize(Option<[u32; 2]>),
+    /// End a worker. For tests.
+    KillWorker(usize),
+}
+
+/// Requests that wait for the next tick.
+#[derive(Clone, Default)]
+pub struct Requests {
+    waiting: Rc<RefCell<Vec<Request>>>,
+    ctx: Rc<RefCell<Option<Context>>>,
+}
+
+impl Requests {
+    /// Whom to wake when something is asked.
+    pub fn attach(&self, ctx: &Context) {
+        self.ctx.replace(Some(ctx.clone()));
+    }
+
+    /// Asks for something.
+    pub fn ask(&self, request: Request) {
+        self.waiting.borrow_mut().push(request);
+        if let Some(ctx) = &*self.ctx.borrow() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// All that was asked since the last call.
+    #[must_use]
+    pub fn take(&self) -> Vec<Request> {
+        std::mem::take(&mut *self.waiting.borrow_mut())
+    }
+}

@@ -1,0 +1,33 @@
+//! How the user likes the page. Kept in the browser, apart from the works.
+
+use crate::view::Show;
+use crate::{size, theme};
+use serde::{Deserialize, Serialize};
+
+/// The user's choices.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Palette.
+    pub theme: theme::Choice,
+    /// Draft, picture, or both in turn.
+    pub show: Show,
+    /// Size of the picture.
+    pub size: size::Choice,
+    /// Share of the width that the text has.
+    pub split: f32,
+    /// Whether the user has turned a picture and needs no hint any more.
+    pub turned: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            theme: theme::Choice::System,
+            show: Show::Auto,
+            size: size::Choice::Fit,
+            split: 0.4,
+            turned: false,
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Sliders, colour pickers and drag fields for the variables marked `hot`. Moving one rewrites its
+//! literal in the text, so that the text stays the one truth and undo works as for typing.
+
+use crate::command::Command;
+use crate::theme;
+use egui::{DragValue, RichText, Slider, Ui};
+use rats::{HotValue, HotVariable, hot};
+use std::collections::HashMap;
+
+/// The ranges of the sliders. They stay put while a slider is dragged.
+#[derive(Default)]
+pub struct Sliders {
+    ranges: HashMap<(usize, String), (f64, f64)>,
+    dragging: bool,
+}
+
+impl Sliders {
+    /// Forgets the ranges: another text is open.
+    pub fn clear(&mut self) {
+        self.ranges.clear();
+    }
+
+    /// Shows one row for each variable.
+    pub fn show(&mut self, ui: &mut Ui, hot: &[HotVariable], commands: &mut Vec<Command>) {
+        let mut dragging = false;
+        let palette = theme::palette(ui.visuals());
+        let widest = hot
+            .iter()
+            .map(|variable| variable.name.chars().count())
+            .max()
+            .unwrap_or(0);
+        let name_width = (widest as f32 * 8.0).clamp(32.0, 110.0);
+        for variable in hot {
+            ui.push_id((variable.file, &variable.name), |ui| {
+                ui.horizontal(|ui| {
+                    let name = RichText::new(&variable.name)
+                        .monospace()
+                        .color(palette.text);
+                    let height = ui.spacing().interact_size.y;
+                    ui.allocate_ui_with_layout(
+                        egui::vec2(name_width, height),
+                        egui::Layout::left_to_right(egui::Align::Center),
+                        |ui| {
+                            ui.set_min_width(name_width);
+                            ui.add(egui::Label::new(name).truncate());
+                        },
+                    );
+                    let Some(range) = &variable.literal else {
+                        ui.weak(hot::write(&variable.value)).on_hover_text(
+                            "This value is computed, so there is no number in the text to move.",
+                        );
+                        return;
+                    };
+                    let mut replace = |with: String| {
+                        commands.push(Command::Replace {
+                            file: variable.file,
+                            range: range.clone(),
+                            with,
+                        });
+                    };
+                    match variable.value {
+                        HotValue::Scalar(value) => {
+                            dragging |= self.scalar(ui, variable, value, &mut replace);
+                        }
+                        HotValue::Vector(vector) => {
+                            dragging |= vector_fields(ui, vector, &mut replace);
+                        }
+                        HotValue::Colour(colour) => {
+                            dragging |= colour_button(ui, colour, &mut replace);
+                        }
+                    }
+                });
+            });
+        }
+        if dragging != self.dragging {
+            self.dragging = dragging;
+            // The step must begin before the first change of the drag and end after its last.
+            if dragging {
+                commands.insert(0, Command::Hold);
+            } else {
+                commands.push(Command::Release);
+            }
+        }
+    }
+
+    fn scalar(
+        &mut self,
+        ui: &mut Ui,
+        variable: &HotVariable,
+        mut value: f64,
+        replace: &mut impl FnMut(String),
+    ) -> bool {
+        let key = (variable.file, variable.name.clone());
+        let fresh = fitting_range(value);
+        let range = *self.ranges.entry(key.clone()).or_insert(fresh);
+        let (low, high) = range;
+        let decimals = decimals(high - low);
+        ui.spacing_mut().slider_width = (ui.available_width() - 84.0).clamp(60.0, 420.0);
+        let slider = ui.add(
+            Slider::new(&mut value, low..=high)
+                .clamping(egui::SliderClamping::Never)
+                .max_decimals(decimals)
+                .smart_aim(false),
+        );
+        let slider = slider.accessible_name(&variable.name);
+        if slider.changed() && value.is_finite() {
+            replace(hot::write(&HotValue::Scalar(rounded(value, decimals))));
+        }
+        // At rest the range follows the value, so that a slider at its end can go further.
+        if !slider.dragged() && !slider.is_pointer_button_down_on() {
+            let inside = value > low + 0.02 * (high - low) || value == low && low == 0.0;
+            if !inside || value >= high {
+                self.ranges.insert(key, fresh);
+            }
+        }
+        slider.dragged()
+    }
+}
+
+fn vector_fields(ui: &mut Ui, mut vector: [f64; 3], replace: &mut impl FnMut(String)) -> bool {
+    let largest = vector.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let speed = if largest > 0.0 { largest / 200.0 } else { 0.01 };
+    let mut dragging = false;
+    let mut changed = false;
+    for (name, value) in ["x", "y", "z"].into_iter().zip(&mut vector) {
+        let field = ui
+            .add(DragValue::new(value).speed(speed).max_decimals(4))
+            .on_hover_text(format!("{name}: drag sideways, or click to type"));
+        dragging |= field.dragged();
+        changed |= field.changed();
+    }
+    if changed && vector.iter().all(|v| v.is_finite()) {
+        replace(hot::write(&HotValue::Vector(vector.map(|v| rounded(v, 4)))));
+    }
+    dragging
+}
+
+fn colour_button(ui: &mut Ui, colour: [f32; 3], replace: &mut impl FnMut(String)) -> bool {
+    // With gamma 1, the default, a colour's numbers go to the screen as they are.
+    let mut bytes = colour.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
+    let button = ui
+        .color_edit_button_srgb(&mut bytes)
+        .on_hover_text("Choose a colour");
+    if button.changed() {
+        let colour = bytes.map(|byte| f32::from(byte) / 255.0);
+        replace(hot::write(&HotValue::Colour(colour)));
+    }
+    // The picker is a popup of its own; while the pointer is down in it, a drag goes on.
+    button.changed() && ui.input(|input| input.pointer.any_down())
+}
+
+/// A range to play in: up to four times the value, or a unit around zero.
+#[must_use]
+pub fn fitting_range(value: f64) -> (f64, f64) {
+    if value > 0.0 {
+        (0.0, 4.0 * value)
+    } else if value < 0.0 {
+        (4.0 * value, 0.0)
+    } else {
+        (-1.0, 1.0)
+    }
+}
+
+/// Decimals that move a slider of this range in steps of a thousandth or less.
+#[must_use]
+pub fn decimals(range: f64) -> usize {
+    if !range.is_finite() || range <= 0.0 {
+        return 3;
+    }
+    let digits = libm::ceil(3.0 - libm::log10(range));
+    digits.clamp(0.0, 12.0) as usize
+}
+
+/// A number without the digits that no hand could set.
+fn rounded(value: f64, decimals: usize) -> f64 {
+    format!("{value:.decimals$}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_no_digits_that_no_hand_could_set() {
+        assert_eq!(rounded(0.1 + 0.2, 4), 0.3);
+        assert_eq!(rounded(1234.56, 0), 1235.0);
+    }
+
+    #[test]
+    fn a_thousand_steps_fit_every_range() {
+        assert_eq!(fitting_range(0.05), (0.0, 0.2));
+        assert_eq!(fitting_range(-2.0), (-8.0, 0.0));
+        assert_eq!(fitting_range(0.0), (-1.0, 1.0));
+        assert_eq!(decimals(0.2), 4);
+        assert_eq!(decimals(4000.0), 0);
+        assert_eq!(decimals(f64::NAN), 3);
+        assert_eq!(decimals(1e-300), 12);
+    }
+}

@@ -1,0 +1,184 @@
+//! The strip at the bottom: how far the picture is, and what works on it.
+
+use crate::Backend;
+use crate::command::Command;
+use crate::render::{Phase, Renderer, pass_label};
+use crate::theme;
+use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, vec2};
+
+/// A duration in words.
+#[must_use]
+pub fn duration(seconds: f64) -> String {
+    if seconds < 0.95 {
+        format!("{:.1} s", seconds.max(0.0))
+    } else if seconds < 90.0 {
+        format!("{seconds:.0} s")
+    } else if seconds < 5400.0 {
+        format!("{:.0} min", seconds / 60.0)
+    } else {
+        format!("{:.1} h", seconds / 3600.0)
+    }
+}
+
+/// A count with a unit prefix: 1.2 M.
+#[must_use]
+pub fn count(number: u64) -> String {
+    let number = number as f64;
+    if number < 1e3 {
+        format!("{number:.0}")
+    } else if number < 1e6 {
+        format!("{:.0} k", number / 1e3)
+    } else if number < 1e9 {
+        format!("{:.1} M", number / 1e6)
+    } else {
+        format!("{:.1} G", number / 1e9)
+    }
+}
+
+/// What is going on, in a few words.
+#[must_use]
+pub fn summary(renderer: &Renderer, enabled: bool) -> String {
+    let progress = renderer.progress();
+    if let Some(failure) = &progress.error {
+        return failure.clone();
+    }
+    match renderer.phase() {
+        Phase::Idle if !enabled => String::from("Not rendering"),
+        Phase::Idle => String::from("Ready"),
+        Phase::Waiting => String::from("Waiting for you to pause"),
+        Phase::Tracing => {
+            let mut text = format!("Tracing {:.0}%", progress.fraction * 100.0);
+            if let Some(left) = progress.remaining_seconds {
+                text.push_str(&format!(" · {} left", duration(left)));
+            }
+            text
+        }
+        Phase::Done => match renderer.timings().done {
+            Some(seconds) => format!("Done in {}", duration(seconds)),
+            None => String::from("Done"),
+        },
+        Phase::Cancelled => String::from("Stopped"),
+    }
+}
+
+/// Shows the strip.
+pub fn show(
+    ui: &mut Ui,
+    renderer: &Renderer,
+    backend: Backend,
+    enabled: bool,
+    narrow: bool,
+    commands: &mut Vec<Command>,
+) {
+    let palette = theme::palette(ui.visuals());
+    let progress = renderer.progress();
+    let tracing = renderer.phase() == Phase::Tracing;
+    let strip = ui.max_rect();
+    if tracing {
+        let width = strip.width() * progress.fraction.clamp(0.0, 1.0) as f32;
+        let bar = Rect::from_min_size(strip.min, vec2(width, 2.0));
+        ui.painter().rect_filled(bar, 0.0, palette.accent);
+    }
+    ui.horizontal_centered(|ui| {
+        ui.add_space(12.0);
+        ui.label(
+            RichText::new(summary(renderer, enabled))
+                .color(palette.text)
+                .size(13.0),
+        );
+        if let (true, Some(pass), false) = (tracing, progress.pass, narrow) {
+            ui.label(
+                RichText::new(pass_label(pass))
+                    .color(palette.weak)
+                    .size(13.0),
+            );
+        }
+        let quiet = |text: &str| {
+            Button::new(RichText::new(text).size(13.0).color(palette.accent))
+                .fill(Color32::TRANSPARENT)
+        };
+        if matches!(renderer.phase(), Phase::Tracing | Phase::Waiting) {
+            let stop = ui
+                .add(quiet("Cancel"))
+                .on_hover_text("Stop tracing this picture");
+            if stop.clicked() {
+                commands.push(Command::Cancel);
+            }
+        } else if matches!(renderer.phase(), Phase::Done | Phase::Cancelled) {
+            let again = ui
+                .add(quiet("Render again"))
+                .on_hover_text("Trace the picture anew");
+            if again.clicked() {
+                commands.push(Command::Again);
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add_space(12.0);
+            for (text, tip) in facts(renderer, backend, narrow) {
+                let fact = ui.add(
+                    egui::Label::new(RichText::new(text).color(palette.weak).size(12.5))
+                        .sense(Sense::hover()),
+                );
+                fact.on_hover_text(tip);
+                ui.add_space(4.0);
+            }
+        });
+    });
+}
+
+/// Facts about the picture, from right to left.
+fn facts(renderer: &Renderer, backend: Backend, narrow: bool) -> Vec<(String, String)> {
+    let progress = renderer.progress();
+    let mut facts = vec![(
+        backend.label().to_owned(),
+        String::from(match backend {
+            Backend::WebGpu => "The window and the draft are drawn with WebGPU",
+            Backend::WebGl2 => "The window and the draft are drawn with WebGL2",
+            Backend::None => "No WebGPU or WebGL2 here: no draft, everything else works",
+        }),
+    )];
+    if narrow {
+        return facts;
+    }
+    let plural = if progress.workers == 1 { "" } else { "s" };
+    let mut tip = String::from("Processors that trace the picture");
+    if progress.restarted > 0 {
+        tip.push_str(&format!("; {} had to be replaced", progress.restarted));
+    }
+    facts.push((format!("{} worker{plural}", progress.workers), tip));
+    if let Some(image) = renderer.image() {
+        let [width, height] = image.size;
+        facts.push((
+            format!("{width} × {height}"),
+            String::from("Size of the picture in pixels"),
+        ));
+    }
+    let stats = progress.stats;
+    if stats.primary_rays > 0 {
+        facts.push((
+            format!("{} rays", count(stats.primary_rays + stats.shadow_rays)),
+            format!(
+                "{} rays from the eye, {} towards lights, {} field evaluations",
+                count(stats.primary_rays),
+                count(stats.shadow_rays),
+                count(stats.field_evaluations)
+            ),
+        ));
+    }
+    facts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_and_counts_are_short() {
+        assert_eq!(duration(0.04), "0.0 s");
+        assert_eq!(duration(12.4), "12 s");
+        assert_eq!(duration(600.0), "10 min");
+        assert_eq!(duration(7200.0), "2.0 h");
+        assert_eq!(count(999), "999");
+        assert_eq!(count(1_234_567), "1.2 M");
+    }
+}

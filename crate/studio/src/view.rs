@@ -1,0 +1,200 @@
+//! The picture: draft and traced picture in one place, and the gestures that turn it.
+//!
+//! While the scene or the camera is ahead of the traced picture, the draft stands in; the traced
+//! picture fades in over it once all of it has come at least coarsely.
+
+use crate::command::Command;
+use crate::render::Renderer;
+use crate::session::Session;
+use crate::theme;
+use egui::{
+    Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, TextureId, Ui, Vec2, vec2,
+};
+use preview::orbit;
+use scene::Camera;
+use serde::{Deserialize, Serialize};
+
+/// What the view shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Show {
+    /// The draft while turning and editing, then the traced picture.
+    #[default]
+    Auto,
+    /// The draft only.
+    Draft,
+    /// The traced picture only.
+    Traced,
+}
+
+/// What the view needs to know beside the session.
+pub struct Scenery<'a> {
+    /// The user's work.
+    pub session: &'a Session,
+    /// The traced picture.
+    pub renderer: &'a Renderer,
+    /// The draft, if there is one.
+    pub draft: Option<TextureId>,
+    /// What to show.
+    pub show: Show,
+    /// Seconds on the app's clock.
+    pub now: f64,
+    /// Whether to say how to turn the picture.
+    pub hint: bool,
+}
+
+/// The largest rectangle of the frame's proportions in the middle of a place.
+#[must_use]
+pub fn fit(place: Rect, frame: [u32; 2]) -> Rect {
+    let frame = vec2(frame[0].max(1) as f32, frame[1].max(1) as f32);
+    let scale = (place.width() / frame.x)
+        .min(place.height() / frame.y)
+        .max(0.0);
+    Rect::from_center_size(place.center(), frame * scale)
+}
+
+/// Whether the draft is to be drawn at all.
+#[must_use]
+pub fn needs_draft(show: Show, session: &Session, renderer: &Renderer, now: f64) -> bool {
+    match show {
+        Show::Draft => true,
+        Show::Traced => false,
+        Show::Auto => {
+            let fresh = renderer
+                .texture()
+                .is_some_and(|(_, generation)| generation == session.generation());
+            !fresh || renderer.faded(now) < 1.0
+        }
+    }
+}
+
+/// Paints the picture into `rect` and takes the gestures made on it.
+pub fn show(
+    ui: &mut Ui,
+    rect: Rect,
+    scenery: &Scenery<'_>,
+    commands: &mut Vec<Command>,
+) -> Response {
+    let Scenery {
+        session,
+        renderer,
+        draft,
+        show,
+        now,
+        hint,
+    } = *scenery;
+    let palette = theme::palette(ui.visuals());
+    let painter = ui.painter().clone();
+    painter.rect_filled(rect, 4.0, background(session));
+    let traced = renderer.texture();
+    let fresh = traced.is_some_and(|(_, generation)| generation == session.generation());
+    let image = |texture: TextureId, alpha: f32| {
+        let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+        painter.image(texture, rect, whole, Color32::WHITE.gamma_multiply(alpha));
+    };
+    let draft = draft.filter(|_| show != Show::Traced);
+    if let Some(draft) = draft {
+        image(draft, 1.0);
+    }
+    match (traced, draft) {
+        (Some((texture, _)), None) => image(texture.id(), 1.0),
+        (Some((texture, _)), Some(_)) if fresh && show == Show::Auto => {
+            let faded = renderer.faded(now);
+            image(texture.id(), faded);
+            if faded < 1.0 {
+                ui.ctx().request_repaint();
+            }
+        }
+        (None, None) if session.enabled() => {
+            let place = Rect::from_center_size(rect.center(), Vec2::splat(28.0));
+            ui.place(place, egui::Spinner::new().color(palette.weak));
+        }
+        _ => {}
+    }
+
+    let response = ui.interact(rect, ui.scope_id().with("picture"), Sense::click_and_drag());
+    response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture of the model"));
+    let camera = session.camera();
+    if let Some(moved) = gesture(ui, &response, rect, camera) {
+        commands.push(Command::SetCamera(Some(moved)));
+    }
+    let response =
+        response.on_hover_and_drag_cursor(if ui.input(|input| input.pointer.any_down()) {
+            CursorIcon::Grabbing
+        } else {
+            CursorIcon::Grab
+        });
+    if hint && response.hovered() && !response.dragged() {
+        let text = "drag to turn · shift-drag to move · scroll to zoom";
+        let at = rect.center_bottom() - vec2(0.0, 16.0);
+        let font = egui::FontId::proportional(12.5);
+        let galley = painter.layout_no_wrap(text.to_owned(), font, Color32::from_gray(235));
+        let place = egui::Align2::CENTER_BOTTOM.anchor_size(at, galley.size());
+        painter.rect_filled(
+            place.expand2(vec2(10.0, 5.0)),
+            8.0,
+            Color32::from_black_alpha(120),
+        );
+        painter.galley(place.min, galley, Color32::WHITE);
+    }
+    response
+}
+
+fn background(session: &Session) -> Color32 {
+    let [r, g, b] = session
+        .background()
+        .map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
+    Color32::from_rgb(r, g, b)
+}
+
+/// The camera after this frame's dragging, scrolling and pinching, if it moved.
+fn gesture(ui: &Ui, response: &Response, rect: Rect, camera: Camera) -> Option<Camera> {
+    let size = rect.size().max(Vec2::splat(1.0));
+    let share = |moved: Vec2| (f64::from(moved.x / size.x), f64::from(moved.y / size.y));
+    let pixels = [size.x as u32, size.y as u32];
+    let mut new = camera;
+    let touch = ui.input(egui::InputState::multi_touch);
+    if let Some(touch) = touch {
+        if rect.contains(touch.center_pos) {
+            let (across, down) = share(touch.translation_delta);
+            new = orbit::pan(new, across, down, pixels);
+            new = orbit::zoom(new, 1.0 / f64::from(touch.zoom_delta));
+        }
+    } else if response.dragged() && response.drag_delta() != Vec2::ZERO {
+        let (across, down) = share(response.drag_delta());
+        let pans =
+            !response.dragged_by(PointerButton::Primary) || ui.input(|input| input.modifiers.shift);
+        new = if pans {
+            orbit::pan(new, across, down, pixels)
+        } else {
+            orbit::orbit(new, across, down)
+        };
+    }
+    if response.contains_pointer() && touch.is_none() {
+        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let factor = libm::exp(-f64::from(scroll) / 400.0) / f64::from(pinch);
+        if factor != 1.0 {
+            new = orbit::zoom(new, factor);
+        }
+    }
+    (new != camera).then_some(new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_keeps_the_frame_s_proportions() {
+        let place = Rect::from_min_size(Pos2::new(10.0, 0.0), vec2(100.0, 300.0));
+        let wide = fit(place, [2, 1]);
+        assert_eq!(
+            (wide.size(), wide.center()),
+            (vec2(100.0, 50.0), place.center())
+        );
+        let high = fit(place, [1, 4]);
+        assert_eq!(high.size(), vec2(75.0, 300.0));
+        assert!(fit(Rect::NOTHING, [0, 0]).width() >= 0.0);
+    }
+}

@@ -1,0 +1,269 @@
+//! Which piece of work is open, where it came from, and where it is kept.
+//!
+//! The user's own works live on the [`Shelf`]. An example or a shared link is only looked at until
+//! it is edited; then it becomes a work of its own. So nothing that is opened ever takes the place
+//! of what the user made.
+
+use crate::examples;
+use crate::platform;
+use crate::session::{Kept, Session, check_size};
+use crate::share;
+use crate::storage::{DELAY, Shelf};
+use rats::{File, Project};
+use scene::Camera;
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// Where the open work came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// The user's own.
+    Own,
+    /// An example of the gallery, not edited yet.
+    Example,
+    /// A shared link, not edited yet.
+    Link,
+}
+
+/// The open work.
+pub struct Work {
+    /// What is being edited.
+    pub session: Session,
+    /// Its name.
+    pub name: String,
+    /// Where it came from.
+    pub origin: Origin,
+    shelf: Rc<RefCell<Shelf>>,
+    /// The own work that was open before the link was.
+    before: Option<String>,
+    /// When what is not yet written was changed.
+    changed: Option<f64>,
+    /// What was last put on the shelf: the session's revision and camera.
+    noted: (u64, Option<Camera>),
+}
+
+impl Work {
+    /// Opens what the page should begin with: the work a link carries, else the user's last work,
+    /// else the first example. With `compile` false nothing is compiled before the user asks. Gives
+    /// a message when the link cannot be opened.
+    #[must_use]
+    pub fn start(shelf: Rc<RefCell<Shelf>>, hash: &str, compile: bool) -> (Self, Option<String>) {
+        let mut work = Self {
+            session: Session::new(Kept::default(), false),
+            name: String::new(),
+            origin: Origin::Own,
+            shelf,
+            before: None,
+            changed: None,
+            noted: (0, None),
+        };
+        let last = work.shelf.borrow().last();
+        let own = last.is_some_and(|id| work.open_saved(&id).is_ok());
+        if !own {
+            work.begin_example(0);
+        }
+        let trouble = work.open_link(hash).err();
+        if compile {
+            work.session.enable();
+        }
+        work.note();
+        (work, trouble)
+    }
+
+    /// Opens what a fragment carries; does nothing if it is empty or carries what is open anyway.
+    ///
+    /// # Errors
+    /// Says what is wrong with the link; then the open work stays.
+    pub fn open_link(&mut self, hash: &str) -> Result<(), String> {
+        let Some(shared) = share::open(hash) else {
+            return Ok(());
+        };
+        let shared = shared?;
+        let same = self.session.project() == &shared.project
+            && self.session.chosen_camera() == shared.camera;
+        if same {
+            return Ok(());
+        }
+        let before = self.leave()?;
+        self.begin(
+            title(&shared.project),
+            Origin::Link,
+            Kept {
+                project: shared.project,
+                camera: shared.camera,
+                ..Kept::default()
+            },
+        );
+        self.before = before;
+        Ok(())
+    }
+
+    /// Opens an example.
+    ///
+    /// # Errors
+    /// If the open work cannot be written; then it stays open.
+    pub fn open_example(&mut self, index: usize) -> Result<(), String> {
+        self.leave()?;
+        self.begin_example(index);
+        Ok(())
+    }
+
+    /// Begins an empty work.
+    ///
+    /// # Errors
+    /// If the open work cannot be written; then it stays open.
+    pub fn open_new(&mut self) -> Result<(), String> {
+        self.leave()?;
+        let file = File {
+            name: String::from("untitled.rat"),
+            text: String::from(examples::BLANK),
+        };
+        self.begin_project(String::from("Untitled"), Project { files: vec![file] });
+        Ok(())
+    }
+
+    /// Opens a work from the shelf.
+    ///
+    /// # Errors
+    /// If the open work cannot be written, or the other is not there any more; then the open one
+    /// stays open.
+    pub fn open_saved(&mut self, id: &str) -> Result<(), String> {
+        self.leave()?;
+        let opened = self.shelf.borrow_mut().open(id);
+        let (name, kept) = opened.ok_or("This work was deleted or cannot be read.")?;
+        self.name = name;
+        self.origin = Origin::Own;
+        self.before = None;
+        self.session.open(kept);
+        self.note();
+        Ok(())
+    }
+
+    /// Opens texts given by a script, as an example is opened.
+    ///
+    /// # Errors
+    /// If they are too long, or the open work cannot be written; then it stays open.
+    pub fn load(&mut self, project: Project) -> Result<(), String> {
+        check_size(&project).map_err(|refused| refused.to_string())?;
+        self.leave()?;
+        self.begin_project(title(&project), project);
+        Ok(())
+    }
+
+    /// The own work to go back to, if a link took its place.
+    #[must_use]
+    pub fn before(&self) -> Option<&str> {
+        self.before.as_deref()
+    }
+
+    /// Notes changes and writes them when they have rested. Gives a message when they cannot be
+    /// written.
+    pub fn tick(&mut self, now: f64) -> Option<String> {
+        let state = (self.session.revision(), self.session.chosen_camera());
+        if state != self.noted {
+            let edited = state.0 != self.noted.0;
+            self.noted = state;
+            // An address that carries a link no longer says what is on the screen.
+            platform::set_hash("");
+            // Looking around in an example does not make it a work.
+            if edited || self.origin == Origin::Own {
+                self.keep(now);
+            }
+        }
+        if self.changed.is_some_and(|changed| now - changed >= DELAY) {
+            return self.flush().err();
+        }
+        None
+    }
+
+    /// Seconds until [`Work::tick`] has something to write.
+    #[must_use]
+    pub fn wait(&self, now: f64) -> Option<f64> {
+        self.changed.map(|changed| (changed + DELAY - now).max(0.0))
+    }
+
+    /// Gives the work another name.
+    pub fn rename(&mut self, name: String, now: f64) {
+        if self.name != name {
+            self.name = name;
+            self.keep(now);
+        }
+    }
+
+    /// Writes what waits at once.
+    ///
+    /// # Errors
+    /// If the browser stores nothing.
+    pub fn flush(&mut self) -> Result<(), String> {
+        let written = self.shelf.borrow_mut().flush(platform::unix_time());
+        // What was refused is tried again with the next edit.
+        self.changed = None;
+        written
+    }
+
+    /// The shelf.
+    #[must_use]
+    pub fn shelf(&self) -> &Rc<RefCell<Shelf>> {
+        &self.shelf
+    }
+
+    fn keep(&mut self, now: f64) {
+        const HISTORY: usize = 1 << 20;
+        self.origin = Origin::Own;
+        self.shelf
+            .borrow_mut()
+            .put(&self.name, self.session.keep(HISTORY));
+        self.changed.get_or_insert(now);
+    }
+
+    /// Writes the open work before another takes its place. Gives its id if it is the user's own.
+    fn leave(&mut self) -> Result<Option<String>, String> {
+        self.flush()?;
+        let own = self.origin == Origin::Own;
+        let shelf = self.shelf.borrow();
+        Ok(shelf.opened().filter(|_| own).map(str::to_owned))
+    }
+
+    fn begin_example(&mut self, index: usize) {
+        if let Some(example) = examples::ALL.get(index) {
+            self.begin_project(example.title.to_owned(), example.project());
+        }
+    }
+
+    fn begin_project(&mut self, name: String, project: Project) {
+        let kept = Kept {
+            project,
+            ..Kept::default()
+        };
+        self.begin(name, Origin::Example, kept);
+    }
+
+    fn begin(&mut self, name: String, origin: Origin, kept: Kept) {
+        self.shelf.borrow_mut().begin();
+        self.name = name;
+        self.origin = origin;
+        self.before = None;
+        self.changed = None;
+        self.session.open(kept);
+        self.note();
+    }
+
+    fn note(&mut self) {
+        self.noted = (self.session.revision(), self.session.chosen_camera());
+    }
+}
+
+/// A name for a project: that of its first file without the extension.
+fn title(project: &Project) -> String {
+    let name = project.files.first().map_or("", |file| file.name.as_str());
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let stem = stem.rsplit('/').next().unwrap_or(stem);
+    if stem.is_empty() {
+        return String::from("Untitled");
+    }
+    let mut chars = stem.chars().take(60);
+    chars
+        .next()
+        .map(|first| first.to_uppercase().chain(chars).collect())
+        .unwrap_or_default()
+}
