@@ -1,0 +1,227 @@
+//! Shapes defined anew, by which points belong to them, and a patient ray caster in `f64` that
+//! shares neither formula nor method with the shaders.
+
+use glam::{DVec2, DVec3};
+use scene::{Scene, Shape};
+
+/// Steps along a ray. A chord shorter than a step is missed, which concerns silhouettes only.
+const STEPS: u32 = 1000;
+
+/// What a ray meets first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    pub element: usize,
+    pub distance: f64,
+    /// Unit normal turned against the ray.
+    pub normal: DVec3,
+}
+
+/// The first element that a ray meets, elements being solid at `scene.radius`.
+pub fn first(scene: &Scene, eye: DVec3, direction: DVec3) -> Option<Met> {
+    let mut best: Option<Met> = None;
+    for (index, element) in scene.elements.iter().enumerate() {
+        let radius = scene.radius(element);
+        if let Some(distance) = boundary(&element.shape, radius, eye, direction)
+            && best.is_none_or(|met| distance < met.distance)
+        {
+            let normal = normal(&element.shape, radius, eye + direction * distance);
+            best = Some(Met {
+                element: index,
+                distance,
+                normal: if normal.dot(direction) > 0.0 {
+                    -normal
+                } else {
+                    normal
+                },
+            });
+        }
+    }
+    best
+}
+
+/// Distance to the first point in front of the eye where the ray enters or leaves the shape.
+fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<f64> {
+    // A flat thing has no inside: where the ray pierces its plane.
+    match *shape {
+        Shape::Plane { point, normal, .. } => {
+            let slope = direction.dot(normal);
+            let height = (eye - point).dot(normal);
+            return [radius, -radius]
+                .map(|level| (level - height) / slope)
+                .into_iter()
+                .filter(|t| *t > 0.0 && t.is_finite())
+                .min_by(f64::total_cmp);
+        }
+        Shape::Triangle {
+            corners: [p, q, r], ..
+        } if radius == 0.0 => {
+            let normal = (q - p).cross(r - p);
+            let t = (p - eye).dot(normal) / direction.dot(normal);
+            let hit = eye + direction * t;
+            return (t > 0.0 && inside_edges([p, q, r], hit)).then_some(t);
+        }
+        _ => {}
+    }
+    let (center, reach) = ball_around(shape, radius);
+    let middle = (center - eye).dot(direction);
+    let square = reach * reach - (center - eye - direction * middle).length_squared();
+    let from = (middle - square.max(0.0).sqrt()).max(0.0);
+    let to = middle + square.max(0.0).sqrt();
+    if to <= from {
+        return None;
+    }
+    let at = |i: u32| from + (to - from) * f64::from(i) / f64::from(STEPS);
+    let is_inside = |t: f64| inside(shape, radius, eye + direction * t);
+    let start = is_inside(from);
+    let change = (1..=STEPS).find(|&i| is_inside(at(i)) != start)?;
+    let (mut before, mut after) = (at(change - 1), at(change));
+    for _ in 0..60 {
+        let half = 0.5 * (before + after);
+        if is_inside(half) == start {
+            before = half;
+        } else {
+            after = half;
+        }
+    }
+    Some(after)
+}
+
+fn ball_around(shape: &Shape, radius: f64) -> (DVec3, f64) {
+    match *shape {
+        Shape::Sphere { center, .. } => (center, 1.01 * radius),
+        Shape::Cylinder { base, apex, .. } => {
+            (base.midpoint(apex), base.distance(apex) * 0.5 + radius)
+        }
+        Shape::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+            ..
+        } => {
+            // About the middle of the arc, no point of which is farther than its ends.
+            let (sine, cosine) = libm::sincos(0.5 * angle);
+            let chord = if angle < core::f64::consts::PI {
+                2.0 * sweep * libm::sin(0.25 * angle)
+            } else {
+                2.0 * sweep
+            };
+            (
+                center + (u * cosine + v * sine) * sweep,
+                1.01 * (chord + radius),
+            )
+        }
+        Shape::Triangle { corners, .. } => {
+            let center = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let far = corners.map(|c| c.distance(center));
+            (center, far[0].max(far[1]).max(far[2]) + radius)
+        }
+        Shape::Plane { .. } => unreachable!("solved directly"),
+    }
+}
+
+/// Distance of a point to an arc's circle, and the angle from the arc's start, in [0, 2π).
+fn about_circle(center: DVec3, u: DVec3, v: DVec3, sweep: f64, p: DVec3) -> (f64, f64) {
+    let way = p - center;
+    let flat = DVec2::new(way.dot(u), way.dot(v));
+    let height = way.dot(u.cross(v));
+    let angle = libm::atan2(flat.y, flat.x).rem_euclid(core::f64::consts::TAU);
+    (DVec2::new(flat.length() - sweep, height).length(), angle)
+}
+
+fn inside_edges(corners: [DVec3; 3], p: DVec3) -> bool {
+    let [a, b, c] = corners;
+    let normal = (b - a).cross(c - a);
+    [(a, b), (b, c), (c, a)]
+        .into_iter()
+        .all(|(from, to)| (to - from).cross(p - from).dot(normal) >= 0.0)
+}
+
+fn inside(shape: &Shape, radius: f64, p: DVec3) -> bool {
+    match *shape {
+        Shape::Sphere { center, .. } => p.distance(center) <= radius,
+        Shape::Cylinder { base, apex, .. } => {
+            let axis = (apex - base).normalize();
+            let along = (p - base).dot(axis);
+            (0.0..=base.distance(apex)).contains(&along)
+                && (p - base - axis * along).length() <= radius
+        }
+        Shape::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+            ..
+        } => {
+            let (distance, turned) = about_circle(center, u, v, sweep, p);
+            distance <= radius && turned <= angle
+        }
+        Shape::Triangle { corners, .. } => {
+            let normal = (corners[1] - corners[0])
+                .cross(corners[2] - corners[0])
+                .normalize();
+            (p - corners[0]).dot(normal).abs() <= radius && inside_edges(corners, p)
+        }
+        Shape::Plane { .. } => unreachable!("solved directly"),
+    }
+}
+
+/// The normal of the face that a point of the surface is nearest to.
+fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
+    let mut faces: Vec<(f64, DVec3)> = Vec::new();
+    match *shape {
+        Shape::Sphere { center, .. } => return (p - center).normalize(),
+        Shape::Plane { normal, .. } => return normal,
+        Shape::Cylinder { base, apex, .. } => {
+            let axis = (apex - base).normalize();
+            let along = (p - base).dot(axis);
+            let aside = p - base - axis * along;
+            faces.push((along.abs(), axis));
+            faces.push(((p - apex).dot(axis).abs(), axis));
+            faces.push(((aside.length() - radius).abs(), aside.normalize()));
+        }
+        Shape::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+            ..
+        } => {
+            let (distance, turned) = about_circle(center, u, v, sweep, p);
+            let (sine, cosine) = libm::sincos(turned);
+            let on_circle = center + (u * cosine + v * sine) * sweep;
+            faces.push(((distance - radius).abs(), (p - on_circle).normalize()));
+            if angle < core::f64::consts::TAU {
+                for end in [0.0, angle] {
+                    let (sine, cosine) = libm::sincos(end);
+                    let along = v * cosine - u * sine;
+                    let outward = u * cosine + v * sine;
+                    // A lid is on one side of the axis only.
+                    if (p - center).dot(outward) > -1e-9 * sweep {
+                        faces.push(((p - center).dot(along).abs(), along));
+                    }
+                }
+            }
+        }
+        Shape::Triangle { corners, .. } => {
+            let [a, b, c] = corners;
+            let n = (b - a).cross(c - a).normalize();
+            if radius == 0.0 {
+                return n;
+            }
+            faces.push((((p - a).dot(n).abs() - radius).abs(), n));
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let aside = (to - from).cross(n).normalize();
+                faces.push(((p - from).dot(aside).abs(), aside));
+            }
+        }
+    }
+    faces
+        .into_iter()
+        .min_by(|x, y| x.0.total_cmp(&y.0))
+        .expect("every shape has faces")
+        .1
+}

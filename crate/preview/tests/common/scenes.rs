@@ -1,0 +1,95 @@
+//! Small scenes for the tests.
+
+use glam::{DQuat, DVec3};
+use scene::{Camera, Element, Light, LightKind, Material, Origin, Scene, Shape};
+
+pub fn element(shape: Shape, material: usize) -> Element {
+    Element {
+        shape,
+        material,
+        origin: Origin::default(),
+    }
+}
+
+/// A scene in which every element shines in a colour that tells its index (below 215).
+pub fn by_index(shapes: &[Shape], camera: Camera) -> Scene {
+    Scene {
+        elements: (0..).zip(shapes).map(|(i, s)| element(*s, i)).collect(),
+        materials: (0..shapes.len())
+            .map(|i| Material {
+                ambient: colour_of(Some(i)),
+                diffuse: [0.0; 3],
+                ..Material::default()
+            })
+            .collect(),
+        background: colour_of(None),
+        camera,
+        ..Scene::default()
+    }
+}
+
+/// The colour of an element in [`by_index`], `None` for the background.
+pub fn colour_of(index: Option<usize>) -> [f32; 3] {
+    let number = index.map_or(0, |i| i + 1);
+    [number % 6, number / 6 % 6, number / 36 % 6].map(|digit| digit as f32 / 5.0)
+}
+
+/// The index that a colour of [`by_index`] tells.
+pub fn index_of(colour: [f64; 3]) -> Option<usize> {
+    let [a, b, c] = colour.map(|channel| (channel * 5.0).round() as usize);
+    (a + 6 * b + 36 * c).checked_sub(1)
+}
+
+/// A scene lit along the axes, red along x, green along y, blue along z, times `sign`: the colours
+/// are the positive parts of the normal times `sign`.
+pub fn by_normal(shapes: &[Shape], camera: Camera, sign: f64) -> Scene {
+    let light = |towards: DVec3, channel: usize| {
+        let mut colour = [0.0; 3];
+        colour[channel] = 1.0;
+        Light {
+            kind: LightKind::Distant {
+                towards: towards * sign,
+            },
+            colour,
+            shadow: false,
+        }
+    };
+    Scene {
+        elements: shapes.iter().map(|s| element(*s, 0)).collect(),
+        materials: vec![Material {
+            ambient: [0.0; 3],
+            diffuse: [1.0; 3],
+            ..Material::default()
+        }],
+        lights: vec![light(DVec3::X, 0), light(DVec3::Y, 1), light(DVec3::Z, 2)],
+        background: [0.0; 3],
+        camera,
+        ..Scene::default()
+    }
+}
+
+/// An arc in the plane that a rotation makes of the xy-plane.
+pub fn arc(center: DVec3, rotation: DQuat, sweep: f64, angle: f64, radius: f64) -> Shape {
+    Shape::Arc {
+        center,
+        u: rotation * DVec3::X,
+        v: rotation * DVec3::Y,
+        sweep,
+        angle,
+        radius,
+    }
+}
+
+pub fn look(eye: [f64; 3], target: [f64; 3], fov: f64) -> Camera {
+    Camera {
+        eye: eye.into(),
+        target: target.into(),
+        up: DVec3::Y,
+        fov,
+    }
+}
+
+/// A rotation without a pattern.
+pub fn turned() -> DQuat {
+    DQuat::from_xyzw(0.3, -0.5, 0.2, 0.8).normalize()
+}

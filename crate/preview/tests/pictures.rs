@@ -1,0 +1,393 @@
+//! Whole pictures: Phong's model, lights, gamma, sampling, sizes, limits, and scenes that make no
+//! sense.
+
+mod common;
+
+use common::gpu::gpus;
+use common::scenes::{arc, element, look};
+use glam::{DQuat, DVec3};
+use preview::{Draft, Drawn, MAX_ELEMENTS, MAX_LIGHTS, Sampling};
+use scene::{Camera, Element, Light, LightKind, Material, Scene, Settings, Shape};
+
+/// A ball of radius 1 at the origin, seen from z = 5.
+fn ball(material: Material, lights: Vec<Light>) -> Scene {
+    Scene {
+        elements: vec![element(
+            Shape::Sphere {
+                center: DVec3::ZERO,
+                radius: 1.0,
+            },
+            0,
+        )],
+        materials: vec![material],
+        lights,
+        background: [0.1, 0.2, 0.3],
+        camera: look([0.0, 0.0, 5.0], [0.0; 3], 30.0),
+        ..Scene::default()
+    }
+}
+
+fn shiny() -> Material {
+    Material {
+        ambient: [0.05, 0.02, 0.0],
+        diffuse: [0.3, 0.5, 0.2],
+        specular: [0.6, 0.5, 0.7],
+        shine: 12.0,
+        ..Material::default()
+    }
+}
+
+fn close(drawn: [f64; 3], expected: [f64; 3]) -> bool {
+    (0..3).all(|i| (drawn[i] - expected[i].clamp(0.0, 1.0)).abs() <= 2.0 / 255.0)
+}
+
+#[test]
+fn phong_with_point_and_distant_lights_and_gamma() {
+    let lights = vec![
+        Light {
+            kind: LightKind::Point {
+                position: DVec3::new(3.0, 2.0, 4.0),
+            },
+            colour: [0.9, 0.8, 0.7],
+            shadow: true,
+        },
+        Light {
+            kind: LightKind::Distant {
+                towards: DVec3::new(-1.0, 0.4, 0.5).normalize(),
+            },
+            colour: [0.2, 0.5, 1.4],
+            shadow: true,
+        },
+    ];
+    let mut scene = ball(shiny(), lights.clone());
+    scene.settings.gamma = 1.8;
+    let size = [60, 40];
+    let projection = scene.camera.projection(size[0], size[1]);
+    for gpu in gpus() {
+        let picture = gpu.draw(&scene, size);
+        let mut seen = 0;
+        for y in 0..size[1] {
+            for x in 0..size[0] {
+                let ray = projection.direction(
+                    (f64::from(x) + 0.5) / f64::from(size[0]),
+                    (f64::from(y) + 0.5) / f64::from(size[1]),
+                );
+                let middle = -projection.eye.dot(ray);
+                let square = 1.0 - (projection.eye + ray * middle).length_squared();
+                let light = if square <= 0.0 {
+                    scene.background.map(f64::from)
+                } else {
+                    seen += 1;
+                    phong(
+                        projection.eye + ray * (middle - square.sqrt()),
+                        ray,
+                        &lights,
+                    )
+                };
+                let expected = light.map(|c| libm::pow(c.clamp(0.0, 1.0), 1.0 / 1.8));
+                let drawn = picture.at(x, y);
+                // On the silhouette f32 may decide otherwise.
+                if square.abs() > 1e-4 {
+                    assert!(
+                        close(drawn, expected),
+                        "{x} {y} on {}: {drawn:?}, not {expected:?}",
+                        gpu.name
+                    );
+                }
+            }
+        }
+        assert!(seen > 300);
+    }
+}
+
+/// Phong's model at a point of the unit ball made of [`shiny`].
+fn phong(p: DVec3, ray: DVec3, lights: &[Light]) -> [f64; 3] {
+    let material = shiny();
+    let normal = p.normalize();
+    let mut sum = material.ambient.map(f64::from);
+    for light in lights {
+        let towards = match light.kind {
+            LightKind::Point { position } => (position - p).normalize(),
+            LightKind::Distant { towards } => towards,
+        };
+        let slope = normal.dot(towards);
+        if slope > 0.0 {
+            let mirrored = normal * (2.0 * slope) - towards;
+            let gleam = libm::pow((-ray).dot(mirrored).max(0.0), f64::from(material.shine));
+            for (i, channel) in sum.iter_mut().enumerate() {
+                let [c, d, s] = [light.colour, material.diffuse, material.specular]
+                    .map(|rgb| f64::from(rgb[i]));
+                *channel += c * (d * slope + s * gleam);
+            }
+        }
+    }
+    sum
+}
+
+#[test]
+fn four_samples_are_averaged_as_light() {
+    // A plane through the middle of the picture, seen edge on: rows are all sky or all ground,
+    // but for an odd height the middle row is half of each.
+    let mut scene = Scene {
+        elements: vec![element(
+            Shape::Plane {
+                point: DVec3::new(0.0, -0.01, 0.0),
+                normal: DVec3::Y,
+                radius: 0.0,
+            },
+            0,
+        )],
+        materials: vec![Material {
+            ambient: [1.0, 0.5, 0.0],
+            diffuse: [0.0; 3],
+            ..Material::default()
+        }],
+        background: [0.0, 0.5, 1.0],
+        camera: look([0.0, 0.0, 5.0], [0.0; 3], 60.0),
+        ..Scene::default()
+    };
+    let gamma = 2.0;
+    scene.settings.gamma = gamma;
+    for gpu in gpus() {
+        let mut draft = Draft::new(&gpu.device, &gpu.queue);
+        draft.set_scene(&gpu.device, &gpu.queue, &scene);
+        for sampling in [Sampling::Four, Sampling::Automatic] {
+            draft.set_sampling(sampling);
+            let picture = gpu.render(&mut draft, &scene.camera, [9, 7]);
+            assert_eq!(picture.size, [9, 7]);
+            let encode = |rgb: [f64; 3]| rgb.map(|c| libm::pow(c, 1.0 / f64::from(gamma)));
+            for x in 0..9 {
+                assert!(close(picture.at(x, 0), encode([0.0, 0.5, 1.0])));
+                assert!(close(picture.at(x, 3), encode([0.5, 0.5, 0.5])));
+                assert!(close(picture.at(x, 6), encode([1.0, 0.5, 0.0])));
+            }
+        }
+    }
+}
+
+#[test]
+fn sizes_and_generations() {
+    let scene = ball(shiny(), Vec::new());
+    for gpu in gpus() {
+        let mut draft = Draft::new(&gpu.device, &gpu.queue);
+        assert_eq!(draft.size(), None);
+        gpu.render(&mut draft, &scene.camera, [31, 17]);
+        let first = draft.generation();
+        draft.set_scene(&gpu.device, &gpu.queue, &scene);
+        gpu.render(&mut draft, &Camera::default(), [31, 17]);
+        assert_eq!(draft.generation(), first);
+        gpu.render(&mut draft, &scene.camera, [32, 17]);
+        assert_ne!(draft.generation(), first);
+        assert_eq!(gpu.render(&mut draft, &scene.camera, [0, 0]).size, [1, 1]);
+        // Larger than the device's textures, which are WebGL2's least: the same view, smaller.
+        let huge = gpu.render(&mut draft, &scene.camera, [40_000, 400]);
+        assert_eq!(huge.size, [2048, 20]);
+    }
+}
+
+#[test]
+fn more_lights_than_fit_leaves_the_weakest() {
+    let light = |strength: f32| Light {
+        kind: LightKind::Distant { towards: DVec3::Z },
+        colour: [strength; 3],
+        shadow: false,
+    };
+    let mut lights = vec![light(0.001); 40];
+    lights.push(light(0.5));
+    let scene = ball(
+        Material {
+            ambient: [0.0; 3],
+            ..Material::default()
+        },
+        lights,
+    );
+    for gpu in gpus() {
+        let mut draft = Draft::new(&gpu.device, &gpu.queue);
+        let drawn = draft.set_scene(&gpu.device, &gpu.queue, &scene);
+        assert_eq!(drawn.lights_left_out, 41 - MAX_LIGHTS);
+        let picture = gpu.render(&mut draft, &scene.camera, [5, 5]);
+        assert!(close(picture.at(2, 2), [0.8 * (0.5 + 0.001 * 7.0); 3]));
+    }
+}
+
+#[test]
+fn the_radius_that_counts_is_drawn_and_carving_is_not() {
+    let soft = Material {
+        ambient: [1.0; 3],
+        radius: 2.0,
+        blobbiness: -1.0,
+        ..Material::default()
+    };
+    let mut scene = ball(soft, Vec::new());
+    scene.camera.fov = 60.0;
+    let covered = |scene: &Scene| -> Vec<usize> {
+        gpus()
+            .iter()
+            .map(|gpu| {
+                let picture = gpu.draw(scene, [40, 40]);
+                picture.pixels.iter().filter(|p| p[0] == 255).count()
+            })
+            .collect()
+    };
+    let own = covered(&scene);
+    scene.settings.fragile = scene::Fragile::ALL;
+    let fragile = covered(&scene);
+    for (own, fragile) in own.iter().zip(&fragile) {
+        // Twice the radius, four times the area, more as it comes nearer.
+        assert!((4.0..5.5).contains(&(*fragile as f64 / *own as f64)));
+    }
+
+    scene.materials[0].strength = -1.0;
+    for gpu in gpus() {
+        let mut draft = Draft::new(&gpu.device, &gpu.queue);
+        let expected = Drawn {
+            invisible: 1,
+            ..Drawn::default()
+        };
+        assert_eq!(draft.set_scene(&gpu.device, &gpu.queue, &scene), expected);
+        // With `soft off` the strength means nothing and the offset surface is shown.
+        scene.settings = Settings {
+            soft: false,
+            ..scene.settings
+        };
+        let drawn = draft.set_scene(&gpu.device, &gpu.queue, &scene);
+        assert_eq!(drawn.elements, 1);
+        scene.settings.soft = true;
+    }
+}
+
+#[test]
+fn scenes_without_sense_are_drawn_without_harm() {
+    let numbers = [
+        0.0,
+        -1.0,
+        1e-320,
+        1e-30,
+        1.0,
+        1e30,
+        1e300,
+        f64::INFINITY,
+        f64::NAN,
+    ];
+    let mut elements: Vec<Element> = Vec::new();
+    for a in numbers {
+        for b in numbers {
+            let p = DVec3::new(a, 1.0, b);
+            for shape in [
+                Shape::Sphere {
+                    center: p,
+                    radius: a,
+                },
+                Shape::Cylinder {
+                    base: p,
+                    apex: DVec3::new(b, a, 0.0),
+                    radius: b,
+                },
+                arc(p, DQuat::IDENTITY, a, b, 1.0),
+                arc(DVec3::ZERO, DQuat::IDENTITY, 1.0, a, b),
+                Shape::Arc {
+                    center: p,
+                    u: DVec3::splat(a),
+                    v: DVec3::splat(b),
+                    sweep: 1.0,
+                    angle: 2.0,
+                    radius: 0.1,
+                },
+                Shape::Triangle {
+                    corners: [p, DVec3::new(b, a, b), DVec3::splat(a)],
+                    radius: b,
+                },
+                Shape::Plane {
+                    point: p,
+                    normal: DVec3::new(b, a, 0.0),
+                    radius: a,
+                },
+            ] {
+                elements.push(element(shape, if a == 1.0 { usize::MAX } else { 0 }));
+            }
+        }
+    }
+    let count = elements.len();
+    let strange = Material {
+        ambient: [f32::NAN, f32::INFINITY, -1.0],
+        specular: [1e30; 3],
+        shine: f32::NAN,
+        ..Material::default()
+    };
+    let mut scene = ball(
+        strange,
+        vec![Light {
+            kind: LightKind::Point {
+                position: DVec3::NAN,
+            },
+            colour: [f32::NAN; 3],
+            shadow: false,
+        }],
+    );
+    scene.elements = elements;
+    scene.settings.gamma = f32::NAN;
+    scene.background = [f32::NAN, 2.0, -1.0];
+    for gpu in gpus() {
+        let mut draft = Draft::new(&gpu.device, &gpu.queue);
+        let drawn = draft.set_scene(&gpu.device, &gpu.queue, &scene);
+        assert_eq!(drawn.elements + drawn.invisible, count);
+        for eye in [DVec3::ZERO, DVec3::splat(1e300), DVec3::NAN] {
+            let camera = Camera {
+                eye,
+                ..scene.camera
+            };
+            let picture = gpu.render(&mut draft, &camera, [16, 16]);
+            assert!(picture.pixels.iter().all(|pixel| pixel[3] == 255));
+        }
+        // And the device has not been lost.
+        assert_eq!(gpu.draw(&ball(shiny(), Vec::new()), [8, 8]).size, [8, 8]);
+    }
+}
+
+#[test]
+fn hundreds_of_thousands_of_elements_are_limited() {
+    let count = MAX_ELEMENTS + 10;
+    let side = 450;
+    let elements = (0..count)
+        .map(|i| {
+            let place = DVec3::new((i % side) as f64, (i / side) as f64, 0.0);
+            element(
+                Shape::Sphere {
+                    center: place,
+                    radius: 0.4,
+                },
+                i,
+            )
+        })
+        .collect();
+    let mut scene = Scene {
+        elements,
+        // As many materials, more than a row of their texture.
+        materials: (0..count)
+            .map(|i| Material {
+                ambient: [1.0, (i % 2) as f32, 0.0],
+                ..Material::default()
+            })
+            .collect(),
+        ..Scene::default()
+    };
+    scene.camera = preview::orbit::frame(&scene, [32, 32]);
+    for gpu in gpus() {
+        let mut draft = Draft::new(&gpu.device, &gpu.queue);
+        let drawn = draft.set_scene(&gpu.device, &gpu.queue, &scene);
+        assert_eq!(drawn.elements, MAX_ELEMENTS);
+        assert_eq!(drawn.left_out, 10);
+        draft.set_sampling(Sampling::One);
+        let picture = gpu.render(&mut draft, &scene.camera, [32, 32]);
+        assert!(picture.pixels.iter().any(|pixel| pixel[0] == 255));
+        // Close to number 100123, whose material is far down the table.
+        let middle = DVec3::new((100_123 % side) as f64, (100_123 / side) as f64, 0.0);
+        let camera = Camera {
+            eye: middle + DVec3::Z,
+            target: middle,
+            ..Camera::default()
+        };
+        let picture = gpu.render(&mut draft, &camera, [3, 3]);
+        assert_eq!(picture.at(1, 1), [1.0, 1.0, 0.0]);
+    }
+}
