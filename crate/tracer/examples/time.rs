@@ -7,7 +7,7 @@
 use glam::DVec3;
 use scene::{Camera, Element, Light, LightKind, Material, Origin, Scene, Shape};
 use std::time::Instant;
-use tracer::{Pass, render};
+use tracer::{Pass, Picture, Stats, Tile};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut out = None;
@@ -39,7 +39,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut result = None;
         for _ in 0..3 {
             let start = Instant::now();
-            result = Some(render(&scene, size, 1, pass, &|_| ()));
+            let mut stats = Stats::default();
+            let whole = Tile {
+                x: 0,
+                y: 0,
+                width: size[0],
+                height: size[1],
+            };
+            let pixels = Picture::new(&scene, size).trace(whole, pass, &|| false, &mut stats);
+            result = pixels.map(|pixels| (pixels, stats));
             best = best.min(start.elapsed().as_secs_f64());
         }
         let (pixels, stats) = result.ok_or("nothing rendered")?;

@@ -284,7 +284,8 @@ mod tests {
         24.0 * (35.0 * u2 * u2 - 42.0 * u2 + 3.0).abs() / (1.0 + u2).powi(2) / x.powi(4)
     }
 
-    #[test]
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn the_kernels_fourth_derivative_formula_agrees_with_differences() {
         let h = 1e-2;
         for (p2, t) in [(1.0, 0.0), (1.0, 0.4), (2.0, 1.3), (5.0, 3.0)] {
@@ -300,7 +301,8 @@ mod tests {
         }
     }
 
-    #[test]
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn envelopes_bound_what_they_say() {
         // The point's: over all rays that pass at distance ≥ d.
         for i in 0..400 {
@@ -326,5 +328,102 @@ mod tests {
             assert!(line <= line4(x) * 1.001, "{x} {line} {}", line4(x));
             assert!(plane <= plane4(x) * 1.001, "{x} {plane} {}", plane4(x));
         }
+    }
+
+    /// Random primitives of all kinds, at random places, with small balls.
+    fn cases(count: u64) -> impl Iterator<Item = (Primitive, DVec3, f64)> {
+        let mut state = 11u64;
+        let mut unit = move || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..count).map(move |i| {
+            let mut vector = |size: f64| {
+                let v = DVec3::new(unit(), unit(), unit());
+                (2.0 * v - 1.0) * size
+            };
+            let size = [0.3, 1.0, 4.0][i as usize / 5 % 3];
+            let (a, b, c) = (vector(size), vector(size), vector(size));
+            let (u, p) = (vector(1.0).normalize(), vector(1.5 * size + 1.0));
+            let v = u.cross(vector(1.0)).normalize();
+            let skeleton = match i % 5 {
+                0 => Skeleton::Point { center: a },
+                1 => Skeleton::Segment { base: a, apex: b },
+                2 => Skeleton::Triangle { corners: [a, b, c] },
+                3 => Skeleton::Plane {
+                    point: a,
+                    normal: u,
+                },
+                _ => Skeleton::Arc {
+                    center: a * 0.3,
+                    u,
+                    v,
+                    radius: size * (0.1 + unit()),
+                    angle: core::f64::consts::TAU * unit(),
+                },
+            };
+            let shaping = field::Shaping {
+                kernel: Kernel::Cauchy,
+                radius: 0.5,
+                blobbiness: 0.1 + 4.0 * unit(),
+                blob_scale: field::BlobScale::Relative,
+                strength: if unit() < 0.5 { 1.0 } else { -1.0 },
+                influence: 1e-3,
+            };
+            let primitive = Primitive::new(skeleton, &shaping, None);
+            (primitive.expect("a proper primitive"), p, 0.2 * unit())
+        })
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn no_field_exceeds_its_bounds() {
+        let (mut tightest, mut tightest4) = (0.0f64, 0.0f64);
+        for (primitive, center, radius) in cases(4000) {
+            let bound = Bound::new(&primitive);
+            let near = bound.nearness(center, radius);
+            let (magnitude, fourth) = (bound.magnitude(near), bound.fourth_derivative(near));
+            for i in 0..12 {
+                // Points of the ball, one of them nearest to the skeleton.
+                let way = match i {
+                    0 => (primitive.skeleton.nearest(center) - center).normalize_or_zero(),
+                    _ => {
+                        let a = f64::from(i);
+                        DVec3::new(libm::sin(a), libm::cos(a), libm::sin(3.0 * a)).normalize()
+                    }
+                };
+                let p = center + way * radius;
+                let reach = primitive.skeleton.distance(p);
+                assert!(near.distance <= reach * (1.0 + 1e-12) + 1e-12);
+                let value = |p: DVec3| primitive.value(p.to_array());
+                assert!(
+                    value(p).abs() <= magnitude * (1.0 + 1e-9),
+                    "{primitive:?} {p}"
+                );
+                tightest = tightest.max(value(p).abs() / magnitude);
+                // Differences across, along and askew; they see the derivative's mean over 4h, so
+                // the ball is taken a little larger.
+                let h = 0.03 / primitive.width;
+                let around = bound.nearness(center, radius + 2.0 * h);
+                let fourth = fourth.max(bound.fourth_derivative(around));
+                let d = way.any_orthonormal_vector() * libm::cos(f64::from(i))
+                    + way * libm::sin(f64::from(i));
+                let d = d.normalize();
+                let difference = value(p - d * (2.0 * h)) - 4.0 * value(p - d * h) + 6.0 * value(p)
+                    - 4.0 * value(p + d * h)
+                    + value(p + d * (2.0 * h));
+                let noise = 1e-13 * magnitude / h.powi(4);
+                let derivative = (difference / h.powi(4)).abs();
+                assert!(
+                    derivative <= fourth + noise,
+                    "{primitive:?} {p} {derivative} {fourth}"
+                );
+                tightest4 = tightest4.max(derivative / (fourth + noise));
+            }
+        }
+        // The bounds are not idle either.
+        assert!(tightest > 0.9 && tightest4 > 0.5, "{tightest} {tightest4}");
     }
 }

@@ -114,7 +114,8 @@ mod tests {
     use super::*;
     use crate::ray::Ray;
 
-    #[test]
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn a_search_finds_what_a_full_scan_finds() {
         let mut state = 3u64;
         let mut next = || {
@@ -161,7 +162,8 @@ mod tests {
         }
     }
 
-    #[test]
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn an_empty_tree_and_a_tree_of_equal_balls_work() {
         let beam = Beam::of_ray(Ray {
             origin: DVec3::ZERO,

@@ -152,7 +152,8 @@ mod tests {
         out
     }
 
-    #[test]
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn roots_of_built_polynomials_come_back() {
         let mut next = numbers(7);
         for case in 0..20_000 {
@@ -177,7 +178,8 @@ mod tests {
         }
     }
 
-    #[test]
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn polynomials_without_a_crossing_have_no_roots() {
         assert!(roots(&[1.0, 0.0, 1.0], -5.0, 5.0).as_slice().is_empty());
         assert!(roots(&[0.0, 0.0, 0.0], 0.5, 0.25).as_slice().is_empty());

@@ -134,7 +134,8 @@ impl Span<f64> {
 mod tests {
     use super::*;
 
-    #[test]
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn a_span_reproduces_cubics_and_bounds_them() {
         let f = |t: f64| 2.0 - 3.0 * t + 0.5 * t * t + t * t * t;
         let slope = |t: f64| -3.0 + t + 3.0 * t * t;

@@ -39,7 +39,8 @@ fn march(scene: &Scene, picture: &Picture, origin: DVec3, direction: DVec3) -> u
     hits.len()
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn rays_through_random_blends_cross_where_marching_says() {
     let mut n = Numbers(5);
     let mut seen = 0;
@@ -56,7 +57,8 @@ fn rays_through_random_blends_cross_where_marching_says() {
     assert!(seen > 150, "{seen} hits");
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_ray_grazing_a_ball_finds_both_crossings_or_none() {
     let mut scene = empty();
     scene.materials = vec![common::soft(-4.0, 1.0)];
@@ -83,7 +85,8 @@ fn a_ray_grazing_a_ball_finds_both_crossings_or_none() {
     }
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn scenes_far_away_and_of_any_size_are_hit_alike() {
     for (scale, shift) in [
         (1.0, 0.0),
@@ -109,7 +112,8 @@ fn scenes_far_away_and_of_any_size_are_hit_alike() {
     }
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn hard_and_soft_crossings_come_in_one_order() {
     let mut scene = empty();
     scene.materials = vec![common::soft(-1.0, 1.0), scene::Material::default()];
@@ -130,7 +134,8 @@ fn hard_and_soft_crossings_come_in_one_order() {
     }
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn senseless_rays_hit_nothing() {
     let picture = Picture::new(&blend(3, 5), [8, 8]);
     assert!(picture.hits(DVec3::ZERO, DVec3::ZERO).is_empty());

@@ -4,7 +4,7 @@ use common::{blend, element, empty, soft};
 use glam::DVec3;
 use scene::{Material, Scene, Shape};
 use std::cell::Cell;
-use tracer::{Pass, Picture, Stats, Tile, render, tiles};
+use tracer::{Pass, Picture, Stats, Tile, tiles};
 
 fn whole(scene: &Scene, size: [u32; 2], side: u32, pass: Pass) -> (Vec<u8>, Stats) {
     let picture = Picture::new(scene, size);
@@ -38,7 +38,8 @@ fn mixed(seed: u64) -> Scene {
     scene
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_picture_does_not_depend_on_its_tiles_or_threads() {
     let size = [83, 61];
     for seed in 0..3 {
@@ -48,13 +49,15 @@ fn a_picture_does_not_depend_on_its_tiles_or_threads() {
             for side in [16, 32, 64, 11] {
                 assert!(once == whole(&scene, size, side, pass).0, "{pass:?} {side}");
             }
-            assert!(once == render(&scene, size, 3, pass, &|_| ()).0);
+            #[cfg(not(target_arch = "wasm32"))]
+            assert!(once == tracer::render(&scene, size, 3, pass, &|_| ()).0);
             assert!(once.chunks_exact(4).all(|p| p[3] == 255));
         }
     }
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn pictures_agree_with_exact_hits() {
     // Ambient light only, and a white background: a pixel tells whether its ray hit.
     for seed in 0..8 {
@@ -90,7 +93,8 @@ fn pictures_agree_with_exact_hits() {
     }
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_coarse_block_has_the_colour_of_its_middle() {
     let scene = mixed(2);
     let (coarse, stats) = whole(&scene, [64, 64], 64, Pass::Coarse);
@@ -102,7 +106,8 @@ fn a_coarse_block_has_the_colour_of_its_middle() {
     }
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn smoothing_touches_edges_only_and_tends_to_the_true_coverage() {
     let mut scene = empty();
     scene.lights.clear();
@@ -143,7 +148,8 @@ fn smoothing_touches_edges_only_and_tends_to_the_true_coverage() {
     assert!(full == whole(&scene, size, 64, Pass::Smooth).0);
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_ball_casts_a_shadow_on_a_slab_and_not_on_itself() {
     for material in [0, 1] {
         let mut scene = empty();
@@ -198,7 +204,8 @@ fn a_ball_casts_a_shadow_on_a_slab_and_not_on_itself() {
     }
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_tile_is_given_up_when_asked_to_stop() {
     let scene = mixed(1);
     let picture = Picture::new(&scene, [256, 256]);
@@ -221,7 +228,8 @@ fn a_tile_is_given_up_when_asked_to_stop() {
     }
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn seen_from_inside_the_surface_is_lit() {
     let mut scene = empty();
     scene.materials = vec![soft(-0.5, 1.0)];
@@ -242,6 +250,8 @@ fn seen_from_inside_the_surface_is_lit() {
     }
 }
 
+// Native only: WebAssembly has no clock of its own.
+#[cfg(not(target_arch = "wasm32"))]
 #[test]
 fn strange_scenes_end() {
     let mut scenes = vec![Scene::default()];

@@ -73,7 +73,8 @@ fn check(numbers: &mut Numbers, solid: &Solid, inside: &dyn Fn(DVec3) -> bool) -
     seen
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn spheres() {
     let mut n = Numbers(1);
     let mut seen = 0;
@@ -92,7 +93,8 @@ fn spheres() {
     assert!(seen > 200);
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn cylinders() {
     let mut n = Numbers(2);
     let mut seen = 0;
@@ -110,7 +112,8 @@ fn cylinders() {
     assert!(seen > 200);
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn tubes_thin_and_fat_short_and_closed() {
     let mut n = Numbers(3);
     let mut seen = 0;
@@ -150,7 +153,8 @@ fn tubes_thin_and_fat_short_and_closed() {
     assert!(seen > 500);
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn prisms_and_slabs() {
     let mut n = Numbers(4);
     let mut seen = 0;
@@ -183,7 +187,8 @@ fn prisms_and_slabs() {
     assert!(seen > 200);
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn sheets_are_crossed_once() {
     let ray = Ray {
         origin: DVec3::new(0.2, 0.2, 5.0),
@@ -223,7 +228,8 @@ fn sheets_are_crossed_once() {
     assert_eq!(out[0].normal, DVec3::Z);
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_distant_eye_sees_a_thin_tube() {
     let shape = Shape::Arc {
         center: DVec3::ZERO,
@@ -246,7 +252,8 @@ fn a_distant_eye_sees_a_thin_tube() {
     }
 }
 
-#[test]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn shapes_without_a_surface_are_refused() {
     let sphere = |r| {
         Solid::new(
