@@ -50,11 +50,11 @@ pub struct OptionSpec {
 }
 
 /// What runs a command.
-pub type Run = for<'a> fn(&mut Evaluator<'a>, &'a Command) -> Outcome<Flow>;
+pub(crate) type Run = for<'a> fn(&mut Evaluator<'a>, &'a Command) -> Outcome<Flow>;
 
 /// How far a command is carried out.
 #[derive(Clone, Copy)]
-pub enum Action {
+pub(crate) enum Action {
     /// Fully, or as far as the function itself says.
     Run(Run),
     /// The parser makes it part of the tree.
@@ -80,7 +80,7 @@ pub struct CommandSpec {
     /// Its option words.
     pub options: &'static [OptionSpec],
     /// What runs it.
-    pub action: Action,
+    pub(crate) action: Action,
 }
 
 impl std::fmt::Debug for CommandSpec {

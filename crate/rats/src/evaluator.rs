@@ -132,7 +132,8 @@ impl<'a> Evaluator<'a> {
         let syntax = &syntaxes[file];
         if !std::mem::replace(&mut self.reported[file], true) {
             for problem in &syntax.problems {
-                self.report.add(file, Severity::Error, problem.clone());
+                self.report
+                    .add(file, Severity::Error, Box::new(problem.clone()));
             }
         }
         let flow = self.block(&syntax.block);

@@ -269,7 +269,7 @@ impl Reader<'_, '_> {
         self.at += 1;
         if self.datum() != Some(Datum::Sign(b'(')) {
             if matches!(function.run, Run::Random) {
-                return Ok(Value::Scalar(self.scope.random.next()));
+                return Ok(Value::Scalar(self.scope.random.draw()));
             }
             return Err(Problem::new(
                 start..self.since(start).end,
@@ -298,7 +298,7 @@ impl Reader<'_, '_> {
         }
         self.at += 1;
         if arguments.is_empty() && matches!(function.run, Run::Random) {
-            return Ok(Value::Scalar(self.scope.random.next()));
+            return Ok(Value::Scalar(self.scope.random.draw()));
         }
         functions::apply(function, &arguments)
             .map_err(|message| Problem::new(self.since(start), message).hint(function.meaning))

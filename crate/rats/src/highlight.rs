@@ -92,12 +92,10 @@ impl State {
                     self.is_block = false;
                 }
             }
-            "}" => {
-                // After a block the next command begins; after a list the command goes on.
-                if self.braces.pop().unwrap_or(true) {
-                    self.word_seen = false;
-                    self.options = &[];
-                }
+            // After a block the next command begins; after a list the command goes on.
+            "}" if self.braces.pop().unwrap_or(true) => {
+                self.word_seen = false;
+                self.options = &[];
             }
             _ => {}
         }

@@ -4,9 +4,9 @@
 //! best [`scene::Scene`] it can make of the text and a list of [`Diagnostic`]s. [`link`] packs a
 //! project and a camera into a short text that fits behind the `#` of an address.
 //!
-//! A text goes through these rooms: [`lexer`] cuts it into tokens, [`parser`] makes a tree of commands
-//! ([`syntax`]), [`evaluator`] runs the tree. Each command's operands are read while it runs
-//! ([`reader`], [`expression`]), because what a word means depends on the variables at that time. What
+//! A text goes through these rooms: [`lexer`] cuts it into tokens, `parser` makes a tree of commands
+//! (`syntax`), `evaluator` runs the tree. Each command's operands are read while it runs
+//! (`reader`, `expression`), because what a word means depends on the variables at that time. What
 //! commands there are stands in one table ([`commands`]), which also serves [`highlight`] and help.
 //! All bounds are in [`limits`].
 
@@ -14,27 +14,27 @@ pub mod colours;
 pub mod commands;
 pub mod compile;
 pub mod diagnostic;
-pub mod evaluator;
-pub mod expression;
-pub mod functions;
-pub mod geometry;
+mod evaluator;
+mod expression;
+mod functions;
+mod geometry;
 pub mod highlight;
 pub mod hot;
 pub mod lexer;
 pub mod limits;
 pub mod link;
-pub mod parser;
-pub mod problem;
+mod parser;
+mod problem;
 pub mod project;
 pub mod random;
-pub mod reader;
+mod reader;
 pub mod reads;
-pub mod report;
-pub mod scope;
-pub mod suggest;
-pub mod symbol;
-pub mod syntax;
-pub mod value;
+mod report;
+mod scope;
+mod suggest;
+mod symbol;
+mod syntax;
+mod value;
 
 pub use compile::{Compiled, HotValue, HotVariable, compile};
 pub use diagnostic::{Diagnostic, Severity};

@@ -57,7 +57,7 @@ struct Parser<'a, 't, 's> {
     braces: Vec<usize>,
     at: usize,
     items: Vec<Item>,
-    problems: Vec<Box<Problem>>,
+    problems: Vec<Problem>,
     symbols: &'s mut Symbols<'a>,
 }
 
@@ -76,7 +76,7 @@ impl<'a> Parser<'a, '_, '_> {
     }
 
     fn problem(&mut self, span: Range<usize>, message: impl Into<String>, hint: &str) {
-        self.problems.push(Problem::new(span, message).hint(hint));
+        self.problems.push(*Problem::new(span, message).hint(hint));
     }
 
     /// Skips space, comments and, if asked, line ends; gives the token that follows.
@@ -128,7 +128,7 @@ impl<'a> Parser<'a, '_, '_> {
                     let node = self.node(token, depth);
                     match node {
                         Ok(node) => block.extend(node),
-                        Err(problem) => self.problems.push(problem),
+                        Err(problem) => self.problems.push(*problem),
                     }
                 }
                 _ => self.not_a_command(token),

@@ -22,7 +22,7 @@ impl Random {
     }
 
     /// The next number, evenly spread in [0, 1).
-    pub fn next(&mut self) -> f64 {
+    pub fn draw(&mut self) -> f64 {
         self.state = self.state.wrapping_add(STEP);
         unit(stir(self.state))
     }
@@ -61,9 +61,9 @@ mod tests {
     #[test]
     fn frozen() {
         let mut stream = Random::new(7.0);
-        let first = [stream.next(), stream.next(), stream.next()];
+        let first = [stream.draw(), stream.draw(), stream.draw()];
         let mut again = Random::new(7.0);
-        assert_eq!(first, [again.next(), again.next(), again.next()]);
+        assert_eq!(first, [again.draw(), again.draw(), again.draw()]);
         assert_eq!(hash(&[0.0]).to_bits(), hash(&[-0.0]).to_bits());
         assert_ne!(hash(&[1.0, 2.0]).to_bits(), hash(&[2.0, 1.0]).to_bits());
     }
@@ -73,7 +73,7 @@ mod tests {
         let mut stream = Random::new(1.0);
         let mut boxes = [0; 10];
         for _ in 0..10_000 {
-            boxes[(stream.next() * 10.0) as usize] += 1;
+            boxes[(stream.draw() * 10.0) as usize] += 1;
         }
         assert!(boxes.iter().all(|n| (850..1150).contains(n)), "{boxes:?}");
         let mean = (0..10_000).map(|i| hash(&[f64::from(i)])).sum::<f64>() / 10_000.0;

@@ -427,6 +427,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         if !self.more() {
             return Ok(None);
         }
+        self.scope.step(2, &self.here())?;
         let back = self.at;
         let Ok(name) = self.name("an option") else {
             return Err(self.expected("an option"));
@@ -503,6 +504,8 @@ impl<'e, 'a> Reader<'e, 'a> {
             return Ok(Value::Scalar(constant));
         }
         if let Some(colour) = colours::find(word) {
+            // A search through names takes longer than a look at a variable.
+            self.scope.step(3, &self.here())?;
             return Ok(Value::Colour(DVec3::from_array(colour.map(f64::from))));
         }
         let span = self.here();

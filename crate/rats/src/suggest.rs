@@ -1,19 +1,20 @@
 //! "Did you mean …?"
 
+/// Longer words are no typing slips, and comparing them would cost time.
+const MAX_WORD: usize = 40;
+
 /// The candidate that is nearest to a mistyped word, ignoring case, if it is near enough to be what was
 /// meant: at most one slip in three letters.
 #[must_use]
 pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
-    // Longer words are not typing slips, and comparing them would cost time.
-    if word.len() > 40 {
+    if word.len() > MAX_WORD {
         return None;
     }
-    let lower = word.to_lowercase();
-    let allowed = (lower.chars().count() / 3).max(1);
+    let allowed = (word.chars().count() / 3).max(1);
     candidates
         .into_iter()
-        .filter(|c| c.len().abs_diff(lower.len()) <= allowed && c.len() <= 48)
-        .map(|c| (distance(&lower, &c.to_lowercase()), c))
+        .filter(|c| c.len().abs_diff(word.len()) <= allowed && c.len() <= MAX_WORD)
+        .map(|c| (distance(word.as_bytes(), c.as_bytes()), c))
         .filter(|(d, _)| *d <= allowed)
         .min_by_key(|(d, _)| *d)
         .map(|(_, c)| c)
@@ -25,24 +26,28 @@ pub fn hint<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Op
     nearest(word, candidates).map(|c| format!("did you mean `{c}`?"))
 }
 
-/// The optimal string alignment distance: insertions, deletions, replacements and swaps of neighbours.
-fn distance(a: &str, b: &str) -> usize {
-    let a: Vec<char> = a.chars().collect();
-    let b: Vec<char> = b.chars().collect();
-    let mut before = vec![0; b.len() + 1];
-    let mut last: Vec<usize> = (0..=b.len()).collect();
+/// The optimal string alignment distance, ignoring case: insertions, deletions, replacements and swaps of
+/// neighbours. Both words have at most [`MAX_WORD`] bytes.
+fn distance(a: &[u8], b: &[u8]) -> usize {
+    let same = |x: u8, y: u8| x.eq_ignore_ascii_case(&y);
+    let mut rows = [[0_usize; MAX_WORD + 1]; 3];
+    for (j, cell) in rows[0].iter_mut().enumerate() {
+        *cell = j;
+    }
     for i in 1..=a.len() {
-        let mut row = vec![i; b.len() + 1];
+        let [last, before] = [(i - 1) % 3, (i + 1) % 3];
+        let mut row = [0; MAX_WORD + 1];
+        row[0] = i;
         for j in 1..=b.len() {
-            let replace = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            row[j] = replace.min(last[j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                row[j] = row[j].min(before[j - 2] + 1);
+            let replace = rows[last][j - 1] + usize::from(!same(a[i - 1], b[j - 1]));
+            row[j] = replace.min(rows[last][j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]) {
+                row[j] = row[j].min(rows[before][j - 2] + 1);
             }
         }
-        before = std::mem::replace(&mut last, row);
+        rows[i % 3] = row;
     }
-    last[b.len()]
+    rows[a.len() % 3][b.len()]
 }
 
 #[cfg(test)]

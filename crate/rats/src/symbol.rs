@@ -53,10 +53,4 @@ impl<'a> Symbols<'a> {
     pub fn len(&self) -> usize {
         self.words.len()
     }
-
-    /// Whether there is no word at all.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.words.is_empty()
-    }
 }

@@ -13,7 +13,7 @@ pub struct Syntax {
     /// The operands of all its commands, which commands index by ranges.
     pub items: Vec<Item>,
     /// What is wrong with its form.
-    pub problems: Vec<Box<Problem>>,
+    pub problems: Vec<Problem>,
 }
 
 /// Commands that are run one after the other.

@@ -16,6 +16,7 @@ use std::ops::Range;
 ///
 /// Of our own: `surface new = old option …` changes some fields of the copy.
 pub fn surface<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.scope.step(8, &command.word_span)?;
     let name = run.reader(command).name("the material's name")?;
     make(run, command).inspect_err(|_| run.palette.insert_broken(name.text))?;
     Ok(Flow::Next)

@@ -1,0 +1,553 @@
+//! What the commands do, group by group.
+
+use field::{BlobScale, Kernel, Wave};
+use glam::DVec3;
+use rats::{Compiled, File, HotValue, Project, Severity, compile};
+use scene::{Fragile, LightKind, Scene, Settings, Shape};
+
+fn run(text: &str) -> Compiled {
+    compile(&Project {
+        files: vec![File {
+            name: String::from("main.rat"),
+            text: text.to_owned(),
+        }],
+    })
+}
+
+/// The scene of a text without mistakes.
+#[track_caller]
+fn scene(text: &str) -> Scene {
+    let compiled = run(text);
+    let complaint = compiled
+        .diagnostics
+        .iter()
+        .find(|d| d.severity > Severity::Note);
+    assert_eq!(complaint, None, "{text}");
+    compiled.scene
+}
+
+/// The centre of a sphere whose place is written so.
+#[track_caller]
+fn place(operands: &str) -> DVec3 {
+    let scene = scene(&format!("surface s diff Red\nsphere s 1 {operands}"));
+    match scene.elements[0].shape {
+        Shape::Sphere { center, .. } => center,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn v(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+#[track_caller]
+fn near(a: DVec3, b: DVec3) {
+    assert!(a.distance(b) < 1e-12, "{a} is not {b}");
+}
+
+#[test]
+fn nothing() {
+    assert_eq!(scene(""), Scene::default());
+    assert_eq!(scene("\n# only a comment\n\n"), Scene::default());
+}
+
+// ---- words and numbers
+
+#[test]
+fn separators() {
+    let wanted = v(-0.5, 1.0, -2.0);
+    for operands in [
+        "-0.5 1 -2",
+        "<-0.5, 1, -2>",
+        "< -.5 1. -2 >",
+        "-0.5,1,-2",
+        "{ -0.5\n1\n-2 }",
+        "-5e-1\t+1\t-2",
+        "−0.5 1 −2",
+    ] {
+        assert_eq!(place(operands), wanted, "{operands}");
+    }
+}
+
+#[test]
+fn arithmetic() {
+    assert_eq!(place("1 + 2 3*2 2^3"), v(3.0, 6.0, 8.0));
+    assert_eq!(place("1+2*3 (1+2)*3 -2^2"), v(7.0, 9.0, -4.0));
+    assert_eq!(place("2^3^2 2^-1 10/4"), v(512.0, 0.5, 2.5));
+    assert_eq!(place("1 -2 3"), v(1.0, -2.0, 3.0));
+    assert_eq!(place("1 - 2 3 4"), v(-1.0, 3.0, 4.0));
+    assert_eq!(place("1-2 3- 1 (4 -1)"), v(-1.0, 2.0, 3.0));
+    assert_eq!(place("7 - 2 - 1 8/2/2 3"), v(4.0, 2.0, 3.0));
+}
+
+#[test]
+fn functions() {
+    near(
+        place("sin(pi/2) cos(pi) atan2(1, 1)*4/pi"),
+        v(1.0, -1.0, 1.0),
+    );
+    assert_eq!(place("max(1, 3, 2) min(1, -3) abs(-2)"), v(3.0, -3.0, 2.0));
+    assert_eq!(place("floor(-1.5) ceil(1.2) round(2.5)"), v(-2.0, 2.0, 3.0));
+    near(place("deg(pi) rad(180)/pi sqrt(16)"), v(180.0, 1.0, 4.0));
+    near(
+        place("exp(1)/exp(1) ln(exp(2)) mod(-1, 3)"),
+        v(1.0, 2.0, 2.0),
+    );
+    near(place("tan(pi/4) asin(1)*2/pi acos(1)"), v(1.0, 1.0, 0.0));
+    assert_eq!(place("SIN(0) sign(-4) sign(0)"), v(0.0, -1.0, 0.0));
+}
+
+#[test]
+fn vectors() {
+    assert_eq!(place("vec(1, 2, 3)*2 - vec(1, 1, 1)"), v(1.0, 3.0, 5.0));
+    assert_eq!(place("cross(vec(1,0,0), vec(0,1,0))"), DVec3::Z);
+    assert_eq!(
+        place("dot(vec(1,2,3), vec(1,1,1)) length(vec(3,4,0)) 0"),
+        v(6.0, 5.0, 0.0)
+    );
+    assert_eq!(place("unit(vec(0, 0, -7))"), DVec3::NEG_Z);
+    assert_eq!(place("vec(2, 4, 6)/2"), v(1.0, 2.0, 3.0));
+}
+
+#[test]
+fn random_numbers_are_frozen() {
+    // Datasets in links depend on these numbers: they may never change.
+    let [a, b] = [place("rand rand rand"), place("rand(7) rand(1, 2) rand()")];
+    assert_eq!(
+        a,
+        v(
+            0.8833108082136426,
+            0.43152799704850997,
+            0.026433771592597743
+        )
+    );
+    assert_eq!(
+        b,
+        v(0.04783404902957766, 0.9537216673637242, 0.8833108082136426)
+    );
+    let seeded = scene("seed 5\nsurface s diff Red\nsphere s 1 rand rand rand");
+    assert_eq!(
+        seeded,
+        scene("var x = rand\nseed 5\nsurface s diff Red\nsphere s 1 rand rand rand")
+    );
+}
+
+// ---- RUN
+
+#[test]
+fn variables() {
+    let text = "var a = 2\nvar V = 1 2 3\nvar C = Red\nvar A = a + 1\nsurface s diff C\n";
+    let scene_of = |sphere: &str| scene(&format!("{text}{sphere}"));
+    let sphere = |text: &str| match scene_of(text).elements[0].shape {
+        Shape::Sphere { center, radius } => (center, radius),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(sphere("sphere s a V"), (v(1.0, 2.0, 3.0), 2.0));
+    assert_eq!(sphere("sphere s A V.z a V.x"), (v(3.0, 2.0, 1.0), 3.0));
+    assert_eq!(
+        scene_of("sphere s 1 C").materials[0].diffuse,
+        [1.0, 0.0, 0.0]
+    );
+}
+
+#[test]
+fn hot_variables() {
+    let text = "var r = -0.5 hot\nvar V = 1, 2 -3 hot\nvar C = Gold hot\nvar D = rgb(0.1, 0.2, 0.3) hot\n\
+                var e = r*2 hot\nvar f = 1\nvar C = 0 1 0 hot\n";
+    let compiled = run(text);
+    assert!(compiled.diagnostics.is_empty());
+    let found: Vec<_> = compiled
+        .hot
+        .iter()
+        .map(|hot| {
+            let literal = hot.literal.clone().map(|range| &text[range]);
+            (hot.name.as_str(), hot.value.clone(), literal)
+        })
+        .collect();
+    assert_eq!(
+        found,
+        [
+            ("r", HotValue::Scalar(-0.5), Some("-0.5")),
+            ("V", HotValue::Vector([1.0, 2.0, -3.0]), Some("1, 2 -3")),
+            ("C", HotValue::Colour([0.0, 1.0, 0.0]), Some("0 1 0")),
+            (
+                "D",
+                HotValue::Colour([0.1, 0.2, 0.3]),
+                Some("rgb(0.1, 0.2, 0.3)")
+            ),
+            ("e", HotValue::Scalar(-1.0), None),
+        ]
+    );
+}
+
+#[test]
+fn hot_variables_of_other_files() {
+    let file = |name: &str, text: &str| File {
+        name: name.to_owned(),
+        text: text.to_owned(),
+    };
+    let compiled = compile(&Project {
+        files: vec![
+            file("main.rat", "read b.dat"),
+            file("a.dat", ""),
+            file("b.dat", "var x = 5 hot"),
+        ],
+    });
+    assert_eq!(compiled.hot[0].file, 2);
+    assert_eq!(compiled.hot[0].literal, Some(8..9));
+}
+
+#[test]
+fn files_share_everything() {
+    let compiled = compile(&Project {
+        files: vec![
+            File {
+                name: String::from("main.rat"),
+                text: String::from(
+                    "surface s diff Red\nfor i = 1 to 3 { read ball.dat }\nsphere s 1 x 0 0",
+                ),
+            },
+            File {
+                name: String::from("ball.dat"),
+                text: String::from("var x = i*10\nsphere s 1 i 0 0\nreturn\nsphere s 1 99 0 0"),
+            },
+        ],
+    });
+    assert_eq!(compiled.diagnostics, []);
+    assert_eq!(compiled.scene.elements.len(), 4);
+    assert_eq!(compiled.scene.elements[0].origin.file, 1);
+    assert_eq!(compiled.scene.elements[3].origin.file, 0);
+}
+
+// ---- CAMERA
+
+#[test]
+fn camera() {
+    let camera = scene("eyep 1 2 3\nvrp <4 5 6>\nvup 0 0 2\nfov 30 30").camera;
+    assert_eq!(camera.eye, v(1.0, 2.0, 3.0));
+    assert_eq!(camera.target, v(4.0, 5.0, 6.0));
+    assert_eq!(camera.up, DVec3::Z);
+    assert_eq!(camera.fov, 30.0);
+}
+
+// ---- MATERIALS
+
+#[test]
+fn surfaces() {
+    let scene = scene(
+        "surface { s, diffuse 0.5 0.25 1, specular White, shine 40, radius .3, blobbiness -8, strength 2 }\n\
+         material t body 1 0.5 0, ambient 10%, diffuse 80%, specular 50%, kernel CAUCHY\n\
+         surface u ambient Red\n\
+         sphere s 1 0 0 0\nsphere t 1 0 0 0\nsphere u 1 0 0 0",
+    );
+    let [s, t, u] = &scene.materials[..] else {
+        panic!("three materials");
+    };
+    assert_eq!(s.name, "s");
+    assert_eq!(s.diffuse, [0.5, 0.25, 1.0]);
+    assert_eq!(
+        s.ambient,
+        [0.5, 0.25, 1.0].map(|c| c * scene::Material::AMBIENT_SHARE)
+    );
+    assert_eq!((s.specular, s.shine), ([1.0; 3], 40.0));
+    assert_eq!((s.radius, s.blobbiness, s.strength), (0.3, -8.0, 2.0));
+    assert_eq!(s.kernel, Kernel::Cauchy);
+    assert!(s.is_soft());
+    assert_eq!(t.diffuse, [0.8, 0.4, 0.0]);
+    assert_eq!(t.ambient, [0.1, 0.05, 0.0]);
+    assert_eq!(t.specular, [0.5; 3]);
+    assert!(!t.is_soft());
+    assert_eq!(u.ambient, [1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn a_material_made_anew_leaves_older_shapes_alone() {
+    let scene = scene(
+        "surface s diff Red\nsphere s 1 0 0 0\nsurface s diff Blue\nsphere s 1 0 0 0\n\
+         surface s = s, shine 5\nsphere s 1 0 0 0",
+    );
+    let material = |i: usize| &scene.materials[scene.elements[i].material];
+    assert_eq!(material(0).diffuse, [1.0, 0.0, 0.0]);
+    assert_eq!(material(1).diffuse, [0.0, 0.0, 1.0]);
+    assert_eq!(
+        (material(2).diffuse, material(2).shine),
+        ([0.0, 0.0, 1.0], 5.0)
+    );
+}
+
+#[test]
+fn profiles() {
+    let scene = scene(
+        "var Lo = 0.5 0.5 0.5\nvar Hi = 0.7 0.7 0.7\n\
+         texture TT strength sin^2 one bounds Lo Hi scale 22 11 1 times 1.15 1 1\n\
+         texture UU = TT\ntexture VV texture UU\n\
+         surface s diff Red, blob -1, rad 1, text VV\nsphere s 1 0 0 0",
+    );
+    let profile = scene.materials[0].profile.expect("a profile");
+    assert_eq!(profile.waves, [Wave::Sin2, Wave::One]);
+    assert_eq!(profile.scale, [22.0, 11.0]);
+    assert_eq!(profile.bounds, [0.5, 0.7]);
+    assert_eq!(profile.times, 1.15);
+}
+
+// ---- PRIMITIVES
+
+fn shape(text: &str) -> Shape {
+    scene(&format!("surface s diff Red\n{text}")).elements[0].shape
+}
+
+#[test]
+fn primitives() {
+    assert_eq!(
+        shape("cylinder s .5 <0 0 0> <1 2 3>"),
+        Shape::Cylinder {
+            base: DVec3::ZERO,
+            apex: v(1.0, 2.0, 3.0),
+            radius: 0.5
+        }
+    );
+    assert_eq!(
+        shape("triangle s <0 0 0> <1 0 0> <0 1 0>"),
+        Shape::Triangle {
+            corners: [DVec3::ZERO, DVec3::X, DVec3::Y],
+            radius: 0.0
+        }
+    );
+    assert_eq!(
+        shape("plane s <0 0 1> <0 0 5>"),
+        Shape::Plane {
+            point: DVec3::Z,
+            normal: DVec3::Z,
+            radius: 0.0
+        }
+    );
+    let full = Shape::Arc {
+        center: DVec3::X,
+        u: DVec3::X,
+        v: DVec3::Y,
+        sweep: 2.0,
+        angle: std::f64::consts::TAU,
+        radius: 0.5,
+    };
+    assert_eq!(shape("torus s 2 .5 <1 0 0> <0 0 1>"), full);
+    assert_eq!(shape("arc s 2 .5 <1 0 0> <0 0 3> 0 360"), full);
+    let Shape::Arc {
+        center,
+        sweep,
+        angle,
+        ..
+    } = shape("arch s .1 <1 0 0> <0 1 0> <-1 0 0>")
+    else {
+        panic!("an arc");
+    };
+    near(center, DVec3::ZERO);
+    assert!((sweep - 1.0).abs() < 1e-12 && (angle - std::f64::consts::PI).abs() < 1e-12);
+}
+
+#[test]
+fn soft_shapes_without_a_radius_of_their_own_take_the_material_s() {
+    let scene = scene(
+        "surface s diff Red, blob -1, rad .25, kernel cauchy\nline s <0 0 0> <1 0 0>\ndot s <0 0 0>\n\
+         triangle s <0 0 0> <1 0 0> <0 1 0>",
+    );
+    for element in &scene.elements {
+        assert_eq!(scene.radius(element), 0.25);
+    }
+    assert_eq!(scene.soft_surface().field.primitives.len(), 3);
+}
+
+#[test]
+fn fragile_pipes() {
+    let pipe = "surface s diff Red, blob -1, rad .25\npipe s .5 <0 0 0> <1 0 0>\n";
+    for (fragile, radius) in [
+        ("none", 0.5),
+        ("pipe", 0.25),
+        ("all", 0.25),
+        ("arc sphere", 0.5),
+    ] {
+        let scene = scene(&format!("{pipe}fragile {fragile}"));
+        assert_eq!(scene.radius(&scene.elements[0]), radius, "{fragile}");
+    }
+}
+
+// ---- OBJECTS
+
+/// The centres of all spheres of a text.
+fn centers(text: &str) -> Vec<DVec3> {
+    scene(&format!("surface s diff Red\n{text}"))
+        .elements
+        .iter()
+        .map(|element| match element.shape {
+            Shape::Sphere { center, .. } => center,
+            other => panic!("{other:?}"),
+        })
+        .collect()
+}
+
+#[test]
+fn transforms_of_the_last_object() {
+    let found = centers("sphere s 1 1 0 0\nsphere s 1 1 0 0\ntranslate 0 2 0");
+    assert_eq!(found, [v(1.0, 0.0, 0.0), v(1.0, 2.0, 0.0)]);
+    let found = centers("object A\nsphere s 1 1 0 0\nclose\nrotate 0 0 1 90");
+    assert_eq!(found, [v(0.0, 1.0, 0.0)]);
+    let found = centers(
+        "sphere s 1 0 0 0\nobject A\nsphere s 1 1 0 0\nclose\nsphere s 1 0 0 0\nscale 2 2 2 A",
+    );
+    assert_eq!(found, [DVec3::ZERO, v(2.0, 0.0, 0.0), DVec3::ZERO]);
+}
+
+#[test]
+fn objects_inside_objects() {
+    let found = centers(
+        "object OUT\n  object IN\n    sphere s 1 1 0 0\n  close\n  rotate 0 0 1 90 IN\n  sphere s 1 1 0 0\nclose\n\
+         translate 10 0 0 OUT",
+    );
+    near(found[0], v(10.0, 1.0, 0.0));
+    near(found[1], v(11.0, 0.0, 0.0));
+}
+
+#[test]
+fn instances_and_removal() {
+    let found = centers(
+        "object A\nsphere s 1 1 0 0\nclose\ninstance A B\ntranslate 0 0 1\ninstance B\nremove A",
+    );
+    assert_eq!(found, [v(1.0, 0.0, 1.0), v(1.0, 0.0, 1.0)]);
+}
+
+#[test]
+fn chains() {
+    let found = centers(
+        "chain s, BEADS\nfor i = 1 to 2 { sphere 1 i 0 0 }\nclose\ntranslate 0 1 0 BEADS\nsphere s 1 0 0 0",
+    );
+    assert_eq!(found, [v(1.0, 1.0, 0.0), v(2.0, 1.0, 0.0), DVec3::ZERO]);
+}
+
+#[test]
+fn scaled_flesh_scales_with_its_bones() {
+    for mode in ["relative", "absolute"] {
+        let text = format!(
+            "blobscale {mode}\nfragile all\nsurface s diff Red, blob -8, rad .25\nobject A\n\
+             cylinder s 1 <0 0 0> <1 0 0>\narc s 1 1 <1 2 3> <0 0 1> 0 90\nclose\n"
+        );
+        let small = scene(&text).soft_surface();
+        let large = scene(&format!("{text}scale 3 3 3 A")).soft_surface();
+        for point in [v(0.5, 0.2, 0.1), v(0.0, 0.0, 0.0), v(1.7, 2.8, 3.1)] {
+            let (a, b) = (
+                small.field.jet(point).value,
+                large.field.jet(point * 3.0).value,
+            );
+            assert!((a - b).abs() < 1e-9 * a, "{mode}: {a} and {b}");
+        }
+    }
+}
+
+// ---- OPTIONS
+
+#[test]
+fn options() {
+    let settings = scene(
+        "soft off\nfragile arc cyl\nframesize 320 200\nsample 3\ngamma 2.2\ncontrast .1 .2 .3\nblobscale absolute\n\
+         influence .01",
+    )
+    .settings;
+    let wanted = Settings {
+        frame: [320, 200],
+        samples: 3,
+        contrast: [0.1, 0.2, 0.3],
+        gamma: 2.2,
+        soft: false,
+        blob_scale: BlobScale::Absolute,
+        fragile: Fragile {
+            arc: true,
+            cylinder: true,
+            ..Fragile::default()
+        },
+        influence: 0.01,
+    };
+    assert_eq!(settings, wanted);
+}
+
+// ---- SCENE
+
+#[test]
+fn lights() {
+    let lights = scene(
+        "light 1 0.5 0, pos 1 2 3, inten 2 noshadow\nlight White distant dir 0 0 -2\nlight White distant pos 0 5 0",
+    )
+    .lights;
+    assert_eq!(lights[0].colour, [2.0, 1.0, 0.0]);
+    assert!(!lights[0].shadow && lights[1].shadow);
+    assert_eq!(
+        lights[0].kind,
+        LightKind::Point {
+            position: v(1.0, 2.0, 3.0)
+        }
+    );
+    assert_eq!(lights[1].kind, LightKind::Distant { towards: DVec3::Z });
+    assert_eq!(lights[2].kind, LightKind::Distant { towards: DVec3::Y });
+}
+
+#[test]
+fn background_and_reset() {
+    assert_eq!(scene("background 0.1 0.2 0.3").background, [0.1, 0.2, 0.3]);
+    let all = "background Red\neyep 1 2 3\nsample 4\nlight White pos 1 1 1\nsurface s diff Red\nsphere s 1 0 0 0\n\
+               var x = 1 hot\n";
+    let compiled = run(&format!("{all}reset all"));
+    assert_eq!(compiled.scene.elements, []);
+    assert_eq!(compiled.scene.lights, []);
+    assert_eq!(compiled.scene.background, scene::DEFAULT_BACKGROUND);
+    assert_eq!(compiled.scene.camera, scene::Camera::default());
+    assert_eq!(compiled.scene.settings, Settings::default());
+    assert_eq!(compiled.hot, []);
+    let some = run(&format!("{all}reset lights")).scene;
+    assert_eq!((some.lights.len(), some.elements.len()), (0, 1));
+}
+
+#[test]
+fn the_picture_is_the_scene_at_the_first_shoot() {
+    let compiled = run("surface s diff Red\nsphere s 1 0 0 0\nshoot\nsphere s 1 1 0 0\neyep 1 1 1");
+    assert_eq!(compiled.scene.elements.len(), 1);
+    assert_eq!(compiled.scene.camera, scene::Camera::default());
+    assert_eq!(compiled.diagnostics.len(), 1);
+}
+
+// ---- extensions
+
+#[test]
+fn loops_choices_and_calls() {
+    let found = centers(
+        "for i = 0 to 1 step 0.25 {\n  if i > 0.4 and i < 0.9 { sphere s 1 i 0 0 } else if i == 0 { sphere s 1 0 9 0 }\n}",
+    );
+    assert_eq!(
+        found,
+        [v(0.0, 9.0, 0.0), v(0.5, 0.0, 0.0), v(0.75, 0.0, 0.0)]
+    );
+    let found = centers(
+        "define tower(P n) {\n  sphere s 1 P\n  if n <= 1 { return }\n  tower P + vec(0, 0, 1), n - 1\n}\ntower <1 0 0> 3",
+    );
+    assert_eq!(
+        found,
+        [v(1.0, 0.0, 0.0), v(1.0, 0.0, 1.0), v(1.0, 0.0, 2.0)]
+    );
+    // A tenth is not exact, and still there are eleven turns.
+    assert_eq!(
+        centers("for i = 0 to 1 step 0.1 { sphere s 1 i 0 0 }").len(),
+        11
+    );
+    // The loop's variable is as before when the loop is done.
+    let found = centers("var i = 7\nfor i = 1 to 2 { }\nsphere s 1 i 0 0");
+    assert_eq!(found, [v(7.0, 0.0, 0.0)]);
+}
+
+#[test]
+fn a_failed_command_changes_nothing() {
+    let compiled = run(
+        "eyep 1 2 3\neyep 4 5\nsurface s diff Red\nsurface s diff Blue, wibble\nsphere s 1 0 0 0\n\
+         fragile all\nfragile sphere wibble\nbackground Red\nbackground 1 2",
+    );
+    assert_eq!(compiled.scene.camera.eye, v(1.0, 2.0, 3.0));
+    assert_eq!(compiled.scene.materials[0].diffuse, [1.0, 0.0, 0.0]);
+    assert_eq!(compiled.scene.settings.fragile, Fragile::ALL);
+    assert_eq!(compiled.scene.background, [1.0, 0.0, 0.0]);
+    assert_eq!(compiled.diagnostics.len(), 4);
+}
