@@ -302,3 +302,204 @@ fn mixed(a: u64, b: u64) -> u64 {
     // An odd multiplier (2⁶⁴ over the golden ratio) loses nothing and carries low bits up.
     (a.rotate_left(5) ^ b).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::{
+        Context, Event, Modifiers, MouseWheelUnit, Pos2, RawInput, Rect, TextureOptions,
+        TouchPhase, Ui, Vec2, pos2, vec2,
+    };
+
+    const SIZE: [usize; 2] = [500, 300];
+
+    /// A window without a browser.
+    struct Window {
+        context: Context,
+        painter: Painter,
+    }
+
+    impl Window {
+        fn new() -> Self {
+            let context = Context::default();
+            Self {
+                context,
+                painter: Painter::default(),
+            }
+        }
+
+        /// Runs a frame; gives what was redrawn, and the picture as a new painter would draw it.
+        fn frame(&mut self, scale: f32, events: Vec<Event>, ui: impl FnMut(&mut Ui)) -> Vec<Area> {
+            let mut input = RawInput {
+                screen_rect: Some(Rect::from_min_size(
+                    Pos2::ZERO,
+                    vec2(SIZE[0] as f32, SIZE[1] as f32) / scale,
+                )),
+                events,
+                ..Default::default()
+            };
+            let viewport = input.viewports.entry(egui::ViewportId::ROOT).or_default();
+            viewport.native_pixels_per_point = Some(scale);
+            let mut output = self.context.run_ui(input, ui);
+            self.painter.set_textures(&mut output.textures_delta);
+            let primitives = self
+                .context
+                .tessellate(output.shapes, output.pixels_per_point);
+            let changed = self.painter.paint(
+                SIZE,
+                output.pixels_per_point,
+                &primitives,
+                Color32::from_gray(20),
+            );
+            let drawn = self.painter.pixels().to_vec();
+            self.painter.forget();
+            let all = self.painter.paint(
+                SIZE,
+                output.pixels_per_point,
+                &primitives,
+                Color32::from_gray(20),
+            );
+            assert_eq!(
+                all.iter()
+                    .map(|a| (a.x1 - a.x0) * (a.y1 - a.y0))
+                    .sum::<i32>(),
+                (SIZE[0] * SIZE[1]) as i32
+            );
+            let apart = drawn.iter().zip(self.painter.pixels());
+            assert!(
+                apart.into_iter().all(|(a, b)| a.abs_diff(*b) <= 1),
+                "what was left alone had changed"
+            );
+            self.painter.free_textures(&mut output.textures_delta);
+            changed
+        }
+    }
+
+    fn label(ui: &mut Ui, text: &str) {
+        let place = Rect::from_min_size(pos2(10.0, 10.0), vec2(100.0, 20.0));
+        ui.put(place, egui::Label::new(text));
+    }
+
+    #[test]
+    fn only_what_changed_is_redrawn() {
+        let mut window = Window::new();
+        assert!(
+            !window
+                .frame(1.0, Vec::new(), |ui| label(ui, "one"))
+                .is_empty()
+        );
+        assert!(
+            window
+                .frame(1.0, Vec::new(), |ui| label(ui, "one"))
+                .is_empty()
+        );
+        let changed = window.frame(1.0, Vec::new(), |ui| label(ui, "two"));
+        assert!(!changed.is_empty());
+        for area in changed {
+            assert!(area.x1 <= 128 && area.y1 <= 64, "{area:?}");
+        }
+    }
+
+    #[test]
+    fn a_patch_of_a_picture_redraws_the_tiles_that_show_it() {
+        let mut window = Window::new();
+        let picture = egui::ColorImage::filled([400, 256], Color32::RED);
+        let mut texture = window
+            .context
+            .load_texture("picture", picture, TextureOptions::LINEAR);
+        let id = texture.id();
+        let show = |ui: &mut Ui| {
+            let place = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 256.0));
+            let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter().image(id, place, all, Color32::WHITE);
+        };
+        window.frame(1.0, Vec::new(), show);
+        assert!(window.frame(1.0, Vec::new(), show).is_empty());
+        texture.set_partial(
+            [200, 70],
+            egui::ColorImage::filled([20, 20], Color32::BLUE),
+            TextureOptions::LINEAR,
+        );
+        let changed = window.frame(1.0, Vec::new(), show);
+        assert_eq!(changed.len(), 1);
+        assert!(changed[0].x0 >= 128 && changed[0].x1 <= 320);
+        assert_eq!([changed[0].y0, changed[0].y1], [64, 128]);
+        let pixel = |x: usize, y: usize| {
+            let start = 4 * (y * SIZE[0] + x);
+            window.painter.pixels()[start..start + 4].to_vec()
+        };
+        assert_eq!(pixel(205, 75), Color32::BLUE.to_array());
+        assert_eq!(pixel(199, 75), Color32::RED.to_array());
+    }
+
+    #[test]
+    fn shapes_are_cut_off_at_their_clip() {
+        let mut window = Window::new();
+        let clip = Rect::from_min_max(pos2(10.4, 20.0), pos2(30.6, 40.0));
+        window.frame(1.0, Vec::new(), |ui| {
+            let everywhere = ui.max_rect().expand(100.0);
+            ui.painter_at(clip)
+                .rect_filled(everywhere, 0.0, Color32::WHITE);
+        });
+        let white = |&(_, pixel): &(usize, &[u8])| pixel[0] == 255;
+        let pixels = window.painter.pixels().chunks(4).enumerate();
+        let covered: Vec<_> = pixels
+            .filter(white)
+            .map(|(i, _)| (i % SIZE[0], i / SIZE[0]))
+            .collect();
+        assert_eq!(covered.first(), Some(&(10, 20)));
+        assert_eq!(covered.last(), Some(&(30, 39)));
+        assert_eq!(covered.len(), 21 * 20);
+    }
+
+    /// Whatever happens in the window, redrawing the changed tiles gives the same picture as
+    /// redrawing all ([`Window::frame`] checks it).
+    #[test]
+    fn redrawing_what_changed_is_redrawing_all() {
+        for scale in [1.0, 1.25, 2.0] {
+            let mut window = Window::new();
+            let mut text: String = (0..60).map(|i| format!("line {i}: some words\n")).collect();
+            let mut on = true;
+            let mut amount = 0.3;
+            let mut ui = |ui: &mut Ui| {
+                egui::Panel::left("left").show(ui, |ui| {
+                    ui.checkbox(&mut on, "a box");
+                    ui.add(egui::Slider::new(&mut amount, 0.0..=1.0));
+                    ui.spinner();
+                    ui.collapsing("more", |ui| ui.label("inside"));
+                });
+                egui::CentralPanel::default().show(ui, |ui| {
+                    egui::ScrollArea::vertical().show(ui, |ui| {
+                        ui.add(egui::TextEdit::multiline(&mut text).desired_width(f32::INFINITY));
+                    });
+                });
+            };
+            let mut areas = 0;
+            for step in 0..40 {
+                let pointer = pos2(20.0 + 5.0 * step as f32, 10.0 + 2.0 * step as f32);
+                let press = |pressed| Event::PointerButton {
+                    pos: pointer,
+                    button: egui::PointerButton::Primary,
+                    pressed,
+                    modifiers: Modifiers::NONE,
+                };
+                let mut events = vec![Event::PointerMoved(pointer)];
+                match step % 5 {
+                    0 => events.push(press(true)),
+                    1 => events.push(press(false)),
+                    2 => events.push(Event::Text("ä€x".to_owned())),
+                    3 => events.push(Event::MouseWheel {
+                        source: egui::MouseWheelSource::Wheel,
+                        unit: MouseWheelUnit::Point,
+                        delta: Vec2::new(0.0, -30.0),
+                        phase: TouchPhase::Move,
+                        modifiers: Modifiers::NONE,
+                    }),
+                    _ => {}
+                }
+                areas += window.frame(scale, events, &mut ui).len();
+            }
+            assert!(areas > 40);
+        }
+    }
+}

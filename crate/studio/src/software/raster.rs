@@ -484,3 +484,297 @@ fn blend_exact(pixel: &mut [u8; 4], color: [f32; 4]) {
     // The cast saturates.
     *pixel = std::array::from_fn(|c| (color[c] + f32::from(pixel[c]) * rest + 0.5) as u8);
 }
+
+#[cfg(test)]
+mod tests {
+    use egui::{
+        ColorImage, TextureId, TextureOptions, TexturesDelta,
+        epaint::{ImageDelta, textures::TextureFilter},
+    };
+
+    use super::super::texture::Textures;
+    use super::*;
+
+    const BLACK: [u8; 4] = [0, 0, 0, 255];
+    /// Added to what is there, so that it counts how often a pixel is drawn.
+    const ONCE: Color32 = Color32::from_rgba_premultiplied(1, 0, 0, 0);
+
+    /// Calls `test` with a texture of one white texel, as shapes without a picture have it.
+    fn with_texture(image: ColorImage, options: TextureOptions, test: impl FnOnce(&Texture)) {
+        let mut delta = TexturesDelta::default();
+        delta.push(TextureId::default(), ImageDelta::full(image, options));
+        let mut textures = Textures::default();
+        textures.set(&mut delta);
+        test(textures.get(TextureId::default()).unwrap());
+    }
+
+    fn with_white(test: impl FnOnce(&Texture)) {
+        with_texture(
+            ColorImage::filled([1, 1], Color32::WHITE),
+            TextureOptions::LINEAR,
+            test,
+        );
+    }
+
+    fn sheet(width: usize, height: usize) -> Sheet {
+        let mut sheet = Sheet::new(width, height);
+        sheet.clear(sheet.area(), Color32::BLACK);
+        sheet
+    }
+
+    fn corner(x: f32, y: f32, tint: Color32) -> Corner {
+        Corner::new([x, y], [0.0; 2], tint).unwrap()
+    }
+
+    /// A row of numbers below `end` that look random.
+    fn numbers(seed: u64, end: f32) -> impl FnMut() -> f32 {
+        let mut state = seed;
+        move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1 << 24) as f32 * end
+        }
+    }
+
+    #[test]
+    fn a_pixel_is_covered_when_its_centre_is_inside_or_on_a_left_or_top_edge() {
+        with_white(|white| {
+            let mut sheet = sheet(6, 5);
+            // The legs of the triangle run through pixel centres, the hypotenuse too.
+            let at = |x, y| corner(x, y, Color32::WHITE);
+            let triangle = [at(1.5, 1.5), at(5.5, 1.5), at(1.5, 4.5)];
+            sheet.triangle(&triangle, white, sheet.area());
+            let row = |y: usize| -> String {
+                sheet.pixels[y * 6..(y + 1) * 6]
+                    .iter()
+                    .map(|&pixel| if pixel == BLACK { '.' } else { '#' })
+                    .collect()
+            };
+            let drawn: Vec<String> = (0..5).map(row).collect();
+            assert_eq!(drawn, ["......", ".####.", ".###..", ".##...", "......"]);
+        });
+    }
+
+    #[test]
+    fn triangles_that_share_edges_cover_each_pixel_once() {
+        with_white(|white| {
+            let mut number = numbers(7, 40.0);
+            for _ in 0..200 {
+                let mut sheet = sheet(40, 40);
+                // A fan round an inner point, both ways round, covers the whole sheet.
+                let hub = corner(number(), number(), ONCE);
+                let rim = [
+                    (0.0, 0.0),
+                    (number(), 0.0),
+                    (40.0, 0.0),
+                    (40.0, number()),
+                    (40.0, 40.0),
+                    (number(), 40.0),
+                    (0.0, 40.0),
+                    (0.0, number()),
+                ]
+                .map(|(x, y)| corner(x, y, ONCE));
+                for (i, &from) in rim.iter().enumerate() {
+                    let to = rim[(i + 1) % rim.len()];
+                    let triangle = if i % 2 == 0 {
+                        [hub, from, to]
+                    } else {
+                        [to, from, hub]
+                    };
+                    sheet.triangle(&triangle, white, sheet.area());
+                }
+                assert!(sheet.pixels.iter().all(|pixel| pixel[0] == 1));
+            }
+        });
+    }
+
+    #[test]
+    fn drawing_in_parts_is_drawing_the_whole() {
+        with_white(|white| {
+            let mut number = numbers(3, 60.0);
+            for _ in 0..100 {
+                let triangle = [(); 3].map(|()| {
+                    let tint = Color32::from_rgba_premultiplied(number() as u8, 20, 0, 100);
+                    corner(number() - 10.0, number() - 10.0, tint)
+                });
+                let mut whole = sheet(40, 40);
+                whole.triangle(&triangle, white, whole.area());
+                let mut parts = sheet(40, 40);
+                for (x, y) in [(0, 0), (13, 0), (0, 17), (13, 17)] {
+                    let area = Area {
+                        x0: x,
+                        y0: y,
+                        x1: if x == 0 { 13 } else { 40 },
+                        y1: if y == 0 { 17 } else { 40 },
+                    };
+                    parts.triangle(&triangle, white, area);
+                }
+                let apart = whole.bytes().iter().zip(parts.bytes());
+                // The shade is computed from the left end of each span.
+                assert!(apart.into_iter().all(|(a, b)| a.abs_diff(*b) <= 1));
+            }
+        });
+    }
+
+    #[test]
+    fn blending_is_exact_to_half_a_step() {
+        for alpha in 0..=255u8 {
+            for over in [0, 1, 77, 128, 200, 255] {
+                for color in [0, alpha / 3, alpha] {
+                    let exact =
+                        f64::from(color) + f64::from(over) * (1.0 - f64::from(alpha) / 255.0);
+                    let mut pixel = [over, over, over, 255];
+                    blend(&mut pixel, [color, 0, 0, alpha]);
+                    assert!((f64::from(pixel[0]) - exact).abs() <= 0.5);
+                    assert_eq!(pixel[3], 255);
+                    let mut pixel = [over, over, over, 255];
+                    blend_exact(&mut pixel, [color, 0, 0, alpha].map(f32::from));
+                    assert!((f64::from(pixel[0]) - exact).abs() <= 0.501);
+                }
+            }
+        }
+        // Colours with no alpha add, up to white.
+        let mut pixel = [200, 3, 0, 255];
+        blend(&mut pixel, [100, 4, 0, 0]);
+        assert_eq!(pixel, [255, 7, 0, 255]);
+    }
+
+    #[test]
+    fn shades_go_linearly_from_corner_to_corner() {
+        with_white(|white| {
+            let mut sheet = sheet(255, 2);
+            let (left, right) = (Color32::BLACK, Color32::WHITE);
+            let [a, b] = [corner(0.0, 0.0, left), corner(0.0, 2.0, left)];
+            let [c, d] = [corner(255.0, 0.0, right), corner(255.0, 2.0, right)];
+            sheet.triangle(&[a, b, c], white, sheet.area());
+            sheet.triangle(&[b, c, d], white, sheet.area());
+            for (i, pixel) in sheet.pixels.iter().enumerate() {
+                let exact = (i % 255) as f64 + 0.5;
+                assert!((f64::from(pixel[0]) - exact).abs() <= 0.6, "{i}: {pixel:?}");
+            }
+        });
+    }
+
+    #[test]
+    fn a_box_is_drawn_as_its_two_triangles_are() {
+        let mut number = numbers(11, 1.0);
+        for round in 0..60 {
+            let image = ColorImage::new(
+                [16, 8],
+                (0..128)
+                    .map(|_| {
+                        Color32::from_rgba_unmultiplied(
+                            (number() * 255.0) as u8,
+                            (number() * 255.0) as u8,
+                            9,
+                            (number() * 255.0) as u8,
+                        )
+                    })
+                    .collect(),
+            );
+            let options = TextureOptions {
+                magnification: if round % 2 == 0 {
+                    TextureFilter::Linear
+                } else {
+                    TextureFilter::Nearest
+                },
+                ..TextureOptions::LINEAR
+            };
+            with_texture(image, options, |texture| {
+                let from = [number() * 20.0, number() * 20.0];
+                let to = [
+                    from[0] + number() * 40.0 + 0.1,
+                    from[1] + number() * 40.0 + 0.1,
+                ];
+                let tint = Color32::from_rgba_premultiplied(200, 255, 100, 255);
+                let at = |x: usize, y: usize| {
+                    let position = [[from[0], to[0]][x], [from[1], to[1]][y]];
+                    // A texture that is turned left to right.
+                    let texel = [[15.2, 1.3][x], [0.4, 6.9][y]];
+                    Corner::new(position, texel, tint).unwrap()
+                };
+                let corners = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+                let mut boxed = sheet(50, 50);
+                boxed.quad(&Quad::new(corners).unwrap(), texture, boxed.area());
+                let mut split = sheet(50, 50);
+                let [a, b, c, d] = corners;
+                split.triangle(&[a, b, c], texture, split.area());
+                split.triangle(&[c, b, d], texture, split.area());
+                let differing = boxed
+                    .bytes()
+                    .iter()
+                    .zip(split.bytes())
+                    .filter(|(a, b)| a.abs_diff(**b) > 2)
+                    .count();
+                // Nearest texels may fall either way where a pixel centre lies between two.
+                assert!(
+                    differing <= if round % 2 == 0 { 0 } else { 20 },
+                    "{differing}"
+                );
+            });
+        }
+    }
+
+    #[test]
+    fn text_is_copied_texel_by_texel() {
+        let image = ColorImage::new(
+            [300, 200],
+            (0..300 * 200)
+                .map(|i| Color32::from_gray((i % 251) as u8))
+                .collect(),
+        );
+        with_texture(image, TextureOptions::LINEAR, |texture| {
+            let mut sheet = sheet(20, 20);
+            let at = |x: f32, y: f32| {
+                // As egui gives it: relative to the texture's size, in single precision.
+                let texel = [(250.0 + x) / 300.0 * 300.0, (170.0 + y) / 200.0 * 200.0];
+                Corner::new([3.0 + x, 5.0 + y], texel, Color32::WHITE).unwrap()
+            };
+            let quad = Quad::new([at(0.0, 0.0), at(9.0, 0.0), at(0.0, 12.0), at(9.0, 12.0)]);
+            sheet.quad(&quad.unwrap(), texture, sheet.area());
+            for (y, row) in sheet.pixels.chunks(20).enumerate() {
+                for (x, pixel) in row.iter().enumerate() {
+                    let inside = (3..12).contains(&x) && (5..17).contains(&y);
+                    let expected = if inside {
+                        ((250 + x - 3 + 300 * (170 + y - 5)) % 251) as u8
+                    } else {
+                        0
+                    };
+                    assert_eq!(pixel[0], expected, "at {x}, {y}");
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn strange_corners_do_no_harm() {
+        with_white(|white| {
+            assert!(Corner::new([f32::NAN, 0.0], [0.0; 2], ONCE).is_none());
+            let mut sheet = sheet(9, 9);
+            let far = [
+                f32::INFINITY,
+                f32::NEG_INFINITY,
+                1e30,
+                -1e9,
+                0.0,
+                4.5,
+                1e-30,
+            ];
+            for a in far {
+                for b in far {
+                    for c in far {
+                        let at = |x, y, u| Corner::new([x, y], [u, a], ONCE).unwrap();
+                        let area = sheet.area();
+                        sheet.triangle(&[at(a, b, c), at(b, c, a), at(c, a, b)], white, area);
+                        sheet.triangle(&[at(a, b, 0.0), at(b, a, 0.0), at(c, c, 0.0)], white, area);
+                        let corners = [at(a, b, b), at(c, b, c), at(a, c, b), at(c, c, c)];
+                        if let Some(quad) = Quad::new(corners) {
+                            sheet.quad(&quad, white, area);
+                        }
+                    }
+                }
+            }
+        });
+    }
+}

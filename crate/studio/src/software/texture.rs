@@ -73,9 +73,10 @@ impl Texture {
     pub fn changed(&self, from: [f32; 2], to: [f32; 2]) -> u64 {
         let blocks = |axis: usize| {
             let last = self.size[axis].saturating_sub(1);
-            // A sample reaches one texel further; the casts saturate.
+            // A sample reaches half a texel to each side; the casts saturate.
             let range = if self.options.wrap_mode == TextureWrapMode::ClampToEdge {
-                ((from[axis] - 1.0) as usize).min(last)..=((to[axis] + 1.0) as usize).min(last)
+                let last_seen = (to[axis] + 0.5).ceil() - 1.0;
+                ((from[axis] - 0.5) as usize).min(last)..=(last_seen as usize).min(last)
             } else {
                 0..=last
             };
@@ -89,8 +90,7 @@ impl Texture {
             .unwrap_or(0)
     }
 
-    /// Whether texels are blended where one of them covers `scale` pixels, or `1/scale` of them
-    /// one pixel.
+    /// Whether neighbouring texels are blended where so many of them fall on a pixel.
     pub fn is_smooth(&self, texels_per_pixel: f32) -> bool {
         let filter = if texels_per_pixel > 1.0 {
             self.options.minification
@@ -292,7 +292,8 @@ mod tests {
         assert_eq!(at(&texture, 194.5, 95.5), 0);
         assert_eq!(texture.changed([0.0, 0.0], [120.0, 99.0]), 1);
         assert_eq!(texture.changed([0.0, 0.0], [199.0, 99.0]), 2);
-        // A sample at 191.9 also reads the texel 192, which is in the changed block.
-        assert_eq!(texture.changed([180.0, 80.0], [191.9, 90.0]), 2);
+        // A sample at 191.6 also reads the texel 192, which is in the changed block.
+        assert_eq!(texture.changed([180.0, 80.0], [191.6, 90.0]), 2);
+        assert_eq!(texture.changed([180.0, 80.0], [191.5, 90.0]), 1);
     }
 }
