@@ -9,8 +9,9 @@ fn main() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../www/examples");
     let mut texts: Vec<(String, String)> = std::fs::read_dir(folder)
         .expect("the examples")
-        .map(|entry| {
-            let path = entry.expect("an entry").path();
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|ext| ext == "rat"))
+        .map(|path| {
             let text = std::fs::read_to_string(&path).expect("a text");
             (path.display().to_string(), text)
         })
