@@ -85,6 +85,7 @@ pub trait Scalar: Real<Scalar = Self> + PartialEq + core::fmt::Debug {
     /// The nearest number of this type.
     fn round(value: f64) -> Self;
     /// Of a term prepared in both precisions, the one in this.
+    #[doc(hidden)]
     fn prepared(term: &Prepared) -> &Term<Self>;
 }
 

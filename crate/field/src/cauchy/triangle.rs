@@ -131,7 +131,10 @@ impl<S: Copy> Triangle<S> {
             let h = ax * y - ay * x - R::lift(edge.offset);
             let w2 = c2 + h * h;
             let w = w2.sqrt();
-            let iw = one / w;
+            // One division for 1/w and 1/(w+|h|): 1−|k| = c²/(w(w+|h|)).
+            let rim = w + h.abs();
+            let i_both = one / (w * rim);
+            let iw = i_both * rim;
             let ii = i[(k + 1) % 3] * i[(k + 2) % 3];
             let root = ii.sqrt();
             let sine = w * length * root;
@@ -142,14 +145,12 @@ impl<S: Copy> Triangle<S> {
             let size = ratio.abs();
             plain = plain + ratio * turn.theta;
             plain_size = plain_size + size * turn.theta;
-            // 1 − k², then 1 − |k|.
-            let flat = c2 * iw * iw;
-            let part = sliver(&turn, sine, cosine, flat / (one + size));
+            let part = sliver(&turn, sine, cosine, c2 * i_both);
             slivers = slivers + ratio.sign_to(part.half_area);
             slivers_size = slivers_size + part.half_area.abs();
             sphere_angle = sphere_angle + ratio.sign_to(turn.theta - part.shortfall);
             chords = chords + length * length * ii;
-            steepest = steepest.min(one - flat * sine * sine);
+            steepest = steepest.min(one - c2 * iw * iw * sine * sine);
 
             let cubic = turn.sin2 * iw * iw * iw;
             in_plane = [in_plane[0] - ay * cubic, in_plane[1] + ax * cubic];
