@@ -252,7 +252,8 @@ impl Reader<'_, '_> {
             }
             Some(Datum::Word(symbol)) => {
                 let word = self.scope.symbols.word(symbol);
-                let is_variable = self.scope.get(symbol).is_some();
+                // A variable hides a function of the same name, unless it is plainly called.
+                let is_variable = self.scope.get(symbol).is_some() && !self.is_called();
                 if !is_variable && let Some(function) = functions::find(word) {
                     return self.call(function, span.start);
                 }
@@ -262,6 +263,13 @@ impl Reader<'_, '_> {
             }
             _ => Err(self.expected(what)),
         }
+    }
+
+    /// Whether `(` follows the word here without space.
+    fn is_called(&self) -> bool {
+        self.items
+            .get(self.at + 1)
+            .is_some_and(|next| next.datum == Datum::Sign(b'(') && !next.spaced)
     }
 
     /// A function with its arguments in parentheses, separated by commas.

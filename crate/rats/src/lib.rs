@@ -1,12 +1,12 @@
 //! The dataset language: text → scene, with diagnostics.
 //!
-//! A [`Project`] is a few named texts of which one is run. [`compile`] never fails: it gives the
+//! A [`Project`] is a few named texts of which one is run. [`compile()`] never fails: it gives the
 //! best [`scene::Scene`] it can make of the text and a list of [`Diagnostic`]s. [`link`] packs a
 //! project and a camera into a short text that fits behind the `#` of an address.
 //!
 //! A text goes through these rooms: [`lexer`] cuts it into tokens, `parser` makes a tree of commands
 //! (`syntax`), `evaluator` runs the tree. Each command's operands are read while it runs
-//! (`reader`, `expression`), because what a word means depends on the variables at that time. What
+//! (`reader`, `operands`, `expression`), because what a word means depends on the variables at that time. What
 //! commands there are stands in one table ([`commands`]), which also serves [`highlight`] and help.
 //! All bounds are in [`limits`].
 
@@ -23,6 +23,7 @@ pub mod hot;
 pub mod lexer;
 pub mod limits;
 pub mod link;
+mod operands;
 mod parser;
 mod problem;
 pub mod project;

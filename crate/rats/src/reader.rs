@@ -1,17 +1,14 @@
-//! Reads a command's operands one after the other: numbers, triples, colours, names and options.
+//! Reads a command's operands one after the other: names and options here, values in
+//! [`crate::operands`].
 //!
 //! Commas, `<` and `>` only separate, so they are skipped wherever an operand may begin.
 
-use crate::colours;
 use crate::commands::{CommandSpec, OptionSpec};
-use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
 use crate::scope::Scope;
 use crate::suggest;
 use crate::symbol::Symbol;
 use crate::syntax::{Command, Datum, Item};
-use crate::value::Value;
-use glam::DVec3;
 use std::ops::Range;
 
 /// A user's name: of a material, an object, a file.
@@ -22,18 +19,6 @@ pub struct Name<'a> {
     /// Where it stands.
     pub span: Range<usize>,
 }
-
-/// A colour of a material: a value, or a share of another colour.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Share {
-    /// Red, green, blue.
-    Colour([f32; 3]),
-    /// `N%`, as N/100.
-    Percent(f32),
-}
-
-/// Largest number of a colour.
-const MAX_COLOUR: f64 = 1e4;
 
 /// Reads the operands of one command.
 #[derive(Debug)]
@@ -130,7 +115,7 @@ impl<'e, 'a> Reader<'e, 'a> {
     }
 
     /// The text of the next item.
-    fn found(&self) -> Option<&'a str> {
+    pub(crate) fn found(&self) -> Option<&'a str> {
         self.items.get(self.at).map(|item| &self.text[item.span()])
     }
 
@@ -207,198 +192,6 @@ impl<'e, 'a> Reader<'e, 'a> {
             text: &self.text[span.clone()],
             span,
         })
-    }
-
-    /// A number.
-    ///
-    /// # Errors
-    /// If there is none, or it is too large or not a number.
-    pub fn number(&mut self, what: &str) -> Outcome<f64> {
-        let start = self.start();
-        match self.value(what)? {
-            Value::Scalar(number) => self.check(number, start, what),
-            other => Err(Problem::new(
-                self.since(start),
-                format!("{what} must be a number, this is {}", other.kind()),
-            )
-            .maybe_hint(self.usage())),
-        }
-    }
-
-    /// A number within bounds.
-    ///
-    /// # Errors
-    /// As [`Self::number`], and if it is out of bounds.
-    pub fn number_in(&mut self, what: &str, low: f64, high: f64) -> Outcome<f64> {
-        let start = self.start();
-        let number = self.number(what)?;
-        if (low..=high).contains(&number) {
-            return Ok(number);
-        }
-        let bounds = if high >= MAX_MAGNITUDE {
-            format!("at least {low}")
-        } else {
-            format!("from {low} to {high}")
-        };
-        Err(Problem::new(
-            self.since(start),
-            format!("{what} must be {bounds}, not {number}"),
-        ))
-    }
-
-    /// A whole number within bounds.
-    ///
-    /// # Errors
-    /// As [`Self::number`], and if it is not whole or out of bounds.
-    pub fn whole(&mut self, what: &str, low: u32, high: u32) -> Outcome<u32> {
-        let start = self.start();
-        let number = self.number_in(what, f64::from(low), f64::from(high))?;
-        if number.fract() == 0.0 {
-            return Ok(number as u32);
-        }
-        Err(Problem::new(
-            self.since(start),
-            format!("{what} must be a whole number, not {number}"),
-        ))
-    }
-
-    fn check(&self, number: f64, start: usize, what: &str) -> Outcome<f64> {
-        if number.abs() <= MAX_MAGNITUDE {
-            return Ok(number);
-        }
-        let problem = |message| Problem::new(self.since(start), message);
-        Err(if number.is_finite() {
-            problem(format!(
-                "{what} is too large: the limit is {MAX_MAGNITUDE:e}"
-            ))
-        } else {
-            problem(format!("{what} comes out as no finite number"))
-                .hint("look for a division by 0 or a root of a negative number")
-        })
-    }
-
-    /// Three numbers, or a vector or colour.
-    ///
-    /// # Errors
-    /// If there is none, or a number is too large or not a number.
-    pub fn vector(&mut self, what: &str) -> Outcome<DVec3> {
-        match self.triple(what)? {
-            Value::Vector(vector) | Value::Colour(vector) => Ok(vector),
-            Value::Scalar(_) => Err(self.expected(what)),
-        }
-    }
-
-    /// A triple as it is, vector or colour; three numbers give a vector.
-    ///
-    /// # Errors
-    /// As [`Self::vector`].
-    pub fn triple(&mut self, what: &str) -> Outcome<Value> {
-        let start = self.start();
-        let value = match self.value(what)? {
-            Value::Scalar(x) => {
-                let y = self.number_after(what)?;
-                Value::Vector(DVec3::new(x, y, self.number_after(what)?))
-            }
-            triple => triple,
-        };
-        if let Value::Vector(v) | Value::Colour(v) = value {
-            for number in v.to_array() {
-                self.check(number, start, what)?;
-            }
-        }
-        Ok(value)
-    }
-
-    /// The second or third number of a triple.
-    fn number_after(&mut self, what: &str) -> Outcome<f64> {
-        let start = self.start();
-        let at = self.at;
-        let inner = match self.value(what) {
-            Ok(Value::Scalar(number)) => return Ok(number),
-            // Something that is no value at all: better say what is missing here.
-            Err(inner) if inner.span.start == start && !inner.quiet && !inner.fatal => inner.hint,
-            Err(inner) => return Err(inner),
-            Ok(_) => None,
-        };
-        self.at = at;
-        let message = match self.found() {
-            Some(found) => format!("{what} takes three numbers, found `{found}`"),
-            None => format!("{what} takes three numbers, but the command ends here"),
-        };
-        Err(Problem::new(self.here(), message).maybe_hint(inner.or_else(|| self.usage())))
-    }
-
-    /// A direction: a vector that is not 0.
-    ///
-    /// # Errors
-    /// As [`Self::vector`], and if it is 0.
-    pub fn direction(&mut self, what: &str) -> Outcome<DVec3> {
-        let start = self.start();
-        let vector = self.vector(what)?;
-        vector.try_normalize().ok_or_else(|| {
-            Problem::new(
-                self.since(start),
-                format!("{what} must not be 0 0 0: it is a direction"),
-            )
-        })
-    }
-
-    /// A colour: a name, a variable or three numbers.
-    ///
-    /// # Errors
-    /// If there is none, or a number is negative.
-    pub fn colour(&mut self, what: &str) -> Outcome<[f32; 3]> {
-        let start = self.start();
-        let vector = self.vector(what)?;
-        self.to_colour(vector, start, what)
-    }
-
-    fn to_colour(&self, vector: DVec3, start: usize, what: &str) -> Outcome<[f32; 3]> {
-        if vector.min_element() < 0.0 || vector.max_element() > MAX_COLOUR {
-            return Err(Problem::new(
-                self.since(start),
-                format!("{what} needs numbers from 0 (none) to 1 (full)"),
-            )
-            .hint(format!("more than 1 glares; {MAX_COLOUR} is the limit")));
-        }
-        Ok(vector.to_array().map(|c| c as f32))
-    }
-
-    /// A colour or `N%`.
-    ///
-    /// # Errors
-    /// If there is neither.
-    pub fn share(&mut self, what: &str) -> Outcome<Share> {
-        let start = self.start();
-        let value = self.value(what)?;
-        let percent = self
-            .items
-            .get(self.at)
-            .is_some_and(|item| item.datum == Datum::Sign(b'%') && !item.spaced);
-        match value {
-            Value::Scalar(number) if percent => {
-                self.at += 1;
-                let number = self.check(number, start, what)?;
-                if !(0.0..=1e6).contains(&number) {
-                    return Err(Problem::new(
-                        self.since(start),
-                        format!("{what} must be at least 0%"),
-                    ));
-                }
-                Ok(Share::Percent((number / 100.0) as f32))
-            }
-            Value::Scalar(x) => {
-                let y = self.number_after(what)?;
-                let vector = DVec3::new(x, y, self.number_after(what)?);
-                for number in vector.to_array() {
-                    self.check(number, start, what)?;
-                }
-                Ok(Share::Colour(self.to_colour(vector, start, what)?))
-            }
-            Value::Vector(v) | Value::Colour(v) => {
-                Ok(Share::Colour(self.to_colour(v, start, what)?))
-            }
-        }
     }
 
     /// `on` or `off`.
@@ -485,46 +278,5 @@ impl<'e, 'a> Reader<'e, 'a> {
             format!("the command is complete before `{found}`"),
         )
         .maybe_hint(self.usage()))
-    }
-
-    /// The value of a word that stands in an expression and is no function.
-    pub(crate) fn word_value(&mut self, symbol: Symbol) -> Outcome<Value> {
-        if let Some(value) = self.scope.get(symbol) {
-            return Ok(value);
-        }
-        let word = self.scope.symbols.word(symbol);
-        if let Some((triple, component)) = word.rsplit_once('.')
-            && let Some(value) = self.scope.symbols.find(triple)
-            && let Some(value) = self.scope.get(value)
-            && let Some(number) = value.component(component)
-        {
-            return Ok(Value::Scalar(number));
-        }
-        if let Some(constant) = crate::functions::constant(word) {
-            return Ok(Value::Scalar(constant));
-        }
-        if let Some(colour) = colours::find(word) {
-            // A search through names takes longer than a look at a variable.
-            self.scope.step(3, &self.here())?;
-            return Ok(Value::Colour(DVec3::from_array(colour.map(f64::from))));
-        }
-        let span = self.here();
-        if self.scope.is_broken(symbol) {
-            return Err(Problem::follow_up(span));
-        }
-        let mut known: Vec<&'a str> = self.scope.names().collect();
-        known.extend(
-            crate::functions::FUNCTIONS
-                .iter()
-                .map(|f| -> &'a str { f.name }),
-        );
-        known.extend(colours::names().map(|name| -> &'a str { name }));
-        let suggestion = suggest::hint(word, known);
-        if word.starts_with(|c: char| c.is_ascii_digit()) {
-            return Err(Problem::new(span, format!("`{word}` is no number")));
-        }
-        let hint =
-            suggestion.unwrap_or_else(|| format!("set it before it is used: `var {word} = …`"));
-        Err(Problem::new(span, format!("there is no variable or colour `{word}`")).hint(hint))
     }
 }

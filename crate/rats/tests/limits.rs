@@ -217,6 +217,15 @@ fn magnitudes() {
     assert!(compiled.scene.elements.is_empty());
     assert_eq!(compiled.diagnostics.len(), 1);
     assert_eq!(compiled.diagnostics[0].severity, Severity::Warning);
+    // Nor may a material grow beyond bounds with its shape.
+    for factor in ["1e9", "1e-9"] {
+        let compiled = run(format!(
+            "fragile all\nblobscale absolute\nsurface s diff Red, blob -1, rad 1\nobject A\n\
+             sphere s 1 0 0 0\nclose\nfor i = 1 to 30 {{ scale {factor} {factor} {factor} }}"
+        ));
+        assert!(compiled.scene.elements.is_empty());
+        assert!(compiled.scene.materials.iter().all(|m| m.radius == 1.0));
+    }
 }
 
 #[test]

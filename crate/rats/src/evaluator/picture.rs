@@ -31,11 +31,16 @@ impl Evaluator<'_> {
         let parts = std::mem::take(&mut self.model.parts);
         let mut grown = HashMap::new();
         for part in parts.iter().filter(|part| !part.removed) {
-            let element = settle(part, &mut scene, &mut grown);
-            match fault(&scene, &element) {
-                None => scene.elements.push(element),
-                Some((message, hint)) => {
-                    let origin = element.origin;
+            let element = if is_in_bounds(part) {
+                let element = settle(part, &mut scene, &mut grown);
+                fault(&scene, &element).map_or(Ok(element), Err)
+            } else {
+                Err((too_far as fn() -> String, None))
+            };
+            match element {
+                Ok(element) => scene.elements.push(element),
+                Err((message, hint)) => {
+                    let origin = part.element.origin;
                     let file = std::mem::replace(&mut self.file, origin.file as usize);
                     let span = origin.start as usize..origin.end as usize;
                     self.say(Severity::Warning, span, || (message(), hint));
@@ -96,12 +101,6 @@ type Fault = (fn() -> String, Option<String>);
 /// Why an element cannot be drawn, if so.
 fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
     let hint = |text: &str| Some(text.to_owned());
-    if !is_finite(&element.shape) {
-        return Some((
-            || String::from("this shape lies too far away or is too large, so it is left out"),
-            None,
-        ));
-    }
     let radius = scene.radius(element);
     let is_soft = scene
         .materials
@@ -150,8 +149,13 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
     })
 }
 
-fn is_finite(shape: &Shape) -> bool {
-    // Transforms can take a shape beyond what a text may write.
+fn too_far() -> String {
+    String::from("this shape is too far away, too large or too small, so it is left out")
+}
+
+/// Whether a shape is still within what a text may write; transforms can take it beyond.
+fn is_in_bounds(part: &Part) -> bool {
+    let shape = &part.element.shape;
     let fits = |v: glam::DVec3| v.abs().max_element() <= MAX_MAGNITUDE && v.is_finite();
     let places = match *shape {
         Shape::Sphere { center, .. } => fits(center),
@@ -160,5 +164,5 @@ fn is_finite(shape: &Shape) -> bool {
         Shape::Triangle { corners, .. } => corners.into_iter().all(fits),
         Shape::Plane { point, normal, .. } => fits(point) && normal.is_finite(),
     };
-    places && shape.radius().abs() <= MAX_MAGNITUDE
+    places && shape.radius().abs() <= MAX_MAGNITUDE && (1e-9..=1e9).contains(&part.growth)
 }
