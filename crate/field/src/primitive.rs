@@ -166,7 +166,8 @@ impl Primitive {
             // at most ωᵏ.
             let size =
                 smooth::size(&term.form).max(smooth::fourth_derivative(&term.form, 0.0) / 72.0);
-            fourth = profile.largest() * size * (2.913 + waves.frequency()).powi(4);
+            let rate = 2.913 + waves.frequency();
+            fourth = profile.largest() * size * rate * rate * rate * rate;
         }
         let h4 = 384.0 * error / (term.amplitude.abs() * fourth);
         h4.sqrt().sqrt() / self.width

@@ -35,7 +35,7 @@ pub(crate) fn fourth_derivative(form: &Form<f64>, d: f64) -> f64 {
     let line = match form {
         // A circle may keep at distance d for long: all that a ball of radius d can hold of it is
         // counted there, and the rest as if on a line.
-        Form::Arc(_) => LINE.min(2.0 * d * far(d) + 2.0 * FAR / 7.0 / d.powi(7)),
+        Form::Arc(_) => LINE.min(2.0 * d * far(d) + 2.0 * FAR / 7.0 / (d * d * d * d * d * d * d)),
         _ => line,
     };
     over(form, point, line, plane, far)

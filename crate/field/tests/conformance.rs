@@ -3,7 +3,7 @@ mod common;
 
 use common::{KINDS, Kind, Random, extent, jet, primitive, sensitivity, shaping, single};
 use core::f64::consts::{PI, TAU};
-use field::{Primitive, Real, Skeleton, quadrature};
+use field::{Primitive, Profile, Real, Skeleton, Wave, quadrature};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -133,6 +133,38 @@ tests! {
                 }
             }
         }
+    }
+
+    /// The same bits in native code and in WebAssembly, optimised or not: a change of this number is a
+    /// change of every picture, and must be meant.
+    fn bits_are_the_same_on_every_platform() {
+        let mut hash = 0xCBF2_9CE4_8422_2325_u64;
+        let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x100_0000_01B3);
+        for kind in KINDS {
+            let mut random = Random::new(8);
+            for _ in 0..500 {
+                let size = random.decades(-2.0, 1.0);
+                let skeleton = random.skeleton(kind, size);
+                let profile = Profile {
+                    waves: [Wave::Sin, Wave::Cos2],
+                    scale: [22.0, 5.0],
+                    bounds: [0.5, 0.7],
+                    times: 1.15,
+                };
+                let profile = random.pick(&[None, Some(profile)]);
+                let primitive = primitive(skeleton, &random.shaping(1.0), profile);
+                let point = random.near(&skeleton, -3.0, 2.0);
+                let (value, gradient) = jet::<f64>(&primitive, point);
+                let (value8, gradient8) = jet::<f32x8>(&primitive, point);
+                let origin = random.vector(2.0);
+                let interval = primitive.ray_interval(origin, point - origin).unwrap_or_default();
+                let step = primitive.hermite_step_beyond(1e-3, size);
+                for x in [value, gradient.x, gradient.y, gradient.z, value8, gradient8.x, gradient8.y, gradient8.z, primitive.influence, interval[0], interval[1], step] {
+                    add(x.to_bits());
+                }
+            }
+        }
+        assert_eq!(hash, 0x08D4_8D2B_540A_3AA7, "{hash:#018x}");
     }
 
     /// Against a five-point difference of the value.
