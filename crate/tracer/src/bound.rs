@@ -14,26 +14,32 @@ use glam::DVec3;
 #[derive(Clone, Debug)]
 pub struct Bound {
     skeleton: Skeleton,
-    /// Where the skeleton's directions are needed: unit normal of a triangle, unit axis of a segment.
+    /// Unit normal of a triangle, unit axis of a segment, axis of an arc.
     axis: DVec3,
-    /// Length of a segment or arc, area of a triangle.
-    measure: f64,
+    /// Length of a segment.
+    length: f64,
     /// Sine and cosine of an arc's angle.
     turn: (f64, f64),
     /// sin(φ/2)/(φ/2) for an arc's largest φ, see [`Bound::nearness`].
     sag: f64,
     /// s².
     width2: f64,
-    width: f64,
-    /// |height|, times the profile's largest magnitude.
-    height: f64,
+    /// |height| times the skeleton's measure (1 for points, infinite for planes), and times the
+    /// integral of the kernel over a line or a plane: the field's size if all of the skeleton were
+    /// at one distance, and if the skeleton were infinite.
+    whole: f64,
+    endless: f64,
+    /// The same for the fourth derivative.
+    whole4: f64,
+    endless4: f64,
+    dimension: u8,
     /// Whether the term can be positive and negative.
     positive: bool,
     negative: bool,
     /// Depth of influence.
     pub influence: f64,
-    /// The profile's largest rate of change, radians per unit of u or v; 0 without one.
-    ripple: f64,
+    /// With a profile, an estimate of the fourth derivative of its wave over its size; else 0.
+    ripple4: f64,
 }
 
 /// How near a ball is to a skeleton.
@@ -45,43 +51,59 @@ pub struct Nearness {
     stretch: f64,
 }
 
-/// An arc seen from anywhere: `4π/3` over `π/2`, see [`Bound::nearness`].
+/// What is known of a primitive at some nearness.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    /// `|f|` is at most this.
+    pub magnitude: f64,
+    /// `|f⁗|` along any ray is at most this. With a profile, whose waves may have kinks and jumps
+    /// where no such bound exists, it is an estimate.
+    pub fourth: f64,
+}
+
+/// An arc seen from anywhere: all that a ball of radius ρ can hold of a circle is a length of πρ;
+/// at worst, all of it at the same distance, it amounts to this much of a line.
 const WORST_STRETCH: f64 = 8.0 / 3.0;
 
 impl Bound {
     /// The bounds of a primitive.
     #[must_use]
     pub fn new(primitive: &Primitive) -> Self {
-        let (axis, measure) = match primitive.skeleton {
-            Skeleton::Point { .. } => (DVec3::ZERO, 0.0),
+        use core::f64::consts::{FRAC_PI_2, PI, TAU};
+        let mut skeleton = primitive.skeleton;
+        let measure = skeleton.measure();
+        let dimension = skeleton.dimension();
+        let (mut axis, mut length, mut turn, mut sag) = (DVec3::ZERO, 0.0, (0.0, 1.0), 1.0);
+        match &mut skeleton {
+            Skeleton::Point { .. } => (),
             Skeleton::Segment { base, apex } => {
-                ((apex - base).normalize_or_zero(), base.distance(apex))
+                axis = (*apex - *base).normalize_or_zero();
+                length = measure;
             }
-            Skeleton::Arc {
-                u,
-                v,
-                radius,
-                angle,
-                ..
-            } => (u.cross(v), radius * angle),
+            Skeleton::Arc { u, v, angle, .. } => {
+                // As the field does it.
+                *u = u.try_normalize().unwrap_or(DVec3::X);
+                *v = (*v - *u * u.dot(*v))
+                    .try_normalize()
+                    .unwrap_or_else(|| u.any_orthonormal_vector());
+                *angle = angle.clamp(0.0, TAU);
+                axis = u.cross(*v);
+                turn = libm::sincos(*angle);
+                let half = 0.5 * angle.min(PI);
+                if half > 1e-9 {
+                    sag = libm::sin(half) / half;
+                }
+            }
             Skeleton::Triangle { corners: [a, b, c] } => {
-                let n = (b - a).cross(c - a);
-                (n.normalize_or_zero(), 0.5 * n.length())
+                axis = (*b - *a).cross(*c - *a).normalize_or_zero();
             }
-            Skeleton::Plane { normal, .. } => (normal, f64::INFINITY),
-        };
-        let (mut turn, mut sag) = ((0.0, 1.0), 1.0);
-        if let Skeleton::Arc { angle, .. } = primitive.skeleton {
-            turn = libm::sincos(angle);
-            let half = 0.5 * angle.min(core::f64::consts::PI);
-            sag = if half > 1e-9 {
-                libm::sin(half) / half
-            } else {
-                1.0
-            };
+            Skeleton::Plane { normal, .. } => {
+                *normal = normal.try_normalize().unwrap_or(DVec3::Z);
+            }
         }
         // The Cauchy kernel is the only one yet; its width parameter is s.
         let Kernel::Cauchy = primitive.kernel;
+        let s = primitive.width;
         let (low, high) = primitive.profile.map_or((1.0, 1.0), |p| {
             let [a, b] = p.bounds.map(|b| b * p.times);
             (a.min(b), a.max(b))
@@ -91,21 +113,37 @@ impl Bound {
         } else {
             (low, high)
         };
+        let height = primitive.height.abs() * low.abs().max(high.abs());
+        let s2 = s * s;
+        let (endless, endless4) = match dimension {
+            0 => (1.0, s2 * s2),
+            1 => (FRAC_PI_2 / s, s2 * s),
+            _ => (PI / s2, s2),
+        };
+        let ripple = primitive.profile.map_or(0.0, |p| {
+            let extent = if dimension == 2 {
+                measure.sqrt()
+            } else {
+                measure
+            };
+            p.scale[0].abs().max(p.scale[1].abs()).max(1.0) / extent.max(f64::MIN_POSITIVE)
+        });
         Self {
-            skeleton: primitive.skeleton,
+            skeleton,
             axis,
-            measure,
+            length,
             turn,
             sag,
-            width2: primitive.width * primitive.width,
-            width: primitive.width,
-            height: primitive.height.abs() * low.abs().max(high.abs()),
+            width2: s2,
+            whole: height * measure,
+            endless: height * endless,
+            whole4: height * measure * s2 * s2,
+            endless4: height * endless4,
+            dimension,
             positive: high > 0.0,
             negative: low < 0.0,
             influence: primitive.influence,
-            ripple: primitive
-                .profile
-                .map_or(0.0, |p| p.scale[0].abs().max(p.scale[1].abs()).max(1.0)),
+            ripple4: (ripple * ripple) * (ripple * ripple),
         }
     }
 
@@ -117,7 +155,7 @@ impl Bound {
             Skeleton::Point { center: c } => center.distance(c),
             Skeleton::Segment { base, .. } => {
                 let d = center - base;
-                let along = d.dot(self.axis).clamp(0.0, self.measure);
+                let along = d.dot(self.axis).clamp(0.0, self.length);
                 d.distance(self.axis * along)
             }
             Skeleton::Arc {
@@ -130,9 +168,6 @@ impl Bound {
                 let d = center - c;
                 let (x, y, z) = (d.dot(u), d.dot(v), d.dot(self.axis));
                 let rho = (x * x + y * y).sqrt();
-                // A point of the arc at angle φ from the foot is no nearer than if the arc were
-                // straight but shorter by the factor sin(φ/2)/(φ/2)·√(ρ/sweep).
-                let shrink = self.sag * ((rho - radius).max(0.0) / sweep).sqrt();
                 let (sin, cos) = self.turn;
                 let before = x * sin - y * cos >= 0.0;
                 let swept = if angle > core::f64::consts::PI {
@@ -141,6 +176,9 @@ impl Bound {
                     y >= 0.0 && before
                 };
                 if swept {
+                    // A point of the arc at angle φ from the foot is no nearer than if the arc
+                    // were straight but shorter by the factor sin(φ/2)/(φ/2)·√(ρ/sweep).
+                    let shrink = self.sag * ((rho - radius).max(0.0) / sweep).sqrt();
                     stretch = (1.0 / shrink).clamp(1.0, WORST_STRETCH);
                     let off = rho - sweep;
                     (off * off + z * z).sqrt()
@@ -178,48 +216,28 @@ impl Bound {
         }
     }
 
-    /// `|f|` is at most this.
+    /// The bounds at some nearness.
+    #[inline]
     #[must_use]
-    pub fn magnitude(&self, near: Nearness) -> f64 {
-        use core::f64::consts::{FRAC_PI_2, PI};
+    pub fn estimate(&self, near: Nearness) -> Estimate {
         let x = 1.0 + self.width2 * near.distance * near.distance;
-        let point = 1.0 / (x * x);
-        let line = || near.stretch * FRAC_PI_2 / (self.width * x * x.sqrt());
-        self.height
-            * match self.skeleton {
-                Skeleton::Point { .. } => point,
-                Skeleton::Segment { .. } | Skeleton::Arc { .. } => line().min(self.measure * point),
-                Skeleton::Triangle { .. } => (PI / (self.width2 * x)).min(self.measure * point),
-                Skeleton::Plane { .. } => PI / (self.width2 * x),
+        let y = 1.0 / x;
+        let y2 = y * y;
+        let (point, point4) = (y2, point4(x, y));
+        let (endless, endless4) = match self.dimension {
+            0 => (y2, point4),
+            1 => {
+                let root = y.sqrt();
+                (near.stretch * y * root, near.stretch * line4(y, root))
             }
-    }
-
-    /// `|f⁗|` along any ray is at most this.
-    #[must_use]
-    pub fn fourth_derivative(&self, near: Nearness) -> f64 {
-        let s2 = self.width2;
-        let x = 1.0 + s2 * near.distance * near.distance;
-        let point = || s2 * s2 * point4(x);
-        let bound = self.height
-            * match self.skeleton {
-                Skeleton::Point { .. } => point(),
-                Skeleton::Segment { .. } | Skeleton::Arc { .. } => {
-                    (near.stretch * s2 * self.width * line4(x)).min(self.measure * point())
-                }
-                Skeleton::Triangle { .. } => (s2 * plane4(x)).min(self.measure * point()),
-                Skeleton::Plane { .. } => s2 * plane4(x),
-            };
-        if self.ripple == 0.0 {
-            return bound;
-        }
-        // A profile multiplies the field by a wave that is not smooth everywhere, so this is an
-        // estimate: the wave's own fourth derivative on top, at its rate along the skeleton.
-        let length = match self.skeleton {
-            Skeleton::Triangle { .. } => self.measure.sqrt(),
-            _ => self.measure,
+            _ => (y, plane4(y)),
         };
-        let rate = self.ripple / length.max(f64::MIN_POSITIVE);
-        bound + self.magnitude(near) * (rate * rate) * (rate * rate)
+        let magnitude = (self.endless * endless).min(self.whole * point);
+        let fourth = (self.endless4 * endless4).min(self.whole4 * point4);
+        Estimate {
+            magnitude,
+            fourth: fourth + self.ripple4 * magnitude,
+        }
     }
 
     /// A distance from the skeleton beyond which `|f|` is at most `share`.
@@ -232,7 +250,7 @@ impl Bound {
                 distance,
                 stretch: WORST_STRETCH,
             };
-            if self.magnitude(near) <= share {
+            if self.estimate(near).magnitude <= share {
                 break;
             }
             distance *= 2.0;
@@ -253,24 +271,26 @@ impl Bound {
     }
 }
 
-/// `max |k⁗|/s⁴` at x or more.
-fn point4(x: f64) -> f64 {
+/// `max |k⁗|/s⁴` at x or more; y = 1/x.
+#[inline]
+fn point4(x: f64, y: f64) -> f64 {
     let w = x - 1.0;
-    let x2 = x * x;
-    let share = (35.0 * w * w - 42.0 * w + 3.0) / x2;
-    (24.0 * (1.005 * share).max(4.3) / (x2 * x2)).min(72.0)
+    let share = (35.0 * w * w - 42.0 * w + 3.0) * y * y;
+    (24.0 * (1.005 * share).max(4.3) * (y * y) * (y * y)).min(72.0)
 }
 
-/// Its integral over a line, in units of 1/s.
-fn line4(x: f64) -> f64 {
-    let c = 1.0 - 1.0 / x;
-    ((103.0 + 729.0 * c * c * c) / (x * x * x * x.sqrt())).min(90.6)
+/// Its integral over a line, in units of 1/s; y = 1/x, root = √y.
+#[inline]
+fn line4(y: f64, root: f64) -> f64 {
+    let c = 1.0 - y;
+    ((103.0 + 729.0 * c * c * c) * (y * y * y * root)).min(90.6)
 }
 
-/// Its integral over a plane, in units of 1/s².
-fn plane4(x: f64) -> f64 {
-    let c = 1.0 - 1.0 / x;
-    ((121.0 + 775.0 * c * c * c) / (x * x * x)).min(112.0)
+/// Its integral over a plane, in units of 1/s²; y = 1/x.
+#[inline]
+fn plane4(y: f64) -> f64 {
+    let c = 1.0 - y;
+    ((121.0 + 775.0 * c * c * c) * (y * y * y)).min(112.0)
 }
 
 #[cfg(test)]
@@ -312,7 +332,10 @@ mod tests {
                 for k in 0..50 {
                     let p2 = 1.0 + (at - 1.0) * f64::from(k) / 49.0;
                     let t = (at - p2).max(0.0).sqrt();
-                    assert!(kernel4(p2, t) <= point4(x) * (1.0 + 1e-9), "{x} {at} {p2}");
+                    assert!(
+                        kernel4(p2, t) <= point4(x, 1.0 / x) * (1.0 + 1e-9),
+                        "{x} {at} {p2}"
+                    );
                 }
             }
             // The line's and the plane's: trapezoids over a wide range.
@@ -322,11 +345,19 @@ mod tests {
             for j in 0..n {
                 let v = (f64::from(j) + 0.5) / f64::from(n) * reach;
                 let dv = reach / f64::from(n);
-                line += 2.0 * dv * point4(x + v * v);
-                plane += core::f64::consts::TAU * v * dv * point4(x + v * v);
+                line += 2.0 * dv * point4(x + v * v, 1.0 / (x + v * v));
+                plane += core::f64::consts::TAU * v * dv * point4(x + v * v, 1.0 / (x + v * v));
             }
-            assert!(line <= line4(x) * 1.001, "{x} {line} {}", line4(x));
-            assert!(plane <= plane4(x) * 1.001, "{x} {plane} {}", plane4(x));
+            assert!(
+                line <= line4(1.0 / x, (1.0 / x).sqrt()) * 1.001,
+                "{x} {line} {}",
+                line4(1.0 / x, (1.0 / x).sqrt())
+            );
+            assert!(
+                plane <= plane4(1.0 / x) * 1.001,
+                "{x} {plane} {}",
+                plane4(1.0 / x)
+            );
         }
     }
 
@@ -384,7 +415,7 @@ mod tests {
         for (primitive, center, radius) in cases(4000) {
             let bound = Bound::new(&primitive);
             let near = bound.nearness(center, radius);
-            let (magnitude, fourth) = (bound.magnitude(near), bound.fourth_derivative(near));
+            let Estimate { magnitude, fourth } = bound.estimate(near);
             for i in 0..12 {
                 // Points of the ball, one of them nearest to the skeleton.
                 let way = match i {
@@ -407,7 +438,7 @@ mod tests {
                 // the ball is taken a little larger.
                 let h = 0.03 / primitive.width;
                 let around = bound.nearness(center, radius + 2.0 * h);
-                let fourth = fourth.max(bound.fourth_derivative(around));
+                let fourth = fourth.max(bound.estimate(around).fourth);
                 let d = way.any_orthonormal_vector() * libm::cos(f64::from(i))
                     + way * libm::sin(f64::from(i));
                 let d = d.normalize();

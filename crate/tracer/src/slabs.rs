@@ -7,7 +7,7 @@
 //! primitives get few long spans and sharp near ones many short spans. The tree grows only where a
 //! ray asks for it, and is shared by all rays of the beam.
 use crate::beam::Beam;
-use crate::bound::Bound;
+use crate::bound::{Bound, Estimate};
 use core::ops::Range;
 
 /// How exactly spans follow the field.
@@ -236,7 +236,7 @@ impl<'a> Slabs<'a> {
             if self.precision.truncate && near.distance >= bound.influence {
                 continue;
             }
-            let magnitude = bound.magnitude(near);
+            let Estimate { magnitude, fourth } = bound.estimate(near);
             if bound.adds() {
                 above += magnitude;
             }
@@ -246,8 +246,7 @@ impl<'a> Slabs<'a> {
             total += magnitude;
             // A span is between the values' and slopes' extremes, so it is never further off than
             // its bound says; a NaN counts as far off.
-            self.scratch
-                .push((local, magnitude, bound.fourth_derivative(near) * h4));
+            self.scratch.push((local, magnitude, fourth * h4));
         }
         // What is left of the budget is shared out half evenly, half by size. The shares add up
         // to no more than the whole.
