@@ -1,4 +1,5 @@
-//! Profiles: functions along a primitive that multiply its field.
+//! Profiles: functions along a primitive that multiply its field (thesis, section 3.3.4). Along an arc
+//! the wave gives way to its mean towards the circle's axis, where the angle has no meaning.
 use serde::{Deserialize, Serialize};
 
 /// A wave of one parameter, with values in [0, 1].

@@ -13,12 +13,16 @@ pub(crate) enum Parameters<S> {
         gradient: [[S; 2]; 2],
         start: [S; 2],
     },
-    /// u is the angle from an arc's start, divided by the arc's, cut to [0, 1].
+    /// u is the angle from an arc's start, divided by the arc's, cut to [0, 1]. An angle means
+    /// nothing on the circle's axis, where all angles meet: with q the distance from the axis over
+    /// the circle's radius, the waves count as `g = (2q/(1+q²))²`, which is 1 and flat at the circle
+    /// and 0 on the axis, and their `mean` over the arc counts as `1 − g`.
     Angle {
         radius: S,
         side: S,
         start: S,
         rate: S,
+        mean: S,
     },
 }
 
@@ -45,6 +49,7 @@ impl Waves<f64> {
                 side: arc.side,
                 start: arc.half_angle,
                 rate: inverse(2.0 * arc.half_angle),
+                mean: mean(profile),
             },
             Form::Triangle(triangle) => {
                 // The inverse of the matrix of the sides from corner 0.
@@ -91,6 +96,18 @@ impl Waves<f64> {
     }
 }
 
+/// The mean of the waves along u, where v is 0.
+fn mean(profile: &Profile) -> f64 {
+    const STEPS: u32 = 512;
+    let along: f64 = (0..STEPS)
+        .map(|i| {
+            let u = (f64::from(i) + 0.5) / f64::from(STEPS);
+            wave(profile.waves[0], profile.scale[0] * u).0
+        })
+        .sum();
+    along / f64::from(STEPS) * wave(profile.waves[1], 0.0).0
+}
+
 /// 1/x, or 0 where x is 0: then a parameter has no extent, and stays at its start.
 fn inverse(x: f64) -> f64 {
     if x > 0.0 { 1.0 / x } else { 0.0 }
@@ -114,11 +131,13 @@ impl<S: Copy> Waves<S> {
                     side,
                     start,
                     rate,
+                    mean,
                 } => Parameters::Angle {
                     radius: f(*radius),
                     side: f(*side),
                     start: f(*start),
                     rate: f(*rate),
+                    mean: f(*mean),
                 },
             },
         }
@@ -128,15 +147,18 @@ impl<S: Copy> Waves<S> {
     #[inline(always)]
     pub fn jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
         let zero = R::splat(0.0);
-        // u and v, not yet cut, and their derivatives in the plane.
-        let (parameters, gradients) = match &self.parameters {
-            Parameters::None => ([zero; 2], [[zero; 2]; 2]),
+        let one = R::splat(1.0);
+        let two = R::splat(2.0);
+        // u and v, not yet cut, and their derivatives in the plane; and how much the waves count.
+        let (parameters, gradients, fade) = match &self.parameters {
+            Parameters::None => ([zero; 2], [[zero; 2]; 2], None),
             Parameters::Linear { gradient, start } => {
                 let gradient = gradient.map(|g| g.map(R::lift));
                 (
                     [0, 1]
                         .map(|i| gradient[i][0] * p[0] + gradient[i][1] * p[1] + R::lift(start[i])),
                     gradient,
+                    None,
                 )
             }
             Parameters::Angle {
@@ -144,44 +166,67 @@ impl<S: Copy> Waves<S> {
                 side,
                 start,
                 rate,
+                mean,
             } => {
                 // From the circle's centre, x towards the arc's middle: the jump of the angle is
                 // then in the middle of the gap.
                 let (side, rate) = (R::lift(*side), R::lift(*rate));
-                let x = side * (R::lift(*radius) + p[0]);
+                let radius = R::lift(*radius);
+                let x = side * (radius + p[0]);
                 let y = side * p[1];
                 let square = (x * x + y * y).max(R::splat(1e-30));
+                let both = square + radius * radius;
+                let share = radius * radius / both;
+                let g = R::splat(4.0) * share * (one - share);
+                let slope = R::splat(8.0) * share * (two * share - one) / both;
+                let fade = Fade {
+                    g,
+                    gradient: [slope * side * x, slope * side * y],
+                    mean: R::lift(*mean),
+                };
                 (
                     [(direction(y, x) + R::lift(*start)) * rate, zero],
                     [
                         [-(side * y * rate) / square, side * x * rate / square],
                         [zero; 2],
                     ],
+                    Some(fade),
                 )
             }
         };
         let factors = [0, 1].map(|i| {
             let scale = R::lift(self.scale[i]);
-            let one = R::splat(1.0);
             let cut = parameters[i].max(zero).min(one);
             let (value, slope) = wave(self.waves[i], scale * cut);
             let inside = R::both(zero.lt(parameters[i]), parameters[i].lt(one));
             (value, R::select(inside, scale * slope, zero))
         });
+        let mut value = factors[0].0 * factors[1].0;
+        let (by_u, by_v) = (factors[0].1 * factors[1].0, factors[0].0 * factors[1].1);
+        let mut gradient = [0, 1].map(|i| by_u * gradients[0][i] + by_v * gradients[1][i]);
+        if let Some(Fade {
+            g,
+            gradient: of_g,
+            mean,
+        }) = fade
+        {
+            let swing = value - mean;
+            gradient = [0, 1].map(|i| g * gradient[i] + swing * of_g[i]);
+            value = mean + g * swing;
+        }
         let rise = R::lift(self.rise);
-        let (by_u, by_v) = (
-            rise * factors[0].1 * factors[1].0,
-            rise * factors[0].0 * factors[1].1,
-        );
         Jet {
-            value: R::lift(self.low) + rise * factors[0].0 * factors[1].0,
-            gradient: [
-                by_u * gradients[0][0] + by_v * gradients[1][0],
-                by_u * gradients[0][1] + by_v * gradients[1][1],
-                zero,
-            ],
+            value: R::lift(self.low) + rise * value,
+            gradient: [rise * gradient[0], rise * gradient[1], zero],
         }
     }
+}
+
+/// How much the waves count, the rest being their mean.
+struct Fade<R> {
+    g: R,
+    gradient: [R; 2],
+    mean: R,
 }
 
 /// A wave and its derivative.
