@@ -184,9 +184,10 @@ fn phong(material: u32, seen: vec3f, normal: vec3f) -> vec3f {
         if slope <= 0.0 {
             continue;
         }
-        // pow(0, 0) is undefined on a GPU; an exponent of 0 means a highlight everywhere.
-        let gleam = max(dot(mirrored, towards), 0.0);
-        let highlight = select(pow(max(gleam, 1e-20), shine), 1.0, shine == 0.0);
+        // No highlight away from the mirror's side, even for an exponent of 0. (And pow of
+        // nothing is undefined on a GPU.)
+        let gleam = dot(mirrored, towards);
+        let highlight = select(0.0, pow(max(gleam, 1e-20), shine), gleam > 0.0);
         colour += light.colour.rgb * (diffuse * slope + specular * highlight);
     }
     return colour;

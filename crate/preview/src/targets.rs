@@ -5,8 +5,8 @@ use crate::pipelines::{COLOUR, DEPTH, Pipelines};
 /// How many samples a pixel gets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampling {
-    /// Four where the picture has at most a million pixels and the device can, else one: small
-    /// pictures show jagged edges, large ones cost time.
+    /// Four where the picture has at most a million pixels and a graphics processor draws it,
+    /// else one: small pictures show jagged edges, large ones cost time.
     #[default]
     Automatic,
     /// One sample: fastest, for instance while the camera moves on a slow device.
@@ -19,11 +19,12 @@ impl Sampling {
     /// Pixels up to which [`Sampling::Automatic`] takes four samples.
     const FEW_PIXELS: u64 = 1 << 20;
 
-    /// Samples along each side of a pixel.
-    fn factor(self, size: [u32; 2], largest: u32) -> u32 {
+    /// Samples along each side of a pixel. `slow` means that a driver without a graphics processor
+    /// does the work.
+    fn factor(self, size: [u32; 2], largest: u32, slow: bool) -> u32 {
         let fits = size.iter().all(|&side| side <= largest / 2);
         let wanted = match self {
-            Self::Automatic => u64::from(size[0]) * u64::from(size[1]) <= Self::FEW_PIXELS,
+            Self::Automatic => !slow && u64::from(size[0]) * u64::from(size[1]) <= Self::FEW_PIXELS,
             Self::One => false,
             Self::Four => true,
         };
@@ -55,7 +56,8 @@ impl Targets {
     ) -> Self {
         let largest = device.limits().max_texture_dimension_2d;
         let size = fit(asked, largest);
-        let factor = sampling.factor(size, largest);
+        let slow = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+        let factor = sampling.factor(size, largest, slow);
         let samples = size.map(|side| side * factor);
         let texture = |label, size: [u32; 2], format, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
@@ -131,10 +133,12 @@ mod tests {
 
     #[test]
     fn sampling_follows_size_and_device() {
-        assert_eq!(Sampling::Automatic.factor([800, 600], 2048), 2);
-        assert_eq!(Sampling::Automatic.factor([1600, 1200], 8192), 1);
-        assert_eq!(Sampling::Four.factor([1600, 1200], 8192), 2);
-        assert_eq!(Sampling::Four.factor([1600, 1200], 2048), 1);
-        assert_eq!(Sampling::One.factor([10, 10], 2048), 1);
+        assert_eq!(Sampling::Automatic.factor([800, 600], 2048, false), 2);
+        assert_eq!(Sampling::Automatic.factor([1600, 1200], 8192, false), 1);
+        assert_eq!(Sampling::Four.factor([1600, 1200], 8192, false), 2);
+        assert_eq!(Sampling::Four.factor([1600, 1200], 2048, false), 1);
+        assert_eq!(Sampling::Automatic.factor([800, 600], 2048, true), 1);
+        assert_eq!(Sampling::Four.factor([800, 600], 2048, true), 2);
+        assert_eq!(Sampling::One.factor([10, 10], 2048, false), 1);
     }
 }

@@ -166,7 +166,16 @@ fn cylinders() {
 
 #[test]
 fn arcs_of_every_angle() {
-    for angle in [0.3, 1.0, 1.57079632679, 2.5, 3.2, 4.5, 6.0, 6.3] {
+    for angle in [
+        0.3,
+        1.0,
+        core::f64::consts::FRAC_PI_2,
+        2.5,
+        3.2,
+        4.5,
+        6.0,
+        6.3,
+    ] {
         let angle = f64::min(angle, core::f64::consts::TAU);
         let shape = arc(DVec3::ZERO, turned(), 0.8, angle, 0.25);
         compare_around(&format!("arc of {angle}"), shape, DVec3::ZERO, 1.0);

@@ -7,6 +7,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// A device of one backend, and a draft on it: compiling the shaders takes longer than drawing.
 pub struct Gpu {
     pub name: String,
+    pub backend: wgpu::Backend,
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     draft: Mutex<Draft>,
@@ -35,7 +36,7 @@ pub fn gpus() -> &'static [Gpu] {
     let gpus = GPUS.get_or_init(|| {
         [wgpu::Backends::VULKAN, wgpu::Backends::GL]
             .into_iter()
-            .filter_map(open)
+            .filter_map(|backend| open(backend, wgpu::Limits::downlevel_webgl2_defaults()))
             .collect()
     });
     if gpus.is_empty() {
@@ -48,7 +49,8 @@ pub fn gpus() -> &'static [Gpu] {
     gpus
 }
 
-fn open(backends: wgpu::Backends) -> Option<Gpu> {
+/// A device of a backend with the given limits, if there is one.
+pub fn open(backends: wgpu::Backends, required_limits: wgpu::Limits) -> Option<Gpu> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
     let instance = wgpu::Instance::new(descriptor);
@@ -56,7 +58,7 @@ fn open(backends: wgpu::Backends) -> Option<Gpu> {
         pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
             .ok()?;
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-        required_limits: wgpu::Limits::downlevel_webgl2_defaults(),
+        required_limits,
         ..wgpu::DeviceDescriptor::default()
     }))
     .ok()?;
@@ -65,6 +67,7 @@ fn open(backends: wgpu::Backends) -> Option<Gpu> {
     Some(Gpu {
         draft,
         name: format!("{} ({})", info.name, info.backend),
+        backend: info.backend,
         device,
         queue,
     })
