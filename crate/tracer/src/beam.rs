@@ -47,6 +47,25 @@ impl Beam {
         })
     }
 
+    /// How far rays can be from the axis at a parameter.
+    #[must_use]
+    pub fn width(&self, t: f64) -> f64 {
+        self.radius + self.spread * t
+    }
+
+    /// The same beam with parameters counted from `base` on.
+    #[must_use]
+    pub fn from(&self, base: f64) -> Self {
+        Self {
+            axis: Ray {
+                origin: self.axis.at(base),
+                direction: self.axis.direction,
+            },
+            radius: self.width(base),
+            spread: self.spread,
+        }
+    }
+
     /// A ball (centre, radius) that holds the piece of every ray between two parameters.
     #[must_use]
     pub fn ball(&self, from: f64, to: f64) -> (DVec3, f64) {
@@ -54,7 +73,7 @@ impl Beam {
         let half = 0.5 * (to - from);
         (
             self.axis.at(middle),
-            (half + self.radius + self.spread * to) * (1.0 + ROUNDING),
+            (half + self.width(to)) * (1.0 + ROUNDING),
         )
     }
 

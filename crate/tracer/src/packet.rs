@@ -32,10 +32,12 @@ pub struct Workspace {
 }
 
 impl Picture {
-    /// Traces the rays of one packet, which belong to the beam of `slabs`.
+    /// Traces the rays of one packet, which belong to the beam of `slabs`; `number` is the packet's
+    /// among the beam's divisions.
     pub(crate) fn packet(
         &self,
         rays: &[Ray; PACKET],
+        number: usize,
         slabs: &mut Option<(Slabs<'_>, f64)>,
         work: &mut Workspace,
         stats: &mut Stats,
@@ -43,7 +45,7 @@ impl Picture {
         work.scratch.evaluations = 0;
         let mut hits = rays.map(|ray| self.hard_hit(&ray, work));
         if let Some((slabs, base)) = slabs {
-            self.soft_hits(rays, slabs, *base, work, &mut hits);
+            self.soft_hits(rays, number, slabs, *base, work, &mut hits);
         }
         let mut colours = [self.background; PACKET];
         let mut keys = [0u32; PACKET];
@@ -53,7 +55,7 @@ impl Picture {
                 keys[i] = hit.thing << 8;
             }
         }
-        for (number, light) in self.lights.iter().enumerate() {
+        for (which, light) in self.lights.iter().enumerate() {
             let mut lit = 0u32;
             let mut way = [(DVec3::Z, 0.0); PACKET];
             for i in 0..PACKET {
@@ -76,7 +78,7 @@ impl Picture {
                         way[i].0.as_vec3(),
                         rays[i].direction.as_vec3(),
                     );
-                    keys[i] ^= 1 << (number % 8);
+                    keys[i] ^= 1 << (which % 8);
                 }
             }
         }
@@ -108,6 +110,7 @@ impl Picture {
     fn soft_hits(
         &self,
         rays: &[Ray; PACKET],
+        number: usize,
         slabs: &mut Slabs<'_>,
         base: f64,
         work: &mut Workspace,
@@ -122,7 +125,7 @@ impl Picture {
         let scratch = &mut work.scratch;
         let found = self
             .soft
-            .walk(slabs, &based, &limits, ALL, Quest::First, scratch);
+            .walk(slabs, number, &based, &limits, ALL, Quest::First, scratch);
         if found.is_empty() {
             return;
         }
@@ -192,7 +195,7 @@ impl Picture {
             return dark;
         };
         let furthest = limits.iter().copied().fold(0.0, f64::max);
-        let Some((mut slabs, base)) = self.soft.slabs(beam, furthest) else {
+        let Some((mut slabs, base)) = self.soft.slabs(beam, Vec::new, furthest) else {
             return dark;
         };
         // Lanes not in use repeat the first one.
@@ -207,6 +210,7 @@ impl Picture {
         let followed = (0..PACKET).fold(0, |m, i| m | u32::from(rays[i].is_some()) << i);
         let found = self.soft.walk(
             &mut slabs,
+            0,
             &based,
             &limits,
             followed,

@@ -181,38 +181,41 @@ impl Picture {
                 if stop() {
                     return None;
                 }
-                let mut slabs = self.slabs(Area {
+                let rectangle = Area {
                     left: left * scale,
                     top: top * scale,
                     right: (left + block[0]) * scale,
                     bottom: (top + block[1]) * scale,
-                });
-                for y in (top..top + block[1]).step_by(PACKET_SIZE[1] as usize) {
-                    for x in (left..left + block[0]).step_by(PACKET_SIZE[0] as usize) {
-                        let cell = |i: usize| {
-                            let i = i as u32;
-                            (x + i % PACKET_SIZE[0], y + i / PACKET_SIZE[0])
-                        };
-                        let wanted = (0..PACKET)
-                            .filter(|&i| area.holds(cell(i).0, cell(i).1))
-                            .count();
-                        if wanted == 0 {
-                            continue;
-                        }
-                        let rays = core::array::from_fn(|i| {
-                            let (x, y) = cell(i);
-                            let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
-                            self.ray(middle(x), middle(y))
-                        });
-                        stats.primary_rays += wanted as u64;
-                        for (i, sample) in self
-                            .packet(&rays, &mut slabs, work, stats)
-                            .into_iter()
-                            .enumerate()
-                        {
-                            let (x, y) = cell(i);
-                            samples.set(x, y, sample);
-                        }
+                };
+                let packets = [block[0] / PACKET_SIZE[0], block[1] / PACKET_SIZE[1]];
+                let mut slabs = self.slabs(rectangle, packets);
+                // Column by column, as beams are divided.
+                let corners = (0..packets[0]).flat_map(|i| (0..packets[1]).map(move |j| (i, j)));
+                for (number, (i, j)) in corners.enumerate() {
+                    let (x, y) = (left + i * PACKET_SIZE[0], top + j * PACKET_SIZE[1]);
+                    let cell = |i: usize| {
+                        let i = i as u32;
+                        (x + i % PACKET_SIZE[0], y + i / PACKET_SIZE[0])
+                    };
+                    let wanted = (0..PACKET)
+                        .filter(|&i| area.holds(cell(i).0, cell(i).1))
+                        .count();
+                    if wanted == 0 {
+                        continue;
+                    }
+                    let rays = core::array::from_fn(|i| {
+                        let (x, y) = cell(i);
+                        let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
+                        self.ray(middle(x), middle(y))
+                    });
+                    stats.primary_rays += wanted as u64;
+                    for (i, sample) in self
+                        .packet(&rays, number, &mut slabs, work, stats)
+                        .into_iter()
+                        .enumerate()
+                    {
+                        let (x, y) = cell(i);
+                        samples.set(x, y, sample);
                     }
                 }
             }
@@ -239,12 +242,13 @@ impl Picture {
             if stop() {
                 return None;
             }
-            let mut slabs = self.slabs(Area {
+            let pixel = Area {
                 left: x,
                 top: y,
                 right: x + 1,
                 bottom: y + 1,
-            });
+            };
+            let mut slabs = self.slabs(pixel, [1, 1]);
             let mut sum = Vec3::ZERO;
             for first in (0..n * n).step_by(PACKET) {
                 let count = (n * n - first).min(PACKET as u32);
@@ -254,7 +258,7 @@ impl Picture {
                     self.ray(at(x, i % n), at(y, i / n))
                 });
                 stats.primary_rays += u64::from(count);
-                let found = self.packet(&rays, &mut slabs, work, stats);
+                let found = self.packet(&rays, 0, &mut slabs, work, stats);
                 sum += found[..count as usize]
                     .iter()
                     .map(|s| s.colour)
@@ -310,23 +314,41 @@ impl Picture {
         }
     }
 
-    /// The slabs of the beam through a rectangle of pixels.
-    fn slabs(&self, area: Area) -> Option<(Slabs<'_>, f64)> {
+    /// The slabs of the beam through a rectangle of pixels, divided into columns and rows (powers of
+    /// two) of packets.
+    fn slabs(&self, area: Area, packets: [u32; 2]) -> Option<(Slabs<'_>, f64)> {
         if self.soft.is_empty() {
             return None;
         }
+        let divide = || {
+            let mut beams = Vec::new();
+            let mut level = vec![area];
+            for across in core::iter::repeat_n(true, packets[0].ilog2() as usize)
+                .chain(core::iter::repeat_n(false, packets[1].ilog2() as usize))
+            {
+                level = level.iter().flat_map(|a| a.halves(across)).collect();
+                beams.extend(level.iter().map(|&a| self.beam(a)));
+            }
+            beams
+        };
+        self.soft.slabs(self.beam(area), divide, f64::INFINITY)
+    }
+
+    /// The beam of all rays through a rectangle of pixels.
+    fn beam(&self, area: Area) -> Beam {
         let [l, t, r, b] = [area.left, area.top, area.right, area.bottom].map(f64::from);
         let axis = self.ray(0.5 * (l + r), 0.5 * (t + b));
+        // Directions of equal distance from the axis' lie on ellipses or so in the picture: the
+        // furthest of a rectangle is at a corner.
         let spread = [(l, t), (r, t), (l, b), (r, b)]
             .map(|(x, y)| self.ray(x, y).direction.distance(axis.direction))
             .into_iter()
             .fold(0.0, f64::max);
-        let beam = Beam {
+        Beam {
             axis,
             radius: 0.0,
             spread: spread * (1.0 + 1e-9),
-        };
-        self.soft.slabs(beam, f64::INFINITY)
+        }
     }
 
     fn rgba(&self, area: Area, colour: impl Fn(u32, u32) -> Vec3) -> Vec<u8> {
@@ -351,6 +373,19 @@ struct Area {
 impl Area {
     fn holds(&self, x: u32, y: u32) -> bool {
         (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
+    }
+
+    /// The left and the right half, or the upper and the lower.
+    fn halves(self, across: bool) -> [Self; 2] {
+        let (x, y) = (
+            self.left.midpoint(self.right),
+            self.top.midpoint(self.bottom),
+        );
+        if across {
+            [Self { right: x, ..self }, Self { left: x, ..self }]
+        } else {
+            [Self { bottom: y, ..self }, Self { top: y, ..self }]
+        }
     }
 
     /// Row by row.

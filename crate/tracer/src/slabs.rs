@@ -6,6 +6,10 @@
 //! A primitive beyond its depth of influence from the slab is dropped there. So broad or distant
 //! primitives get few long spans and sharp near ones many short spans. The tree grows only where a
 //! ray asks for it, and is shared by all rays of the beam.
+//!
+//! Where a slab has become shorter than its beam is wide, halving it further would not bring the
+//! rays' surroundings closer together: the beam is then divided into narrower ones instead, and each
+//! packet of rays goes on in its own.
 use crate::beam::Beam;
 use crate::bound::{Bound, Estimate};
 use core::ops::Range;
@@ -40,7 +44,7 @@ impl Precision {
 /// The primitives that a beam can meet, and its slabs so far.
 pub struct Slabs<'a> {
     bounds: &'a [Bound],
-    beam: Beam,
+    beams: Beams,
     precision: Precision,
     /// Primitive of each local number.
     list: Vec<u32>,
@@ -48,6 +52,49 @@ pub struct Slabs<'a> {
     /// Local numbers; the slabs' lists are ranges of it.
     ids: Vec<u32>,
     scratch: Vec<(u32, f64, f64)>,
+}
+
+/// A beam and its divisions: a binary tree, the halves of beam i at 2i+1 and 2i+2, whose last
+/// level has one beam for each packet of rays.
+#[derive(Clone, Debug)]
+pub struct Beams(Vec<Beam>);
+
+impl Beams {
+    /// A beam that is not divided.
+    #[must_use]
+    pub fn one(beam: Beam) -> Self {
+        Self(vec![beam])
+    }
+
+    /// A beam divided. The number of beams is one less than a power of two.
+    #[must_use]
+    pub fn divided(beams: Vec<Beam>) -> Self {
+        debug_assert!((beams.len() + 1).is_power_of_two());
+        Self(beams)
+    }
+
+    /// The half of a beam, if it has halves, in which a packet is.
+    fn half(&self, beam: usize, packet: usize) -> Option<usize> {
+        let left = 2 * beam + 1;
+        if left >= self.0.len() {
+            return None;
+        }
+        // The packet's own beam is in the last level; its ancestors are found by halving.
+        let mut at = (self.0.len() / 2) + packet;
+        while at > left + 1 {
+            at = (at - 1) / 2;
+        }
+        Some(at)
+    }
+}
+
+/// How a slab goes on.
+#[derive(Clone, Copy, Debug)]
+pub enum Parts {
+    /// In its two halves, front to back.
+    Halves(u32, u32),
+    /// As the same slab of a narrower beam.
+    Narrower(u32),
 }
 
 /// One slab of a beam.
@@ -74,8 +121,9 @@ pub struct Slab {
     /// What the errors may add up to.
     budget: f64,
     parent: u32,
-    /// The left half; the right one is next to it. 0: not yet made.
-    children: u32,
+    beam: usize,
+    /// Its halves, or the same slab of both halves of the beam. 0: not yet made.
+    children: [u32; 2],
     /// The same slab again with finer spans. 0: not yet made.
     finer: u32,
     /// How many times halved.
@@ -84,22 +132,25 @@ pub struct Slab {
 
 const NONE: u32 = u32::MAX;
 
+/// A slab is given to narrower beams when its beam is wider than this times its length.
+const NARROW: f64 = 0.5;
+
 /// Slabs and list entries above which a tree is thrown away between two packets.
 const LARGE: (usize, usize) = (1 << 14, 1 << 20);
 
 impl<'a> Slabs<'a> {
-    /// The slabs of a beam between two parameters. `list` holds the primitives it can meet.
+    /// The slabs of beams between two parameters. `list` holds the primitives they can meet.
     #[must_use]
     pub fn new(
         bounds: &'a [Bound],
         list: Vec<u32>,
-        beam: Beam,
+        beams: Beams,
         [from, to]: [f64; 2],
         precision: Precision,
     ) -> Self {
         let mut slabs = Self {
             bounds,
-            beam,
+            beams,
             precision,
             ids: (0..list.len() as u32).collect(),
             list,
@@ -107,7 +158,7 @@ impl<'a> Slabs<'a> {
             scratch: Vec::new(),
         };
         let all = 0..slabs.list.len() as u32;
-        slabs.add(all, from, to, NONE, precision.first, 0.0, 0);
+        slabs.add(all, from, to, 0, NONE, precision.first, 0.0, 0);
         slabs
     }
 
@@ -147,26 +198,43 @@ impl<'a> Slabs<'a> {
         if self.nodes.len() > LARGE.0 || self.ids.len() > LARGE.1 {
             self.nodes.truncate(1);
             let root = &mut self.nodes[0];
-            root.children = 0;
+            root.children = [0; 2];
             root.finer = 0;
             self.ids.truncate(root.pending.end as usize);
         }
     }
 
-    /// The two halves of a slab.
-    pub fn halves(&mut self, index: u32) -> [u32; 2] {
+    /// How a slab goes on for a packet.
+    pub fn parts(&mut self, index: u32, packet: usize) -> Parts {
         let s = &self.nodes[index as usize];
-        if s.children == 0 {
-            let (from, to, budget, error, depth) = (s.from, s.to, s.budget, s.error, s.depth + 1);
-            let pending = s.pending.clone();
-            let middle = 0.5 * (from + to);
-            let left = self.nodes.len() as u32;
-            self.add(pending.clone(), from, middle, index, budget, error, depth);
-            self.add(pending, middle, to, index, budget, error, depth);
-            self.nodes[index as usize].children = left;
+        let (from, to) = (s.from, s.to);
+        if let Some(beam) = self.beams.half(s.beam, packet)
+            && self.beams.0[s.beam].width(to) > NARROW * (to - from)
+        {
+            let side = (beam - 1) % 2;
+            if s.children[side] == 0 {
+                let child = self.inner(index, from, to, beam, s.depth);
+                self.nodes[index as usize].children[side] = child;
+            }
+            return Parts::Narrower(self.nodes[index as usize].children[side]);
         }
-        let left = self.nodes[index as usize].children;
-        [left, left + 1]
+        if s.children == [0; 2] {
+            let (beam, depth) = (s.beam, s.depth + 1);
+            let middle = 0.5 * (from + to);
+            let left = self.inner(index, from, middle, beam, depth);
+            let right = self.inner(index, middle, to, beam, depth);
+            self.nodes[index as usize].children = [left, right];
+        }
+        let [left, right] = self.nodes[index as usize].children;
+        Parts::Halves(left, right)
+    }
+
+    fn inner(&mut self, parent: u32, from: f64, to: f64, beam: usize, depth: u32) -> u32 {
+        let s = &self.nodes[parent as usize];
+        let (pending, budget, error) = (s.pending.clone(), s.budget, s.error);
+        let index = self.nodes.len() as u32;
+        self.add(pending, from, to, beam, parent, budget, error, depth);
+        index
     }
 
     /// Whether a slab's spans are as fine as they get.
@@ -193,10 +261,10 @@ impl<'a> Slabs<'a> {
             }
             let all = start..self.ids.len() as u32;
             let s = &self.nodes[index as usize];
-            let (from, to, depth) = (s.from, s.to, s.depth + 1);
+            let (from, to, beam, depth) = (s.from, s.to, s.beam, s.depth + 1);
             let budget = (s.error.min(s.budget) / 16.0).max(self.precision.last);
             let finer = self.nodes.len() as u32;
-            self.add(all, from, to, NONE, budget, 0.0, depth);
+            self.add(all, from, to, beam, NONE, budget, 0.0, depth);
             self.nodes[index as usize].finer = finer;
         }
         self.nodes[index as usize].finer
@@ -220,12 +288,13 @@ impl<'a> Slabs<'a> {
         candidates: Range<u32>,
         from: f64,
         to: f64,
+        beam: usize,
         parent: u32,
         budget: f64,
         error: f64,
         depth: u32,
     ) {
-        let (center, radius) = self.beam.ball(from, to);
+        let (center, radius) = self.beams.0[beam].ball(from, to);
         let h = to - from;
         let h4 = (h * h) * (h * h) / 384.0;
         let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);
@@ -289,7 +358,8 @@ impl<'a> Slabs<'a> {
             error: sum,
             budget,
             parent,
-            children: 0,
+            beam,
+            children: [0; 2],
             finer: 0,
             depth,
         });

@@ -6,7 +6,7 @@ use crate::hierarchy::Hierarchy;
 use crate::lanes::Lanes;
 use crate::ray::Ray;
 use crate::roots::bracketed;
-use crate::slabs::{Precision, Slabs};
+use crate::slabs::{Beams, Precision, Slabs};
 use crate::walk::{Found, Memory, Quest, Walk};
 use field::{Primitive, Real, THRESHOLD};
 use glam::DVec3;
@@ -88,8 +88,14 @@ impl Soft {
 
     /// The slabs of a beam, up to a parameter; with them the parameter at which the first starts
     /// to count. `None` if no primitive reaches the beam, or all together never reach T.
-    #[must_use]
-    pub fn slabs(&self, beam: Beam, limit: f64) -> Option<(Slabs<'_>, f64)> {
+    ///
+    /// `divide` gives the beam's divisions, for which see [`Beams`].
+    pub fn slabs(
+        &self,
+        beam: Beam,
+        divide: impl FnOnce() -> Vec<Beam>,
+        limit: f64,
+    ) -> Option<(Slabs<'_>, f64)> {
         if !(beam.axis.origin.is_finite() && beam.axis.direction.is_finite()) {
             return None;
         }
@@ -113,29 +119,20 @@ impl Soft {
         list.sort_unstable();
         // Parameters are counted from where the first primitive starts to count, so that single
         // precision does not lose digits to a distant eye.
-        let based = Beam {
-            axis: Ray {
-                origin: beam.axis.at(from),
-                direction: beam.axis.direction,
-            },
-            radius: beam.radius + beam.spread * from,
-            spread: beam.spread,
-        };
-        let slabs = Slabs::new(
-            &self.bounds,
-            list,
-            based,
-            [0.0, to - from],
-            Precision::PICTURE,
-        );
+        let beams = core::iter::once(beam).chain(divide());
+        let beams = Beams::divided(beams.map(|b| b.from(from)).collect());
+        let range = [0.0, to - from];
+        let slabs = Slabs::new(&self.bounds, list, beams, range, Precision::PICTURE);
         (slabs.slab(slabs.root()).above >= THRESHOLD).then_some((slabs, from))
     }
 
-    /// Walks a packet (at most [`PACKET`] rays) through the slabs of its beam. Rays and limits are
+    /// Walks a packet (at most [`PACKET`] rays) through the slabs of its beam; `packet` is its
+    /// number among the beam's divisions. Rays and limits are
     /// counted from the slabs' start.
     pub fn walk(
         &self,
         slabs: &mut Slabs<'_>,
+        packet: usize,
         rays: &[Ray],
         limits: &[f64],
         alive: u32,
@@ -146,6 +143,7 @@ impl Soft {
         let (found, evaluations) = Walk::<f32x8>::new(
             &self.primitives,
             slabs,
+            packet,
             rays,
             limits,
             alive,
@@ -290,13 +288,14 @@ impl Soft {
         let mut slabs = Slabs::new(
             &self.bounds,
             (0..count as u32).collect(),
-            Beam::of_ray(based),
+            Beams::one(Beam::of_ray(based)),
             [0.0, to - from],
             Precision::EXACT,
         );
         let (found, _) = Walk::<f64>::new(
             &self.primitives,
             &mut slabs,
+            0,
             &[based],
             &[to - from],
             1,

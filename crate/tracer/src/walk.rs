@@ -8,7 +8,7 @@
 //! hit is ever interpolated.
 use crate::lanes::Lanes;
 use crate::ray::Ray;
-use crate::slabs::Slabs;
+use crate::slabs::{Parts, Slabs};
 use crate::spans::{Node, Span};
 use field::{Primitive, THRESHOLD};
 
@@ -38,6 +38,7 @@ pub struct Found {
 pub struct Walk<'w, 's, L> {
     primitives: &'w [Primitive],
     slabs: &'w mut Slabs<'s>,
+    packet: usize,
     quest: Quest,
     origin: [L; 3],
     direction: [L; 3],
@@ -75,12 +76,14 @@ const MOST_WORK: usize = 1 << 17;
 const MOST_VISITS: usize = 64;
 
 impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
-    /// Rays of the slabs' beam, one a lane, each up to its limit. Lanes beyond `rays.len()` repeat
+    /// Rays of the slabs' beam, one a lane, each up to its limit; `packet` is their number among the
+    /// beam's divisions. Lanes beyond `rays.len()` repeat
     /// the last ray and are not followed. `memory` is scratch space.
     #[must_use]
     pub fn new(
         primitives: &'w [Primitive],
         slabs: &'w mut Slabs<'s>,
+        packet: usize,
         rays: &[Ray],
         limits: &[f64],
         alive: u32,
@@ -100,6 +103,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         Self {
             primitives,
             slabs,
+            packet,
             quest,
             origin: core::array::from_fn(|k| L::from_lanes(|i| ray(i).origin[k])),
             direction: core::array::from_fn(|k| L::from_lanes(|i| ray(i).direction[k])),
@@ -157,11 +161,15 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             }
             return;
         }
-        let [near, far] = span.halves();
-        let [left, right] = self.slabs.halves(index);
-        self.visit(left, near);
-        if self.alive != 0 {
-            self.visit(right, far);
+        match self.slabs.parts(index, self.packet) {
+            Parts::Halves(left, right) => {
+                let [near, far] = span.halves();
+                self.visit(left, near);
+                if self.alive != 0 {
+                    self.visit(right, far);
+                }
+            }
+            Parts::Narrower(same) => self.visit(same, span),
         }
     }
 
