@@ -47,6 +47,7 @@ impl Picture {
         if let Some((slabs, base)) = slabs {
             self.soft_hits(rays, number, slabs, *base, work, &mut hits);
         }
+        let across = rays[0].direction.distance(rays[PACKET - 1].direction);
         let mut colours = [self.background; PACKET];
         let mut keys = [0u32; PACKET];
         for i in 0..PACKET {
@@ -68,7 +69,7 @@ impl Picture {
             }
             if light.shadow && lit != 0 {
                 stats.shadow_rays += u64::from(lit.count_ones());
-                lit &= !self.shadowed(&hits, &way, lit, work);
+                lit &= !self.shadowed(&hits, &way, lit, across, work);
             }
             for i in 0..PACKET {
                 if let (Some(hit), true) = (&hits[i], lit >> i & 1 != 0) {
@@ -161,12 +162,14 @@ impl Picture {
         }
     }
 
-    /// Which of the lit hits have something between them and the light.
+    /// Which of the lit hits have something between them and the light. `across` is the packet's
+    /// width per unit of distance.
     fn shadowed(
         &self,
         hits: &[Option<Hit>; PACKET],
         way: &[(DVec3, f64); PACKET],
         lit: u32,
+        across: f64,
         work: &mut Workspace,
     ) -> u32 {
         let mut rays = [None; PACKET];
@@ -190,13 +193,41 @@ impl Picture {
                 }
             }
         }
+        // Hits on different parts of the surface would make a beam that is wide from its start:
+        // each patch of neighbouring hits gets its own.
+        let mut left = rays;
+        while let Some(leader) = left.iter().position(Option::is_some) {
+            let (Some(first), Some(hit)) = (left[leader], &hits[leader]) else {
+                break;
+            };
+            let patch = PATCH * across * hit.t;
+            let mut group = [None; PACKET];
+            for (member, ray) in group.iter_mut().zip(&mut left) {
+                if ray.is_some_and(|r| r.origin.distance(first.origin) <= patch) {
+                    *member = ray.take();
+                }
+            }
+            // The leader is in its own group even where its position is not a number.
+            group[leader] = group[leader].or(left[leader].take());
+            dark |= self.occluded(&group, &limits, work);
+        }
+        dark
+    }
+
+    /// Which of some rays (those that are there) enter the soft surface before their limits.
+    fn occluded(
+        &self,
+        rays: &[Option<Ray>; PACKET],
+        limits: &[f64; PACKET],
+        work: &mut Workspace,
+    ) -> u32 {
         let alive: Vec<Ray> = rays.iter().flatten().copied().collect();
         let Some(beam) = Beam::around(&alive) else {
-            return dark;
+            return 0;
         };
         let furthest = limits.iter().copied().fold(0.0, f64::max);
         let Some((mut slabs, base)) = self.soft.slabs(beam, Vec::new, furthest) else {
-            return dark;
+            return 0;
         };
         // Lanes not in use repeat the first one.
         let based = rays.map(|ray| {
@@ -217,9 +248,12 @@ impl Picture {
             Quest::Entry,
             &mut work.scratch,
         );
-        found.iter().fold(dark, |m, hit| m | 1 << hit.lane)
+        found.iter().fold(0, |m, hit| m | 1 << hit.lane)
     }
 }
+
+/// Hits further apart than this times the packet's width there are on different patches.
+const PATCH: f64 = 3.0;
 
 /// All lanes of a packet.
 const ALL: u32 = (1 << PACKET) - 1;
