@@ -96,6 +96,8 @@ fn bind(wasm: &Path, name: &str, folder: &Path) -> Result<()> {
     Bindgen::new()
         .input_path(wasm)
         .web(true)?
+        // The script finds the wasm beside itself.
+        .omit_default_module_path(false)
         .typescript(false)
         .out_name(name)
         .generate(folder)
