@@ -4,6 +4,7 @@
 //! tile of it. A tile's pixels depend on nothing but the scene, so tiles may be traced in any
 //! order, by any number of threads or workers, on any platform, with equal results.
 
+mod area;
 mod beam;
 mod bound;
 pub mod hard;
@@ -12,6 +13,7 @@ mod lanes;
 mod packet;
 pub mod picture;
 mod ray;
+mod refine;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
 mod roots;

@@ -7,7 +7,7 @@ use crate::sample::Sample;
 use crate::shade::{Finish, towards};
 use crate::slabs::{Precision, Slabs};
 use crate::soft::{PACKET, Scratch};
-use crate::walk::Quest;
+use crate::walk::{Bundle, Quest};
 use glam::{DVec3, Vec3};
 
 /// Where a ray hits, and what it hits.
@@ -124,9 +124,13 @@ impl Picture {
         let limits: [f64; PACKET] =
             core::array::from_fn(|i| hits[i].map_or(f64::INFINITY, |h| h.t - base));
         let scratch = &mut work.scratch;
-        let found = self
-            .soft
-            .walk(slabs, number, &based, &limits, ALL, Quest::First, scratch);
+        let bundle = Bundle {
+            rays: &based,
+            limits: &limits,
+            alive: ALL,
+            number,
+        };
+        let found = self.soft.walk(slabs, bundle, Quest::First, scratch);
         if found.is_empty() {
             return;
         }
@@ -239,15 +243,15 @@ impl Picture {
         });
         let limits = limits.map(|l| l - base);
         let followed = (0..PACKET).fold(0, |m, i| m | u32::from(rays[i].is_some()) << i);
-        let found = self.soft.walk(
-            &mut slabs,
-            0,
-            &based,
-            &limits,
-            followed,
-            Quest::Entry,
-            &mut work.scratch,
-        );
+        let bundle = Bundle {
+            rays: &based,
+            limits: &limits,
+            alive: followed,
+            number: 0,
+        };
+        let found = self
+            .soft
+            .walk(&mut slabs, bundle, Quest::Entry, &mut work.scratch);
         found.iter().fold(0, |m, hit| m | 1 << hit.lane)
     }
 }

@@ -1,9 +1,9 @@
 //! A scene made ready for tracing.
+use crate::area::{Area, Samples};
 use crate::beam::Beam;
 use crate::hard::Crossing;
 use crate::packet::Workspace;
 use crate::ray::Ray;
-use crate::sample::{Sample, differ};
 use crate::shade::{Finish, bytes};
 use crate::slabs::Slabs;
 use crate::soft::{PACKET, Soft};
@@ -38,25 +38,27 @@ pub struct Hit {
 
 /// A scene made ready for tracing at one size.
 pub struct Picture {
-    size: [u32; 2],
+    pub(crate) size: [u32; 2],
     unit: Unit,
-    projection: Projection,
+    pub(crate) projection: Projection,
     pub(crate) soft: Soft,
     pub(crate) solids: Solids,
     pub(crate) finishes: Vec<Finish>,
     pub(crate) lights: Vec<Light>,
     pub(crate) background: Vec3,
-    samples: u32,
-    contrast: Vec3,
+    pub(crate) samples: u32,
+    pub(crate) contrast: Vec3,
     gamma: f32,
 }
 
 /// Blocks of pixels that share a beam. Blocks and packets are laid out from the picture's corner,
 /// whatever the tiles, and a packet is always traced whole: so a pixel's value does not depend on
 /// how the picture is cut into tiles.
-const BLOCK: u32 = 8;
+pub(crate) const BLOCK: u32 = 8;
 /// Pixels of a packet.
-const PACKET_SIZE: [u32; 2] = [4, 2];
+pub(crate) const PACKET_SIZE: [u32; 2] = [4, 2];
+/// Columns and rows of packets in a block.
+pub(crate) const PACKETS: [u32; 2] = [BLOCK / PACKET_SIZE[0], BLOCK / PACKET_SIZE[1]];
 
 impl Picture {
     /// Prepares a scene. `size` is the picture's width and height in pixels, each > 0.
@@ -175,137 +177,44 @@ impl Picture {
     ) -> Option<Samples> {
         let mut samples = Samples::new(area);
         // A beam's cells; coarse cells are blocks already, so fewer of them share a beam.
-        let block = if scale == 1 { [BLOCK; 2] } else { PACKET_SIZE };
-        for top in (area.top / block[1] * block[1]..area.bottom).step_by(block[1] as usize) {
-            for left in (area.left / block[0] * block[0]..area.right).step_by(block[0] as usize) {
-                if stop() {
-                    return None;
-                }
-                let rectangle = Area {
-                    left: left * scale,
-                    top: top * scale,
-                    right: (left + block[0]) * scale,
-                    bottom: (top + block[1]) * scale,
+        let packets = if scale == 1 { PACKETS } else { [1, 1] };
+        let size = [packets[0] * PACKET_SIZE[0], packets[1] * PACKET_SIZE[1]];
+        for block in area.blocks(size) {
+            if stop() {
+                return None;
+            }
+            let mut slabs = self.slabs(block.times(scale), packets);
+            // Column by column, as beams are divided.
+            let corners = (0..packets[0]).flat_map(|i| (0..packets[1]).map(move |j| (i, j)));
+            for (number, (i, j)) in corners.enumerate() {
+                let cell = |lane: usize| {
+                    let lane = lane as u32;
+                    (
+                        block.left + i * PACKET_SIZE[0] + lane % PACKET_SIZE[0],
+                        block.top + j * PACKET_SIZE[1] + lane / PACKET_SIZE[0],
+                    )
                 };
-                let packets = [block[0] / PACKET_SIZE[0], block[1] / PACKET_SIZE[1]];
-                let mut slabs = self.slabs(rectangle, packets);
-                // Column by column, as beams are divided.
-                let corners = (0..packets[0]).flat_map(|i| (0..packets[1]).map(move |j| (i, j)));
-                for (number, (i, j)) in corners.enumerate() {
-                    let (x, y) = (left + i * PACKET_SIZE[0], top + j * PACKET_SIZE[1]);
-                    let cell = |i: usize| {
-                        let i = i as u32;
-                        (x + i % PACKET_SIZE[0], y + i / PACKET_SIZE[0])
-                    };
-                    let wanted = (0..PACKET)
-                        .filter(|&i| area.holds(cell(i).0, cell(i).1))
-                        .count();
-                    if wanted == 0 {
-                        continue;
-                    }
-                    let rays = core::array::from_fn(|i| {
-                        let (x, y) = cell(i);
-                        let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
-                        self.ray(middle(x), middle(y))
-                    });
-                    stats.primary_rays += wanted as u64;
-                    for (i, sample) in self
-                        .packet(&rays, number, &mut slabs, work, stats)
-                        .into_iter()
-                        .enumerate()
-                    {
-                        let (x, y) = cell(i);
-                        samples.set(x, y, sample);
-                    }
+                let cells: [(u32, u32); PACKET] = core::array::from_fn(cell);
+                let wanted = cells.iter().filter(|&&(x, y)| area.holds(x, y)).count();
+                if wanted == 0 {
+                    continue;
+                }
+                let rays = cells.map(|(x, y)| {
+                    let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
+                    self.ray(middle(x), middle(y))
+                });
+                stats.primary_rays += wanted as u64;
+                let found = self.packet(&rays, number, &mut slabs, work, stats);
+                for ((x, y), sample) in cells.into_iter().zip(found) {
+                    samples.set(x, y, sample);
                 }
             }
         }
         Some(samples)
     }
 
-    /// Replaces the samples of pixels that differ from a neighbour by the mean of n×n.
-    fn refine(
-        &self,
-        area: Area,
-        samples: &mut Samples,
-        stop: &dyn Fn() -> bool,
-        work: &mut Workspace,
-        stats: &mut Stats,
-    ) -> Option<()> {
-        let wanted: Vec<(u32, u32)> = area
-            .pixels()
-            .filter(|&(x, y)| self.needs_more(samples, x, y))
-            .collect();
-        let mut means = Vec::with_capacity(wanted.len());
-        let n = self.samples;
-        for &(x, y) in &wanted {
-            if stop() {
-                return None;
-            }
-            let pixel = Area {
-                left: x,
-                top: y,
-                right: x + 1,
-                bottom: y + 1,
-            };
-            let mut slabs = self.slabs(pixel, [1, 1]);
-            let mut sum = Vec3::ZERO;
-            for first in (0..n * n).step_by(PACKET) {
-                let count = (n * n - first).min(PACKET as u32);
-                let rays = core::array::from_fn(|i| {
-                    let i = first + (i as u32).min(count - 1);
-                    let at = |c: u32, k: u32| f64::from(c) + (f64::from(k) + 0.5) / f64::from(n);
-                    self.ray(at(x, i % n), at(y, i / n))
-                });
-                stats.primary_rays += u64::from(count);
-                let found = self.packet(&rays, 0, &mut slabs, work, stats);
-                sum += found[..count as usize]
-                    .iter()
-                    .map(|s| s.colour)
-                    .sum::<Vec3>();
-            }
-            means.push(sum / (n * n) as f32);
-        }
-        for ((x, y), mean) in wanted.into_iter().zip(means) {
-            let mut sample = *samples.get(x, y);
-            sample.colour = mean;
-            samples.set(x, y, sample);
-        }
-        Some(())
-    }
-
-    fn needs_more(&self, samples: &Samples, x: u32, y: u32) -> bool {
-        let here = samples.get(x, y);
-        // On a plane seen at 80° from its normal, neighbouring pixels' distances differ by
-        // tan 80° times the pixel's size.
-        let pixel = 2.0 * self.projection.half_width / f64::from(self.size[0]);
-        let jump = |other: &Sample| 5.7 * pixel as f32 * here.depth.min(other.depth);
-        for (dx, dy) in [
-            (-1, -1),
-            (0, -1),
-            (1, -1),
-            (-1, 0),
-            (1, 0),
-            (-1, 1),
-            (0, 1),
-            (1, 1),
-        ] {
-            let (Some(nx), Some(ny)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else {
-                continue;
-            };
-            if nx >= self.size[0] || ny >= self.size[1] {
-                continue;
-            }
-            let other = samples.get(nx, ny);
-            if differ(here, other, self.contrast, jump(other)) {
-                return true;
-            }
-        }
-        false
-    }
-
     /// The ray through a point of the picture, in pixels.
-    fn ray(&self, x: f64, y: f64) -> Ray {
+    pub(crate) fn ray(&self, x: f64, y: f64) -> Ray {
         Ray {
             origin: self.projection.eye,
             direction: self
@@ -316,7 +225,7 @@ impl Picture {
 
     /// The slabs of the beam through a rectangle of pixels, divided into columns and rows (powers of
     /// two) of packets.
-    fn slabs(&self, area: Area, packets: [u32; 2]) -> Option<(Slabs<'_>, f64)> {
+    pub(crate) fn slabs(&self, area: Area, packets: [u32; 2]) -> Option<(Slabs<'_>, f64)> {
         if self.soft.is_empty() {
             return None;
         }
@@ -358,77 +267,5 @@ impl Picture {
                 [r, g, b, 255]
             })
             .collect()
-    }
-}
-
-/// A rectangle of cells.
-#[derive(Clone, Copy, Debug)]
-struct Area {
-    left: u32,
-    top: u32,
-    right: u32,
-    bottom: u32,
-}
-
-impl Area {
-    fn holds(&self, x: u32, y: u32) -> bool {
-        (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
-    }
-
-    /// The left and the right half, or the upper and the lower.
-    fn halves(self, across: bool) -> [Self; 2] {
-        let (x, y) = (
-            self.left.midpoint(self.right),
-            self.top.midpoint(self.bottom),
-        );
-        if across {
-            [Self { right: x, ..self }, Self { left: x, ..self }]
-        } else {
-            [Self { bottom: y, ..self }, Self { top: y, ..self }]
-        }
-    }
-
-    /// Row by row.
-    fn pixels(self) -> impl Iterator<Item = (u32, u32)> {
-        (self.top..self.bottom).flat_map(move |y| (self.left..self.right).map(move |x| (x, y)))
-    }
-}
-
-/// The samples of an area.
-struct Samples {
-    area: Area,
-    cells: Vec<Sample>,
-}
-
-impl Samples {
-    fn new(area: Area) -> Self {
-        let blank = Sample {
-            colour: Vec3::ZERO,
-            key: 0,
-            depth: f32::INFINITY,
-        };
-        let width = (area.right - area.left) as usize;
-        let height = (area.bottom - area.top) as usize;
-        Self {
-            area,
-            cells: vec![blank; width * height],
-        }
-    }
-
-    fn index(&self, x: u32, y: u32) -> usize {
-        let width = (self.area.right - self.area.left) as usize;
-        (y - self.area.top) as usize * width + (x - self.area.left) as usize
-    }
-
-    fn get(&self, x: u32, y: u32) -> &Sample {
-        &self.cells[self.index(x, y)]
-    }
-
-    /// Cells outside the area are ignored.
-    fn set(&mut self, x: u32, y: u32, sample: Sample) {
-        if self.area.holds(x, y) {
-            let index = self.index(x, y);
-            self.cells[index] = sample;
-        }
     }
 }

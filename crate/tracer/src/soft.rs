@@ -7,7 +7,7 @@ use crate::lanes::Lanes;
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::slabs::{Beams, Precision, Slabs};
-use crate::walk::{Found, Memory, Quest, Walk};
+use crate::walk::{Bundle, Found, Memory, Quest, Walk};
 use field::{Primitive, Real, THRESHOLD};
 use glam::DVec3;
 use scene::Scene;
@@ -126,31 +126,17 @@ impl Soft {
         (slabs.slab(slabs.root()).above >= THRESHOLD).then_some((slabs, from))
     }
 
-    /// Walks a packet (at most [`PACKET`] rays) through the slabs of its beam; `packet` is its
-    /// number among the beam's divisions. Rays and limits are
-    /// counted from the slabs' start.
+    /// Walks a bundle through the slabs of its beam.
     pub fn walk(
         &self,
         slabs: &mut Slabs<'_>,
-        packet: usize,
-        rays: &[Ray],
-        limits: &[f64],
-        alive: u32,
+        bundle: Bundle<'_>,
         quest: Quest,
         scratch: &mut Scratch,
     ) -> Vec<Found> {
         slabs.tidy();
-        let (found, evaluations) = Walk::<f32x8>::new(
-            &self.primitives,
-            slabs,
-            packet,
-            rays,
-            limits,
-            alive,
-            quest,
-            &mut scratch.memory,
-        )
-        .run();
+        let (found, evaluations) =
+            Walk::<f32x8>::new(&self.primitives, slabs, bundle, quest, &mut scratch.memory).run();
         scratch.evaluations += evaluations;
         found
     }
@@ -295,10 +281,12 @@ impl Soft {
         let (found, _) = Walk::<f64>::new(
             &self.primitives,
             &mut slabs,
-            0,
-            &[based],
-            &[to - from],
-            1,
+            Bundle {
+                rays: &[based],
+                limits: &[to - from],
+                alive: 1,
+                number: 0,
+            },
             Quest::All,
             &mut Vec::new(),
         )

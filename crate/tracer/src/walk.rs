@@ -23,6 +23,20 @@ pub enum Quest {
     All,
 }
 
+/// Some rays of the slabs' beam, one a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Bundle<'r> {
+    /// The rays, at least one and at most as many as there are lanes; t is counted from where the
+    /// slabs start. Lanes beyond the last ray repeat it.
+    pub rays: &'r [Ray],
+    /// How far each ray goes.
+    pub limits: &'r [f64],
+    /// The lanes that are followed, a bit each.
+    pub alive: u32,
+    /// The bundle's number among the beam's divisions.
+    pub number: usize,
+}
+
 /// A crossing, as exact as the spans.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
@@ -76,20 +90,16 @@ const MOST_WORK: usize = 1 << 17;
 const MOST_VISITS: usize = 64;
 
 impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
-    /// Rays of the slabs' beam, one a lane, each up to its limit; `packet` is their number among the
-    /// beam's divisions. Lanes beyond `rays.len()` repeat
-    /// the last ray and are not followed. `memory` is scratch space.
+    /// Rays at the start of the slabs. `memory` is scratch space.
     #[must_use]
     pub fn new(
         primitives: &'w [Primitive],
         slabs: &'w mut Slabs<'s>,
-        packet: usize,
-        rays: &[Ray],
-        limits: &[f64],
-        alive: u32,
+        bundle: Bundle<'_>,
         quest: Quest,
         memory: &'w mut Vec<Memory<L>>,
     ) -> Self {
+        let Bundle { rays, limits, .. } = bundle;
         let ray = |i: usize| &rays[i.min(rays.len() - 1)];
         let count = slabs.len();
         memory.clear();
@@ -103,12 +113,12 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         Self {
             primitives,
             slabs,
-            packet,
+            packet: bundle.number,
             quest,
             origin: core::array::from_fn(|k| L::from_lanes(|i| ray(i).origin[k])),
             direction: core::array::from_fn(|k| L::from_lanes(|i| ray(i).direction[k])),
             limit: L::from_lanes(|i| limits[i.min(limits.len() - 1)]),
-            alive,
+            alive: bundle.alive,
             outside: 0,
             inside: 0,
             memory,

@@ -1,0 +1,107 @@
+//! Rectangles of pixels, and the samples taken in them.
+use crate::sample::Sample;
+use glam::Vec3;
+
+/// A rectangle of cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Area {
+    pub left: u32,
+    pub top: u32,
+    pub right: u32,
+    pub bottom: u32,
+}
+
+impl Area {
+    pub fn holds(&self, x: u32, y: u32) -> bool {
+        (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
+    }
+
+    /// The left and the right half, or the upper and the lower.
+    pub fn halves(self, across: bool) -> [Self; 2] {
+        let (x, y) = (
+            self.left.midpoint(self.right),
+            self.top.midpoint(self.bottom),
+        );
+        if across {
+            [Self { right: x, ..self }, Self { left: x, ..self }]
+        } else {
+            [Self { bottom: y, ..self }, Self { top: y, ..self }]
+        }
+    }
+
+    /// The part within another area.
+    pub fn meet(self, other: Self) -> Self {
+        Self {
+            left: self.left.max(other.left),
+            top: self.top.max(other.top),
+            right: self.right.min(other.right),
+            bottom: self.bottom.min(other.bottom),
+        }
+    }
+
+    /// The same rectangle in cells that are smaller by a factor.
+    pub fn times(self, factor: u32) -> Self {
+        Self {
+            left: self.left * factor,
+            top: self.top * factor,
+            right: self.right * factor,
+            bottom: self.bottom * factor,
+        }
+    }
+
+    /// The whole blocks, laid out from the picture's corner, that touch the area.
+    pub fn blocks(self, [width, height]: [u32; 2]) -> impl Iterator<Item = Self> {
+        (self.top / height..self.bottom.div_ceil(height)).flat_map(move |j| {
+            (self.left / width..self.right.div_ceil(width)).map(move |i| Self {
+                left: i * width,
+                top: j * height,
+                right: (i + 1) * width,
+                bottom: (j + 1) * height,
+            })
+        })
+    }
+
+    /// Row by row.
+    pub fn pixels(self) -> impl Iterator<Item = (u32, u32)> {
+        (self.top..self.bottom).flat_map(move |y| (self.left..self.right).map(move |x| (x, y)))
+    }
+}
+
+/// The samples of an area.
+pub(crate) struct Samples {
+    area: Area,
+    cells: Vec<Sample>,
+}
+
+impl Samples {
+    pub fn new(area: Area) -> Self {
+        let blank = Sample {
+            colour: Vec3::ZERO,
+            key: 0,
+            depth: f32::INFINITY,
+        };
+        let width = (area.right - area.left) as usize;
+        let height = (area.bottom - area.top) as usize;
+        Self {
+            area,
+            cells: vec![blank; width * height],
+        }
+    }
+
+    fn index(&self, x: u32, y: u32) -> usize {
+        let width = (self.area.right - self.area.left) as usize;
+        (y - self.area.top) as usize * width + (x - self.area.left) as usize
+    }
+
+    pub fn get(&self, x: u32, y: u32) -> &Sample {
+        &self.cells[self.index(x, y)]
+    }
+
+    /// Cells outside the area are ignored.
+    pub fn set(&mut self, x: u32, y: u32, sample: Sample) {
+        if self.area.holds(x, y) {
+            let index = self.index(x, y);
+            self.cells[index] = sample;
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Anti-aliasing: more rays for the pixels that need them.
+//!
+//! Every pixel has had one ray. A pixel that differs from a neighbour is sampled again on a regular
+//! grid of n×n, whose mean replaces the single sample. Which pixels those are depends on the first
+//! samples only, so it does not matter in which order, or in which tile, pixels are treated.
+use crate::area::{Area, Samples};
+use crate::packet::Workspace;
+use crate::picture::{BLOCK, PACKET_SIZE, PACKETS, Picture, Stats};
+use crate::sample::{Sample, differ};
+use crate::soft::PACKET;
+use glam::Vec3;
+
+impl Picture {
+    /// Replaces the samples of an area's pixels that differ from a neighbour by the mean of n×n.
+    /// `samples` must hold the pixels around the area too. `None` when asked to stop.
+    pub(crate) fn refine(
+        &self,
+        area: Area,
+        samples: &mut Samples,
+        stop: &dyn Fn() -> bool,
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) -> Option<()> {
+        let mut means = Vec::new();
+        for block in area.blocks([BLOCK; 2]) {
+            if stop() {
+                return None;
+            }
+            let mut wanted = block
+                .meet(area)
+                .pixels()
+                .filter(|&(x, y)| self.needs_more(samples, x, y))
+                .peekable();
+            if wanted.peek().is_none() {
+                continue;
+            }
+            // The pixels' rays run in the same beams as the packets that they belong to.
+            let mut slabs = self.slabs(block, PACKETS);
+            for (x, y) in wanted {
+                let column = (x - block.left) / PACKET_SIZE[0];
+                let row = (y - block.top) / PACKET_SIZE[1];
+                let number = (column * PACKETS[1] + row) as usize;
+                let n = self.samples;
+                let mut sum = Vec3::ZERO;
+                for first in (0..n * n).step_by(PACKET) {
+                    let count = (n * n - first).min(PACKET as u32);
+                    let rays = core::array::from_fn(|i| {
+                        let i = first + (i as u32).min(count - 1);
+                        let at =
+                            |c: u32, k: u32| f64::from(c) + (f64::from(k) + 0.5) / f64::from(n);
+                        self.ray(at(x, i % n), at(y, i / n))
+                    });
+                    stats.primary_rays += u64::from(count);
+                    let found = self.packet(&rays, number, &mut slabs, work, stats);
+                    let colours = found[..count as usize].iter().map(|s| s.colour);
+                    sum += colours.sum::<Vec3>();
+                }
+                means.push((x, y, sum / (n * n) as f32));
+            }
+        }
+        for (x, y, mean) in means {
+            let mut sample = *samples.get(x, y);
+            sample.colour = mean;
+            samples.set(x, y, sample);
+        }
+        Some(())
+    }
+
+    fn needs_more(&self, samples: &Samples, x: u32, y: u32) -> bool {
+        let here = samples.get(x, y);
+        // On a plane seen at 80° from its normal, neighbouring pixels' distances differ by
+        // tan 80° times the pixel's size.
+        let pixel = 2.0 * self.projection.half_width / f64::from(self.size[0]);
+        let jump = |other: &Sample| 5.7 * pixel as f32 * here.depth.min(other.depth);
+        for (dx, dy) in [
+            (-1, -1),
+            (0, -1),
+            (1, -1),
+            (-1, 0),
+            (1, 0),
+            (-1, 1),
+            (0, 1),
+            (1, 1),
+        ] {
+            let (Some(nx), Some(ny)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else {
+                continue;
+            };
+            if nx >= self.size[0] || ny >= self.size[1] {
+                continue;
+            }
+            let other = samples.get(nx, ny);
+            if differ(here, other, self.contrast, jump(other)) {
+                return true;
+            }
+        }
+        false
+    }
+}
