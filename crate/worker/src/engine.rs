@@ -40,10 +40,9 @@ impl Engine {
                 self.forget(generation);
                 self.wanted = Some((scene, size));
             }
-            Request::Trace(order) => {
-                if order.generation == self.generation {
-                    self.queue.push_back(order);
-                }
+            Request::Trace(orders) => {
+                let present = |order: &Order| order.generation == self.generation;
+                self.queue.extend(orders.into_iter().filter(present));
             }
             Request::Stop { generation } => self.forget(generation),
         }
@@ -133,7 +132,7 @@ mod tests {
         let mut engine = Engine::default();
         assert_eq!(step(&mut engine), Step::Idle);
         engine.accept(begin(1));
-        engine.accept(Request::Trace(order(1)));
+        engine.accept(Request::Trace(vec![order(1)]));
         assert_eq!(
             step(&mut engine),
             Step::Answer(Answer::Noted { generation: 1 })
@@ -158,9 +157,9 @@ mod tests {
     fn older_pictures_are_dropped_unbegun() {
         let mut engine = Engine::default();
         engine.accept(begin(1));
-        engine.accept(Request::Trace(order(1)));
+        engine.accept(Request::Trace(vec![order(1)]));
         engine.accept(begin(2));
-        engine.accept(Request::Trace(order(1)));
+        engine.accept(Request::Trace(vec![order(1)]));
         assert_eq!(
             step(&mut engine),
             Step::Answer(Answer::Noted { generation: 2 })

@@ -12,8 +12,15 @@ use std::rc::Rc;
 use wasm_bindgen::prelude::*;
 use web_sys::{DedicatedWorkerGlobalScope, MessageChannel, MessageEvent};
 
+/// Seconds for which finished tiles are held back to be sent together.
+const TOGETHER: f64 = 0.05;
+
 struct Desk {
     engine: Engine,
+    /// Answers not sent yet.
+    answers: Vec<Answer>,
+    /// When answers were last sent.
+    sent: f64,
     /// Whether a message to ourselves is on its way.
     ticking: bool,
     channel: MessageChannel,
@@ -28,11 +35,13 @@ pub fn serve() -> Result<(), JsValue> {
     std::panic::set_hook(Box::new(|panic| {
         let message = panic.to_string();
         web_sys::console::error_1(&JsValue::from_str(&message));
-        send(&Answer::Failed(message));
+        send(&[Answer::Failed(message)]);
     }));
     let scope = scope()?;
     let desk = Rc::new(RefCell::new(Desk {
         engine: Engine::default(),
+        answers: Vec::new(),
+        sent: 0.0,
         ticking: false,
         channel: MessageChannel::new()?,
     }));
@@ -42,7 +51,7 @@ pub fn serve() -> Result<(), JsValue> {
         let desk = &mut *listener.borrow_mut();
         desk.ticking = false;
         if let Step::Answer(answer) = desk.engine.step(&|| false, &clock) {
-            send(&answer);
+            desk.answer(answer);
         }
         desk.tick();
     });
@@ -55,9 +64,9 @@ pub fn serve() -> Result<(), JsValue> {
     let on_message = Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
         let bytes = Uint8Array::new(&event.data()).to_vec();
         let Ok(request) = unpack::<Request>(&bytes) else {
-            send(&Answer::Failed(String::from(
-                "A message was not understood: page and worker are of different versions. Reload the page.",
-            )));
+            send(&[Answer::Failed(String::from(
+                "page and worker are of different versions; reload the page",
+            ))]);
             return;
         };
         let desk = &mut *desk.borrow_mut();
@@ -66,11 +75,23 @@ pub fn serve() -> Result<(), JsValue> {
     });
     scope.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
     on_message.forget(); // lives as long as the worker
-    send(&Answer::Started);
+    send(&[Answer::Started]);
     Ok(())
 }
 
 impl Desk {
+    /// Sends an answer, a tile together with those that follow soon.
+    fn answer(&mut self, answer: Answer) {
+        let can_wait = matches!(answer, Answer::Traced { .. }) && !self.engine.is_idle();
+        self.answers.push(answer);
+        let now = clock();
+        if !can_wait || now - self.sent >= TOGETHER {
+            send(&self.answers);
+            self.answers.clear();
+            self.sent = now;
+        }
+    }
+
     fn tick(&mut self) {
         if !self.ticking && !self.engine.is_idle() {
             self.ticking = self
@@ -93,10 +114,10 @@ fn clock() -> f64 {
         .map_or(0.0, |performance| performance.now() / 1000.0)
 }
 
-/// Sends an answer, giving its memory away instead of copying it again. An answer that cannot be
-/// packed or sent is missed by the page, which then replaces this worker.
-fn send(answer: &Answer) {
-    if let (Ok(scope), Ok(bytes)) = (scope(), pack(answer)) {
+/// Sends answers, giving the memory away instead of copying it again. What cannot be packed or sent
+/// is missed by the page, which then replaces this worker.
+fn send(answers: &[Answer]) {
+    if let (Ok(scope), Ok(bytes)) = (scope(), pack(&answers)) {
         let buffer = Uint8Array::from(bytes.as_slice()).buffer();
         let _ = scope.post_message_with_transfer(&buffer, &Array::of1(&buffer));
     }

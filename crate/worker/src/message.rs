@@ -27,8 +27,8 @@ pub enum Request {
         /// Width and height in pixels, each > 0.
         size: [u32; 2],
     },
-    /// Trace this tile after those already queued.
-    Trace(Order),
+    /// Trace these tiles after those already queued.
+    Trace(Vec<Order>),
     /// Forget whatever is queued, and the picture.
     Stop {
         /// A number larger than those before.
@@ -36,7 +36,8 @@ pub enum Request {
     },
 }
 
-/// What a worker answers.
+/// What a worker answers. A message holds a list of answers, as far as they came at about the same
+/// time: a page that is busy drawing takes few messages a second.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
     /// The worker runs and takes requests. Sent once.

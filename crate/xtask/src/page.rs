@@ -99,6 +99,8 @@ fn bind(wasm: &Path, name: &str, folder: &Path) -> Result<()> {
         // The script finds the wasm beside itself.
         .omit_default_module_path(false)
         .typescript(false)
+        // The script looks for its wasm beside itself.
+        .omit_default_module_path(false)
         .out_name(name)
         .generate(folder)
         .with_context(|| format!("wasm-bindgen could not read {}", wasm.display()))

@@ -57,18 +57,18 @@ impl Workers for WebWorkers {
         options.set_type(WorkerType::Module);
         let worker = Worker::new_with_options(SCRIPT, &options).map_err(describe)?;
 
-        let listen = |pool: Weak<RefCell<Inner>>, what: fn(&JsValue) -> Answer| {
+        let listen = |pool: Weak<RefCell<Inner>>, what: fn(&JsValue) -> Vec<Answer>| {
             Closure::<dyn FnMut(JsValue)>::new(move |event: JsValue| {
                 if let Some(pool) = pool.upgrade() {
-                    Inner::answer(&pool, index, what(&event));
+                    Inner::answers(&pool, index, what(&event));
                 }
             })
         };
         let listeners = [
-            listen(self.pool.clone(), read_answer),
+            listen(self.pool.clone(), read_answers),
             listen(self.pool.clone(), read_error),
             listen(self.pool.clone(), |_| {
-                Answer::Failed(String::from("a message was lost"))
+                vec![Answer::Failed(String::from("a message was lost"))]
             }),
         ];
         let [message, error, lost] = &listeners;
@@ -99,22 +99,23 @@ impl Workers for WebWorkers {
     }
 }
 
-fn read_answer(event: &JsValue) -> Answer {
+fn read_answers(event: &JsValue) -> Vec<Answer> {
     let data = event.unchecked_ref::<MessageEvent>().data();
     unpack(&Uint8Array::new(&data).to_vec()).unwrap_or_else(|_| {
-        Answer::Failed(String::from(
+        vec![Answer::Failed(String::from(
             "page and worker are of different versions; reload the page",
-        ))
+        ))]
     })
 }
 
-fn read_error(event: &JsValue) -> Answer {
+fn read_error(event: &JsValue) -> Vec<Answer> {
     // A worker whose script cannot be loaded sends an event without a message.
     let message = event
         .dyn_ref::<ErrorEvent>()
         .map(ErrorEvent::message)
         .filter(|message| !message.is_empty());
-    Answer::Failed(message.unwrap_or_else(|| String::from("worker.js could not be loaded")))
+    let reason = message.unwrap_or_else(|| String::from("worker.js could not be loaded"));
+    vec![Answer::Failed(reason)]
 }
 
 fn describe(error: JsValue) -> String {
@@ -182,9 +183,9 @@ impl Drop for Timer {
 }
 
 impl Inner {
-    fn answer(pool: &Rc<RefCell<Self>>, index: usize, answer: Answer) {
+    fn answers(pool: &Rc<RefCell<Self>>, index: usize, answers: Vec<Answer>) {
         let inner = &mut *pool.borrow_mut();
-        if inner.core.answer(index, answer, now()) {
+        if inner.core.answers(index, answers, now()) {
             (inner.repaint)();
         }
     }

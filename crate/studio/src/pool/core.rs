@@ -5,7 +5,7 @@ use super::{Job, Progress, TileDone};
 use worker::message::pack;
 use worker::{Answer, Request};
 
-/// Something that runs workers. What they answer goes to [`Core::answer`], together with the index.
+/// Something that runs workers. What they answer goes to [`Core::answers`], together with the index.
 pub trait Workers {
     /// Starts a worker, ending the one that had this index. Nothing may be heard of that one again.
     fn restart(&mut self, index: usize) -> Result<(), String>;
@@ -70,8 +70,16 @@ impl<W: Workers> Core<W> {
     }
 
     /// A worker has answered. Says whether something can now be seen that could not be before.
-    pub fn answer(&mut self, index: usize, answer: Answer, now: f64) -> bool {
+    pub fn answers(&mut self, index: usize, answers: Vec<Answer>, now: f64) -> bool {
         let mut news = false;
+        for answer in answers {
+            news |= self.answer(index, answer, now);
+        }
+        self.carry_out(now);
+        news
+    }
+
+    fn answer(&mut self, index: usize, answer: Answer, now: f64) -> bool {
         match answer {
             Answer::Started => self.scheduler.started(index, now),
             Answer::Noted { generation } => self.scheduler.noted(index, generation, now),
@@ -82,8 +90,8 @@ impl<W: Workers> Core<W> {
                 stats,
                 seconds,
             } => {
-                news = self.scheduler.traced(index, order, &stats, seconds, now);
-                if let (true, Some(generation)) = (news, self.scheduler.generation()) {
+                let wanted = self.scheduler.traced(index, order, &stats, seconds, now);
+                if let (true, Some(generation)) = (wanted, self.scheduler.generation()) {
                     self.done.push(TileDone {
                         generation,
                         pass: order.pass,
@@ -91,14 +99,14 @@ impl<W: Workers> Core<W> {
                         pixels,
                     });
                 }
+                return wanted;
             }
             Answer::Failed(reason) => {
                 self.scheduler.died(index, &reason, now);
-                news = true;
+                return true;
             }
         }
-        self.carry_out(now);
-        news
+        false
     }
 
     /// The tiles finished since the last call.
@@ -127,7 +135,7 @@ impl<W: Workers> Core<W> {
                     }
                     Command::End(index) => self.workers.end(index),
                     Command::Begin(index) => self.workers.send(index, &self.begin),
-                    Command::Trace(index, order) => self.send(index, &Request::Trace(order)),
+                    Command::Trace(index, orders) => self.send(index, &Request::Trace(orders)),
                     Command::Stop(index) => {
                         let generation = self.scheduler.number();
                         self.send(index, &Request::Stop { generation });

@@ -1,6 +1,5 @@
 //! How far a picture has come.
 
-use std::collections::VecDeque;
 use tracer::{Pass, Stats};
 
 /// How far the picture has come, for the progress bar and for scripts.
@@ -48,7 +47,6 @@ struct Measured {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Costs {
     passes: [Measured; 3],
-    recent: VecDeque<f64>,
     /// Most seconds any tile took for each of its rays.
     slowest_ray: f64,
 }
@@ -59,29 +57,19 @@ impl Costs {
         self.passes[pass].tiles += 1;
         self.passes[pass].seconds += seconds;
         self.slowest_ray = self.slowest_ray.max(seconds / rays);
-        self.recent.push_back(seconds);
-        if self.recent.len() > 16 {
-            self.recent.pop_front();
-        }
     }
 
-    /// Expected seconds of one tile of a pass; an arbitrary unit if nothing was measured.
+    /// Expected seconds of one tile of a pass; a bare guess if nothing was measured.
     pub fn expected(&self, pass: usize) -> f64 {
         let known = |i: &usize| self.passes[*i].tiles > 0;
         // The pass itself, else the finest one measured.
         let base = Some(pass)
             .filter(known)
             .or_else(|| (0..3).rev().find(known));
-        base.map_or(TYPICAL[pass], |i| {
+        base.map_or(TYPICAL[pass] * 1e-3, |i| {
             let mean = self.passes[i].seconds / f64::from(self.passes[i].tiles);
             mean.max(1e-6) * TYPICAL[pass] / TYPICAL[i]
         })
-    }
-
-    /// Mean seconds of the tiles that were finished last.
-    pub fn recent(&self) -> Option<f64> {
-        (!self.recent.is_empty())
-            .then(|| self.recent.iter().sum::<f64>() / self.recent.len() as f64)
     }
 
     /// Most seconds any tile took for each of its rays; 0 if none was measured.
@@ -109,7 +97,7 @@ mod tests {
     #[test]
     fn costs_are_measured_or_scaled_from_what_was_measured() {
         let mut costs = Costs::default();
-        assert!(costs.recent().is_none() && !costs.enough());
+        assert!(!costs.enough());
         costs.add(0, 16.0, 0.002);
         costs.add(0, 16.0, 0.004);
         assert!((costs.expected(0) - 0.003).abs() < 1e-12);

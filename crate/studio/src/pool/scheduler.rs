@@ -2,14 +2,15 @@
 //!
 //! Events go in (a worker started, answered, died; time passed), [`Command`]s come out. Rules:
 //!
-//! - Tiles are handed out pass by pass, in the order of [`tracer::tile::tiles`]. A worker holds the tile
-//!   it traces and a few more, about [`AHEAD`] seconds of work, so that it need not wait for a page
-//!   that is busy drawing. It drops those itself when a new picture begins.
+//! - Tiles are handed out pass by pass, in the order of [`tracer::tile::tiles`]. A worker holds the
+//!   tile it traces and some more, about [`AHEAD`] seconds of work, so that it need not wait for a
+//!   page that is busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
 //!   replaced, so a slow tile never delays the new picture.
-//! - A worker that dies, or that gives no sign of life for its time limit, is replaced and its tiles
-//!   are done again. The tile it was at counts as failed; after [`ATTEMPTS`] failures it is given
-//!   up, so nothing is tried forever. The same holds for preparing a scene and for starting a worker.
+//! - A worker that dies, or that gives no sign of life for its time limit, is replaced and the tiles
+//!   it held are done again, each alone, as any of them may have been the cause. A tile with which
+//!   [`ATTEMPTS`] workers failed is given up, so nothing is tried forever. The same holds for
+//!   preparing a scene and for starting a worker.
 
 use super::progress::{Costs, Progress, add_stats};
 use std::collections::{HashMap, HashSet, VecDeque};
@@ -23,9 +24,9 @@ pub const PATIENCE: f64 = 0.25;
 /// Times in a row a worker may die without having finished a tile.
 pub const DEATHS: u32 = 10;
 /// Seconds of work a worker is given ahead.
-pub const AHEAD: f64 = 0.05;
+pub const AHEAD: f64 = 0.25;
 /// Most tiles a worker is given ahead.
-pub const MOST_AHEAD: usize = 16;
+pub const MOST_AHEAD: usize = 64;
 /// Seconds a worker may take to start.
 pub const START_LIMIT: f64 = 30.0;
 /// Seconds a worker may take to prepare a scene.
@@ -38,7 +39,7 @@ pub const SLACK: f64 = 20.0;
 pub const LONGEST_LIMIT: f64 = 600.0;
 
 /// What the pool must do. Workers are numbered from 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// End this worker if it runs, and start a new one in its place.
     Restart(usize),
@@ -46,8 +47,8 @@ pub enum Command {
     End(usize),
     /// Send this worker the scene.
     Begin(usize),
-    /// Send this worker a tile.
-    Trace(usize, Order),
+    /// Send this worker tiles.
+    Trace(usize, Vec<Order>),
     /// Tell this worker to forget its picture.
     Stop(usize),
 }
@@ -125,7 +126,7 @@ struct Run {
     passes: &'static [Pass],
     /// The first task never handed out. A task is a tile in a pass: pass · number of tiles + tile.
     next: usize,
-    /// Tasks handed out before, to be done again.
+    /// Tasks handed out before, to be done again, each alone.
     again: Vec<usize>,
     failures: HashMap<usize, u32>,
     failed_tiles: HashSet<usize>,
@@ -153,20 +154,33 @@ impl Run {
         }
     }
 
-    fn take(&mut self) -> Option<usize> {
-        while let Some(task) = self.again.pop().or_else(|| {
-            (self.next < self.tasks()).then(|| {
-                self.next += 1;
+    /// The next task, from those never handed out or from those to be done again.
+    fn take(&mut self, again: bool) -> Option<usize> {
+        loop {
+            let task = if again {
+                self.again.pop()?
+            } else {
+                self.next = (self.next < self.tasks()).then_some(self.next + 1)?;
                 self.next - 1
-            })
-        }) {
+            };
             // A tile that was given up is not tried in later passes.
             if !self.failed_tiles.contains(&(task % self.tiles.len())) {
                 return Some(task);
             }
             self.settled[task / self.tiles.len()] += 1;
         }
-        None
+    }
+
+    /// How many tasks never handed out a worker should hold, one of so many workers: enough not to
+    /// wait for the page, but in the end no worker should have much more than the others.
+    fn enough(&self, workers: usize) -> usize {
+        if self.next >= self.tasks() {
+            return 0;
+        }
+        let pass = self.next / self.tiles.len();
+        let ahead = (AHEAD / self.costs.expected(pass)).clamp(2.0, MOST_AHEAD as f64) as usize;
+        let share = (self.tasks() - self.next).div_ceil(2 * workers.max(1));
+        ahead.min(share)
     }
 
     /// Most rays of a task.
@@ -438,16 +452,19 @@ impl Scheduler {
                     self.fail(format!("The scene could not be prepared: {reason}"), now);
                     return;
                 }
-            } else if let Some(&task) = held.front() {
-                let failures = run.failures.entry(task).or_insert(0);
-                *failures += 1;
-                if *failures >= ATTEMPTS {
-                    held.pop_front();
-                    let tiles = run.tiles.len();
-                    run.failed_tiles.insert(task % tiles);
-                    run.settled[task / tiles] += 1;
-                    self.error = Some(format!("A part of the picture is missing: {reason}"));
-                }
+            } else {
+                held.retain(|task| {
+                    let failures = run.failures.entry(*task).or_insert(0);
+                    *failures += 1;
+                    if *failures >= ATTEMPTS {
+                        let tiles = run.tiles.len();
+                        run.failed_tiles.insert(task % tiles);
+                        run.settled[task / tiles] += 1;
+                        self.error = Some(format!("A part of the picture is missing: {reason}"));
+                        return false;
+                    }
+                    true
+                });
             }
         }
         run.again.extend(held.into_iter().rev());
@@ -630,30 +647,39 @@ impl Scheduler {
 
     /// Gives a worker tiles until it has enough.
     fn fill(&mut self, index: usize, now: f64) {
+        let workers = self
+            .slots
+            .iter()
+            .filter(|slot| slot.life == Life::Awake)
+            .count();
         let (Some(run), slot) = (&mut self.run, &mut self.slots[index]) else {
             return;
         };
         if slot.life != Life::Awake || !slot.begun {
             return;
         }
-        let enough = match run.costs.recent() {
-            Some(seconds) if slot.prepared => {
-                (AHEAD / seconds.max(1e-6)).clamp(2.0, MOST_AHEAD as f64) as usize
-            }
-            _ => 1,
+        let again = !run.again.is_empty();
+        // What is done again is done alone, so let the worker first finish what it has.
+        let enough = if again || !slot.prepared {
+            1
+        } else {
+            run.enough(workers)
         };
+        let mut orders = Vec::new();
         while slot.holds.len() < enough {
-            let Some(task) = run.take() else {
-                // Tiles given up in an earlier pass may have been the last ones.
-                run.settle(now);
-                break;
-            };
+            let Some(task) = run.take(again) else { break };
             if slot.holds.is_empty() {
                 slot.since = now;
             }
             slot.holds.push_back(task);
-            self.commands
-                .push(Command::Trace(index, run.order(task, self.number)));
+            orders.push(run.order(task, self.number));
+        }
+        // Tiles given up in an earlier pass may have been the last ones.
+        run.settle(now);
+        match self.commands.last_mut() {
+            _ if orders.is_empty() => {}
+            Some(Command::Trace(last, before)) if *last == index => before.extend(orders),
+            _ => self.commands.push(Command::Trace(index, orders)),
         }
     }
 }

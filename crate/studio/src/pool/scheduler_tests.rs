@@ -68,7 +68,9 @@ impl Crowd {
                     self.desks[i].retain(|job| matches!(job, Job::Start));
                     self.desks[i].extend([Job::Note(number), Job::Prepare(number)]);
                 }
-                Command::Trace(i, order) => self.desks[i].push_back(Job::Tile(order)),
+                Command::Trace(i, orders) => {
+                    self.desks[i].extend(orders.into_iter().map(Job::Tile));
+                }
                 Command::Stop(i) => {
                     self.desks[i].clear();
                     self.desks[i].push_back(Job::Note(number));

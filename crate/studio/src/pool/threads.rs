@@ -177,7 +177,7 @@ impl Pool {
                 .as_ref()
                 .is_some_and(|thread| thread.incarnation == incarnation);
             if present {
-                self.core.answer(index, answer, self.now());
+                self.core.answers(index, vec![answer], self.now());
             }
         }
         self.core.tick(self.now());

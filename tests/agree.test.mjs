@@ -1,0 +1,48 @@
+// The page and the program draw the same pictures.
+import assert from 'node:assert/strict';
+import { readdirSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { example, launch, native } from './page.mjs';
+import { colours, decode, shareThatDiffers } from './pictures.mjs';
+import { readFile } from 'node:fs/promises';
+
+/** Width of the pictures; heights follow the frames of the datasets. */
+const WIDTH = 240;
+/** The share of pixels that may differ by more than 1/255. */
+const SHARE = 0.001;
+
+const folder = new URL('../www/examples/', import.meta.url);
+const names = readdirSync(folder)
+  .filter((name) => name.endsWith('.rat'))
+  .map((name) => name.slice(0, -4));
+
+let browser;
+let sinew;
+before(async () => {
+  browser = await launch('webgl2');
+  sinew = await browser.open();
+});
+after(() => browser?.close());
+
+test('there are examples', () => {
+  assert.ok(names.length >= 6, names.join());
+});
+
+for (const name of names) {
+  test(`${name} is the same in the page and from the program`, async () => {
+    const text = await example(name);
+    // The thumbnail has the proportions of the frame.
+    const thumbnail = decode(await readFile(new URL(`${name}.png`, folder)));
+    assert.ok(colours(thumbnail) > 50, 'the thumbnail shows something');
+    const size = [WIDTH, Math.round((WIDTH * thumbnail.height) / thumbnail.width)];
+    await sinew.size(...size);
+    await sinew.load(text);
+    await sinew.until((status) => status.errors === 0);
+    await sinew.until((status, [w, h]) => status.picture?.width === w && status.picture?.height === h, size);
+    await sinew.finished();
+    const [page, program] = [await sinew.image(), await native(text, size)];
+    assert.ok(colours(page) > 50, 'the picture shows something');
+    const share = shareThatDiffers(page, program, 1);
+    assert.ok(share <= SHARE, `${(100 * share).toFixed(3)} % of the pixels differ`);
+  });
+}

@@ -1,0 +1,114 @@
+// Bad and hostile links: a clear message, a page that works, and the user's own work untouched.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { deflateRawSync, deflateSync } from 'node:zlib';
+import { launch } from './page.mjs';
+
+const OWN = '# my own work\nsurface s diffuse Gold\nsphere s 1 0 0 0\n';
+
+let browser;
+let sinew;
+before(async () => {
+  browser = await launch('webgl2');
+  sinew = await browser.open();
+  const editor = await sinew.place('editor');
+  await sinew.page.mouse.click(editor.x + editor.w / 2, editor.y + editor.h / 2);
+  await sinew.page.keyboard.press('Control+A');
+  await sinew.page.keyboard.insertText(OWN);
+  await sinew.page.waitForFunction((own) => sinew.text() === own, OWN);
+});
+after(() => browser?.close());
+
+/** A good link's fragment, to be broken in many ways. */
+async function good() {
+  const link = await sinew.link();
+  return link.slice(link.indexOf('#') + 1);
+}
+
+const base64url = (bytes) => Buffer.from(bytes).toString('base64url');
+const zeros = Buffer.alloc(300 << 20);
+const bombs = [deflateRawSync(zeros, { level: 9 }), deflateSync(zeros, { level: 9 })];
+
+const HOSTILE = {
+  'of no sense': async () => 'nonsense%%%',
+  'cut off': async () => (await good()).slice(0, -12),
+  'with a wrong letter': async () => {
+    const link = await good();
+    return `${link.slice(0, 20)}!${link.slice(21)}`;
+  },
+  'of an unknown version': async () => base64url(Buffer.concat([Buffer.from([250]), deflateRawSync('x')])),
+  'that unfolds to 300 MB': async () => {
+    // The version byte of a good link, and then a bomb.
+    const version = Buffer.from(await good(), 'base64url').subarray(0, 1);
+    return base64url(Buffer.concat([version, bombs[0]]));
+  },
+  'that unfolds to 300 MB, with a header of zlib': async () => {
+    const version = Buffer.from(await good(), 'base64url').subarray(0, 1);
+    return base64url(Buffer.concat([version, bombs[1]]));
+  },
+  'of a megabyte': async () => 'A'.repeat(1 << 20),
+  'with a script': async () => '<script>alert(1)</script><img src=x onerror=alert(1)>',
+};
+
+for (const [name, fragment] of Object.entries(HOSTILE)) {
+  test(`a link ${name} does no harm`, async () => {
+    const hostile = await fragment();
+    // Following a link in the open page …
+    await sinew.page.evaluate((hash) => {
+      location.hash = hash;
+    }, hostile);
+    await sinew.place('notice');
+    assert.equal(await sinew.text(), OWN);
+    // … and opening it anew, in the same profile.
+    await sinew.reload();
+    await sinew.place('notice');
+    await sinew.finished();
+    const status = await sinew.status();
+    assert.equal(status.errors, 0);
+    await sinew.keep(`link ${name}`);
+    // Without the link the user's own work is there.
+    await sinew.page.evaluate(() => {
+      history.replaceState(null, '', location.pathname);
+    });
+    await sinew.reload();
+    assert.equal(await sinew.text(), OWN);
+  });
+}
+
+test('a good link opens beside the own work, not in its place', async () => {
+  const link = await good();
+  const other = await browser.open();
+  await other.load('# theirs\nsurface s diffuse Red\nsphere s 1 0 0 0\n');
+  await other.page.waitForFunction(() => sinew.text().startsWith('# theirs'));
+  const theirs = await other.link();
+  await other.close();
+  await sinew.page.evaluate((hash) => {
+    location.hash = hash;
+  }, theirs.slice(theirs.indexOf('#')));
+  await sinew.page.waitForFunction(() => sinew.text().startsWith('# theirs'));
+  await sinew.page.evaluate((hash) => {
+    location.hash = hash;
+  }, link);
+  await sinew.page.waitForFunction((own) => sinew.text() === own, OWN);
+});
+
+test('hostile texts do not stop the page', async () => {
+  const texts = [
+    'for '.repeat(50_000),
+    '{'.repeat(100_000),
+    'var a = ' + '('.repeat(50_000),
+    'for i = 1, 1000000000 { sphere s 1 0 0 0 }',
+    'surface s diffuse Red\nsphere s 1e308 1e308 1e308 1e308\nsphere s nan inf -inf 0',
+    '\u0000\uffff\ud83d\ude00'.repeat(1000),
+    'framesize 100000000 100000000\nsample 100000\nsurface s\nsphere s 1 0 0 0',
+    'read "main.rat"',
+  ];
+  for (const text of texts) {
+    await sinew.load(text).catch(() => {}); // too long texts are refused
+    await sinew.page.waitForTimeout(300);
+  }
+  await sinew.load(OWN);
+  await sinew.until((status) => status.errors === 0);
+  await sinew.finished();
+  assert.deepEqual(sinew.troubles, []);
+});

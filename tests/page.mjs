@@ -1,0 +1,195 @@
+// The page in a real browser: starting it, aiming at its widgets, asking its handle.
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { promisify } from 'node:util';
+import { chromium } from 'playwright-core';
+import { decode } from './pictures.mjs';
+import { serve } from './server.mjs';
+
+const setting = (name) => {
+  const value = process.env[name];
+  assert.ok(value, `${name} is not set: run the tests with cargo xtask test e2e`);
+  return value;
+};
+
+/** Flags of browsers with WebGPU, drawn by software, with WebGL2 only, and with neither. */
+export const KINDS = {
+  // Without all of these, screenshots of WebGPU are blank.
+  webgpu: ['--enable-unsafe-webgpu', '--use-angle=swiftshader', '--enable-features=Vulkan', '--use-vulkan=swiftshader'],
+  webgl2: [],
+  none: ['--disable-3d-apis'],
+};
+
+/** How long a picture may take here, milliseconds: two slow cores, and a page drawn by software. */
+export const PATIENCE = 180_000;
+
+/** A browser of one kind and a server of the page. */
+export async function launch(kind) {
+  const browser = await chromium.launch({
+    executablePath: setting('CHROMIUM'),
+    args: ['--no-sandbox', ...KINDS[kind]],
+  });
+  const server = await serve(setting('SINEW_PAGE'));
+  return {
+    kind,
+    /** Opens the page in a new profile. `fragment` ends the address; `before` may prepare the tab. */
+    async open({ fragment = '', before, viewport = { width: 1200, height: 760 }, ...options } = {}) {
+      const context = await browser.newContext({
+        viewport,
+        colorScheme: 'dark',
+        permissions: ['clipboard-read', 'clipboard-write'],
+        ...options,
+      });
+      const page = await context.newPage();
+      await before?.(page);
+      const sinew = new Sinew(page, kind);
+      await sinew.goto(server.address + fragment);
+      return sinew;
+    },
+    async close() {
+      await browser.close();
+      server.close();
+    },
+  };
+}
+
+/** An open page. */
+export class Sinew {
+  /** What the page wrote to the console as errors, and exceptions. */
+  troubles = [];
+
+  constructor(page, kind) {
+    this.page = page;
+    this.kind = kind;
+    page.on('pageerror', (error) => this.troubles.push(String(error)));
+    page.on('console', (message) => {
+      if (message.type() === 'error') this.troubles.push(message.text());
+    });
+  }
+
+  async goto(address) {
+    await this.page.goto(address);
+    await this.ready();
+  }
+
+  async ready() {
+    const isThere = () => globalThis.sinew?.ready || document.querySelector('#loading.failed');
+    await this.page.waitForFunction(isThere, undefined, { timeout: PATIENCE });
+    const failure = await this.page.evaluate(() => document.querySelector('#loading.failed')?.innerText);
+    assert.equal(failure, undefined, 'the page could not start');
+    await this.page.evaluate(() => sinew.ready);
+  }
+
+  async reload() {
+    await this.page.reload();
+    await this.ready();
+  }
+
+  async close() {
+    await this.page.context().close();
+  }
+
+  text() {
+    return this.page.evaluate(() => sinew.text());
+  }
+
+  load(text) {
+    return this.page.evaluate((text) => sinew.load(text), text);
+  }
+
+  status() {
+    return this.page.evaluate(() => sinew.status());
+  }
+
+  link() {
+    return this.page.evaluate(() => sinew.link());
+  }
+
+  /** Waits until the status is as wanted; `wanted` runs in the page. */
+  async until(wanted, argument, timeout = PATIENCE) {
+    try {
+      await this.page.waitForFunction(`(${wanted})(sinew.status(), ${JSON.stringify(argument)})`, undefined, {
+        timeout,
+        polling: 50,
+      });
+    } catch (error) {
+      const status = JSON.stringify(await this.status());
+      throw new Error(`${wanted} never came true; the status is ${status}`, { cause: error });
+    }
+    return this.status();
+  }
+
+  /** The status when the picture of the present text is finished. */
+  async finished() {
+    return this.until((status) => status.fresh && status.phase === 'done');
+  }
+
+  /** The traced picture, decoded. */
+  async image() {
+    const base64 = await this.page.evaluate(async () => {
+      const bytes = new Uint8Array(await (await sinew.image()).arrayBuffer());
+      let text = '';
+      for (let i = 0; i < bytes.length; i += 4096) {
+        text += String.fromCharCode(...bytes.subarray(i, i + 4096));
+      }
+      return btoa(text);
+    });
+    return decode(Buffer.from(base64, 'base64'));
+  }
+
+  /** Fixes the size of the traced picture. */
+  size(width, height) {
+    return this.page.evaluate(([w, h]) => sinew.debug.pictureSize(w, h), [width, height]);
+  }
+
+  /** Where a widget is, in CSS pixels. */
+  async place(name) {
+    await this.page.waitForFunction((name) => sinew.debug.rects()[name], name, { timeout: 20_000 });
+    return this.page.evaluate((name) => sinew.debug.rects()[name], name);
+  }
+
+  /** Clicks the middle of a widget. */
+  async click(name) {
+    const { x, y, w, h } = await this.place(name);
+    await this.page.mouse.click(x + w / 2, y + h / 2);
+  }
+
+  /** What the screen shows, all of it or one widget, decoded. */
+  async screen(name) {
+    let clip;
+    if (name) {
+      const { x, y, w, h } = await this.place(name);
+      clip = { x, y, width: w, height: h };
+    }
+    return decode(await this.page.screenshot({ clip }));
+  }
+
+  /** Keeps a screenshot for people to look at. */
+  async keep(name) {
+    const path = join(setting('SINEW_SCREENSHOTS'), `${name}-${this.kind}.png`);
+    await this.page.screenshot({ path });
+  }
+}
+
+/** The picture that the program `sinew` draws of a text, decoded. */
+export async function native(text, [width, height]) {
+  const folder = await mkdtemp(join(tmpdir(), 'sinew-'));
+  try {
+    const [dataset, picture] = [join(folder, 'main.rat'), join(folder, 'main.png')];
+    await writeFile(dataset, text);
+    await promisify(execFile)(setting('SINEW_PROGRAM'), [
+      'render', dataset, '-o', picture, '-r', String(width), String(height),
+    ]);
+    return decode(await readFile(picture));
+  } finally {
+    await rm(folder, { recursive: true });
+  }
+}
+
+/** The text of an example. */
+export function example(name) {
+  return readFile(new URL(`../www/examples/${name}.rat`, import.meta.url), 'utf8');
+}
