@@ -23,6 +23,8 @@ mod slabs;
 mod soft;
 mod solids;
 mod spans;
+#[cfg(test)]
+mod tests;
 pub mod tile;
 mod unit;
 mod walk;

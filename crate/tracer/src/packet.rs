@@ -5,7 +5,7 @@ use crate::picture::{Picture, Stats};
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::shade::{Finish, towards};
-use crate::slabs::{Precision, Slabs};
+use crate::slabs::Slabs;
 use crate::soft::{PACKET, Scratch};
 use crate::walk::{Bundle, Quest};
 use glam::{DVec3, Vec3};
@@ -159,7 +159,7 @@ impl Picture {
                 t,
                 position: ray.at(t),
                 normal,
-                lift: (4.0 * Precision::PICTURE.last / steepness).min(5e-3) + 1e-6,
+                lift: (4.0 * self.soft.precision.last / steepness).min(5e-3) + 1e-6,
                 finish,
                 thing: 1,
             });

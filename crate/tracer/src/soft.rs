@@ -25,6 +25,8 @@ pub struct Soft {
     tree: Hierarchy,
     /// Primitives without a bounding ball.
     everywhere: Vec<u32>,
+    /// How exactly pictures follow the surface.
+    pub precision: Precision,
 }
 
 /// Rays from infinitely wide primitives are followed this far (in units of the scene's size).
@@ -77,6 +79,7 @@ impl Soft {
             bounds,
             tree: Hierarchy::new(balls),
             everywhere,
+            precision: Precision::PICTURE,
         }
     }
 
@@ -122,7 +125,7 @@ impl Soft {
         let beams = core::iter::once(beam).chain(divide());
         let beams = Beams::divided(beams.map(|b| b.from(from)).collect());
         let range = [0.0, to - from];
-        let slabs = Slabs::new(&self.bounds, list, beams, range, Precision::PICTURE);
+        let slabs = Slabs::new(&self.bounds, list, beams, range, self.precision);
         (slabs.slab(slabs.root()).above >= THRESHOLD).then_some((slabs, from))
     }
 
