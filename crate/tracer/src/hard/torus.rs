@@ -28,6 +28,8 @@ pub struct Tube {
     reflex: bool,
     /// Whether it turns all the way round.
     closed: bool,
+    /// A ball that holds the body.
+    ball: (DVec3, f64),
 }
 
 impl Tube {
@@ -47,6 +49,14 @@ impl Tube {
         if !(positive(sweep) && positive(angle) && positive(radius) && center.is_finite()) {
             return None;
         }
+        // A circle's piece of up to half a turn lies in the ball over its chord.
+        let (sin, cos) = libm::sincos(0.5 * angle);
+        let ball = if angle <= core::f64::consts::PI {
+            let middle = center + (u * cos + v * sin) * (sweep * cos);
+            (middle, sweep * sin + radius)
+        } else {
+            (center, sweep + radius)
+        };
         Some(Self {
             center,
             u,
@@ -58,6 +68,7 @@ impl Tube {
             end: [libm::cos(angle), libm::sin(angle)],
             reflex: angle > core::f64::consts::PI,
             closed: angle >= core::f64::consts::TAU * (1.0 - 1e-12),
+            ball: (ball.0, ball.1 * (1.0 + 1e-9)),
         })
     }
 
@@ -86,17 +97,31 @@ impl Tube {
 
     /// See [`super::Solid::crossings`].
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
-        // Measure t from the point nearest to the centre: the quartic is then well scaled however
-        // far the eye is.
-        let (ball, reach) = self.ball();
+        // Measure t from the point nearest to the body's middle: the quartic is then well scaled
+        // however far the eye is.
+        let (ball, reach) = self.ball;
         let shift = (ball - ray.origin).dot(ray.direction);
-        if ray.at(shift).distance(ball) > reach {
+        let across = ray.at(shift).distance_squared(ball);
+        if across > reach * reach {
             return;
         }
         let local = |d: DVec3| [d.dot(self.u), d.dot(self.v), d.dot(self.w)];
         let o = local(ray.at(shift) - self.center);
         let d = local(ray.direction);
         let at = |t: f64| [o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]];
+        // Outside the ball, and above and below the tube, there is nothing.
+        let half = (reach * reach - across).sqrt();
+        let (mut from, mut to) = (-half, half);
+        let lids = [(self.radius - o[2]) / d[2], (-self.radius - o[2]) / d[2]];
+        if d[2] != 0.0 {
+            from = from.max(lids[0].min(lids[1]));
+            to = to.min(lids[0].max(lids[1]));
+        } else if o[2].abs() > self.radius {
+            return;
+        }
+        if from >= to {
+            return;
+        }
 
         // (|p|² + R² − r²)² = 4R²(x² + y²), with |p|² = t² + 2bt + c.
         let b = o[0] * d[0] + o[1] * d[1] + o[2] * d[2];
@@ -113,7 +138,7 @@ impl Tube {
         // Where the line is cut, and by which lid if by one.
         let mut cuts = [(0.0, None); 6];
         let mut count = 0;
-        for &t in roots(&quartic, -reach, reach).as_slice() {
+        for &t in roots(&quartic, from, to).as_slice() {
             cuts[count] = (t, None);
             count += 1;
         }
@@ -123,7 +148,7 @@ impl Tube {
                 let normal = [-end[1] * out, end[0] * out];
                 let rate = d[0] * normal[0] + d[1] * normal[1];
                 let t = -(o[0] * normal[0] + o[1] * normal[1]) / rate;
-                if t.is_finite() && t.abs() <= reach {
+                if t >= from && t <= to {
                     cuts[count] = (t, Some((end, normal)));
                     count += 1;
                 }
@@ -134,7 +159,7 @@ impl Tube {
         let mut was_inside = false;
         for i in 0..cuts.len() {
             let (t, lid) = cuts[i];
-            let next = cuts.get(i + 1).map_or(t + reach, |c| c.0);
+            let next = cuts.get(i + 1).map_or(to, |c| c.0);
             let is_inside = i + 1 < cuts.len() && self.inside(at(0.5 * (t + next)));
             if is_inside != was_inside {
                 out.push(Crossing {
@@ -173,6 +198,6 @@ impl Tube {
     /// See [`super::Solid::ball`].
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
-        (self.center, self.sweep + self.radius)
+        self.ball
     }
 }
