@@ -7,6 +7,7 @@ use crate::command::Command;
 use crate::draft::Draft;
 use crate::editor::Editor;
 use crate::gallery::Gallery;
+use crate::keyboard::Keyboard;
 use crate::notice::Notice;
 use crate::pool::Pool;
 use crate::render::{Phase, Renderer, pass_label};
@@ -91,6 +92,7 @@ pub struct App {
     /// The picture's place in device pixels at the last frame.
     pub(crate) place: [f32; 2],
     forced_size: Option<[u32; 2]>,
+    keyboard: Keyboard,
     parts: Parts,
     saved_settings: Settings,
     reported: Option<u64>,
@@ -133,6 +135,7 @@ impl App {
             tab: Tab::Text,
             place: [640.0, 480.0],
             forced_size: None,
+            keyboard: Keyboard::default(),
             saved_settings: settings.clone(),
             settings,
             reported: None,
@@ -318,6 +321,7 @@ impl App {
             self.touch = Some(touch);
             theme::apply(&ctx, touch);
         }
+        self.keyboard.order(&ctx);
         let mut commands = Vec::new();
         self.keys(&ctx, &mut commands);
         crate::layout::show(self, ui, &mut commands);
@@ -486,10 +490,8 @@ impl App {
                 if let Some((_, fragment)) = link.split_once('#') {
                     platform::set_hash(&format!("#{fragment}"));
                 }
-                let text = format!(
-                    "Link copied: {}, with the whole text and the view. It is in the address bar too.",
-                    share::size(&link)
-                );
+                let size = share::size(&link);
+                let text = format!("Link copied ({size}). It carries the text and the view.");
                 ctx.copy_text(link);
                 self.notice = Some(Notice::done(text, now));
             }

@@ -77,9 +77,18 @@ pub fn show(
 fn name(ui: &mut Ui, work: &Work, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let mut name = work.name.clone();
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let shown = if name.is_empty() { "Untitled" } else { &name };
+    let width = ui
+        .painter()
+        .layout_no_wrap(shown.to_owned(), font, palette.text)
+        .size()
+        .x;
     let field = TextEdit::singleline(&mut name)
         .id(egui::Id::unique("work name"))
-        .desired_width(150.0)
+        .desired_width((width + 18.0).clamp(40.0, 260.0))
+        .min_size(egui::vec2(0.0, ui.spacing().interact_size.y))
+        .align(egui::Align2::LEFT_CENTER)
         .char_limit(60)
         .text_color(palette.text)
         .frame(egui::Frame::new().inner_margin(egui::Margin::symmetric(6, 3)))
@@ -88,7 +97,7 @@ fn name(ui: &mut Ui, work: &Work, commands: &mut Vec<Command>) {
         .add(field)
         .on_hover_text("Name of this work: click to change it");
     let kind = match work.origin {
-        Origin::Own => "",
+        Origin::Own | Origin::Fresh => "",
         Origin::Example => "example",
         Origin::Link => "shared with you",
     };

@@ -43,7 +43,7 @@ macro_rules! example {
 
 /// All of them. The first one is what a first visit shows.
 pub const ALL: [Example; 6] = [
-    example!("Cowrie", "a spiny shell: arcs and random spikes", "cowrie"),
+    example!("Cowrie", "a shell with random spikes", "cowrie"),
     example!("Seahorse", "the classic: 43 arcs", "seahorse"),
     example!("Starfish", "arms made by a loop", "starfish"),
     example!("Sphereflake", "balls on balls, by recursion", "sphereflake"),

@@ -5,14 +5,14 @@ use crate::examples;
 use crate::storage::Entry;
 use crate::theme;
 use egui::{
-    Align2, Button, Color32, ColorImage, FontId, Rect, RichText, ScrollArea, Sense, TextureHandle,
-    TextureOptions, Ui, Vec2, pos2, vec2,
+    Align2, Button, Color32, ColorImage, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense,
+    TextureHandle, TextureOptions, Ui, Vec2, vec2,
 };
 
 /// The gallery's thumbnails, decoded when it is first opened.
 #[derive(Default)]
 pub struct Gallery {
-    thumbnails: Vec<Option<TextureHandle>>,
+    thumbnails: Vec<Option<(TextureHandle, Color32)>>,
     /// The saved works, read when the gallery opens.
     entries: Vec<Entry>,
     /// The work whose deletion waits for a second click.
@@ -66,14 +66,17 @@ impl Gallery {
                     let image = examples::decode(example.thumbnail)?;
                     let size = image.size.map(|side| side as usize);
                     let pixels = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
-                    Some(ui.load_texture(example.name, pixels, TextureOptions::LINEAR))
+                    // A corner of the picture shows its background.
+                    let background = *pixels.pixels.first()?;
+                    let options = TextureOptions::LINEAR;
+                    Some((ui.load_texture(example.name, pixels, options), background))
                 })
                 .collect();
         }
         let gap = 12.0;
         let columns = ((ui.available_width() + gap) / (190.0 + gap))
             .floor()
-            .clamp(2.0, 4.0);
+            .clamp(2.0, 3.0);
         let width = ((ui.available_width() + gap) / columns - gap).floor();
         let indices: Vec<usize> = (0..examples::ALL.len()).collect();
         for row in indices.chunks(columns as usize) {
@@ -92,7 +95,7 @@ impl Gallery {
     fn card(&self, ui: &mut Ui, index: usize, width: f32) -> bool {
         let palette = theme::palette(ui.visuals());
         let example = &examples::ALL[index];
-        let picture = vec2(width, (width * 0.72).floor());
+        let picture = vec2(width, (width * 0.75).floor());
         let (rect, response) = ui.allocate_exact_size(picture + vec2(0.0, 44.0), Sense::click());
         response.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Open {}", example.title))
@@ -101,16 +104,23 @@ impl Gallery {
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 8.0, if hot { palette.hover } else { palette.button });
         let place = Rect::from_min_size(rect.min, picture);
-        if let Some(Some(texture)) = self.thumbnails.get(index) {
+        if let Some(Some((texture, background))) = self.thumbnails.get(index) {
+            let round = CornerRadius {
+                nw: 8,
+                ne: 8,
+                sw: 0,
+                se: 0,
+            };
+            painter.rect_filled(place, round, *background);
+            let inner = contain(texture.size_vec2(), place);
+            let round = if inner == place {
+                round
+            } else {
+                CornerRadius::ZERO
+            };
             egui::Image::from_texture(texture)
-                .uv(crop(texture.size_vec2(), picture))
-                .corner_radius(egui::CornerRadius {
-                    nw: 8,
-                    ne: 8,
-                    sw: 0,
-                    se: 0,
-                })
-                .paint_at(ui, place);
+                .corner_radius(round)
+                .paint_at(ui, inner);
         }
         let text = place.left_bottom() + vec2(10.0, 6.0);
         painter.text(
@@ -142,12 +152,27 @@ impl Gallery {
                 } else {
                     &entry.name
                 };
-                let button = Button::new(RichText::new(name).color(palette.text))
-                    .selected(is_open)
-                    .truncate();
-                let width = (ui.available_width() - 190.0).max(120.0);
-                if ui
-                    .add_sized(vec2(width, ui.spacing().interact_size.y), button)
+                let size = vec2(
+                    (ui.available_width() - 200.0).max(110.0),
+                    ui.spacing().interact_size.y,
+                );
+                let (rect, row) = ui.allocate_exact_size(size, Sense::click());
+                row.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Open {name}"))
+                });
+                if row.hovered() || is_open {
+                    ui.painter()
+                        .rect_filled(rect, f32::from(theme::ROUND), palette.button);
+                }
+                ui.painter_at(rect.shrink(2.0)).text(
+                    rect.left_center() + vec2(8.0, 0.0),
+                    Align2::LEFT_CENTER,
+                    name,
+                    FontId::proportional(14.0),
+                    palette.text,
+                );
+                if row
+                    .on_hover_cursor(egui::CursorIcon::PointingHand)
                     .clicked()
                 {
                     commands.push(Command::OpenSaved(entry.id.clone()));
@@ -182,11 +207,16 @@ impl Gallery {
     }
 }
 
-/// The middle part of a picture that has the proportions of its place.
-fn crop(picture: Vec2, place: Vec2) -> Rect {
-    let scale = (place.x / picture.x.max(1.0)).max(place.y / picture.y.max(1.0));
-    let part = place / (picture * scale).max(Vec2::splat(1e-3));
-    Rect::from_center_size(pos2(0.5, 0.5), part)
+/// The largest rectangle of a picture's proportions in the middle of a place; the place itself if
+/// they are nearly the same.
+fn contain(picture: Vec2, place: Rect) -> Rect {
+    let scale = (place.width() / picture.x.max(1.0)).min(place.height() / picture.y.max(1.0));
+    let size = picture * scale;
+    if (size - place.size()).length() < 0.06 * place.width() {
+        place
+    } else {
+        Rect::from_center_size(place.center(), size)
+    }
 }
 
 /// How long ago, in words.
@@ -206,12 +236,17 @@ fn ago(milliseconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use egui::pos2;
 
     #[test]
-    fn thumbnails_are_cropped_in_the_middle() {
-        let part = crop(vec2(400.0, 100.0), vec2(100.0, 100.0));
-        assert!((part.width() - 0.25).abs() < 1e-6 && part.height() == 1.0);
-        assert_eq!(part.center(), pos2(0.5, 0.5));
+    fn thumbnails_are_seen_whole() {
+        let place = Rect::from_min_size(pos2(0.0, 0.0), vec2(200.0, 150.0));
+        assert_eq!(contain(vec2(320.0, 240.0), place), place);
+        let high = contain(vec2(100.0, 300.0), place);
+        assert_eq!(
+            (high.size(), high.center()),
+            (vec2(50.0, 150.0), place.center())
+        );
     }
 
     #[test]

@@ -152,8 +152,10 @@ fn problem_list(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
 fn slider_list(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     places::note(ui.ctx(), "sliders", ui.max_rect());
-    ui.label(RichText::new("Sliders").size(12.5).color(palette.weak))
-        .on_hover_text("Variables marked hot in the text");
+    if !is_narrow(ui.ctx()) {
+        ui.label(RichText::new("Sliders").size(12.5).color(palette.weak))
+            .on_hover_text("Variables marked hot in the text");
+    }
     ScrollArea::vertical()
         .id_salt("sliders")
         .auto_shrink(false)
@@ -193,7 +195,8 @@ fn show_choice(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
         .inner_margin(2)
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            ui.spacing_mut().interact_size.y -= 4.0;
+            ui.spacing_mut().interact_size.y = 22.0;
+            ui.spacing_mut().button_padding.y = 1.0;
             for (show, text, tip) in [
                 (
                     Show::Auto,
@@ -289,6 +292,7 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         show: app.settings.show,
         now,
         hint: !app.settings.turned,
+        round: if narrow { 0.0 } else { 5.0 },
     };
     view::show(ui, rect, &scenery, commands);
     if let Some(notice) = &app.notice {

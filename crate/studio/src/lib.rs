@@ -25,6 +25,7 @@ pub mod help;
 pub mod history;
 pub mod icon;
 pub mod indent;
+pub mod keyboard;
 pub mod layout;
 pub mod marks;
 pub mod notice;

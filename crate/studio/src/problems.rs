@@ -95,11 +95,12 @@ fn row(
         ui.add_space(3.0);
         ui.horizontal_top(|ui| {
             ui.add_space(4.0);
-            let (dot, _) = ui.allocate_exact_size(vec2(8.0, 18.0), Sense::hover());
+            let (dot, _) =
+                ui.allocate_exact_size(vec2(8.0, ui.spacing().interact_size.y), Sense::hover());
             ui.painter()
                 .circle_filled(dot.center(), 3.5, colour(palette, diagnostic.severity));
             ui.vertical(|ui| {
-                ui.spacing_mut().item_spacing.y = 1.0;
+                ui.spacing_mut().item_spacing.y = 0.0;
                 ui.horizontal_wrapped(|ui| {
                     ui.spacing_mut().item_spacing.x = 8.0;
                     ui.label(

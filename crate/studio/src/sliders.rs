@@ -2,7 +2,7 @@
 //! literal in the text, so that the text stays the one truth and undo works as for typing.
 
 use crate::command::Command;
-use crate::theme;
+use crate::{places, theme};
 use egui::{DragValue, RichText, Slider, Ui};
 use rats::{HotValue, HotVariable, hot};
 use std::collections::HashMap;
@@ -29,7 +29,7 @@ impl Sliders {
             .map(|variable| variable.name.chars().count())
             .max()
             .unwrap_or(0);
-        let name_width = (widest as f32 * 8.0).clamp(32.0, 110.0);
+        let name_width = (widest as f32 * 8.3 + 2.0).clamp(32.0, 130.0);
         for variable in hot {
             ui.push_id((variable.file, &variable.name), |ui| {
                 ui.horizontal(|ui| {
@@ -95,26 +95,60 @@ impl Sliders {
         let range = *self.ranges.entry(key.clone()).or_insert(fresh);
         let (low, high) = range;
         let decimals = decimals(high - low);
-        ui.spacing_mut().slider_width = (ui.available_width() - 84.0).clamp(60.0, 420.0);
-        let slider = ui.add(
-            Slider::new(&mut value, low..=high)
-                .clamping(egui::SliderClamping::Never)
-                .max_decimals(decimals)
-                .smart_aim(false),
-        );
-        let slider = slider.accessible_name(&variable.name);
-        if slider.changed() && value.is_finite() {
+        const FIELD: f32 = 66.0;
+        let width = ui.available_width() - FIELD - 2.0 * ui.spacing().item_spacing.x;
+        let slider = ui.scope(|ui| {
+            colours(ui);
+            ui.spacing_mut().slider_width = width.clamp(60.0, 420.0);
+            ui.add(
+                Slider::new(&mut value, low..=high)
+                    .clamping(egui::SliderClamping::Never)
+                    .max_decimals(decimals)
+                    .show_value(false)
+                    .smart_aim(false),
+            )
+        });
+        let slider = slider.inner.accessible_name(&variable.name);
+        places::note(ui.ctx(), format!("slider {}", variable.name), slider.rect);
+        let size = egui::vec2(FIELD, ui.spacing().interact_size.y);
+        let field = DragValue::new(&mut value)
+            .speed((high - low) / 500.0)
+            .max_decimals(decimals)
+            .custom_formatter(|value, _| hot::write(&HotValue::Scalar(value)));
+        let field = ui
+            .add_sized(size, field)
+            .on_hover_text("Drag sideways, or click to type");
+        let dragged = slider.dragged() || field.dragged();
+        if (slider.changed() || field.changed()) && value.is_finite() {
             replace(hot::write(&HotValue::Scalar(rounded(value, decimals))));
         }
         // At rest the range follows the value, so that a slider at its end can go further.
-        if !slider.dragged() && !slider.is_pointer_button_down_on() {
+        if !dragged && !slider.is_pointer_button_down_on() {
             let inside = value > low + 0.02 * (high - low) || value == low && low == 0.0;
             if !inside || value >= high {
                 self.ranges.insert(key, fresh);
             }
         }
-        slider.dragged()
+        dragged
     }
+}
+
+/// The accent on what is filled, and a knob that stands out from the rail.
+fn colours(ui: &mut Ui) {
+    let palette = theme::palette(ui.visuals());
+    let visuals = ui.visuals_mut();
+    visuals.selection.bg_fill = palette.accent;
+    let widgets = &mut visuals.widgets;
+    for widget in [
+        &mut widgets.inactive,
+        &mut widgets.hovered,
+        &mut widgets.active,
+    ] {
+        widget.bg_fill = palette.hover;
+        widget.fg_stroke = egui::Stroke::new(2.0, palette.accent);
+    }
+    widgets.hovered.bg_fill = palette.accent;
+    widgets.active.bg_fill = palette.accent;
 }
 
 fn vector_fields(ui: &mut Ui, mut vector: [f64; 3], replace: &mut impl FnMut(String)) -> bool {

@@ -7,6 +7,7 @@ use crate::command::Command;
 use crate::render::Renderer;
 use crate::session::Session;
 use crate::theme;
+use egui::epaint::RectShape;
 use egui::{
     Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, TextureId, Ui, Vec2, vec2,
 };
@@ -41,6 +42,8 @@ pub struct Scenery<'a> {
     pub now: f64,
     /// Whether to say how to turn the picture.
     pub hint: bool,
+    /// Radius of the corners.
+    pub round: f32,
 }
 
 /// The largest rectangle of the frame's proportions in the middle of a place.
@@ -82,15 +85,17 @@ pub fn show(
         show,
         now,
         hint,
+        round,
     } = *scenery;
     let palette = theme::palette(ui.visuals());
     let painter = ui.painter().clone();
-    painter.rect_filled(rect, 4.0, background(session));
+    painter.rect_filled(rect, round, background(session));
     let traced = renderer.texture();
     let fresh = traced.is_some_and(|(_, generation)| generation == session.generation());
     let image = |texture: TextureId, alpha: f32| {
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-        painter.image(texture, rect, whole, Color32::WHITE.gamma_multiply(alpha));
+        let shape = RectShape::filled(rect, round, Color32::WHITE.gamma_multiply(alpha));
+        painter.add(shape.with_texture(texture, whole));
     };
     let draft = draft.filter(|_| show != Show::Traced);
     if let Some(draft) = draft {

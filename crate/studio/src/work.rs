@@ -23,6 +23,8 @@ pub enum Origin {
     Example,
     /// A shared link, not edited yet.
     Link,
+    /// Begun empty or given by a script, not edited yet.
+    Fresh,
 }
 
 /// The open work.
@@ -226,7 +228,11 @@ impl Work {
 
     fn begin_example(&mut self, index: usize) {
         if let Some(example) = examples::ALL.get(index) {
-            self.begin_project(example.title.to_owned(), example.project());
+            let kept = Kept {
+                project: example.project(),
+                ..Kept::default()
+            };
+            self.begin(example.title.to_owned(), Origin::Example, kept);
         }
     }
 
@@ -235,7 +241,7 @@ impl Work {
             project,
             ..Kept::default()
         };
-        self.begin(name, Origin::Example, kept);
+        self.begin(name, Origin::Fresh, kept);
     }
 
     fn begin(&mut self, name: String, origin: Origin, kept: Kept) {
