@@ -3,6 +3,31 @@
 //! [`Picture::new`] prepares a scene for tracing at a given size; [`Picture::trace`] draws one
 //! tile of it. A tile's pixels depend on nothing but the scene, so tiles may be traced in any
 //! order, by any number of threads or workers, on any platform, with equal results.
+//!
+//! # How a pixel comes about
+//!
+//! [`picture`] cuts a tile into blocks of pixels that share a beam, and blocks into packets of eight
+//! rays. `packet` finds what the rays of a packet hit, first among the hard elements (`solids`,
+//! [`hard`]), then on the soft surface (`soft`), asks for shadows and mixes colours (`shade`).
+//! `refine` sends more rays where neighbouring pixels differ.
+//!
+//! The soft surface is found by the thesis' method (chapter 4), certified: `slabs` decides for a
+//! whole beam which primitive needs Hermite spans of which length (`bound` knows how large a field
+//! and the error of a span can be), and `walk` follows single packets through the slabs, adds up
+//! their spans' cubics (`spans`) and takes their roots (`roots`). `walk` is the only part that knows
+//! how crossings are found: given slabs and rays it returns crossings.
+//!
+//! # Limits
+//!
+//! - The soft surface of a picture is that of a field within 5·10⁻⁴·T of the true one, cut off at
+//!   each primitive's depth of influence; hits are then moved onto the (cut-off) field itself.
+//!   [`Picture::hits`] cuts nothing off; it may miss two crossings between which the field is
+//!   within 10⁻⁹·T of T.
+//! - A primitive whose profile has kinks or jumps has no certified spans; they are made short by
+//!   an estimate.
+//! - A packet looks at no more than 2¹⁷ list entries, or 64 times the primitives in its beam; after
+//!   that its spans are no longer certified. A slab is no shorter than 2⁻⁴⁰ of its beam.
+//! - Soft planes are followed up to 10⁴ times the scene's size.
 
 mod area;
 mod beam;

@@ -5,6 +5,7 @@ mod common;
 use crate::picture::{Picture, Stats};
 use crate::slabs::Precision;
 use crate::tile::{Pass, Tile};
+use field::{Profile, Wave};
 use scene::Scene;
 
 const SIZE: u32 = 72;
@@ -53,4 +54,28 @@ fn pictures_show_the_exact_surface() {
     }
     // Silhouettes and the edges of shadows may move by a small part of a pixel.
     assert!(worst[0] < 0.02 && worst[1] < 0.005, "{worst:?}");
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn pictures_with_profiles_show_the_exact_surface() {
+    let mut worst = [0.0f64; 2];
+    for (seed, wave) in [Wave::Sin, Wave::Hat, Wave::Sin2, Wave::Saw, Wave::Step]
+        .into_iter()
+        .enumerate()
+    {
+        let mut scene = common::blend(seed as u64, 5);
+        for material in &mut scene.materials[..2] {
+            material.profile = Some(Profile {
+                waves: [wave, Wave::One],
+                scale: [8.0, 1.0],
+                bounds: [0.6, 1.0],
+                times: 1.2,
+            });
+        }
+        let [slightly, visibly] = difference(&scene);
+        worst = [worst[0].max(slightly), worst[1].max(visibly)];
+    }
+    // A profile with jumps has no certified spans, so this bar is lower.
+    assert!(worst[0] < 0.03 && worst[1] < 0.02, "{worst:?}");
 }
