@@ -7,6 +7,9 @@ use scene::Camera;
 use std::cell::RefCell;
 use std::rc::Rc;
 
+/// Looks at the traced picture, if there is one.
+pub type Viewer = Box<dyn FnOnce(Option<&Image>)>;
+
 /// One wish from outside. The app carries it out at its next tick.
 pub enum Request {
     /// Answer when the app runs.
@@ -18,7 +21,7 @@ pub enum Request {
     /// See the scene from here; `None`: from where the text says.
     SetCamera(Option<Camera>),
     /// Give the traced picture.
-    Picture(Box<dyn FnOnce(Option<&Image>)>),
+    Picture(Viewer),
     /// Answer when the picture of the present text and camera is finished, or was stopped.
     Finished(Box<dyn FnOnce()>),
     /// Stop tracing.
