@@ -12,8 +12,9 @@ use std::{cell::Cell, rc::Rc, sync::Arc};
 
 use eframe::{App, CreationContext, WebRunner};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use js_sys::Promise;
 use wasm_bindgen::{JsCast, JsValue, closure::Closure};
-use wasm_bindgen_futures::spawn_local;
+use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
 use web_sys::{Document, HtmlCanvasElement, Window};
 
 use crate::{Backend, software};
@@ -21,9 +22,12 @@ use crate::{Backend, software};
 /// The order of trial.
 const ORDER: [Backend; 3] = [Backend::WebGpu, Backend::WebGl2, Backend::None];
 
-/// A backend lost within this time of its start, in milliseconds, is given up for the next one; a
-/// backend that ran longer is tried once more first, because drivers reset and laptops sleep.
+/// A backend that is lost is given up for the next one. If it ran for this time, in milliseconds,
+/// it is first tried once more, because drivers reset and laptops sleep.
 const STEADY: f64 = 10_000.0;
+
+/// Milliseconds that a browser may take to say whether it has WebGPU. It may never answer.
+const PATIENCE: i32 = 5_000;
 
 /// The event that a lost WebGPU device sends to the canvas; WebGL has its own.
 const DEVICE_LOST: &str = "sinew-device-lost";
@@ -47,6 +51,7 @@ pub async fn start<A: App + 'static>(
     let boot = Rc::new(Boot {
         canvas_id: canvas_id.to_owned(),
         create: Box::new(move |context, backend| Box::new(create(context, backend))),
+        retried: Cell::new(None),
     });
     let first = forced().unwrap_or(Backend::WebGpu);
     boot.start_from(first).await
@@ -57,6 +62,8 @@ type Create = dyn Fn(&CreationContext<'_>, Backend) -> Box<dyn App>;
 struct Boot {
     canvas_id: String,
     create: Box<Create>,
+    /// The backend that was tried once more after it had been lost.
+    retried: Cell<Option<Backend>>,
 }
 
 impl Boot {
@@ -147,7 +154,8 @@ impl Boot {
             if done.replace(true) {
                 return;
             }
-            let next = if js_sys::Date::now() - started >= STEADY {
+            let steady = js_sys::Date::now() - started >= STEADY;
+            let next = if steady && self.retried.replace(Some(backend)) != Some(backend) {
                 backend
             } else {
                 after(backend)
@@ -197,10 +205,23 @@ fn forced() -> Option<Backend> {
 /// Whether the browser really offers the backend.
 async fn is_there(backend: Backend) -> bool {
     match backend {
-        Backend::WebGpu => wgpu::util::is_browser_webgpu_supported().await,
+        Backend::WebGpu => has_webgpu().await,
         Backend::WebGl2 => has_webgl2(),
         Backend::None => true,
     }
+}
+
+async fn has_webgpu() -> bool {
+    let answer =
+        future_to_promise(async { Ok(wgpu::util::is_browser_webgpu_supported().await.into()) });
+    let late = Promise::new(&mut |resolve, _| {
+        // Without a timer there is nothing to do but to wait for the answer.
+        let _ = window().set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, PATIENCE);
+    });
+    let first = Promise::race(&js_sys::Array::of2(&answer, &late));
+    JsFuture::from(first)
+        .await
+        .is_ok_and(|answer| answer.is_truthy())
 }
 
 fn has_webgl2() -> bool {
@@ -277,13 +298,15 @@ fn warn(message: &str) {
     web_sys::console::warn_1(&message.into());
 }
 
+/// What an error says, without the traces that some carry in the lines below.
 fn text_of(error: &JsValue) -> String {
-    error
+    let text = error
         .as_string()
         .or_else(|| {
             error
                 .dyn_ref::<js_sys::Error>()
                 .map(|error| error.message().into())
         })
-        .unwrap_or_else(|| format!("{error:?}"))
+        .unwrap_or_else(|| format!("{error:?}"));
+    text.lines().next().unwrap_or_default().to_owned()
 }
