@@ -35,11 +35,9 @@ for (const name of names) {
     const thumbnail = decode(await readFile(new URL(`${name}.png`, folder)));
     assert.ok(colours(thumbnail) > 50, 'the thumbnail shows something');
     const size = [WIDTH, Math.round((WIDTH * thumbnail.height) / thumbnail.width)];
-    await sinew.size(...size);
     await sinew.load(text);
-    await sinew.until((status) => status.errors === 0);
-    await sinew.until((status, [w, h]) => status.picture?.width === w && status.picture?.height === h, size);
-    await sinew.finished();
+    await sinew.resize(...size);
+    assert.equal((await sinew.status()).errors, 0);
     const [page, program] = [await sinew.image(), await native(text, size)];
     assert.ok(colours(page) > 50, 'the picture shows something');
     const share = shareThatDiffers(page, program, 1);

@@ -108,18 +108,15 @@ export class Sinew {
     return this.page.evaluate(() => sinew.link());
   }
 
-  /** Waits until the status is as wanted; `wanted` runs in the page. */
-  async until(wanted, argument, timeout = PATIENCE) {
-    try {
-      await this.page.waitForFunction(`(${wanted})(sinew.status(), ${JSON.stringify(argument)})`, undefined, {
-        timeout,
-        polling: 50,
-      });
-    } catch (error) {
-      const status = JSON.stringify(await this.status());
-      throw new Error(`${wanted} never came true; the status is ${status}`, { cause: error });
+  /** Waits until the status is as wanted, and gives it. */
+  async until(wanted, timeout = PATIENCE) {
+    const deadline = Date.now() + timeout;
+    for (;;) {
+      const status = await this.status();
+      if (wanted(status)) return status;
+      assert.ok(Date.now() < deadline, `${wanted} never came true: ${JSON.stringify(status)}`);
+      await this.page.waitForTimeout(50);
     }
-    return this.status();
   }
 
   /** The status when the picture of the present text is finished. */
@@ -140,9 +137,11 @@ export class Sinew {
     return decode(Buffer.from(base64, 'base64'));
   }
 
-  /** Fixes the size of the traced picture. */
-  size(width, height) {
-    return this.page.evaluate(([w, h]) => sinew.debug.pictureSize(w, h), [width, height]);
+  /** Fixes the size of the traced picture, and waits for such a picture to be finished. */
+  async resize(width, height) {
+    await this.page.evaluate(([w, h]) => sinew.debug.pictureSize(w, h), [width, height]);
+    await this.until(({ picture }) => picture?.width === width && picture?.height === height);
+    await this.finished();
   }
 
   /** Where a widget is, in CSS pixels. */

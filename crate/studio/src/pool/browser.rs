@@ -203,22 +203,25 @@ impl Inner {
         spawn_local(async move {
             let module = load().await;
             let Some(pool) = pool.upgrade() else { return };
-            let inner = &mut *pool.borrow_mut();
-            inner.loading = false;
-            match module {
-                Ok(module) => {
-                    inner.core.workers.module = Some(module);
-                    inner.core.launch(now());
-                }
-                Err(error) => inner.core.scheduler.unavailable(
-                    &format!(
-                        "The tracer could not be loaded: {}. Check the connection and render again.",
-                        describe(error)
+            {
+                let inner = &mut *pool.borrow_mut();
+                inner.loading = false;
+                match module {
+                    Ok(module) => {
+                        inner.core.workers.module = Some(module);
+                        inner.core.launch(now());
+                    }
+                    Err(error) => inner.core.scheduler.unavailable(
+                        &format!(
+                            "The tracer could not be loaded: {}. Check the connection and render again.",
+                            describe(error)
+                        ),
+                        now(),
                     ),
-                    now(),
-                ),
+                }
+                (inner.repaint)();
             }
-            (inner.repaint)();
+            Self::watch(&pool);
         });
     }
 
@@ -267,7 +270,6 @@ impl Pool {
             })
         });
         Inner::load(&inner);
-        Inner::watch(&inner);
         Self { inner }
     }
 

@@ -41,22 +41,22 @@ const ENOUGH: u32 = 4;
 struct Measured {
     tiles: u32,
     seconds: f64,
+    slowest: f64,
 }
 
 /// What the tiles of a picture cost: measured where possible, else guessed from other passes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Costs {
     passes: [Measured; 3],
-    /// Most seconds any tile took for each of its rays.
-    slowest_ray: f64,
 }
 
 impl Costs {
-    /// Notes that a tile of `rays` rays took so long.
-    pub fn add(&mut self, pass: usize, rays: f64, seconds: f64) {
-        self.passes[pass].tiles += 1;
-        self.passes[pass].seconds += seconds;
-        self.slowest_ray = self.slowest_ray.max(seconds / rays);
+    /// Notes that a tile took so long.
+    pub fn add(&mut self, pass: usize, seconds: f64) {
+        let measured = &mut self.passes[pass];
+        measured.tiles += 1;
+        measured.seconds += seconds;
+        measured.slowest = measured.slowest.max(seconds);
     }
 
     /// Expected seconds of one tile of a pass; a bare guess if nothing was measured.
@@ -72,9 +72,9 @@ impl Costs {
         })
     }
 
-    /// Most seconds any tile took for each of its rays; 0 if none was measured.
-    pub fn slowest_ray(&self) -> f64 {
-        self.slowest_ray
+    /// Most seconds any tile of a pass took; 0 if none was measured.
+    pub fn slowest(&self, pass: usize) -> f64 {
+        self.passes[pass].slowest
     }
 
     /// Whether enough was measured to foretell a time.
@@ -98,14 +98,14 @@ mod tests {
     fn costs_are_measured_or_scaled_from_what_was_measured() {
         let mut costs = Costs::default();
         assert!(!costs.enough());
-        costs.add(0, 16.0, 0.002);
-        costs.add(0, 16.0, 0.004);
+        costs.add(0, 0.002);
+        costs.add(0, 0.004);
         assert!((costs.expected(0) - 0.003).abs() < 1e-12);
         assert!((costs.expected(1) - 0.003 * TYPICAL[1]).abs() < 1e-12);
-        costs.add(1, 1024.0, 0.05);
+        costs.add(1, 0.05);
         assert!((costs.expected(2) - 0.05 * TYPICAL[2] / TYPICAL[1]).abs() < 1e-12);
-        assert!((costs.slowest_ray() - 0.004 / 16.0).abs() < 1e-12);
-        costs.add(1, 1024.0, 0.05);
+        assert!((costs.slowest(0) - 0.004).abs() < 1e-12);
+        costs.add(1, 0.05);
         assert!(costs.enough());
     }
 }

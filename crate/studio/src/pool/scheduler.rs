@@ -33,8 +33,10 @@ pub const START_LIMIT: f64 = 30.0;
 pub const PREPARE_LIMIT: f64 = 60.0;
 /// Least seconds a tile may take.
 pub const TILE_LIMIT: f64 = 10.0;
-/// A tile may take so many times longer than the slowest rays so far let expect, …
+/// A tile may take so many times longer than the slowest of its pass so far, …
 pub const SLACK: f64 = 20.0;
+/// … and so many times longer again after each failure, …
+pub const RETRY: f64 = 4.0;
 /// … but never longer than so many seconds.
 pub const LONGEST_LIMIT: f64 = 600.0;
 
@@ -183,22 +185,13 @@ impl Run {
         ahead.min(share)
     }
 
-    /// Most rays of a task.
-    fn rays(&self, task: usize) -> f64 {
-        let order = self.order(task, 0);
-        let (width, height) = (order.tile.width, order.tile.height);
-        match order.pass {
-            Pass::Coarse => f64::from(width.div_ceil(8)) * f64::from(height.div_ceil(8)),
-            Pass::Full => f64::from(width) * f64::from(height),
-            Pass::Smooth => {
-                f64::from(width) * f64::from(height) * f64::from(self.plan.samples).powi(2)
-            }
-        }
-    }
-
-    /// Seconds a task may take.
+    /// Seconds a task may take. After each failure it gets more, as a tile may be slow for good
+    /// reasons.
     fn limit(&self, task: usize) -> f64 {
-        (SLACK * self.costs.slowest_ray() * self.rays(task)).clamp(TILE_LIMIT, LONGEST_LIMIT)
+        let pass = task / self.tiles.len();
+        let failures = self.failures.get(&task).copied().unwrap_or(0);
+        let long = SLACK * self.costs.expected(pass).max(self.costs.slowest(pass));
+        (long.max(TILE_LIMIT) * RETRY.powi(failures as i32)).min(LONGEST_LIMIT)
     }
 
     /// Expected seconds of all tasks, and of those left.
@@ -400,13 +393,7 @@ impl Scheduler {
         slot.deaths = 0;
         let pass = task / run.tiles.len();
         run.settled[pass] += 1;
-        // Time per ray is wanted as an upper bound: for the pass whose number of rays is not known
-        // beforehand the least possible number is taken.
-        let rays = match order.pass {
-            Pass::Smooth => f64::from(order.tile.width) * f64::from(order.tile.height),
-            Pass::Coarse | Pass::Full => run.rays(task),
-        };
-        run.costs.add(pass, rays, seconds.max(0.0));
+        run.costs.add(pass, seconds.max(0.0));
         add_stats(&mut run.stats, stats);
         run.settle(now);
         self.fill(index, now);

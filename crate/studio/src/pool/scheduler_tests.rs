@@ -312,7 +312,7 @@ fn a_worker_that_hangs_is_replaced_in_the_end() {
 
 #[test]
 fn slow_tiles_get_more_time() {
-    let run_limit = |seconds: f64| {
+    let limits = |seconds: f64, failures: u32| {
         let mut crowd = Crowd::new(1);
         crowd.start(1);
         for _ in 0..3 {
@@ -322,13 +322,15 @@ fn slow_tiles_get_more_time() {
             panic!("no tile");
         };
         crowd.scheduler.traced(0, order, &STATS, seconds, crowd.now);
-        crowd.obey();
-        let run = crowd.scheduler.run.as_ref().unwrap();
-        run.limit(run.tiles.len())
+        let run = crowd.scheduler.run.as_mut().unwrap();
+        let last = run.tiles.len() - 1; // of the coarse pass
+        run.failures.insert(last, failures);
+        run.limit(last)
     };
-    assert_eq!(run_limit(1e-3), TILE_LIMIT);
-    assert_eq!(run_limit(0.016), SLACK * 1024.0 * 1e-3);
-    assert_eq!(run_limit(100.0), LONGEST_LIMIT);
+    assert_eq!(limits(1e-3, 0), TILE_LIMIT);
+    assert_eq!(limits(1e-3, 2), TILE_LIMIT * RETRY * RETRY);
+    assert_eq!(limits(3.0, 0), SLACK * 3.0);
+    assert_eq!(limits(100.0, 0), LONGEST_LIMIT);
 }
 
 #[test]
