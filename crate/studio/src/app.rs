@@ -356,7 +356,7 @@ impl App {
         match command {
             Command::SetText { file, text } => {
                 if let Err(refused) = session.set_text(file, text, now) {
-                    self.editor.resync();
+                    self.editor.resync(ctx);
                     self.notice = Some(Notice::trouble(refused.to_string()));
                 }
             }

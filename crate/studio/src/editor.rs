@@ -25,6 +25,8 @@ pub struct Editor {
     marks: Marks,
     jump: Option<Range<usize>>,
     place: Option<usize>,
+    /// The cursor before the last frame's edits.
+    before: Option<CCursorRange>,
     /// The line of the cursor, from 1.
     line: usize,
 }
@@ -41,9 +43,13 @@ impl Editor {
         self.jump = Some(range);
     }
 
-    /// Takes the session's text again: the last edit was refused.
-    pub fn resync(&mut self) {
+    /// Takes the session's text again, and puts the cursor where it was: the last edit was refused.
+    pub fn resync(&mut self, ctx: &egui::Context) {
         self.synced = None;
+        if let Some(mut state) = TextEdit::load_state(ctx, id()) {
+            state.cursor.set_char_range(self.before);
+            state.store(ctx, id());
+        }
     }
 
     /// Shows a byte of a file, without taking the focus from where it is.
@@ -77,6 +83,8 @@ impl Editor {
         );
         let palette = theme::palette(ui.visuals());
         ui.painter().rect_filled(ui.max_rect(), 0.0, palette.paper);
+        self.before =
+            TextEdit::load_state(ui.ctx(), id()).and_then(|state| state.cursor.char_range());
         let keyed = self.keys(ui);
         let height = ui.available_height();
         let lines = self.buffer.bytes().filter(|byte| *byte == b'\n').count() + 1;

@@ -3,6 +3,7 @@
 use crate::app::{App, Parts};
 use crate::request::Request;
 use crate::{boot, crash, handle, platform};
+use std::cell::Cell;
 use wasm_bindgen::prelude::*;
 
 /// The id of the page's canvas.
@@ -19,7 +20,12 @@ pub fn start() -> Result<(), JsValue> {
     let not_ready = handle::install(&parts)?;
     listen(&parts)?;
     wasm_bindgen_futures::spawn_local(async move {
+        let again = Cell::new(false);
         let started = boot::start(CANVAS, move |context, backend| {
+            if again.replace(true) {
+                // The GPU was lost, which is no fault of the text: go on drawing it.
+                platform::set_troubled(false);
+            }
             let state = context.wgpu_render_state.clone();
             App::new(&context.egui_ctx, state, backend, parts.clone())
         })

@@ -101,3 +101,20 @@ fn heading(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).color(palette.strong).size(15.0));
     ui.add_space(2.0);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_help_shows_is_the_language() {
+        let text: Vec<&str> = LANGUAGE.iter().map(|(code, _)| *code).collect();
+        let file = rats::File {
+            name: String::from("help.rat"),
+            text: text.join("\n"),
+        };
+        let compiled = rats::compile(&rats::Project { files: vec![file] });
+        assert_eq!(compiled.diagnostics, []);
+        assert_eq!(compiled.scene.elements.len(), 13);
+    }
+}

@@ -92,7 +92,7 @@ fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         let rows = app.work.session.compiled().hot.len().min(6) as f32;
         let row = ui.spacing().interact_size.y + ui.spacing().item_spacing.y;
         Panel::bottom("sliders")
-            .exact_size(rows * row + 40.0)
+            .exact_size(rows * row + 42.0)
             .frame(inset)
             .show(ui, |ui| slider_list(app, ui, commands));
     }
@@ -142,6 +142,7 @@ fn problem_list(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     places::note(ui.ctx(), "problems", ui.max_rect());
     ScrollArea::vertical()
         .id_salt("problems")
+        .min_scrolled_height(0.0)
         .auto_shrink(false)
         .show(ui, |ui| {
             let session = &app.work.session;
@@ -158,6 +159,7 @@ fn slider_list(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     }
     ScrollArea::vertical()
         .id_salt("sliders")
+        .min_scrolled_height(0.0)
         .auto_shrink(false)
         .show(ui, |ui| {
             let hot = &app.work.session.compiled().hot;

@@ -406,3 +406,125 @@ fn first_difference(old: &Project, new: &Project) -> (usize, usize) {
     }
     (0, 0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rats::File;
+
+    const TEXT: &str =
+        "surface a, diffuse Red, blobbiness -1\nvar r = 0.5 hot\nsphere a r, 0 0 0\n";
+
+    fn session(text: &str) -> Session {
+        let file = File {
+            name: String::from("main.rat"),
+            text: text.to_owned(),
+        };
+        let project = Project { files: vec![file] };
+        let kept = Kept {
+            project,
+            ..Kept::default()
+        };
+        Session::new(kept, true)
+    }
+
+    #[test]
+    fn an_error_keeps_the_last_good_scene() {
+        let mut session = session(TEXT);
+        assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
+        let (scene, generation) = (session.scene(), session.generation());
+        session
+            .set_text(0, format!("{TEXT}sphree a 1, 2 0 0\n"), 1.0)
+            .unwrap();
+        assert_eq!(session.errors(), 1);
+        assert_eq!((session.scene(), session.generation()), (scene, generation));
+        session
+            .set_text(0, format!("{TEXT}sphere a 1, 2 0 0\n"), 2.0)
+            .unwrap();
+        assert_eq!(session.scene().unwrap().elements.len(), 2);
+        assert_eq!(session.generation(), generation + 1);
+    }
+
+    #[test]
+    fn a_first_text_with_errors_shows_what_it_can() {
+        let session = session(&format!("sphree\n{TEXT}"));
+        assert!(session.errors() > 0);
+        assert_eq!(session.scene().unwrap().elements.len(), 1);
+    }
+
+    #[test]
+    fn a_remark_draws_no_new_picture() {
+        let mut session = session(TEXT);
+        let generation = session.generation();
+        session
+            .set_text(0, format!("# words\n{TEXT}"), 1.0)
+            .unwrap();
+        assert_eq!(session.generation(), generation);
+        assert_eq!(session.scene().unwrap().elements[0].origin.start, 62);
+    }
+
+    #[test]
+    fn editing_never_moves_a_camera_chosen_by_hand() {
+        let mut session = session(TEXT);
+        let chosen = Camera {
+            eye: glam::DVec3::new(1.0, 2.0, 3.0),
+            ..Camera::default()
+        };
+        session.set_camera(Some(chosen));
+        session
+            .set_text(0, format!("{TEXT}eyep 9 9 9\n"), 1.0)
+            .unwrap();
+        assert_eq!(session.scene().unwrap().camera, chosen);
+        session.set_camera(None);
+        assert_eq!(session.camera().eye, glam::DVec3::splat(9.0));
+        let broken = Camera {
+            fov: f64::NAN,
+            ..chosen
+        };
+        session.set_camera(Some(broken));
+        assert_eq!(session.chosen_camera(), None);
+    }
+
+    #[test]
+    fn a_slider_drag_is_one_step() {
+        let mut session = session(TEXT);
+        session.hold();
+        for step in 1..20 {
+            let literal = session.compiled().hot[0].literal.clone().unwrap();
+            let value = format!("0.{step}");
+            session
+                .replace(0, literal, &value, f64::from(step))
+                .unwrap();
+        }
+        session.release();
+        assert!(session.text(0).contains("var r = 0.19 hot"));
+        let (file, byte) = session.undo().unwrap();
+        assert_eq!((file, &session.text(0)[byte - 10..byte]), (0, "var r = 0."));
+        assert_eq!(session.text(0), TEXT);
+        assert!(!session.can_undo());
+        session.redo();
+        assert!(session.text(0).contains("0.19"));
+    }
+
+    #[test]
+    fn too_much_text_is_refused_and_nothing_is_lost() {
+        let mut session = session(TEXT);
+        let long = "x".repeat(MAX_TEXT + 1);
+        let refused = session.set_text(0, long, 1.0).unwrap_err();
+        assert!(refused.to_string().contains("257 kB"), "{refused}");
+        assert_eq!(session.text(0), TEXT);
+        let bad = 3..9_999_999;
+        session.replace(0, bad, "y", 2.0).unwrap();
+        assert_eq!(session.text(0), TEXT);
+    }
+
+    #[test]
+    fn nothing_is_compiled_before_the_user_asks_after_a_failed_start() {
+        let kept = Session::new(Kept::default(), true).keep(0);
+        let mut session = Session::new(kept, false);
+        session.set_text(0, String::from(TEXT), 1.0).unwrap();
+        assert!(session.scene().is_none());
+        session.enable();
+        assert_eq!(session.scene().unwrap().elements.len(), 1);
+    }
+}

@@ -200,6 +200,7 @@ mod tests {
         );
         let high = fit(place, [1, 4]);
         assert_eq!(high.size(), vec2(75.0, 300.0));
-        assert!(fit(Rect::NOTHING, [0, 0]).width() >= 0.0);
+        let inverted = Rect::ZERO.shrink(9.0);
+        assert_eq!(fit(inverted, [0, 0]).size(), Vec2::ZERO);
     }
 }
