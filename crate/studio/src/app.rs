@@ -365,6 +365,12 @@ impl App {
                     self.notice = Some(Notice::trouble(refused.to_string()));
                 }
             }
+            Command::AddFile => match session.add_file(now) {
+                Ok(file) => self.editor.jump(file, 0..0),
+                Err(refused) => self.notice = Some(Notice::trouble(refused.to_string())),
+            },
+            Command::RenameFile(file, name) => session.rename_file(file, &name, now),
+            Command::RemoveFile(file) => session.remove_file(file, now),
             Command::Hold => session.hold(),
             Command::Release => session.release(),
             Command::Undo => {
@@ -384,6 +390,12 @@ impl App {
             Command::SetCamera(camera) => {
                 session.set_camera(camera);
                 self.settings.turned = true;
+            }
+            Command::ShowAll => {
+                if let Some(scene) = session.scene() {
+                    let camera = preview::orbit::frame(&scene, session.frame());
+                    session.set_camera(Some(camera));
+                }
             }
             Command::Cancel => self.renderer.cancel(),
             Command::Again => self.renderer.again(now),

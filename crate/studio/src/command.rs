@@ -24,6 +24,12 @@ pub enum Command {
         /// What comes there.
         with: String,
     },
+    /// Add an empty file.
+    AddFile,
+    /// Give a file another name.
+    RenameFile(usize, String),
+    /// Remove a file.
+    RemoveFile(usize),
     /// A gesture that is one undo step begins.
     Hold,
     /// The gesture ends.
@@ -41,6 +47,8 @@ pub enum Command {
     },
     /// See the scene from here; `None`: from where the text says.
     SetCamera(Option<Camera>),
+    /// See the whole model.
+    ShowAll,
     /// Stop the picture.
     Cancel,
     /// Trace the picture again.

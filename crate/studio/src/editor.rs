@@ -3,6 +3,7 @@
 use crate::code::Colouring;
 use crate::command::Command;
 use crate::indent::{self, Edited};
+use crate::keyboard::is_brace;
 use crate::marks::Marks;
 use crate::problems;
 use crate::session::Session;
@@ -161,7 +162,7 @@ impl Editor {
         changed
     }
 
-    /// Tab, Shift+Tab, Enter and Ctrl+/ while the text has the focus. Gives whether it changed.
+    /// Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Gives whether it changed.
     fn keys(&mut self, ui: &Ui) -> bool {
         if !ui.memory(|memory| memory.has_focus(id())) {
             return false;
@@ -178,6 +179,9 @@ impl Editor {
                 Some(indent::comment as _)
             } else if input.consume_key(Modifiers::NONE, Key::Enter) {
                 Some(indent::enter as _)
+            } else if let Some(index) = input.events.iter().position(is_brace) {
+                input.events.remove(index);
+                Some(indent::brace as _)
             } else {
                 None
             }

@@ -18,6 +18,10 @@ pub enum Icon {
     Save,
     /// A house: back to the text's camera.
     Home,
+    /// The corners of a frame: see the whole model.
+    Frame,
+    /// A plus.
+    Add,
     /// Three dots.
     More,
     /// A cross.
@@ -105,6 +109,15 @@ fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
         Icon::Home => {
             line(&[(-6.5, 0.0), (0.0, -6.0), (6.5, 0.0)]);
             line(&[(-4.5, -1.5), (-4.5, 6.0), (4.5, 6.0), (4.5, -1.5)]);
+        }
+        Icon::Frame => {
+            for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+                line(&[(6.0 * x, 2.5 * y), (6.0 * x, 6.0 * y), (2.5 * x, 6.0 * y)]);
+            }
+        }
+        Icon::Add => {
+            line(&[(-4.5, 0.0), (4.5, 0.0)]);
+            line(&[(0.0, -4.5), (0.0, 4.5)]);
         }
         Icon::More => {
             for x in [-5.0, 0.0, 5.0] {

@@ -99,6 +99,22 @@ pub fn enter(text: &str, selection: std::ops::Range<usize>) -> Edited {
     )
 }
 
+/// `}`: on a line of blanks it moves one step to the left, to stand below what it closes.
+#[must_use]
+pub fn brace(text: &str, selection: std::ops::Range<usize>) -> Edited {
+    let start = line_start(text, selection.start);
+    let blanks = &text[start..selection.start];
+    let shorter = blanks
+        .strip_suffix(STEP)
+        .filter(|_| blanks.trim().is_empty())
+        .unwrap_or(blanks);
+    let at = start + shorter.len() + 1;
+    (
+        format!("{}{shorter}}}{}", &text[..start], &text[selection.end..]),
+        at..at,
+    )
+}
+
 /// Ctrl+/: comments the touched lines out, or in again if all of them are comments.
 #[must_use]
 pub fn comment(text: &str, selection: std::ops::Range<usize>) -> Edited {
@@ -140,6 +156,13 @@ mod tests {
         assert_eq!(enter("  a b", 3..4), (String::from("  a\n  b"), 6..6));
         assert_eq!(enter("for i = 1 to 3 {", 16..16).0, "for i = 1 to 3 {\n  ");
         assert_eq!(enter("", 0..0), (String::from("\n"), 1..1));
+    }
+
+    #[test]
+    fn a_closing_brace_stands_below_what_it_closes() {
+        assert_eq!(brace("a {\n    ", 8..8), (String::from("a {\n  }"), 7..7));
+        assert_eq!(brace("  a ", 4..4), (String::from("  a }"), 5..5));
+        assert_eq!(brace("", 0..0), (String::from("}"), 1..1));
     }
 
     #[test]

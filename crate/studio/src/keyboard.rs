@@ -63,6 +63,9 @@ fn writes(event: &Event) -> bool {
 
 /// Whether it is a key that we handle before the text field does.
 fn is_ours(event: &Event) -> bool {
+    if is_brace(event) {
+        return true;
+    }
     let Event::Key {
         key,
         pressed: true,
@@ -79,6 +82,12 @@ fn is_ours(event: &Event) -> bool {
         }
         _ => false,
     }
+}
+
+/// Whether a closing brace is typed, which the editor indents.
+#[must_use]
+pub fn is_brace(event: &Event) -> bool {
+    matches!(event, Event::Text(text) if text == "}")
 }
 
 #[cfg(test)]

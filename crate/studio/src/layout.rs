@@ -6,7 +6,7 @@ use crate::command::Command;
 use crate::icon::{self, Icon};
 use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery, Show};
-use crate::{bar, help, notice, places, platform, problems, size, status};
+use crate::{bar, files, help, notice, places, platform, problems, size, status};
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Rect, RichText,
     ScrollArea, Stroke, Ui, UiBuilder, pos2, vec2,
@@ -79,7 +79,9 @@ fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     Panel::top("files")
         .exact_size(STRIP)
         .frame(Frame::new().fill(palette.panel))
-        .show(ui, |ui| files(app, ui, true));
+        .show(ui, |ui| {
+            files::show(ui, &app.work.session, &mut app.editor, true, commands)
+        });
     if !app.work.session.diagnostics().is_empty() {
         Panel::bottom("problems")
             .resizable(true)
@@ -99,42 +101,6 @@ fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     CentralPanel::no_frame().show(ui, |ui| {
         places::note(ui.ctx(), "editor", ui.max_rect());
         app.editor.show(ui, &app.work.session, commands);
-    });
-}
-
-fn files(app: &mut App, ui: &mut Ui, summary: bool) {
-    let palette = theme::palette(ui.visuals());
-    ui.horizontal_centered(|ui| {
-        ui.add_space(10.0);
-        ui.spacing_mut().item_spacing.x = 2.0;
-        let files = &app.work.session.project().files;
-        for (index, file) in files.iter().enumerate() {
-            let open = index == app.editor.file;
-            let colour = if open { palette.strong } else { palette.weak };
-            let tab = Button::new(RichText::new(&file.name).size(13.0).color(colour)).fill(
-                if open && files.len() > 1 {
-                    palette.button
-                } else {
-                    Color32::TRANSPARENT
-                },
-            );
-            if ui.add(tab).clicked() {
-                app.editor.file = index;
-            }
-        }
-        if !summary {
-            return;
-        }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.add_space(12.0);
-            let diagnostics = app.work.session.diagnostics();
-            let text = problems::summary(diagnostics);
-            if !text.is_empty() {
-                let worst = diagnostics.iter().map(|d| d.severity).max();
-                let colour = worst.map_or(palette.weak, |worst| problems::colour(palette, worst));
-                ui.label(RichText::new(text).size(12.5).color(colour));
-            }
-        });
     });
 }
 
@@ -184,6 +150,9 @@ fn picture_head(app: &App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>
         if icon::button(ui, Icon::Save, "Save the picture as PNG (Ctrl+S)", true).clicked() {
             commands.push(Command::SavePng);
         }
+        if icon::button(ui, Icon::Frame, "See the whole model", true).clicked() {
+            commands.push(Command::ShowAll);
+        }
         size_menu(app, ui, commands);
         reset_view(app, ui, commands);
     });
@@ -191,41 +160,44 @@ fn picture_head(app: &App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>
 
 fn show_choice(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
-    Frame::new()
-        .fill(palette.button)
-        .corner_radius(theme::ROUND)
-        .inner_margin(2)
-        .show(ui, |ui| {
-            ui.spacing_mut().item_spacing.x = 2.0;
-            ui.spacing_mut().interact_size.y = 22.0;
-            ui.spacing_mut().button_padding.y = 1.0;
-            for (show, text, tip) in [
-                (
-                    Show::Auto,
-                    "Auto",
-                    "The draft while you edit and turn, then the traced picture",
-                ),
-                (
-                    Show::Draft,
-                    "Draft",
-                    "Only the instant draft: shapes before they melt together",
-                ),
-                (Show::Traced, "Traced", "Only the ray-traced picture"),
-            ] {
-                let chosen = app.settings.show == show;
-                let colour = if chosen { palette.strong } else { palette.weak };
-                let button = Button::new(RichText::new(text).size(12.5).color(colour))
-                    .corner_radius(theme::ROUND - 1)
-                    .fill(if chosen {
-                        palette.raised
-                    } else {
-                        Color32::TRANSPARENT
-                    });
-                if ui.add(button).on_hover_text(tip).clicked() {
-                    commands.push(Command::SetShow(show));
-                }
+    let layout = Layout::left_to_right(Align::Center);
+    let background = ui.painter().add(egui::Shape::Noop);
+    let choices = ui.allocate_ui_with_layout(vec2(10.0, 22.0), layout, |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.spacing_mut().interact_size.y = 22.0;
+        ui.spacing_mut().button_padding.y = 1.0;
+        for (show, text, tip) in [
+            (
+                Show::Auto,
+                "Auto",
+                "The draft while you edit and turn, then the traced picture",
+            ),
+            (
+                Show::Draft,
+                "Draft",
+                "Only the instant draft: shapes before they melt together",
+            ),
+            (Show::Traced, "Traced", "Only the ray-traced picture"),
+        ] {
+            let chosen = app.settings.show == show;
+            let colour = if chosen { palette.strong } else { palette.weak };
+            let button = Button::new(RichText::new(text).size(12.5).color(colour))
+                .corner_radius(theme::ROUND - 1)
+                .fill(if chosen {
+                    palette.raised
+                } else {
+                    Color32::TRANSPARENT
+                });
+            let button = ui.add(button).on_hover_text(tip);
+            places::note(ui.ctx(), format!("show {text}").to_lowercase(), button.rect);
+            if button.clicked() {
+                commands.push(Command::SetShow(show));
             }
-        });
+        }
+    });
+    let place = choices.response.rect.expand(2.0);
+    let shape = egui::Shape::rect_filled(place, f32::from(theme::ROUND), palette.button);
+    ui.painter().set(background, shape);
 }
 
 fn size_menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
@@ -331,7 +303,14 @@ fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
             if app.work.session.project().files.len() > 1 {
                 let builder = UiBuilder::new()
                     .max_rect(Rect::from_min_size(below.min, vec2(below.width(), 46.0)));
-                files(app, &mut ui.new_child(builder), false);
+                let mut strip = ui.new_child(builder);
+                files::show(
+                    &mut strip,
+                    &app.work.session,
+                    &mut app.editor,
+                    false,
+                    commands,
+                );
                 ui.add_space(46.0);
             }
             places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
@@ -394,6 +373,9 @@ fn tab_row(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.add_space(6.0);
         let moved = app.work.session.chosen_camera().is_some();
+        if icon::button(ui, Icon::Frame, "See the whole model", true).clicked() {
+            commands.push(Command::ShowAll);
+        }
         if moved && icon::button(ui, Icon::Home, "Look from where the text says", true).clicked() {
             commands.push(Command::SetCamera(None));
         }

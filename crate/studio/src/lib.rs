@@ -18,6 +18,7 @@ pub mod editor;
 #[cfg(target_arch = "wasm32")]
 pub mod entry;
 pub mod examples;
+pub mod files;
 pub mod gallery;
 #[cfg(target_arch = "wasm32")]
 pub mod handle;

@@ -184,6 +184,63 @@ impl Session {
         Ok(())
     }
 
+    /// Adds an empty file and gives its index.
+    ///
+    /// # Errors
+    /// If there are [`MAX_FILES`] already.
+    pub fn add_file(&mut self, now: f64) -> Result<usize, Refused> {
+        let files = self.project.files.len() + 1;
+        if files > MAX_FILES {
+            return Err(Refused::TooManyFiles { files });
+        }
+        let name = (1..)
+            .map(|number| format!("part{number}.rat"))
+            .find(|name| self.is_free(name))
+            .unwrap_or_default();
+        self.whole_step(now);
+        self.project.files.push(rats::File {
+            name,
+            text: String::new(),
+        });
+        self.changed();
+        Ok(self.project.files.len() - 1)
+    }
+
+    /// Gives a file another name. A name that is taken, empty or too long is left alone.
+    pub fn rename_file(&mut self, file: usize, name: &str, now: f64) {
+        let name = name.trim();
+        if file >= self.project.files.len()
+            || name.is_empty()
+            || name.len() > rats::link::MAX_NAME
+            || !self.is_free(name)
+        {
+            return;
+        }
+        self.whole_step(now);
+        name.clone_into(&mut self.project.files[file].name);
+        self.changed();
+    }
+
+    /// Removes a file. The first one, which is run, stays.
+    pub fn remove_file(&mut self, file: usize, now: f64) {
+        if file > 0 && file < self.project.files.len() {
+            self.whole_step(now);
+            self.project.files.remove(file);
+            self.changed();
+        }
+    }
+
+    fn is_free(&self, name: &str) -> bool {
+        self.project.files.iter().all(|file| file.name != name)
+    }
+
+    /// Notes an edit that is an undo step by itself.
+    fn whole_step(&mut self, now: f64) {
+        self.history.close();
+        self.history.record(&self.project, now);
+        self.history.close();
+    }
+
     /// Replaces a byte range of one file. A range that does not lie on characters is left alone.
     ///
     /// # Errors
@@ -504,6 +561,37 @@ mod tests {
         assert!(!session.can_undo());
         session.redo();
         assert!(session.text(0).contains("0.19"));
+    }
+
+    #[test]
+    fn files_come_and_go_and_can_be_undone() {
+        let mut session = session(TEXT);
+        let added = session.add_file(1.0).unwrap();
+        session.rename_file(added, "legs.rat", 1.1);
+        session.rename_file(added, "main.rat", 1.2);
+        assert_eq!(session.project().files[added].name, "legs.rat");
+        session
+            .set_text(added, String::from("sphere a 1, 3 0 0\n"), 1.3)
+            .unwrap();
+        session
+            .set_text(0, format!("{TEXT}read legs.rat\n"), 1.4)
+            .unwrap();
+        assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
+        assert_eq!(session.scene().unwrap().elements.len(), 2);
+        session.remove_file(added, 1.5);
+        assert_eq!(session.errors(), 1);
+        session.remove_file(0, 1.6);
+        assert_eq!(session.project().files.len(), 1);
+        session.undo();
+        assert_eq!(session.errors(), 0);
+        session.undo();
+        session.undo();
+        session.undo();
+        assert_eq!(session.project().files.len(), 1);
+        while session.project().files.len() < MAX_FILES {
+            session.add_file(9.0).unwrap();
+        }
+        assert!(session.add_file(9.0).is_err());
     }
 
     #[test]

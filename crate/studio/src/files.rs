@@ -1,0 +1,87 @@
+//! The strip above the text: one tab for each file of the project.
+
+use crate::command::Command;
+use crate::editor::Editor;
+use crate::icon::{self, Icon};
+use crate::session::Session;
+use crate::{problems, theme};
+use egui::{
+    Align, Button, Color32, Key, Layout, Popup, PopupCloseBehavior, RichText, TextEdit, Ui,
+};
+
+/// Shows the strip; with `summary` it says on the right how many problems there are.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    editor: &mut Editor,
+    summary: bool,
+    commands: &mut Vec<Command>,
+) {
+    let palette = theme::palette(ui.visuals());
+    ui.horizontal_centered(|ui| {
+        ui.add_space(10.0);
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let files = &session.project().files;
+        for (index, file) in files.iter().enumerate() {
+            let open = index == editor.file;
+            let colour = if open { palette.strong } else { palette.weak };
+            let fill = if open && files.len() > 1 {
+                palette.button
+            } else {
+                Color32::TRANSPARENT
+            };
+            let tab = ui
+                .add(Button::new(RichText::new(&file.name).size(13.0).color(colour)).fill(fill))
+                .on_hover_text(if index == 0 {
+                    "This file is run. Right-click to rename it."
+                } else {
+                    "Other files run it with: read and its name. Right-click to rename or remove it."
+                });
+            if tab.clicked() {
+                editor.file = index;
+            }
+            let menu_of_tab = Popup::context_menu(&tab)
+                .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+            menu_of_tab.show(|ui| menu(ui, index, &file.name, commands));
+        }
+        let tip = "Add a file that this one can read";
+        if icon::button(ui, Icon::Add, tip, true).clicked() {
+            commands.push(Command::AddFile);
+        }
+        if !summary {
+            return;
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add_space(12.0);
+            let diagnostics = session.diagnostics();
+            let text = problems::summary(diagnostics);
+            if !text.is_empty() {
+                let worst = diagnostics.iter().map(|d| d.severity).max();
+                let colour = worst.map_or(palette.weak, |worst| problems::colour(palette, worst));
+                ui.label(RichText::new(text).size(12.5).color(colour));
+            }
+        });
+    });
+}
+
+/// What a right click or a long touch on a tab offers.
+fn menu(ui: &mut Ui, index: usize, name: &str, commands: &mut Vec<Command>) {
+    ui.set_min_width(190.0);
+    let id = ui.scope_id().with(("rename", index));
+    let mut new = ui
+        .data(|data| data.get_temp::<String>(id))
+        .unwrap_or_else(|| name.to_owned());
+    let field = ui.add(TextEdit::singleline(&mut new).hint_text("Name of the file"));
+    let done = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    if ui.button("Rename").clicked() || done {
+        commands.push(Command::RenameFile(index, new));
+        ui.data_mut(|data| data.remove::<String>(id));
+        ui.close();
+        return;
+    }
+    ui.data_mut(|data| data.insert_temp(id, new));
+    if index > 0 && ui.button("Remove").clicked() {
+        commands.push(Command::RemoveFile(index));
+        ui.close();
+    }
+}
