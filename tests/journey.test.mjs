@@ -78,11 +78,11 @@ for (const kind of Object.keys(KINDS)) {
 
       const editor = await sinew.place('editor');
       await sinew.page.mouse.click(editor.x + editor.w / 2, editor.y + editor.h / 2);
-      await sinew.page.keyboard.press('Control+Home');
-      await sinew.page.keyboard.type('sphree flesh 1 0 0 0\n', { delay: 20 });
+      await sinew.page.keyboard.press('Control+End');
+      await sinew.page.keyboard.type('sphree flesh 1 0.8 0 0', { delay: 20 });
       const status = await sinew.until((status) => status.errors > 0);
       const [mistake] = status.diagnostics;
-      assert.equal(mistake.line, 1);
+      assert.equal(mistake.line, MODEL.split('\n').length);
       assert.equal(mistake.column, 1);
       assert.match(JSON.stringify(mistake), /sphere/, 'it says what was meant');
       await sinew.place('problems');
@@ -92,14 +92,13 @@ for (const kind of Object.keys(KINDS)) {
       assert.ok(nowRed > red + 5, `the underline: ${red} red pixels before, ${nowRed} after`);
       assert.equal(shareThatDiffers(await sinew.image(), picture, 0), 0, 'the old picture stays');
 
-      await sinew.page.keyboard.press('Control+Home');
+      await sinew.page.keyboard.press('Home');
       // sphree: behind the r, which goes behind the e.
       for (let i = 0; i < 4; i++) await sinew.page.keyboard.press('ArrowRight');
       await sinew.page.keyboard.press('Backspace');
       await sinew.page.keyboard.press('ArrowRight');
       await sinew.page.keyboard.type('r');
-      const mended = await sinew.until((status) => status.errors === 0);
-      assert.equal(mended.diagnostics.filter((d) => d.severity === 'Error').length, 0);
+      await sinew.until((status) => status.errors === 0);
       await sinew.finished();
       assert.ok(shareThatDiffers(await sinew.image(), picture, 8) > 0.05, 'the new picture came');
     });
@@ -146,9 +145,9 @@ for (const kind of Object.keys(KINDS)) {
     });
 
     test('a worker that is killed is replaced, and the picture is complete', async () => {
+      await sinew.resize(400, 320);
       await sinew.load(await example('cowrie'));
-      await sinew.page.evaluate(() => sinew.debug.pictureSize(400, 320));
-      await sinew.until((status) => status.phase === 'tracing' && status.progress > 0.02 && status.progress < 0.6);
+      await sinew.until((status) => status.phase === 'tracing' && status.progress > 0.02);
       await sinew.page.evaluate(() => sinew.debug.killWorker(0));
       const status = await sinew.finished();
       assert.ok(status.replaced >= 1, 'the worker was missed');
