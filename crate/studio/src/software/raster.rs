@@ -136,15 +136,6 @@ impl Quad {
     pub fn corners(&self) -> &[Corner] {
         &self.corners
     }
-
-    /// The rectangle of texels (from, to) seen in an area.
-    pub fn texels(&self, area: Area) -> [[f32; 2]; 2] {
-        let ends = [
-            [self.texel(0, area.x0), self.texel(0, area.x1 - 1)],
-            [self.texel(1, area.y0), self.texel(1, area.y1 - 1)],
-        ];
-        [ends.map(|[a, b]| a.min(b)), ends.map(|[a, b]| a.max(b))]
-    }
 }
 
 /// Whether the points left top, right top, left bottom, right bottom make a box along the axes.
@@ -230,26 +221,30 @@ impl Sheet {
         }
         let tint = quad.corners[0].tint.to_array();
         let smooth = texture.is_smooth(quad.scale(0).abs().max(quad.scale(1).abs()));
-        let mut columns = std::mem::take(&mut self.columns);
-        columns.clear();
-        columns.extend((area.x0..area.x1).map(|x| texture.tap(0, quad.texel(0, x), smooth)));
-        let whole_columns = columns.iter().all(|tap| tap.weight == 0);
+        let columns = self.columns(
+            (area.x0..area.x1).map(|x| quad.texel(0, x)),
+            texture,
+            smooth,
+        );
         for y in area.y0..area.y1 {
             let row = texture.tap(1, quad.texel(1, y), smooth);
-            let span = self.span(y, area.x0, area.x1);
-            if whole_columns && row.weight == 0 {
-                // Texels on pixels, as nearly all text is.
-                let texels = texture.row(row.near);
-                for (pixel, column) in span.iter_mut().zip(&columns) {
-                    blend(pixel, tinted(texels[column.near].to_array(), tint));
-                }
-            } else {
-                for (pixel, &column) in span.iter_mut().zip(&columns) {
-                    blend(pixel, tinted(texture.sample(column, row), tint));
-                }
-            }
+            copy_row(self.span(y, area.x0, area.x1), &columns, row, texture, tint);
         }
         self.columns = columns;
+    }
+
+    /// Where the columns of pixels with these texture coordinates lie in a texture; to be put back
+    /// into `self.columns` after use.
+    fn columns(
+        &mut self,
+        coordinates: impl Iterator<Item = f32>,
+        texture: &Texture,
+        smooth: bool,
+    ) -> Vec<Tap> {
+        let mut columns = std::mem::take(&mut self.columns);
+        columns.clear();
+        columns.extend(coordinates.map(|at| texture.tap(0, at, smooth)));
+        columns
     }
 
     /// Draws the part of a triangle that lies in an area.
@@ -304,12 +299,28 @@ impl Sheet {
 
     /// Fills a triangle with a part of a picture and a tint.
     fn pictured(&mut self, triangle: &Triangle, texture: &Texture, area: Area) {
-        let tint = triangle.tint();
-        let texel: [Plane; 2] = std::array::from_fn(|axis| triangle.plane(|c| c.texel[axis]));
+        let area = area.intersect(bounds(&triangle.corners));
+        let texel = triangle.texel();
         let length = |[u, v]: [f64; 2]| (u * u + v * v).sqrt();
         let smooth = texture.is_smooth(
             length(texel.map(|plane| plane.dx)).max(length(texel.map(|plane| plane.dy))) as f32,
         );
+        let [a, b, c] = triangle.corners.map(|corner| corner.tint);
+        let turned = (texel[0].dy * f64::from(area.y1 - area.y0)).abs()
+            + (texel[1].dx * f64::from(area.x1 - area.x0)).abs();
+        if a == b && a == c && turned * f64::from(STEPS) < 1.0 {
+            // The inside of a picture with round corners: its rows are rows of the texture.
+            let across = (area.x0..area.x1).map(|x| texel[0].at(x, area.y0));
+            let columns = self.columns(across, texture, smooth);
+            triangle.rows(area, |y, x0, x1| {
+                let row = texture.tap(1, texel[1].at(area.x0, y), smooth);
+                let columns = &columns[(x0 - area.x0) as usize..(x1 - area.x0) as usize];
+                copy_row(self.span(y, x0, x1), columns, row, texture, a.to_array());
+            });
+            self.columns = columns;
+            return;
+        }
+        let tint = triangle.tint();
         let step = tint.map(|plane| plane.dx as f32);
         triangle.rows(area, |y, x0, x1| {
             let start = tint.map(|plane| plane.at(x0, y));
@@ -323,6 +334,80 @@ impl Sheet {
                 );
             }
         });
+    }
+}
+
+/// Draws a row of pixels that lies along a row of a texture.
+fn copy_row(span: &mut [[u8; 4]], columns: &[Tap], row: Tap, texture: &Texture, tint: [u8; 4]) {
+    if row.weight == 0 && columns.iter().all(|column| column.weight == 0) {
+        // Texels on pixels, as nearly all text is.
+        let texels = texture.row(row.near);
+        for (pixel, column) in span.iter_mut().zip(columns) {
+            blend(pixel, tinted(texels[column.near].to_array(), tint));
+        }
+    } else {
+        for (pixel, &column) in span.iter_mut().zip(columns) {
+            blend(pixel, tinted(texture.sample(column, row), tint));
+        }
+    }
+}
+
+/// The texels that a shape shows.
+pub struct Showing {
+    /// Of the whole shape: the least and the greatest coordinates.
+    all: [[f32; 2]; 2],
+    /// At each pixel; none for a triangle without an area.
+    at: Option<[Plane; 2]>,
+}
+
+impl Showing {
+    /// Of a triangle.
+    pub fn triangle(corners: &[Corner; 3]) -> Self {
+        let [a, b, c] = corners.map(|corner| corner.texel);
+        Self {
+            all: [
+                [0, 1].map(|axis| a[axis].min(b[axis]).min(c[axis])),
+                [0, 1].map(|axis| a[axis].max(b[axis]).max(c[axis])),
+            ],
+            at: Triangle::new(corners).map(|triangle| triangle.texel()),
+        }
+    }
+
+    /// Of a rectangle.
+    pub fn quad(quad: &Quad) -> Self {
+        let [a, d] = quad.corners;
+        let other = Corner {
+            position: [d.position[0], a.position[1]],
+            texel: [d.texel[0], a.texel[1]],
+            tint: a.tint,
+        };
+        Self::triangle(&[a, other, d])
+    }
+
+    /// The rectangle of texels (from, to) seen in an area of pixels.
+    pub fn within(&self, area: Area) -> [[f32; 2]; 2] {
+        let [least, most] = self.all;
+        let Some(at) = self.at else {
+            return self.all;
+        };
+        let ends = at.map(|plane| {
+            let corners = [
+                plane.at(area.x0, area.y0),
+                plane.at(area.x1 - 1, area.y0),
+                plane.at(area.x0, area.y1 - 1),
+                plane.at(area.x1 - 1, area.y1 - 1),
+            ];
+            // A little more on each side, for rounding.
+            let slack = 0.25 / STEPS as f32;
+            [
+                corners.into_iter().fold(f32::INFINITY, f32::min) - slack,
+                corners.into_iter().fold(f32::NEG_INFINITY, f32::max) + slack,
+            ]
+        });
+        [
+            [0, 1].map(|axis| ends[axis][0].max(least[axis]).min(most[axis])),
+            [0, 1].map(|axis| ends[axis][1].min(most[axis]).max(least[axis])),
+        ]
     }
 }
 
@@ -367,6 +452,11 @@ impl Triangle {
             dx,
             dy,
         }
+    }
+
+    /// The texture coordinates.
+    fn texel(&self) -> [Plane; 2] {
+        std::array::from_fn(|axis| self.plane(|c| c.texel[axis]))
     }
 
     /// The channels of the tint.

@@ -10,6 +10,9 @@ use egui::{
 /// Textures remember when they changed in squares of this many texels.
 const BLOCK: usize = 64;
 
+/// How far a sample is moved at most so that its weights are multiples of 1/256.
+const ROUNDING: f32 = 1.0 / 512.0;
+
 /// A texture and when each part of it changed.
 #[derive(Debug)]
 pub struct Texture {
@@ -73,10 +76,12 @@ impl Texture {
     pub fn changed(&self, from: [f32; 2], to: [f32; 2]) -> u64 {
         let blocks = |axis: usize| {
             let last = self.size[axis].saturating_sub(1);
-            // A sample reaches half a texel to each side; the casts saturate.
+            // A sample reaches half a texel to each side, but for the rounding of its weight. The
+            // casts saturate.
             let range = if self.options.wrap_mode == TextureWrapMode::ClampToEdge {
-                let last_seen = (to[axis] + 0.5).ceil() - 1.0;
-                ((from[axis] - 0.5) as usize).min(last)..=(last_seen as usize).min(last)
+                let reach = 0.5 - ROUNDING;
+                let last_seen = (to[axis] + reach).ceil() - 1.0;
+                ((from[axis] - reach) as usize).min(last)..=(last_seen as usize).min(last)
             } else {
                 0..=last
             };
