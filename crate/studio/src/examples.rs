@@ -44,7 +44,7 @@ macro_rules! example {
 /// All of them. The first one is what a first visit shows.
 pub const ALL: [Example; 6] = [
     example!("Cowrie", "a shell with random spikes", "cowrie"),
-    example!("Seahorse", "the classic: 43 arcs", "seahorse"),
+    example!("Seahorse", "the classic, all of arcs", "seahorse"),
     example!("Starfish", "arms made by a loop", "starfish"),
     example!("Sphereflake", "balls on balls, by recursion", "sphereflake"),
     example!("T-shape", "two bars that melt together", "tshape"),

@@ -1,6 +1,6 @@
 //! Evaluations a second of each primitive's value and derivative along a ray.
 //!
-//! `cargo run --release -p field --example speed`. The thesis's table 2.6 gives the ratios
+//! `cargo run --release -p field --example field_speed`. The thesis's table 2.6 gives the ratios
 //! point : line : arc : triangle : plane = 1 : 4.48 : 8.17 : 14.36 : 1.02.
 use field::real::Scalar;
 use field::{BlobScale, Kernel, Primitive, Real, Shaping, Skeleton};

@@ -1,6 +1,6 @@
 //! How long texts take: the examples of the page, and texts made to take long.
 //!
-//! `cargo run --release -p rats --example speed`
+//! `cargo run --release -p rats --example compile_speed`
 
 use rats::{File, Project, compile};
 use std::time::Instant;
