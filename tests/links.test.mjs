@@ -14,7 +14,7 @@ before(async () => {
   const editor = await sinew.place('editor');
   await sinew.page.mouse.click(editor.x + editor.w / 2, editor.y + editor.h / 2);
   await sinew.page.keyboard.press('Control+A');
-  await sinew.page.keyboard.insertText(OWN);
+  await sinew.page.keyboard.type(OWN);
   await sinew.page.waitForFunction((own) => sinew.text() === own, OWN);
 });
 after(() => browser?.close());
