@@ -5,7 +5,7 @@ mod lint;
 mod native;
 mod wasm;
 
-use anyhow::{Context, Result};
+use anyhow::{Result, bail};
 use clap::ValueEnum;
 use std::time::Instant;
 
@@ -22,33 +22,31 @@ pub enum Part {
     E2e,
 }
 
-/// Runs one part, or all.
+/// Runs one part, or all. A part that fails does not keep the others from being run.
 pub fn test(part: Option<Part>) -> Result<()> {
-    let parts = part.map_or(
-        vec![Part::Lint, Part::Native, Part::Wasm, Part::E2e],
-        |part| vec![part],
-    );
+    let parts = part.map_or_else(|| Part::value_variants().to_vec(), |part| vec![part]);
     let begun = Instant::now();
-    let mut done = Vec::new();
+    let mut summary = String::new();
+    let mut failed = Vec::new();
     for part in parts {
         println!("\n== {} ==", name(part));
         let begun = Instant::now();
-        let said = match part {
+        let result = match part {
             Part::Lint => lint::check(),
             Part::Native => native::check(),
             Part::Wasm => wasm::check(),
             Part::E2e => e2e::check(),
-        }
-        .with_context(|| format!("{} failed", name(part)))?;
-        done.push(format!(
-            "{}: {said} ({} s)",
-            name(part),
-            begun.elapsed().as_secs()
-        ));
+        };
+        let said = result.unwrap_or_else(|error| {
+            failed.push(name(part));
+            format!("FAILED: {error:#}")
+        });
+        let seconds = begun.elapsed().as_secs();
+        summary += &format!("\n  {}: {said} ({seconds} s)", name(part));
     }
-    println!("\nAll is well, in {} s.", begun.elapsed().as_secs());
-    for line in done {
-        println!("  {line}");
+    println!("\nTested in {} s:{summary}", begun.elapsed().as_secs());
+    if !failed.is_empty() {
+        bail!("{} failed", failed.join(", "));
     }
     Ok(())
 }
