@@ -33,20 +33,30 @@ test('a program that does not come is reported in words', async () => {
   await page.close();
 });
 
-test('a tracer that does not come is reported, and the editor works', async () => {
-  const own = await launch('webgl2');
-  try {
-    const sinew = await own.open({ before: (page) => page.route('**/tracer_bg.wasm', (route) => route.abort()) });
-    const status = await sinew.until((status) => status.failure);
-    assert.match(status.failure, /tracer/i);
-    await sinew.load('surface s diffuse Gold\nsphere s 1 0 0 0\n');
-    await sinew.until((status) => status.errors === 0);
-    await sinew.keep('no tracer');
-    await sinew.close();
-  } finally {
-    await own.close();
-  }
-});
+for (const [file, words] of [
+  ['tracer_bg.wasm', /tracer could not be loaded/i],
+  ['worker.js', /no worker could be kept running/i],
+]) {
+  test(`without ${file} the page says so, and the editor works`, async () => {
+    const own = await launch('webgl2');
+    try {
+      const sinew = await own.open({ before: (page) => page.route(`**/${file}`, (route) => route.abort()) });
+      const status = await sinew.until((status) => status.failure);
+      assert.match(status.failure, words);
+      await sinew.load('surface s diffuse Gold\nsphere s 1 0 0 0\n');
+      await sinew.until((status) => status.errors === 0 && status.failure);
+      await sinew.keep(`without ${file}`);
+      // Once it comes, all is well.
+      await sinew.page.unroute(`**/${file}`);
+      await sinew.page.evaluate(() => sinew.render());
+      const { failure } = await sinew.finished();
+      assert.equal(failure, null);
+      await sinew.close();
+    } finally {
+      await own.close();
+    }
+  });
+}
 
 test('everything comes from the page’s own folder', async () => {
   const page = await browser.newPage();
