@@ -356,7 +356,7 @@ fn copy_row(span: &mut [[u8; 4]], columns: &[Tap], row: Tap, texture: &Texture, 
 pub struct Showing {
     /// Of the whole shape: the least and the greatest coordinates.
     all: [[f32; 2]; 2],
-    /// At each pixel; none for a triangle without an area.
+    /// At each pixel; none for a triangle with one texel or without an area.
     at: Option<[Plane; 2]>,
 }
 
@@ -369,7 +369,10 @@ impl Showing {
                 [0, 1].map(|axis| a[axis].min(b[axis]).min(c[axis])),
                 [0, 1].map(|axis| a[axis].max(b[axis]).max(c[axis])),
             ],
-            at: Triangle::new(corners).map(|triangle| triangle.texel()),
+            at: (a != b || a != c)
+                .then(|| Triangle::new(corners))
+                .flatten()
+                .map(|triangle| triangle.texel()),
         }
     }
 
