@@ -10,15 +10,15 @@ use crate::gallery::Gallery;
 use crate::keyboard::Keyboard;
 use crate::notice::Notice;
 use crate::pool::Pool;
-use crate::render::{Phase, Renderer, pass_label};
-use crate::report::{self, Shared};
-use crate::request::{Request, Requests};
+use crate::render::{Phase, Renderer};
+use crate::report::Shared;
+use crate::request::Requests;
 use crate::settings::Settings;
 use crate::sliders::Sliders;
 use crate::storage::Shelf;
 use crate::work::{Origin, Work};
-use crate::{Backend, picture, places, platform, share, size, theme};
-use egui::{Context, Key, KeyboardShortcut, Modifiers, Ui};
+use crate::{Backend, platform, size, theme};
+use egui::{Context, Ui};
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -91,15 +91,18 @@ pub struct App {
     pub(crate) tab: Tab,
     /// The picture's place in device pixels at the last frame.
     pub(crate) place: [f32; 2],
-    forced_size: Option<[u32; 2]>,
+    pub(crate) forced_size: Option<[u32; 2]>,
     keyboard: Keyboard,
-    parts: Parts,
+    pub(crate) parts: Parts,
     saved_settings: Settings,
-    reported: Option<u64>,
+    /// The text, and whether it was compiled, that the diagnostics in the outbox are about.
+    pub(crate) reported: Option<(u64, bool)>,
     started: Option<f64>,
     healthy: bool,
+    /// The name in the title of the browser's tab.
+    titled: String,
     /// Who waits for the picture to be finished.
-    finished: Vec<Box<dyn FnOnce()>>,
+    pub(crate) finished: Vec<Box<dyn FnOnce()>>,
     touch: Option<bool>,
 }
 
@@ -141,6 +144,7 @@ impl App {
             reported: None,
             started: None,
             healthy: false,
+            titled: String::new(),
             finished: Vec::new(),
             touch: None,
             work,
@@ -160,13 +164,16 @@ impl App {
             self.notice = Some(Notice::trouble(text));
         } else if self.work.origin == Origin::Link {
             self.welcome_link();
+        } else if !platform::has_storage() {
+            let text = "This browser stores nothing for this page, so your work lasts until you close it. Share makes a link that keeps it.";
+            self.notice = Some(Notice::trouble(text));
         } else if self.backend == Backend::None {
             let text = "No WebGPU or WebGL2 here: no draft, everything else works.";
             self.notice = Some(Notice::done(text, f64::INFINITY));
         }
     }
 
-    fn welcome_link(&mut self) {
+    pub(crate) fn welcome_link(&mut self) {
         let notice = Notice {
             text: String::from("You are looking at a shared link. Your own work is safe."),
             bad: false,
@@ -199,6 +206,10 @@ impl App {
         if self.settings != self.saved_settings {
             self.saved_settings = self.settings.clone();
             self.parts.shelf.borrow_mut().set_settings(&self.settings);
+        }
+        if self.titled != self.work.name {
+            self.titled.clone_from(&self.work.name);
+            platform::set_title(&self.titled);
         }
         let session = &self.work.session;
         if session.enabled() {
@@ -261,50 +272,8 @@ impl App {
         size::pixels(self.settings.size, frame, self.place, longest)
     }
 
-    fn serve(
-        &mut self,
-        ctx: &Context,
-        request: Request,
-        now: f64,
-        answers: &mut Vec<Box<dyn FnOnce()>>,
-    ) {
-        match request {
-            Request::Ready(answer) => answers.push(answer),
-            Request::Finished(answer) => self.finished.push(answer),
-            Request::HashChanged => match self.work.open_link(&platform::hash()) {
-                Ok(()) if self.work.origin == Origin::Link => {
-                    self.opened(ctx);
-                    self.welcome_link();
-                }
-                Ok(()) => {}
-                Err(trouble) => {
-                    let text = format!("{trouble} Your work stays open.");
-                    self.notice = Some(Notice::trouble(text));
-                }
-            },
-            Request::Load(project, answer) => {
-                let result = self.work.load(project);
-                if result.is_ok() {
-                    self.opened(ctx);
-                }
-                answers.push(Box::new(move || answer(result)));
-            }
-            Request::SetCamera(camera) => self.work.session.set_camera(camera),
-            Request::Picture(answer) => answer(self.renderer.image()),
-            Request::Cancel => self.renderer.cancel(),
-            Request::Again => self.renderer.again(now),
-            Request::PictureSize(size) => {
-                let longest = ctx.input(|input| input.max_texture_side) as u32;
-                self.forced_size = size.map(|size| size.map(|side| side.clamp(1, longest)));
-            }
-            Request::KillWorker(index) => {
-                self.renderer.kill_worker(index);
-            }
-        }
-    }
-
     /// Another work is open: forget what belonged to the one before.
-    fn opened(&mut self, ctx: &Context) {
+    pub(crate) fn opened(&mut self, ctx: &Context) {
         self.editor.reset(ctx);
         self.sliders.clear();
         self.renderer.clear();
@@ -329,231 +298,7 @@ impl App {
         for command in commands {
             self.carry_out(&ctx, command, now);
         }
-    }
-
-    fn keys(&self, ctx: &Context, commands: &mut Vec<Command>) {
-        let pressed = |modifiers: Modifiers, key: Key| {
-            ctx.input_mut(|input| input.consume_shortcut(&KeyboardShortcut::new(modifiers, key)))
-        };
-        // The longer combination first: the shorter one matches it too.
-        if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z)
-            || pressed(Modifiers::COMMAND, Key::Y)
-        {
-            commands.push(Command::Redo);
-        } else if pressed(Modifiers::COMMAND, Key::Z) {
-            commands.push(Command::Undo);
-        }
-        if pressed(Modifiers::COMMAND, Key::S) {
-            commands.push(Command::SavePng);
-        }
-        if self.dialog.is_some() && pressed(Modifiers::NONE, Key::Escape) {
-            commands.push(Command::Close);
-        }
-    }
-
-    fn carry_out(&mut self, ctx: &Context, command: Command, now: f64) {
-        let session = &mut self.work.session;
-        match command {
-            Command::SetText { file, text } => {
-                if let Err(refused) = session.set_text(file, text, now) {
-                    self.editor.resync(ctx);
-                    self.notice = Some(Notice::trouble(refused.to_string()));
-                }
-            }
-            Command::Replace { file, range, with } => {
-                if let Err(refused) = session.replace(file, range, &with, now) {
-                    self.notice = Some(Notice::trouble(refused.to_string()));
-                }
-            }
-            Command::AddFile => match session.add_file(now) {
-                Ok(file) => self.editor.jump(file, 0..0),
-                Err(refused) => self.notice = Some(Notice::trouble(refused.to_string())),
-            },
-            Command::RenameFile(file, name) => session.rename_file(file, &name, now),
-            Command::RemoveFile(file) => session.remove_file(file, now),
-            Command::Hold => session.hold(),
-            Command::Release => session.release(),
-            Command::Undo => {
-                if let Some((file, byte)) = session.undo() {
-                    self.editor.show_place(file, byte);
-                }
-            }
-            Command::Redo => {
-                if let Some((file, byte)) = session.redo() {
-                    self.editor.show_place(file, byte);
-                }
-            }
-            Command::Jump { file, range } => {
-                self.tab = Tab::Text;
-                self.editor.jump(file, range);
-            }
-            Command::SetCamera(camera) => {
-                session.set_camera(camera);
-                self.settings.turned = true;
-            }
-            Command::ShowAll => {
-                if let Some(scene) = session.scene() {
-                    let camera = preview::orbit::frame(&scene, session.frame());
-                    session.set_camera(Some(camera));
-                }
-            }
-            Command::Cancel => self.renderer.cancel(),
-            Command::Again => self.renderer.again(now),
-            Command::SetShow(show) => self.settings.show = show,
-            Command::SetSize(size) => {
-                self.settings.size = size;
-                self.forced_size = None;
-            }
-            Command::SetTheme(theme) => {
-                self.settings.theme = theme;
-                ctx.set_theme(theme);
-            }
-            Command::SavePng => self.save_png(now),
-            Command::Share => self.share(ctx, now),
-            Command::OpenExample(index) => {
-                let result = self.work.open_example(index);
-                self.opened_or(ctx, result);
-            }
-            Command::OpenSaved(id) => {
-                let result = self.work.open_saved(&id);
-                self.opened_or(ctx, result);
-            }
-            Command::New => {
-                let result = self.work.open_new();
-                self.opened_or(ctx, result);
-            }
-            Command::GoBack => {
-                if let Some(id) = self.work.before().map(str::to_owned) {
-                    platform::set_hash("");
-                    let result = self.work.open_saved(&id);
-                    self.opened_or(ctx, result);
-                }
-            }
-            Command::Rename(name) => self.work.rename(name, now),
-            Command::Delete(id) => {
-                self.parts.shelf.borrow_mut().delete(&id);
-                self.gallery.refresh(self.parts.shelf.borrow().entries());
-            }
-            Command::Enable => {
-                self.notice = None;
-                self.work.session.enable();
-            }
-            Command::ShowGallery => {
-                if let Err(trouble) = self.work.flush() {
-                    self.notice = Some(Notice::trouble(trouble));
-                }
-                self.gallery.refresh(self.parts.shelf.borrow().entries());
-                self.dialog = Some(Dialog::Gallery);
-            }
-            Command::ShowHelp => self.dialog = Some(Dialog::Help),
-            Command::Close => {
-                if self.dialog.take().is_none() {
-                    self.notice = None;
-                }
-            }
-        }
-        ctx.request_repaint();
-    }
-
-    fn opened_or(&mut self, ctx: &Context, result: Result<(), String>) {
-        match result {
-            Ok(()) => {
-                platform::set_hash("");
-                self.opened(ctx);
-            }
-            Err(trouble) => {
-                self.dialog = None;
-                self.notice = Some(Notice::trouble(trouble));
-            }
-        }
-    }
-
-    fn save_png(&mut self, now: f64) {
-        let Some(image) = self.renderer.image() else {
-            self.notice = Some(Notice::trouble("There is no picture to save yet."));
-            return;
-        };
-        match picture::png(image) {
-            Ok(bytes) => {
-                let stem: String = self
-                    .work
-                    .name
-                    .chars()
-                    .map(|c| if c.is_alphanumeric() { c } else { '-' })
-                    .collect();
-                let name = format!("{}.png", if stem.is_empty() { "sinew" } else { &stem });
-                platform::download(&name, "image/png", &bytes);
-                let [width, height] = image.size;
-                let text = format!("Saved {name}, {width} × {height} pixels.");
-                self.notice = Some(Notice::done(text, now));
-            }
-            Err(error) => self.notice = Some(Notice::trouble(error.to_string())),
-        }
-    }
-
-    fn share(&mut self, ctx: &Context, now: f64) {
-        let session = &self.work.session;
-        match share::link(
-            &platform::page(),
-            session.project(),
-            session.chosen_camera(),
-        ) {
-            Ok(link) => {
-                if let Some((_, fragment)) = link.split_once('#') {
-                    platform::set_hash(&format!("#{fragment}"));
-                }
-                let size = share::size(&link);
-                let text = format!("Link copied ({size}). It carries the text and the view.");
-                ctx.copy_text(link);
-                self.notice = Some(Notice::done(text, now));
-            }
-            Err(trouble) => self.notice = Some(Notice::trouble(trouble)),
-        }
-    }
-
-    fn report(&mut self, ctx: &Context) {
-        let session = &self.work.session;
-        let mut outbox = self.parts.outbox.borrow_mut();
-        let state = &mut outbox.report;
-        let progress = self.renderer.progress();
-        state.phase = self.renderer.phase().id();
-        state.progress = progress.fraction;
-        state.pass = progress.pass.map(pass_label);
-        state.remaining = progress.remaining_seconds;
-        state.backend = self.backend.id();
-        state.workers = progress.workers;
-        state.replaced = progress.restarted;
-        state.failure.clone_from(&progress.error);
-        state.fresh = self
-            .renderer
-            .texture()
-            .is_some_and(|(_, generation)| generation == session.generation());
-        state.timings.coarse = self.renderer.timings().coarse;
-        state.timings.done = self.renderer.timings().done;
-        state.picture = self.renderer.image().map(|image| report::Size {
-            width: image.size[0],
-            height: image.size[1],
-        });
-        state.stats = report::Stats {
-            primary_rays: progress.stats.primary_rays,
-            shadow_rays: progress.stats.shadow_rays,
-            field_evaluations: progress.stats.field_evaluations,
-        };
-        state.revision = session.revision();
-        state.name.clone_from(&self.work.name);
-        state.saved = !self.parts.shelf.borrow().is_dirty();
-        if self.reported != Some(session.revision()) {
-            self.reported = Some(session.revision());
-            state.diagnostics = session.diagnostics().into();
-            state.errors = session.errors();
-            state.timings.compile = session.compile_seconds();
-            let hot = &session.compiled().hot;
-            state.hot = hot.iter().map(|variable| variable.name.clone()).collect();
-            outbox.project = Rc::new(session.project().clone());
-        }
-        outbox.chosen = session.chosen_camera();
-        outbox.camera = session.camera();
-        outbox.places = places::all(ctx);
+        self.work.settle(now);
     }
 }
 

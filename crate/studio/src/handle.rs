@@ -26,9 +26,9 @@
 //!
 //! `sinew.debug` is for tests of the page itself and may change at any time: `killWorker(i)`,
 //! `rects()` (`{name: {x, y, w, h}}` of widgets in CSS pixels: `editor`, `picture`, `share`,
-//! `examples`, `undo`, `sliders`, `slider NAME`, `problems`, `status`, `notice`, `dialog`, …), and
+//! `examples`, `undo`, `sliders`, `slider NAME`, `problems`, `status`, `notice`, `dialog`, …),
 //! `pictureSize(w, h)`, which fixes the size of the traced picture (without arguments: back to what
-//! the user chose).
+//! the user chose), and `panic()`, which stops the program as a mistake in it would.
 
 use crate::app::Parts;
 use crate::picture;
@@ -164,6 +164,11 @@ fn debug(debug: &Object, parts: &Parts) -> Result<(), JsValue> {
     method(debug, "killWorker", move |index, _| {
         let index = index.as_f64().unwrap_or(0.0) as usize;
         p.requests.ask(Request::KillWorker(index));
+        Ok(JsValue::UNDEFINED)
+    })?;
+    let p = parts.clone();
+    method(debug, "panic", move |_, _| {
+        p.requests.ask(Request::Panic);
         Ok(JsValue::UNDEFINED)
     })?;
     let p = parts.clone();

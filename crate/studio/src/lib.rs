@@ -4,6 +4,7 @@
 //! What the user works on ([`session`], [`history`], [`picture`], [`storage`], [`share`]) knows
 //! nothing of windows and is tested without one. [`app::App`] ties it to the widgets.
 
+mod act;
 pub mod app;
 pub mod backend;
 pub mod bar;
@@ -30,6 +31,7 @@ pub mod keyboard;
 pub mod layout;
 pub mod marks;
 pub mod notice;
+mod outside;
 pub mod picture;
 pub mod places;
 pub mod platform;

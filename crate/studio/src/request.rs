@@ -30,6 +30,8 @@ pub enum Request {
     Again,
     /// Trace at this size; `None`: at the size the user chose. For tests.
     PictureSize(Option<[u32; 2]>),
+    /// Stop the program unexpectedly. For tests.
+    Panic,
     /// End a worker. For tests.
     KillWorker(usize),
 }

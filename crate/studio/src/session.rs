@@ -94,13 +94,14 @@ pub struct Session {
     camera: Option<Camera>,
     revision: u64,
     generation: u64,
-    compiling: bool,
+    enabled: bool,
+    stale: bool,
     compile_seconds: f64,
 }
 
 impl Session {
-    /// Starts with a project and a camera chosen by hand, if any. The project gets at least one
-    /// file. With `compile` false nothing is compiled before [`Session::enable`] is called.
+    /// Starts with what was kept. The project gets at least one file. With `compile` false nothing is
+    /// ever compiled before [`Session::enable`] is called.
     #[must_use]
     pub fn new(kept: Kept, compile: bool) -> Self {
         let mut session = Self {
@@ -115,7 +116,8 @@ impl Session {
             camera: None,
             revision: 0,
             generation: 0,
-            compiling: compile,
+            enabled: compile,
+            stale: false,
             compile_seconds: 0.0,
         };
         session.open(kept);
@@ -294,13 +296,13 @@ impl Session {
         self.history.can_redo()
     }
 
-    /// What the compiler made of the present text.
+    /// What the compiler made of the text at the last [`Session::compile`].
     #[must_use]
     pub fn compiled(&self) -> &Compiled {
         &self.compiled
     }
 
-    /// The messages about the present text.
+    /// The messages about the text at the last [`Session::compile`].
     #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.compiled.diagnostics
@@ -393,14 +395,31 @@ impl Session {
     /// Whether texts are compiled. False after a start that failed, until the user asks.
     #[must_use]
     pub fn enabled(&self) -> bool {
-        self.compiling
+        self.enabled
     }
 
     /// Compiles from now on.
     pub fn enable(&mut self) {
-        if !self.compiling {
-            self.compiling = true;
-            self.changed();
+        self.enabled = true;
+    }
+
+    /// Compiles the present text if it changed since the last call. Whoever keeps the text safe does
+    /// so before: should the compiler ever stop the program, what was typed is not lost.
+    pub fn compile(&mut self) {
+        if !self.enabled || !std::mem::take(&mut self.stale) {
+            return;
+        }
+        let start = crate::platform::stopwatch();
+        self.compiled = rats::compile(&self.project);
+        self.compile_seconds = crate::platform::stopwatch() - start;
+        if self.errors() == 0 || self.good.is_none() {
+            let scene = &self.compiled.scene;
+            let same = self
+                .good
+                .as_ref()
+                .is_some_and(|good| same_picture(good, scene));
+            self.good = Some(scene.clone());
+            self.generation += u64::from(!same);
         }
     }
 
@@ -413,22 +432,7 @@ impl Session {
 
     fn changed(&mut self) {
         self.revision += 1;
-        if !self.compiling {
-            return;
-        }
-        let start = crate::platform::stopwatch();
-        self.compiled = rats::compile(&self.project);
-        self.compile_seconds = crate::platform::stopwatch() - start;
-        let clean = self.errors() == 0;
-        if clean || self.good.is_none() {
-            let scene = &self.compiled.scene;
-            let same = self
-                .good
-                .as_ref()
-                .is_some_and(|good| same_picture(good, scene));
-            self.good = Some(scene.clone());
-            self.generation += u64::from(!same);
-        }
+        self.stale = true;
     }
 }
 
@@ -482,7 +486,14 @@ mod tests {
             project,
             ..Kept::default()
         };
-        Session::new(kept, true)
+        let mut session = Session::new(kept, true);
+        session.compile();
+        session
+    }
+
+    fn edit(session: &mut Session, text: &str, now: f64) {
+        session.set_text(0, text.to_owned(), now).unwrap();
+        session.compile();
     }
 
     #[test]
@@ -490,14 +501,10 @@ mod tests {
         let mut session = session(TEXT);
         assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
         let (scene, generation) = (session.scene(), session.generation());
-        session
-            .set_text(0, format!("{TEXT}sphree a 1, 2 0 0\n"), 1.0)
-            .unwrap();
+        edit(&mut session, &format!("{TEXT}sphree a 1, 2 0 0\n"), 1.0);
         assert_eq!(session.errors(), 1);
         assert_eq!((session.scene(), session.generation()), (scene, generation));
-        session
-            .set_text(0, format!("{TEXT}sphere a 1, 2 0 0\n"), 2.0)
-            .unwrap();
+        edit(&mut session, &format!("{TEXT}sphere a 1, 2 0 0\n"), 2.0);
         assert_eq!(session.scene().unwrap().elements.len(), 2);
         assert_eq!(session.generation(), generation + 1);
     }
@@ -513,9 +520,7 @@ mod tests {
     fn a_remark_draws_no_new_picture() {
         let mut session = session(TEXT);
         let generation = session.generation();
-        session
-            .set_text(0, format!("# words\n{TEXT}"), 1.0)
-            .unwrap();
+        edit(&mut session, &format!("# words\n{TEXT}"), 1.0);
         assert_eq!(session.generation(), generation);
         assert_eq!(session.scene().unwrap().elements[0].origin.start, 62);
     }
@@ -528,9 +533,7 @@ mod tests {
             ..Camera::default()
         };
         session.set_camera(Some(chosen));
-        session
-            .set_text(0, format!("{TEXT}eyep 9 9 9\n"), 1.0)
-            .unwrap();
+        edit(&mut session, &format!("{TEXT}eyep 9 9 9\n"), 1.0);
         assert_eq!(session.scene().unwrap().camera, chosen);
         session.set_camera(None);
         assert_eq!(session.camera().eye, glam::DVec3::splat(9.0));
@@ -552,6 +555,7 @@ mod tests {
             session
                 .replace(0, literal, &value, f64::from(step))
                 .unwrap();
+            session.compile();
         }
         session.release();
         assert!(session.text(0).contains("var r = 0.19 hot"));
@@ -573,16 +577,16 @@ mod tests {
         session
             .set_text(added, String::from("sphere a 1, 3 0 0\n"), 1.3)
             .unwrap();
-        session
-            .set_text(0, format!("{TEXT}read legs.rat\n"), 1.4)
-            .unwrap();
+        edit(&mut session, &format!("{TEXT}read legs.rat\n"), 1.4);
         assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
         assert_eq!(session.scene().unwrap().elements.len(), 2);
         session.remove_file(added, 1.5);
+        session.compile();
         assert_eq!(session.errors(), 1);
         session.remove_file(0, 1.6);
         assert_eq!(session.project().files.len(), 1);
         session.undo();
+        session.compile();
         assert_eq!(session.errors(), 0);
         session.undo();
         session.undo();
@@ -610,9 +614,10 @@ mod tests {
     fn nothing_is_compiled_before_the_user_asks_after_a_failed_start() {
         let kept = Session::new(Kept::default(), true).keep(0);
         let mut session = Session::new(kept, false);
-        session.set_text(0, String::from(TEXT), 1.0).unwrap();
+        edit(&mut session, TEXT, 1.0);
         assert!(session.scene().is_none());
         session.enable();
+        session.compile();
         assert_eq!(session.scene().unwrap().elements.len(), 1);
     }
 }

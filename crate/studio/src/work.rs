@@ -68,6 +68,7 @@ impl Work {
         if compile {
             work.session.enable();
         }
+        work.session.compile();
         work.note();
         (work, trouble)
     }
@@ -161,6 +162,16 @@ impl Work {
     /// Notes changes and writes them when they have rested. Gives a message when they cannot be
     /// written.
     pub fn tick(&mut self, now: f64) -> Option<String> {
+        self.settle(now);
+        if self.changed.is_some_and(|changed| now - changed >= DELAY) {
+            return self.flush().err();
+        }
+        None
+    }
+
+    /// Puts what changed on the shelf, from where it is written even if the program stops, and then
+    /// compiles it.
+    pub fn settle(&mut self, now: f64) {
         let state = (self.session.revision(), self.session.chosen_camera());
         if state != self.noted {
             let edited = state.0 != self.noted.0;
@@ -172,10 +183,7 @@ impl Work {
                 self.keep(now);
             }
         }
-        if self.changed.is_some_and(|changed| now - changed >= DELAY) {
-            return self.flush().err();
-        }
-        None
+        self.session.compile();
     }
 
     /// Seconds until [`Work::tick`] has something to write.

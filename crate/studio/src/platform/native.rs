@@ -83,3 +83,12 @@ pub fn troubled() -> bool {
 pub fn set_troubled(troubled: bool) {
     TROUBLED.set(troubled);
 }
+
+/// Whether what is stored lasts.
+#[must_use]
+pub fn has_storage() -> bool {
+    true
+}
+
+/// Says in the browser's tab what is open.
+pub fn set_title(_name: &str) {}

@@ -144,3 +144,16 @@ pub fn set_troubled(troubled: bool) {
         };
     }
 }
+
+/// Whether what is stored lasts.
+#[must_use]
+pub fn has_storage() -> bool {
+    matches!(window().local_storage(), Ok(Some(_)))
+}
+
+/// Says in the browser's tab what is open.
+pub fn set_title(name: &str) {
+    if let Some(document) = window().document() {
+        document.set_title(&format!("{name} – Sinew"));
+    }
+}

@@ -1,0 +1,189 @@
+//! Carrying out what the user asked for.
+
+use crate::app::{App, Dialog, Tab};
+use crate::command::Command;
+use crate::notice::Notice;
+use crate::{picture, platform, share};
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+impl App {
+    pub(crate) fn keys(&self, ctx: &Context, commands: &mut Vec<Command>) {
+        let pressed = |modifiers: Modifiers, key: Key| {
+            ctx.input_mut(|input| input.consume_shortcut(&KeyboardShortcut::new(modifiers, key)))
+        };
+        // The longer combination first: the shorter one matches it too.
+        if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z)
+            || pressed(Modifiers::COMMAND, Key::Y)
+        {
+            commands.push(Command::Redo);
+        } else if pressed(Modifiers::COMMAND, Key::Z) {
+            commands.push(Command::Undo);
+        }
+        if pressed(Modifiers::COMMAND, Key::S) {
+            commands.push(Command::SavePng);
+        }
+        if self.dialog.is_some() && pressed(Modifiers::NONE, Key::Escape) {
+            commands.push(Command::Close);
+        }
+    }
+
+    pub(crate) fn carry_out(&mut self, ctx: &Context, command: Command, now: f64) {
+        let session = &mut self.work.session;
+        match command {
+            Command::SetText { file, text } => {
+                if let Err(refused) = session.set_text(file, text, now) {
+                    self.editor.resync(ctx);
+                    self.notice = Some(Notice::trouble(refused.to_string()));
+                }
+            }
+            Command::Replace { file, range, with } => {
+                if let Err(refused) = session.replace(file, range, &with, now) {
+                    self.notice = Some(Notice::trouble(refused.to_string()));
+                }
+            }
+            Command::AddFile => match session.add_file(now) {
+                Ok(file) => self.editor.jump(file, 0..0),
+                Err(refused) => self.notice = Some(Notice::trouble(refused.to_string())),
+            },
+            Command::RenameFile(file, name) => session.rename_file(file, &name, now),
+            Command::RemoveFile(file) => session.remove_file(file, now),
+            Command::Hold => session.hold(),
+            Command::Release => session.release(),
+            Command::Undo => {
+                if let Some((file, byte)) = session.undo() {
+                    self.editor.show_place(file, byte);
+                }
+            }
+            Command::Redo => {
+                if let Some((file, byte)) = session.redo() {
+                    self.editor.show_place(file, byte);
+                }
+            }
+            Command::Jump { file, range } => {
+                self.tab = Tab::Text;
+                self.editor.jump(file, range);
+            }
+            Command::SetCamera(camera) => {
+                session.set_camera(camera);
+                self.settings.turned = true;
+            }
+            Command::ShowAll => {
+                if let Some(scene) = session.scene() {
+                    let camera = preview::orbit::frame(&scene, session.frame());
+                    session.set_camera(Some(camera));
+                }
+            }
+            Command::Cancel => self.renderer.cancel(),
+            Command::Again => self.renderer.again(now),
+            Command::SetShow(show) => self.settings.show = show,
+            Command::SetSize(size) => {
+                self.settings.size = size;
+                self.forced_size = None;
+            }
+            Command::SetTheme(theme) => {
+                self.settings.theme = theme;
+                ctx.set_theme(theme);
+            }
+            Command::SavePng => self.save_png(now),
+            Command::Share => self.share(ctx, now),
+            Command::OpenExample(index) => {
+                let result = self.work.open_example(index);
+                self.opened_or(ctx, result);
+            }
+            Command::OpenSaved(id) => {
+                let result = self.work.open_saved(&id);
+                self.opened_or(ctx, result);
+            }
+            Command::New => {
+                let result = self.work.open_new();
+                self.opened_or(ctx, result);
+            }
+            Command::GoBack => {
+                if let Some(id) = self.work.before().map(str::to_owned) {
+                    platform::set_hash("");
+                    let result = self.work.open_saved(&id);
+                    self.opened_or(ctx, result);
+                }
+            }
+            Command::Rename(name) => self.work.rename(name, now),
+            Command::Delete(id) => {
+                self.parts.shelf.borrow_mut().delete(&id);
+                self.gallery.refresh(self.parts.shelf.borrow().entries());
+            }
+            Command::Enable => {
+                self.notice = None;
+                self.work.session.enable();
+            }
+            Command::ShowGallery => {
+                if let Err(trouble) = self.work.flush() {
+                    self.notice = Some(Notice::trouble(trouble));
+                }
+                self.gallery.refresh(self.parts.shelf.borrow().entries());
+                self.dialog = Some(Dialog::Gallery);
+            }
+            Command::ShowHelp => self.dialog = Some(Dialog::Help),
+            Command::Close => {
+                if self.dialog.take().is_none() {
+                    self.notice = None;
+                }
+            }
+        }
+        ctx.request_repaint();
+    }
+
+    fn opened_or(&mut self, ctx: &Context, result: Result<(), String>) {
+        match result {
+            Ok(()) => {
+                platform::set_hash("");
+                self.opened(ctx);
+            }
+            Err(trouble) => {
+                self.dialog = None;
+                self.notice = Some(Notice::trouble(trouble));
+            }
+        }
+    }
+
+    fn save_png(&mut self, now: f64) {
+        let Some(image) = self.renderer.image() else {
+            self.notice = Some(Notice::trouble("There is no picture to save yet."));
+            return;
+        };
+        match picture::png(image) {
+            Ok(bytes) => {
+                let stem: String = self
+                    .work
+                    .name
+                    .chars()
+                    .map(|c| if c.is_alphanumeric() { c } else { '-' })
+                    .collect();
+                let name = format!("{}.png", if stem.is_empty() { "sinew" } else { &stem });
+                platform::download(&name, "image/png", &bytes);
+                let [width, height] = image.size;
+                let text = format!("Saved {name}, {width} × {height} pixels.");
+                self.notice = Some(Notice::done(text, now));
+            }
+            Err(error) => self.notice = Some(Notice::trouble(error.to_string())),
+        }
+    }
+
+    fn share(&mut self, ctx: &Context, now: f64) {
+        let session = &self.work.session;
+        match share::link(
+            &platform::page(),
+            session.project(),
+            session.chosen_camera(),
+        ) {
+            Ok(link) => {
+                if let Some((_, fragment)) = link.split_once('#') {
+                    platform::set_hash(&format!("#{fragment}"));
+                }
+                let size = share::size(&link);
+                let text = format!("Link copied ({size}). It carries the text and the view.");
+                ctx.copy_text(link);
+                self.notice = Some(Notice::done(text, now));
+            }
+            Err(trouble) => self.notice = Some(Notice::trouble(trouble)),
+        }
+    }
+}

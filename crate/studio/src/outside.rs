@@ -1,0 +1,102 @@
+//! Between the app and what is outside its window: serving requests, and telling how things are.
+
+use crate::app::App;
+use crate::notice::Notice;
+use crate::render::pass_label;
+use crate::report;
+use crate::request::Request;
+use crate::work::Origin;
+use crate::{places, platform};
+use egui::Context;
+use std::rc::Rc;
+
+impl App {
+    pub(crate) fn serve(
+        &mut self,
+        ctx: &Context,
+        request: Request,
+        now: f64,
+        answers: &mut Vec<Box<dyn FnOnce()>>,
+    ) {
+        match request {
+            Request::Ready(answer) => answers.push(answer),
+            Request::Finished(answer) => self.finished.push(answer),
+            Request::HashChanged => match self.work.open_link(&platform::hash()) {
+                Ok(()) if self.work.origin == Origin::Link => {
+                    self.opened(ctx);
+                    self.welcome_link();
+                }
+                Ok(()) => {}
+                Err(trouble) => {
+                    let text = format!("{trouble} Your work stays open.");
+                    self.notice = Some(Notice::trouble(text));
+                }
+            },
+            Request::Load(project, answer) => {
+                let result = self.work.load(project);
+                if result.is_ok() {
+                    self.opened(ctx);
+                }
+                answers.push(Box::new(move || answer(result)));
+            }
+            Request::SetCamera(camera) => self.work.session.set_camera(camera),
+            Request::Picture(answer) => answer(self.renderer.image()),
+            Request::Cancel => self.renderer.cancel(),
+            Request::Again => self.renderer.again(now),
+            Request::PictureSize(size) => {
+                let longest = ctx.input(|input| input.max_texture_side) as u32;
+                self.forced_size = size.map(|size| size.map(|side| side.clamp(1, longest)));
+            }
+            Request::Panic => panic!("asked for by sinew.debug.panic()"),
+            Request::KillWorker(index) => {
+                self.renderer.kill_worker(index);
+            }
+        }
+    }
+
+    pub(crate) fn report(&mut self, ctx: &Context) {
+        let session = &self.work.session;
+        let mut outbox = self.parts.outbox.borrow_mut();
+        let state = &mut outbox.report;
+        let progress = self.renderer.progress();
+        state.phase = self.renderer.phase().id();
+        state.progress = progress.fraction;
+        state.pass = progress.pass.map(pass_label);
+        state.remaining = progress.remaining_seconds;
+        state.backend = self.backend.id();
+        state.workers = progress.workers;
+        state.replaced = progress.restarted;
+        state.failure.clone_from(&progress.error);
+        state.fresh = self
+            .renderer
+            .texture()
+            .is_some_and(|(_, generation)| generation == session.generation());
+        state.timings.coarse = self.renderer.timings().coarse;
+        state.timings.done = self.renderer.timings().done;
+        state.picture = self.renderer.image().map(|image| report::Size {
+            width: image.size[0],
+            height: image.size[1],
+        });
+        state.stats = report::Stats {
+            primary_rays: progress.stats.primary_rays,
+            shadow_rays: progress.stats.shadow_rays,
+            field_evaluations: progress.stats.field_evaluations,
+        };
+        state.revision = session.revision();
+        state.name.clone_from(&self.work.name);
+        state.saved = !self.parts.shelf.borrow().is_dirty();
+        let text = (session.revision(), session.enabled());
+        if self.reported != Some(text) {
+            self.reported = Some(text);
+            state.diagnostics = session.diagnostics().into();
+            state.errors = session.errors();
+            state.timings.compile = session.compile_seconds();
+            let hot = &session.compiled().hot;
+            state.hot = hot.iter().map(|variable| variable.name.clone()).collect();
+            outbox.project = Rc::new(session.project().clone());
+        }
+        outbox.chosen = session.chosen_camera();
+        outbox.camera = session.camera();
+        outbox.places = places::all(ctx);
+    }
+}
