@@ -240,7 +240,37 @@ fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
     let [low, high] = profile.bounds;
     let product = wave(profile.waves[0], profile.scale[0] * u.clamp(0.0, 1.0))
         * wave(profile.waves[1], profile.scale[1] * v.clamp(0.0, 1.0));
+    let product = match *skeleton {
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius,
+            ..
+        } => {
+            let d = point - center;
+            let q = libm::sqrt(d.dot(u) * d.dot(u) + d.dot(v) * d.dot(v)) / radius;
+            let root = 2.0 * q / (1.0 + q * q);
+            let mean = mean(profile);
+            mean + root * root * (product - mean)
+        }
+        _ => product,
+    };
     profile.times * (low + (high - low) * product)
+}
+
+/// The waves' mean over u, where v is 0; between two multiples of ½ every wave is smooth.
+fn mean(profile: &Profile) -> f64 {
+    let scale = profile.scale[0];
+    if scale == 0.0 {
+        return wave(profile.waves[0], 0.0) * wave(profile.waves[1], 0.0);
+    }
+    let pieces = (2.0 * scale.abs()).ceil().max(1.0) as u32;
+    let breaks: Vec<f64> = (0..=pieces)
+        .map(|i| (0.5 * f64::from(i) / scale.abs()).min(1.0))
+        .collect();
+    let along = integral(&mut |u| wave(profile.waves[0], scale * u), &breaks, 1e-13);
+    along * wave(profile.waves[1], 0.0)
 }
 
 fn wave(wave: Wave, x: f64) -> f64 {

@@ -96,16 +96,27 @@ impl Waves<f64> {
     }
 }
 
-/// The mean of the waves along u, where v is 0.
+/// The mean of the waves along u, where v is 0: `1/s·∫₀ˢ wave` with s the scale of u.
 fn mean(profile: &Profile) -> f64 {
-    const STEPS: u32 = 512;
-    let along: f64 = (0..STEPS)
-        .map(|i| {
-            let u = (f64::from(i) + 0.5) / f64::from(STEPS);
-            wave(profile.waves[0], profile.scale[0] * u).0
-        })
-        .sum();
-    along / f64::from(STEPS) * wave(profile.waves[1], 0.0).0
+    let s = profile.scale[0];
+    let (whole, part) = (s.floor(), s - s.floor());
+    let along = match profile.waves[0] {
+        _ if s == 0.0 => wave(profile.waves[0], s).0,
+        Wave::One => 1.0,
+        Wave::X if s < 0.0 => 0.0,
+        Wave::X if s < 1.0 => s / 2.0,
+        Wave::X => 1.0 - 0.5 / s,
+        Wave::Sin => (1.0 + (1.0 - libm::cos(s)) / s) / 2.0,
+        Wave::Cos => (1.0 + libm::sin(s) / s) / 2.0,
+        Wave::Sin2 => (1.0 - libm::sin(2.0 * s) / (2.0 * s)) / 2.0,
+        Wave::Cos2 => (1.0 + libm::sin(2.0 * s) / (2.0 * s)) / 2.0,
+        // The periodic ones have mean ½ over a period.
+        Wave::Saw => (whole + part * part) / (2.0 * s),
+        Wave::Hat if part <= 0.5 => (whole / 2.0 + part * part) / s,
+        Wave::Hat => (whole / 2.0 + 0.5 - (1.0 - part) * (1.0 - part)) / s,
+        Wave::Step => (whole / 2.0 + (part - 0.5).max(0.0)) / s,
+    };
+    along * wave(profile.waves[1], 0.0).0
 }
 
 /// 1/x, or 0 where x is 0: then a parameter has no extent, and stays at its start.

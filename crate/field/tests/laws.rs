@@ -288,9 +288,14 @@ tests! {
         let without = primitive(arc, &shaping(0.3, 1.0), None);
         let factor = |t: f64| {
             let (sine, cosine) = libm::sincos(3.0 * t);
-            let p = DVec3::new(2.1 * cosine, 2.1 * sine, 0.2);
+            let p = DVec3::new(2.0 * cosine, 2.0 * sine, 0.2);
             jet::<f64>(&with, p).0 / jet::<f64>(&without, p).0
         };
+        // On the axis, where all angles meet, the mean of the waves.
+        let axis = DVec3::new(0.0, 0.0, 0.2);
+        let mean = 1.15 * (0.5 + 0.2 * (1.0 + (1.0 - libm::cos(22.0)) / 22.0) / 2.0);
+        let on_axis = jet::<f64>(&with, axis).0 / jet::<f64>(&without, axis).0;
+        assert!((on_axis - mean).abs() < 1e-9, "{on_axis} is not {mean}");
         for i in 0..=20 {
             let t = f64::from(i) / 20.0;
             let want = 1.15 * (0.5 + 0.2 * (1.0 + libm::sin(22.0 * t)) / 2.0);
