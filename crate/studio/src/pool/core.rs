@@ -1,6 +1,7 @@
 //! What the pools of web workers and of threads share: the scheduler, the scene, finished tiles.
 
-use super::scheduler::{Command, Plan, Scheduler};
+use super::run::Plan;
+use super::scheduler::{Command, Scheduler};
 use super::{Job, Progress, TileDone};
 use worker::message::pack;
 use worker::{Answer, Request};

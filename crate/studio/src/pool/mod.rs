@@ -10,6 +10,7 @@
 
 mod core;
 pub mod progress;
+mod run;
 pub mod scheduler;
 
 #[cfg(target_arch = "wasm32")]

@@ -3,7 +3,7 @@
 //! Events go in (a worker started, answered, died; time passed), [`Command`]s come out. Rules:
 //!
 //! - Tiles are handed out pass by pass, in the order of [`tracer::tile::tiles`]. A worker holds the
-//!   tile it traces and some more, about [`AHEAD`] seconds of work, so that it need not wait for a
+//!   tile it traces and some more, about [`AHEAD`](super::run::AHEAD) seconds of work, so that it need not wait for a
 //!   page that is busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
 //!   replaced, so a slow tile never delays the new picture.
@@ -12,9 +12,10 @@
 //!   [`ATTEMPTS`] workers failed is given up, so nothing is tried forever. The same holds for
 //!   preparing a scene and for starting a worker.
 
-use super::progress::{Costs, Progress, add_stats};
-use std::collections::{HashMap, HashSet, VecDeque};
-use tracer::{Pass, Stats, Tile};
+use super::progress::Progress;
+use super::run::{Plan, Run};
+use std::collections::VecDeque;
+use tracer::Stats;
 use worker::Order;
 
 /// Failures after which a tile, a scene or a worker is given up.
@@ -23,23 +24,10 @@ pub const ATTEMPTS: u32 = 3;
 pub const PATIENCE: f64 = 0.25;
 /// Times in a row a worker may die without having finished a tile.
 pub const DEATHS: u32 = 10;
-/// Seconds of work a worker is given ahead.
-pub const AHEAD: f64 = 0.25;
-/// Most tiles a worker is given ahead.
-pub const MOST_AHEAD: usize = 64;
 /// Seconds a worker may take to start.
 pub const START_LIMIT: f64 = 30.0;
 /// Seconds a worker may take to prepare a scene.
 pub const PREPARE_LIMIT: f64 = 60.0;
-/// Least seconds a tile may take.
-pub const TILE_LIMIT: f64 = 10.0;
-/// A tile may take so many times longer than the slowest of its pass so far, …
-pub const SLACK: f64 = 20.0;
-/// … and so many times longer again after each failure, …
-pub const RETRY: f64 = 4.0;
-/// … but never longer than so many seconds.
-pub const LONGEST_LIMIT: f64 = 600.0;
-
 /// What the pool must do. Workers are numbered from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
@@ -53,17 +41,6 @@ pub enum Command {
     Trace(usize, Vec<Order>),
     /// Tell this worker to forget its picture.
     Stop(usize),
-}
-
-/// A picture as the scheduler sees it.
-#[derive(Clone, Copy, Debug)]
-pub struct Plan {
-    /// The caller's number for it.
-    pub generation: u64,
-    /// Width and height, pixels.
-    pub size: [u32; 2],
-    /// At most n×n rays a pixel; with 1 there is no [`Pass::Smooth`].
-    pub samples: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,110 +95,6 @@ enum Late {
     Stale,
     /// It gives no sign of life; what that means.
     Hanging(&'static str),
-}
-
-/// The picture being traced.
-#[derive(Debug)]
-struct Run {
-    plan: Plan,
-    tiles: Vec<Tile>,
-    passes: &'static [Pass],
-    /// The first task never handed out. A task is a tile in a pass: pass · number of tiles + tile.
-    next: usize,
-    /// Tasks handed out before, to be done again, each alone.
-    again: Vec<usize>,
-    failures: HashMap<usize, u32>,
-    failed_tiles: HashSet<usize>,
-    failed_preparations: u32,
-    /// Tasks of each pass that are done or given up.
-    settled: [usize; 3],
-    pass_seconds: [Option<f64>; 3],
-    costs: Costs,
-    begun: f64,
-    ended: Option<f64>,
-    fraction: f64,
-    stats: Stats,
-}
-
-impl Run {
-    fn tasks(&self) -> usize {
-        self.tiles.len() * self.passes.len()
-    }
-
-    fn order(&self, task: usize, generation: u64) -> Order {
-        Order {
-            generation,
-            tile: self.tiles[task % self.tiles.len()],
-            pass: self.passes[task / self.tiles.len()],
-        }
-    }
-
-    /// The next task, from those never handed out or from those to be done again.
-    fn take(&mut self, again: bool) -> Option<usize> {
-        loop {
-            let task = if again {
-                self.again.pop()?
-            } else {
-                self.next = (self.next < self.tasks()).then_some(self.next + 1)?;
-                self.next - 1
-            };
-            // A tile that was given up is not tried in later passes.
-            if !self.failed_tiles.contains(&(task % self.tiles.len())) {
-                return Some(task);
-            }
-            self.settled[task / self.tiles.len()] += 1;
-        }
-    }
-
-    /// How many tasks never handed out a worker should hold, one of so many workers: enough not to
-    /// wait for the page, but in the end no worker should have much more than the others.
-    fn enough(&self, workers: usize) -> usize {
-        if self.next >= self.tasks() {
-            return 0;
-        }
-        let pass = self.next / self.tiles.len();
-        let ahead = (AHEAD / self.costs.expected(pass)).clamp(2.0, MOST_AHEAD as f64) as usize;
-        let share = (self.tasks() - self.next).div_ceil(2 * workers.max(1));
-        ahead.min(share)
-    }
-
-    /// Seconds a task may take. After each failure it gets more, as a tile may be slow for good
-    /// reasons.
-    fn limit(&self, task: usize) -> f64 {
-        let pass = task / self.tiles.len();
-        let failures = self.failures.get(&task).copied().unwrap_or(0);
-        let long = SLACK * self.costs.expected(pass).max(self.costs.slowest(pass));
-        (long.max(TILE_LIMIT) * RETRY.powi(failures as i32)).min(LONGEST_LIMIT)
-    }
-
-    /// Expected seconds of all tasks, and of those left.
-    fn expected(&self) -> (f64, f64) {
-        let (mut all, mut left) = (0.0, 0.0);
-        for pass in 0..self.passes.len() {
-            let cost = self.costs.expected(pass);
-            all += cost * self.tiles.len() as f64;
-            left += cost * (self.tiles.len() - self.settled[pass]) as f64;
-        }
-        (all, left)
-    }
-
-    /// Notes which passes are complete, and the end of the picture.
-    fn settle(&mut self, now: f64) {
-        let complete = |pass: usize| self.settled[pass] == self.tiles.len();
-        for pass in 0..self.passes.len() {
-            if complete(pass) {
-                self.pass_seconds[pass].get_or_insert(now - self.begun);
-            }
-        }
-        let (all, left) = self.expected();
-        if all > 0.0 {
-            self.fraction = self.fraction.max(1.0 - left / all);
-        }
-        if (0..self.passes.len()).all(complete) {
-            self.ended.get_or_insert(now);
-            self.fraction = 1.0;
-        }
-    }
 }
 
 /// The state of the pool.
@@ -297,30 +170,7 @@ impl Scheduler {
         self.put_down(now);
         self.number += 1;
         self.error = None;
-        let passes: &[Pass] = if plan.samples > 1 {
-            &[Pass::Coarse, Pass::Full, Pass::Smooth]
-        } else {
-            &[Pass::Coarse, Pass::Full]
-        };
-        let mut run = Run {
-            plan,
-            tiles: tracer::tile::tiles(plan.size[0], plan.size[1], super::TILE),
-            passes,
-            next: 0,
-            again: Vec::new(),
-            failures: HashMap::new(),
-            failed_tiles: HashSet::new(),
-            failed_preparations: 0,
-            settled: [0; 3],
-            pass_seconds: [None; 3],
-            costs: Costs::default(),
-            begun: now,
-            ended: None,
-            fraction: 0.0,
-            stats: Stats::default(),
-        };
-        run.settle(now);
-        self.run = Some(run);
+        self.run = Some(Run::new(plan, now));
         self.wake(now);
         for index in 0..self.slots.len() {
             self.begin(index, now);
@@ -391,11 +241,7 @@ impl Scheduler {
         }
         slot.holds.pop_front();
         slot.deaths = 0;
-        let pass = task / run.tiles.len();
-        run.settled[pass] += 1;
-        run.costs.add(pass, seconds.max(0.0));
-        add_stats(&mut run.stats, stats);
-        run.settle(now);
+        run.done(task, stats, seconds, now);
         self.fill(index, now);
         true
     }
@@ -441,16 +287,11 @@ impl Scheduler {
                 }
             } else {
                 held.retain(|task| {
-                    let failures = run.failures.entry(*task).or_insert(0);
-                    *failures += 1;
-                    if *failures >= ATTEMPTS {
-                        let tiles = run.tiles.len();
-                        run.failed_tiles.insert(task % tiles);
-                        run.settled[task / tiles] += 1;
+                    let give_up = run.failed(*task);
+                    if give_up {
                         self.error = Some(format!("A part of the picture is missing: {reason}"));
-                        return false;
                     }
-                    true
+                    !give_up
                 });
             }
         }
@@ -528,21 +369,7 @@ impl Scheduler {
             ..Progress::default()
         };
         if let Some(run) = &self.run {
-            let complete = |pass: usize| run.settled[pass] == run.tiles.len();
-            progress.generation = Some(run.plan.generation);
-            progress.fraction = run.fraction;
-            progress.finished = (0..run.passes.len()).all(complete);
-            progress.seconds = run.ended.unwrap_or(now) - run.begun;
-            progress.pass_seconds = run.pass_seconds;
-            progress.failed_tiles = run.failed_tiles.len() as u32;
-            progress.stats = run.stats;
-            if run.ended.is_none() {
-                progress.pass = (0..run.passes.len())
-                    .find(|pass| !complete(*pass))
-                    .map(|pass| run.passes[pass]);
-                progress.remaining_seconds =
-                    (run.costs.enough() && workers > 0).then(|| run.expected().1 / workers as f64);
-            }
+            run.tell(&mut progress, now);
         }
         progress
     }
@@ -602,8 +429,7 @@ impl Scheduler {
             slot.put_down();
         }
         if let Some(run) = &mut self.run {
-            run.again.clear();
-            run.next = run.tasks();
+            run.abandon();
         }
     }
 

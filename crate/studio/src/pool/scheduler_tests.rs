@@ -1,6 +1,9 @@
 //! The scheduler against a crowd of imagined workers and an imagined clock.
 
 use super::*;
+use crate::pool::run::{LONGEST_LIMIT, MOST_AHEAD, RETRY, SLACK, TILE_LIMIT};
+use std::collections::HashSet;
+use tracer::Pass;
 
 const STATS: Stats = Stats {
     primary_rays: 1,
@@ -323,8 +326,10 @@ fn slow_tiles_get_more_time() {
         };
         crowd.scheduler.traced(0, order, &STATS, seconds, crowd.now);
         let run = crowd.scheduler.run.as_mut().unwrap();
-        let last = run.tiles.len() - 1; // of the coarse pass
-        run.failures.insert(last, failures);
+        let last = 11; // of the coarse pass
+        for _ in 0..failures {
+            run.failed(last);
+        }
         run.limit(last)
     };
     assert_eq!(limits(1e-3, 0), TILE_LIMIT);
