@@ -16,11 +16,12 @@ use egui::{
 };
 
 use super::{
-    raster::{self, Corner, Quad, Sheet, Showing},
+    raster::Sheet,
+    shape::{self, Corner, Quad, Showing},
     texture::Textures,
 };
 
-pub use super::raster::Area;
+pub use super::shape::Area;
 
 /// The side of a tile in pixels.
 const TILE: i32 = 64;
@@ -200,7 +201,7 @@ impl Painter {
 impl Shape {
     fn area(&self) -> Area {
         match self {
-            Self::Triangle(corners) => raster::bounds(corners),
+            Self::Triangle(corners) => shape::bounds(corners),
             Self::Quad(quad) => quad.area(),
         }
     }
