@@ -2,12 +2,19 @@
 
 use crate::app::Parts;
 use crate::platform;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use wasm_bindgen::JsValue;
 
 thread_local! {
     /// What is to be saved. The hook below must be `Send`, so it cannot hold this itself.
     static PARTS: RefCell<Option<Parts>> = const { RefCell::new(None) };
+    static HAPPENED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether the program has stopped unexpectedly.
+#[must_use]
+pub fn happened() -> bool {
+    HAPPENED.get()
 }
 
 /// Installs the panic hook.
@@ -15,6 +22,7 @@ pub fn install(parts: Parts) {
     PARTS.set(Some(parts));
     std::panic::set_hook(Box::new(|info| {
         console_error_panic_hook::hook(info);
+        HAPPENED.set(true);
         platform::set_troubled(true);
         let saved = PARTS.with(|parts| {
             let parts = parts.try_borrow().ok()?;

@@ -2,7 +2,7 @@
 
 use crate::app::{App, Parts};
 use crate::request::Request;
-use crate::{boot, crash, handle, platform};
+use crate::{boot, crash, emulation, handle, platform};
 use std::cell::Cell;
 use wasm_bindgen::prelude::*;
 
@@ -20,6 +20,7 @@ pub fn start() -> Result<(), JsValue> {
     let not_ready = handle::install(&parts)?;
     listen(&parts)?;
     wasm_bindgen_futures::spawn_local(async move {
+        emulation::mend(CANVAS).await;
         let again = Cell::new(false);
         let started = boot::start(CANVAS, move |context, backend| {
             if again.replace(true) {
@@ -58,7 +59,8 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
             window.document().ok_or(JsValue::NULL)?.into()
         };
         on(&target, event, move || {
-            if event == "pagehide" {
+            // A page that is left before it was long enough there is not one that stopped.
+            if event == "pagehide" && !crash::happened() {
                 platform::set_troubled(false);
             }
             if let Ok(mut shelf) = shelf.try_borrow_mut() {

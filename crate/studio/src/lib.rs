@@ -17,6 +17,8 @@ pub mod crash;
 pub mod draft;
 pub mod editor;
 #[cfg(target_arch = "wasm32")]
+pub mod emulation;
+#[cfg(target_arch = "wasm32")]
 pub mod entry;
 pub mod examples;
 pub mod files;

@@ -13,6 +13,8 @@ use tracer::Pass;
 pub const DEBOUNCE: f64 = 0.15;
 /// Seconds of quiet before a new size of the view is traced: the split is being dragged.
 pub const RESIZE_DEBOUNCE: f64 = 0.35;
+/// Seconds in which the window finds its size before the first picture begins.
+pub const START: f64 = 0.05;
 /// Seconds in which a new picture fades in over the draft.
 pub const FADE: f64 = 0.22;
 
@@ -99,7 +101,7 @@ impl Renderer {
     pub fn want(&mut self, generation: u64, size: [u32; 2], now: f64) {
         let Some((old_generation, old_size)) = self.wanted else {
             self.wanted = Some((generation, size));
-            self.due = now;
+            self.due = now + START;
             self.phase = Phase::Waiting;
             return;
         };
@@ -113,7 +115,9 @@ impl Renderer {
             self.due = now + DEBOUNCE;
         } else if self.phase != Phase::Cancelled {
             self.phase = Phase::Waiting;
-            self.due = now + RESIZE_DEBOUNCE;
+            // Nothing is on the screen yet: the window is only finding its size.
+            let first = self.number == 0;
+            self.due = now + if first { START } else { RESIZE_DEBOUNCE };
         }
     }
 
