@@ -145,13 +145,15 @@ for (const kind of Object.keys(KINDS)) {
     });
 
     test('a worker that is killed is replaced, and the picture is complete', async () => {
-      await sinew.resize(400, 320);
+      // Large enough that the picture is far from finished when the worker is killed.
+      const size = [800, 640];
+      await sinew.resize(...size);
       await sinew.load(await example('cowrie'));
       await sinew.until((status) => status.phase === 'tracing' && status.progress > 0.02);
       await sinew.page.evaluate(() => sinew.debug.killWorker(0));
       const status = await sinew.finished();
       assert.ok(status.replaced >= 1, 'the worker was missed');
-      const expected = await native(await sinew.text(), [400, 320]);
+      const expected = await native(await sinew.text(), size);
       assert.ok(shareThatDiffers(await sinew.image(), expected, 1) <= 0.001);
     });
 
