@@ -20,7 +20,7 @@ use crate::work::{Origin, Work};
 use crate::{Backend, platform, size, theme};
 use egui::{Context, Ui};
 use std::cell::RefCell;
-use std::rc::Rc;
+use std::rc::{Rc, Weak};
 
 /// Seconds of running without trouble after which a start counts as a good one.
 const HEALTHY: f64 = 4.0;
@@ -55,6 +55,8 @@ pub struct Parts {
     pub requests: Requests,
     /// What scripts can read.
     pub outbox: Shared,
+    /// The workers of the app that runs, for tests that end one.
+    pub pool: Rc<RefCell<Weak<RefCell<Pool>>>>,
 }
 
 impl Parts {
@@ -66,6 +68,7 @@ impl Parts {
             shelf: Rc::new(RefCell::new(shelf)),
             requests: Requests::default(),
             outbox: Shared::default(),
+            pool: Rc::default(),
         }
     }
 }
@@ -124,6 +127,8 @@ impl App {
         ctx.set_theme(settings.theme);
         let repaint = ctx.clone();
         let pool = Pool::new(move || repaint.request_repaint());
+        let pool = Rc::new(RefCell::new(pool));
+        parts.pool.replace(Rc::downgrade(&pool));
         let mut app = Self {
             renderer: Renderer::new(pool),
             draft: render_state

@@ -24,7 +24,8 @@
 //! (rises with each change of the text), `name`, `saved` (whether all changes are in the browser's
 //! storage).
 //!
-//! `sinew.debug` is for tests of the page itself and may change at any time: `killWorker(i)`,
+//! `sinew.debug` is for tests of the page itself and may change at any time: `killWorker(i)`
+//! (whether there was such a worker),
 //! `rects()` (`{name: {x, y, w, h}}` of widgets in CSS pixels: `editor`, `picture`, `share`,
 //! `examples`, `undo`, `sliders`, `slider NAME`, `problems`, `status`, `notice`, `dialog`, …),
 //! `pictureSize(w, h)`, which fixes the size of the traced picture (without arguments: back to what
@@ -163,8 +164,13 @@ fn debug(debug: &Object, parts: &Parts) -> Result<(), JsValue> {
     let p = parts.clone();
     method(debug, "killWorker", move |index, _| {
         let index = index.as_f64().unwrap_or(0.0) as usize;
-        p.requests.ask(Request::KillWorker(index));
-        Ok(JsValue::UNDEFINED)
+        // At once: on a slow machine the picture may be finished before the next frame.
+        let pool = p.pool.borrow().upgrade();
+        let killed = pool.is_some_and(|pool| {
+            pool.try_borrow_mut()
+                .is_ok_and(|mut pool| pool.kill_worker(index))
+        });
+        Ok(killed.into())
     })?;
     let p = parts.clone();
     method(debug, "panic", move |_, _| {

@@ -48,9 +48,6 @@ impl App {
                 self.forced_size = size.map(|size| size.map(|side| side.clamp(1, longest)));
             }
             Request::Panic => panic!("asked for by sinew.debug.panic()"),
-            Request::KillWorker(index) => {
-                self.renderer.kill_worker(index);
-            }
         }
     }
 

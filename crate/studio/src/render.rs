@@ -7,6 +7,8 @@ use crate::picture::{self, Assembly, Change, Image};
 use crate::pool::{Job, Pool, Progress};
 use egui::{ColorImage, TextureHandle, TextureOptions};
 use scene::Scene;
+use std::cell::RefCell;
+use std::rc::Rc;
 use tracer::Pass;
 
 /// Seconds of quiet before a change is traced.
@@ -58,7 +60,7 @@ pub struct Timings {
 
 /// Traces the present scene and keeps the picture.
 pub struct Renderer {
-    pool: Pool,
+    pool: Rc<RefCell<Pool>>,
     assembly: Assembly,
     texture: Option<TextureHandle>,
     phase: Phase,
@@ -79,7 +81,7 @@ pub struct Renderer {
 impl Renderer {
     /// A renderer without a picture.
     #[must_use]
-    pub fn new(pool: Pool) -> Self {
+    pub fn new(pool: Rc<RefCell<Pool>>) -> Self {
         Self {
             pool,
             assembly: Assembly::default(),
@@ -110,7 +112,7 @@ impl Renderer {
         }
         self.wanted = Some((generation, size));
         if generation != old_generation {
-            self.pool.cancel();
+            self.pool.borrow_mut().cancel();
             self.phase = Phase::Waiting;
             self.due = now + DEBOUNCE;
         } else if self.phase != Phase::Cancelled {
@@ -145,7 +147,7 @@ impl Renderer {
             self.running = (generation, now);
             self.timings = Timings::default();
             self.assembly.begin(self.number, size);
-            self.pool.start(Job {
+            self.pool.borrow_mut().start(Job {
                 scene: &scene,
                 size,
                 generation: self.number,
@@ -153,7 +155,8 @@ impl Renderer {
             self.phase = Phase::Tracing;
             changed = true;
         }
-        for tile in self.pool.poll() {
+        let tiles = self.pool.borrow_mut().poll();
+        for tile in tiles {
             changed = true;
             let change = self
                 .assembly
@@ -169,7 +172,7 @@ impl Renderer {
                 Change::Tile(tile) => self.upload_tile(tile),
             }
         }
-        let progress = self.pool.progress();
+        let progress = self.pool.borrow().progress();
         changed |= progress != self.progress;
         self.progress = progress;
         if self.phase == Phase::Tracing
@@ -189,7 +192,7 @@ impl Renderer {
     /// Stops the running picture; what is there stays.
     pub fn cancel(&mut self) {
         if matches!(self.phase, Phase::Tracing | Phase::Waiting) {
-            self.pool.cancel();
+            self.pool.borrow_mut().cancel();
             self.phase = Phase::Cancelled;
         }
     }
@@ -197,7 +200,7 @@ impl Renderer {
     /// Traces the wanted picture (again) now.
     pub fn again(&mut self, now: f64) {
         if self.wanted.is_some() {
-            self.pool.cancel();
+            self.pool.borrow_mut().cancel();
             self.phase = Phase::Waiting;
             self.due = now;
         }
@@ -205,7 +208,7 @@ impl Renderer {
 
     /// Forgets the picture: another piece of work is open.
     pub fn clear(&mut self) {
-        self.pool.cancel();
+        self.pool.borrow_mut().cancel();
         self.assembly.clear();
         self.texture = None;
         self.wanted = None;
@@ -247,11 +250,6 @@ impl Renderer {
     #[must_use]
     pub fn faded(&self, now: f64) -> f32 {
         ((now - self.appeared) / FADE).clamp(0.0, 1.0) as f32
-    }
-
-    /// Ends a worker, for tests.
-    pub fn kill_worker(&mut self, index: usize) -> bool {
-        self.pool.kill_worker(index)
     }
 
     fn upload(&mut self, ctx: &egui::Context) {

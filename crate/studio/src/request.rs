@@ -32,8 +32,6 @@ pub enum Request {
     PictureSize(Option<[u32; 2]>),
     /// Stop the program unexpectedly. For tests.
     Panic,
-    /// End a worker. For tests.
-    KillWorker(usize),
 }
 
 /// Requests that wait for the next tick.
