@@ -80,7 +80,7 @@ for (const kind of Object.keys(KINDS)) {
       await sinew.page.mouse.click(editor.x + editor.w / 2, editor.y + editor.h / 2);
       await sinew.page.keyboard.press('Control+End');
       await sinew.page.keyboard.type('sphree flesh 1 0.8 0 0', { delay: 20 });
-      const status = await sinew.until((status) => status.errors > 0);
+      const status = await sinew.until(({ diagnostics }) => diagnostics.some((d) => /sphree/.test(d.message)));
       const [mistake] = status.diagnostics;
       assert.equal(mistake.line, MODEL.split('\n').length);
       assert.equal(mistake.column, 1);
