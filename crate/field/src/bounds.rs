@@ -1,26 +1,20 @@
 //! Upper bounds on a primitive's field by distance from its skeleton, and the depth of influence.
 //!
 //! All in units of the kernel's width and for a factor of 1.
-use crate::term::Form;
+use crate::bone::Bone;
+use crate::form::Form;
+use crate::{Kernel, plane};
 use core::f64::consts::PI;
-
-/// `1/(1+d²)²`, the kernel.
-fn kernel(d: f64) -> f64 {
-    let i = 1.0 / (1.0 + d * d);
-    i * i
-}
 
 /// An upper bound on the form's field at all points at distance `d ≥ 0` or more from the skeleton.
 /// It does not grow with d.
 pub(crate) fn bound_at(form: &Form<f64>, d: f64) -> f64 {
-    match form {
-        Form::Point(_) => kernel(d),
-        Form::Segment(segment) => abreast(2.0 * segment.half, d),
-        Form::Arc(arc) => {
-            let length = 2.0 * arc.half_angle * arc.radius;
-            (length * kernel(d)).min(circle(arc.radius, d))
-        }
-        Form::Triangle(triangle) => {
+    let kernel = form.kernel;
+    match &form.bone {
+        Bone::Point => kernel.value(d),
+        Bone::Segment(segment) => abreast(kernel, 2.0 * segment.half, d),
+        Bone::Arc(arc) => arc_bound(kernel, 2.0 * arc.half_angle * arc.radius, arc.radius, d),
+        Bone::Triangle(triangle) => {
             let area = triangle.double_area.abs() / 2.0;
             let longest = triangle.edges.iter().fold(0.0, |l, e| e.length.max(l));
             // Cut into lines along the longest side: each is a segment no longer than it, at
@@ -30,23 +24,57 @@ pub(crate) fn bound_at(form: &Form<f64>, d: f64) -> f64 {
             } else {
                 0.0
             };
-            (area * kernel(d))
-                .min(PI / (1.0 + d * d))
-                .min(altitude * abreast(longest, d))
+            disc(kernel, area, d).min(altitude * abreast(kernel, longest, d))
         }
-        Form::Plane(_) => PI / (1.0 + d * d),
+        Bone::Polygon(polygon) => disc(kernel, polygon.area.abs(), d),
+        Bone::Plane => plane::jet(kernel, [0.0, 0.0, d]).value,
+        Bone::Curve(curve) => curve.bound_at(kernel, d),
     }
 }
 
 /// A segment's field at distance d beside its middle. That is its largest at distance d: beside
 /// it, the field falls away from the middle; beyond an end, by Pythagoras' inequality each point of
 /// the segment is at least as far as it would be from a point at distance d beside that end.
-fn abreast(length: f64, d: f64) -> f64 {
-    use crate::cauchy::Segment;
-    Segment { half: length / 2.0 }.jet([0.0, d, 0.0]).value
+fn abreast(kernel: Kernel, length: f64, d: f64) -> f64 {
+    let segment = crate::bone::Segment { half: length / 2.0 };
+    let form = Form {
+        kernel,
+        bone: Bone::Segment(segment),
+    };
+    form.jet([0.0, d, 0.0]).value
 }
 
-/// A bound on the field of any arc of a circle at distance d or more from the arc.
+/// The field of any flat piece of this area: at most that of a disc of the same area around the foot
+/// of a perpendicular of length d. For of the piece, what is within a distance r of the point is
+/// within a disc of radius √(r²−d²), or, if the foot lies outside, within a ring of that area.
+fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
+    let q = d * d;
+    // The difference of two integrals, unless it would have lost its digits.
+    let whole = PI * (kernel.over_disc(q + area / PI) - kernel.over_disc(q));
+    let most = area * kernel.value(d);
+    if whole.is_finite() && whole > 1e-9 * most {
+        most.min(whole * (1.0 + 1e-6))
+    } else {
+        most
+    }
+}
+
+/// A bound on the field of an arc. The Cauchy kernel has a sharp one; for others: a ball of radius
+/// δ holds at most πδ of a circle, so with h falling the field is at most
+/// `π(d·h(d) + ∫ h)` from d up to where the arc's length is used up.
+fn arc_bound(kernel: Kernel, length: f64, radius: f64, d: f64) -> f64 {
+    let most = length * kernel.value(d);
+    if kernel == Kernel::Cauchy {
+        return most.min(circle(radius, d));
+    }
+    let end = length / PI;
+    if end <= d {
+        return most;
+    }
+    most.min(PI * (d * kernel.value(d) + kernel.along(end) - kernel.along(d)))
+}
+
+/// A bound on the Cauchy field of any arc of a circle at distance d or more from the arc.
 ///
 /// Let the point's distance from the arc be δ ≥ d and ρ its distance from the axis. Along the arc,
 /// on either side of the antipode of the point, the squared distance to the point at angle v from
@@ -58,7 +86,7 @@ fn abreast(length: f64, d: f64) -> f64 {
 /// `2πr·h(d)`, its value on the axis.
 fn circle(r: f64, d: f64) -> f64 {
     if d >= r {
-        return 2.0 * PI * r * kernel(d);
+        return 2.0 * PI * r * Kernel::Cauchy.value(d);
     }
     let k = 4.0 * r * r;
     let peak = 2.0 * (4.0 + k) / ((8.0 + 3.0 * k) + (9.0 * k * k + 32.0 * k).sqrt());
@@ -67,11 +95,15 @@ fn circle(r: f64, d: f64) -> f64 {
     PI * r * (2.0 + k - 2.0 * p) / (product * product.sqrt())
 }
 
-/// The distance beyond which `factor·bound_at` is below `level`, or 0 if it is everywhere.
+/// The distance beyond which `factor·bound_at` is below `level`, or 0 if it is everywhere; a compact
+/// kernel's support at most.
 pub(crate) fn depth(form: &Form<f64>, factor: f64, level: f64) -> f64 {
     let below = |d: f64| factor * bound_at(form, d) < level;
     if below(0.0) {
         return 0.0;
+    }
+    if form.kernel.is_compact() {
+        return 1.0;
     }
     let mut outside = 1.0;
     while !below(outside) {

@@ -6,13 +6,6 @@
 //! and there are no special cases at axes, ends, edges or far away.
 
 pub mod arc;
-pub mod plane;
-pub mod point;
+pub mod polygon;
 pub mod segment;
 pub mod triangle;
-
-pub use arc::Arc;
-pub use plane::Plane;
-pub use point::Point;
-pub use segment::Segment;
-pub use triangle::Triangle;

@@ -22,9 +22,19 @@
 //! slope of a triangle's field across its plane, more than 100 widths away from it.
 
 mod angle;
+mod bone;
 mod bounds;
-pub mod cauchy;
+mod cauchy;
+mod curve;
+pub mod endless;
+mod form;
+mod gauss;
+mod inverse;
 pub mod kernel;
+mod metaballs;
+mod plane;
+mod point;
+mod polynomial;
 pub mod primitive;
 pub mod profile;
 pub mod quadrature;
@@ -33,7 +43,7 @@ mod reach;
 pub mod real;
 pub mod shaping;
 pub mod skeleton;
-mod smooth;
+mod squared;
 pub mod sum;
 mod term;
 mod waves;

@@ -3,7 +3,7 @@ use crate::real::Scalar;
 use crate::term::{Prepared, Term, place};
 use crate::waves::Waves;
 use crate::{AlongRay, Kernel, Profile, Real, Shaping, Skeleton, THRESHOLD};
-use crate::{bounds, reach, smooth};
+use crate::{bounds, reach};
 use glam::DVec3;
 
 /// A value and its gradient.
@@ -13,6 +13,38 @@ pub struct Jet<R> {
     pub value: R,
     /// Its derivatives along x, y and z.
     pub gradient: [R; 3],
+}
+
+impl<R: Real> Jet<R> {
+    /// The zero function's.
+    #[inline(always)]
+    #[must_use]
+    pub fn zero() -> Self {
+        Self {
+            value: R::splat(0.0),
+            gradient: [R::splat(0.0); 3],
+        }
+    }
+
+    /// The sum's.
+    #[inline(always)]
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            gradient: core::array::from_fn(|i| self.gradient[i] + other.gradient[i]),
+        }
+    }
+
+    /// The multiple's.
+    #[inline(always)]
+    #[must_use]
+    pub fn times(self, factor: R) -> Self {
+        Self {
+            value: self.value * factor,
+            gradient: self.gradient.map(|g| g * factor),
+        }
+    }
 }
 
 /// One term of the field: a skeleton convolved with a kernel.
@@ -48,16 +80,19 @@ impl Primitive {
         let height = shaping.height(&skeleton)?;
         let peak = profile.map_or(1.0, |p| p.largest());
         let usable = skeleton.is_finite() && peak.is_finite() && height != 0.0;
-        let size = match skeleton {
+        let size = match &skeleton {
             Skeleton::Point { .. } | Skeleton::Plane { .. } => 0.0,
-            Skeleton::Segment { base, apex } => (apex - base).length(),
-            Skeleton::Arc { radius, .. } => radius,
-            Skeleton::Triangle { corners: [a, b, c] } => (b - a).length().max((c - a).length()),
+            Skeleton::Segment { base, apex } => (*apex - *base).length(),
+            Skeleton::Arc { radius, .. } => *radius,
+            Skeleton::Triangle { corners: [a, b, c] } => (*b - *a).length().max((*c - *a).length()),
+            Skeleton::Polygon { .. } | Skeleton::Curve { .. } => skeleton
+                .bounding_sphere()
+                .map_or(0.0, |(_, radius)| 2.0 * radius),
         };
         if !usable || size * width > LARGEST {
             return None;
         }
-        let (frame, form) = place(&skeleton, width);
+        let (frame, form) = place(&skeleton, shaping.kernel, width);
         let amplitude = match skeleton.dimension() {
             0 => height,
             1 => height / width,
@@ -68,7 +103,7 @@ impl Primitive {
         }
         let level = THRESHOLD * shaping.influence.max(f64::MIN_POSITIVE);
         let influence = bounds::depth(&form, amplitude.abs() * peak, level) / width;
-        let waves = profile.map(|profile| Waves::new(&profile, &form));
+        let waves = profile.map(|profile| Waves::new(&profile, &form.bone));
         Some(Self {
             skeleton,
             kernel: shaping.kernel,
@@ -107,7 +142,7 @@ impl Primitive {
     pub fn ray_interval(&self, origin: DVec3, direction: DVec3) -> Option<[f64; 2]> {
         let Term { frame, form, .. } = &self.prepared.double;
         reach::interval(
-            form,
+            &form.bone,
             self.influence * self.width,
             frame.local_point(origin),
             frame.local_vector(direction),
@@ -141,47 +176,5 @@ impl Primitive {
     #[must_use]
     pub fn along_ray<R: Real>(&self, origin: DVec3, direction: DVec3, t: R) -> (R, R) {
         self.on_ray::<R::Scalar>(origin, direction).at(t)
-    }
-
-    /// A length h such that on any span of at most that length, of any straight line, the cubic
-    /// Hermite interpolant of f differs from f by at most `error` (> 0).
-    ///
-    /// `h = (384·error/max|f⁗|)^¼`; for a point of height 1 `error = 0.1875·(s·h)⁴`. Infinite for a
-    /// primitive without extent. With a profile the bound holds where that is smooth: waves that
-    /// have kinks or jumps have them, as have their ends; along an arc it holds near the circle.
-    #[must_use]
-    pub fn hermite_step(&self, error: f64) -> f64 {
-        self.hermite_step_beyond(error, 0.0)
-    }
-
-    /// The same for spans all of whose points are at `distance` or more from the skeleton, where
-    /// the field is smoother.
-    #[must_use]
-    pub fn hermite_step_beyond(&self, error: f64, distance: f64) -> f64 {
-        let term = &self.prepared.double;
-        let d = (distance * self.width).max(0.0);
-        let mut fourth = smooth::fourth_derivative(&term.form, d);
-        if let (Some(profile), Some(waves)) = (&self.profile, &term.waves) {
-            // Leibniz: kernel derivatives are at most 72^(k/4) times those of order 0, a wave's
-            // at most ωᵏ.
-            let size =
-                smooth::size(&term.form).max(smooth::fourth_derivative(&term.form, 0.0) / 72.0);
-            let rate = 2.913 + waves.frequency();
-            fourth = profile.largest() * size * rate * rate * rate * rate;
-        }
-        let h4 = 384.0 * error / (term.amplitude.abs() * fourth);
-        h4.sqrt().sqrt() / self.width
-    }
-
-    /// An upper bound on |∇f| everywhere (Lipschitz constant), per unit of length; where a profile
-    /// is smooth, if there is one.
-    #[must_use]
-    pub fn slope_bound(&self) -> f64 {
-        let term = &self.prepared.double;
-        let mut slope = smooth::slope(&term.form);
-        if let (Some(profile), Some(waves)) = (&self.profile, &term.waves) {
-            slope = profile.largest() * (slope + waves.frequency() * smooth::size(&term.form));
-        }
-        term.amplitude.abs() * slope * self.width
     }
 }

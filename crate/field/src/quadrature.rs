@@ -91,30 +91,66 @@ fn refine(
         + refine(f, middle, b, right, tolerance, depth - 1)
 }
 
-/// The kernel as defined, of squared distance.
-fn kernel(kernel: Kernel, s: f64, square: f64) -> f64 {
+/// The kernel as defined (fields.md, section 1), of a squared distance.
+fn kernel(kernel: Kernel, width: f64, square: f64) -> f64 {
+    let q = width * width * square;
+    let u = q.sqrt();
+    let pole = 1e-10;
+    let inside = |value: f64| if u <= 1.0 { value } else { 0.0 };
     match kernel {
-        Kernel::Cauchy => {
-            let q = 1.0 + s * s * square;
-            1.0 / (q * q)
-        }
+        Kernel::Cauchy => 1.0 / ((1.0 + q) * (1.0 + q)),
+        Kernel::Gauss => libm::exp(-q),
+        Kernel::Inverse => 1.0 / (q + pole).sqrt(),
+        Kernel::Squared => 1.0 / (q + pole),
+        Kernel::Metaballs if u <= 1.0 / 3.0 => 1.0 - 3.0 * q,
+        Kernel::Metaballs => inside(1.5 * (1.0 - u) * (1.0 - u)),
+        // (1−q)² times what is left of the polynomial, so that its end keeps its digits.
+        Kernel::Soft => inside((1.0 - q) * (1.0 - q) * (1.0 - 4.0 / 9.0 * q)),
+        Kernel::Quartic => inside((1.0 - q) * (1.0 - q)),
+        Kernel::Compact6 => inside((1.0 - q) * (1.0 - q) * (1.0 - q)),
+    }
+}
+
+/// How finely an integrand must be looked at: the kernel's width, or its pole's.
+fn finest(kernel: Kernel) -> f64 {
+    match kernel {
+        Kernel::Inverse | Kernel::Squared => 1e-5,
+        _ => 1.0,
     }
 }
 
 /// A primitive's field at a point, by integration over its skeleton.
 ///
-/// Relative error about 10⁻¹² (triangles 10⁻¹¹).
+/// Relative error about 10⁻¹² (triangles and polygons 10⁻¹¹).
 #[must_use]
 pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
+    let factor = primitive
+        .profile
+        .map_or(1.0, |profile| factor(&profile, &primitive.skeleton, point));
+    primitive.height * factor * over(primitive, &primitive.skeleton, point)
+}
+
+/// The kernel's integral over a skeleton.
+fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
     let s = primitive.width;
-    let h = |q: DVec3| kernel(primitive.kernel, s, q.distance_squared(point));
-    let grain = |length: f64| 1.0 / (s * length);
-    let integral = match primitive.skeleton {
+    let k = primitive.kernel;
+    let h = |q: DVec3| kernel(k, s, q.distance_squared(point));
+    let grain = |length: f64| finest(k) / (s * length);
+    let along = |base: DVec3, d: DVec3| {
+        let length = d.length();
+        let near = near(base, d, point);
+        // Where the kernel's pieces meet on the line.
+        let beside = (base + d * near).distance_squared(point);
+        let kinks = k.kinks().iter().flat_map(|&kink| {
+            let reach = (kink / s).powi(2) - beside;
+            let reach = reach.max(0.0).sqrt() / length;
+            [near - reach, near + reach]
+        });
+        length * split(|t| h(base + d * t), near, grain(length), kinks)
+    };
+    match *skeleton {
         Skeleton::Point { center } => h(center),
-        Skeleton::Segment { base, apex } => {
-            let d = apex - base;
-            d.length() * split(|t| h(base + d * t), near(base, d, point), grain(d.length()))
-        }
+        Skeleton::Segment { base, apex } => along(base, apex - base),
         Skeleton::Arc {
             center,
             u,
@@ -128,7 +164,21 @@ pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
             };
             let d = point - center;
             let azimuth = libm::atan2(d.dot(v), d.dot(u)).rem_euclid(core::f64::consts::TAU);
-            radius * angle * split(|t| h(on(t)), azimuth / angle, grain(radius * angle))
+            // |p − q|² = a − b·cos of the angle between them.
+            let a = d.length_squared() + radius * radius;
+            let b = 2.0 * radius * (d.dot(u) * d.dot(u) + d.dot(v) * d.dot(v)).sqrt();
+            let kinks = k.kinks().iter().flat_map(|&kink| {
+                let turn = libm::acos(((a - (kink / s).powi(2)) / b).clamp(-1.0, 1.0));
+                let tau = core::f64::consts::TAU;
+                [
+                    azimuth - turn,
+                    azimuth + turn,
+                    azimuth - turn + tau,
+                    azimuth + turn - tau,
+                ]
+                .map(|t| t / angle)
+            });
+            radius * angle * split(|t| h(on(t)), azimuth / angle, grain(radius * angle), kinks)
         }
         Skeleton::Triangle { corners: [a, b, c] } => {
             // Strips parallel to the longest side, so that they do not become needles.
@@ -145,26 +195,149 @@ pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
             let altitude = c - foot;
             let strip = |t: f64| {
                 let (p, q) = (a + (c - a) * t, b + (c - b) * t);
-                let d = q - p;
-                d.length() * split(|w| h(p + d * w), near(p, d, point), grain(d.length()))
+                along(p, q - p)
             };
-            altitude.length() * split(strip, near(foot, altitude, point), grain(altitude.length()))
+            // Strips that touch the edge of the kernel's pieces, or leave the triangle there.
+            let mut kinks = Vec::new();
+            let normal = side.cross(altitude).normalize_or_zero();
+            let height = (point - a).dot(normal);
+            for &kink in k.kinks() {
+                let reach = ((kink / s).powi(2) - height * height).max(0.0).sqrt();
+                let middle = near(foot, altitude, point);
+                let step = reach / altitude.length();
+                kinks.extend([middle - step, middle + step]);
+                for (p, d) in [(a, c - a), (b, c - b)] {
+                    let near = near(p, d, point);
+                    let beside = (p + d * near).distance_squared(point);
+                    let reach = ((kink / s).powi(2) - beside).max(0.0).sqrt() / d.length();
+                    kinks.extend([near - reach, near + reach]);
+                }
+            }
+            // And those through the feet on the sides, where the pole comes near.
+            kinks.extend([near(a, c - a, point), near(b, c - b, point)]);
+            altitude.length()
+                * split(
+                    strip,
+                    near(foot, altitude, point),
+                    grain(altitude.length()),
+                    kinks.into_iter(),
+                )
+        }
+        Skeleton::Polygon { ref rings } => {
+            // Triangles from one corner over every edge, counted by their orientation.
+            let normal = crate::skeleton::area_vector(rings).normalize_or_zero();
+            let apex = rings[0][0];
+            let mut sum = 0.0;
+            for (number, ring) in rings.iter().enumerate() {
+                let turned = ring
+                    .windows(2)
+                    .map(|w| (w[0] - ring[0]).cross(w[1] - ring[0]));
+                let runs = turned.sum::<DVec3>().dot(normal).signum();
+                let wanted = if number == 0 { 1.0 } else { -1.0 };
+                for i in 0..ring.len() {
+                    let (p, q) = (ring[i], ring[(i + 1) % ring.len()]);
+                    let area = (p - apex).cross(q - apex).dot(normal) * runs * wanted;
+                    if area != 0.0 {
+                        let corners = [apex, p, q];
+                        let part = over(primitive, &Skeleton::Triangle { corners }, point);
+                        sum += part * area.signum();
+                    }
+                }
+            }
+            sum
+        }
+        Skeleton::Curve { control } => {
+            let c = crate::skeleton::cubic(control);
+            let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+            let speed = |t: f64| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
+            let distance = |t: f64| at(t).distance(point);
+            // Panels around every place where the distance has a minimum, and where it passes a kink.
+            const SAMPLES: usize = 400;
+            let place = |i: usize| i as f64 / SAMPLES as f64;
+            let mut breaks = Vec::new();
+            for i in 0..SAMPLES {
+                let (a, b) = (place(i), place(i + 1));
+                let before = distance(place(i.saturating_sub(1)));
+                if distance(a) <= before && distance(a) <= distance(b) {
+                    let (mut low, mut high) = (place(i.saturating_sub(1)), b);
+                    for _ in 0..60 {
+                        let third = (high - low) / 3.0;
+                        if distance(low + third) < distance(high - third) {
+                            high -= third;
+                        } else {
+                            low += third;
+                        }
+                    }
+                    let middle = 0.5 * (low + high);
+                    let mut reach = 1e-6;
+                    breaks.push(middle);
+                    while reach < 1.0 {
+                        breaks.extend([middle - reach, middle + reach]);
+                        reach *= 4.0;
+                    }
+                    // The samples next to it may both be on the same side of a kink.
+                    for (a, b) in [(a.min(middle), middle), (middle, b.max(middle))] {
+                        breaks.extend(
+                            k.kinks()
+                                .iter()
+                                .filter_map(|u| passes(&distance, u / s, a, b)),
+                        );
+                    }
+                }
+                breaks.extend(
+                    k.kinks()
+                        .iter()
+                        .filter_map(|u| passes(&distance, u / s, a, b)),
+                );
+            }
+            breaks.extend((0..=16).map(|i| f64::from(i) / 16.0));
+            breaks.retain(|t| (0.0..=1.0).contains(t));
+            breaks.sort_unstable_by(f64::total_cmp);
+            breaks.dedup();
+            integral(&mut |t| h(at(t)) * speed(t), &breaks, 1e-13)
         }
         Skeleton::Plane { point: p, normal } => {
             let d = (point - p).dot(normal.normalize());
-            // Rings of radius t/(1−t)/s.
+            // Rings; where the integral diverges, up to ten radii, else of radius t/(1−t)/s.
+            let windowed = matches!(k, Kernel::Inverse | Kernel::Squared);
             let ring = |t: f64| {
-                let r = t / (1.0 - t) / s;
-                let stretch = 1.0 / ((1.0 - t) * (1.0 - t) * s);
-                core::f64::consts::TAU * r * stretch * kernel(primitive.kernel, s, d * d + r * r)
+                let (r, stretch) = if windowed {
+                    (10.0 * t / s, 10.0 / s)
+                } else {
+                    let rest = 1.0 - t;
+                    (t / rest / s, 1.0 / (rest * rest * s))
+                };
+                core::f64::consts::TAU * r * stretch * kernel(k, s, d * d + r * r)
             };
-            split(ring, 0.5, 1.0)
+            let kinks = k.kinks().iter().map(|kink| {
+                let r = (kink * kink - d * d * s * s).max(0.0).sqrt();
+                r / (1.0 + r)
+            });
+            let (peak, grain) = if windowed {
+                (0.0, finest(k).max(d.abs() * s) / 10.0)
+            } else {
+                (0.5, 1.0)
+            };
+            split(ring, peak, grain, kinks)
         }
-    };
-    let factor = primitive
-        .profile
-        .map_or(1.0, |profile| factor(&profile, &primitive.skeleton, point));
-    primitive.height * factor * integral
+    }
+}
+
+/// Where a function passes a level between two places, if it does.
+fn passes(f: &impl Fn(f64) -> f64, level: f64, mut a: f64, mut b: f64) -> Option<f64> {
+    let below = f(a) < level;
+    if below == (f(b) < level) {
+        return None;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (a + b);
+        if (f(middle) < level) == below {
+            a = middle;
+        } else {
+            b = middle;
+        }
+    }
+    Some(a)
 }
 
 /// The whole field at a point, by integration.
@@ -173,29 +346,30 @@ pub fn sum(field: &Field, point: DVec3) -> f64 {
     field.primitives.iter().map(|p| value(p, point)).sum()
 }
 
-/// `∫₀¹` of a function with a peak at `peak`, of about the width `grain`: panels grow fourfold away
-/// from there.
-fn split(mut f: impl FnMut(f64) -> f64, peak: f64, grain: f64) -> f64 {
+/// `∫₀¹` of a function with a peak at `peak`, of about the width `grain`, and with kinks: panels
+/// grow fourfold away from the peak, and end at kinks.
+fn split(
+    mut f: impl FnMut(f64) -> f64,
+    peak: f64,
+    grain: f64,
+    kinks: impl Iterator<Item = f64>,
+) -> f64 {
     let peak = if peak.is_finite() {
         peak.clamp(0.0, 1.0)
     } else {
         0.0
     };
     let grain = grain.max(1e-9);
-    let mut breaks = vec![peak];
+    let mut breaks = vec![0.0, peak, 1.0];
     let mut reach = grain;
-    while reach < peak {
-        breaks.push(peak - reach);
+    while reach < 1.0 {
+        breaks.extend([peak - reach, peak + reach]);
         reach *= 4.0;
     }
-    breaks.push(0.0);
-    breaks.reverse();
-    reach = grain;
-    while reach < 1.0 - peak {
-        breaks.push(peak + reach);
-        reach *= 4.0;
-    }
-    breaks.push(1.0);
+    breaks.extend(kinks);
+    breaks.retain(|t| (0.0..=1.0).contains(t));
+    breaks.sort_unstable_by(f64::total_cmp);
+    breaks.dedup();
     integral(&mut f, &breaks, 1e-13)
 }
 
@@ -207,7 +381,10 @@ fn near(base: DVec3, d: DVec3, point: DVec3) -> f64 {
 /// A profile's factor, from its definition in the world.
 fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
     let (u, v) = match *skeleton {
-        Skeleton::Point { .. } | Skeleton::Plane { .. } => (0.0, 0.0),
+        Skeleton::Point { .. }
+        | Skeleton::Polygon { .. }
+        | Skeleton::Curve { .. }
+        | Skeleton::Plane { .. } => (0.0, 0.0),
         Skeleton::Segment { base, apex } => (near(base, apex - base, point), 0.0),
         Skeleton::Arc {
             center,

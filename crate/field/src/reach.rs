@@ -3,7 +3,7 @@
 //!
 //! Each volume holds all points within distance d of the skeleton. Intervals are conservative: a
 //! point of the ray outside its interval is outside the volume.
-use crate::term::Form;
+use crate::bone::Bone;
 use glam::DVec3;
 
 /// An interval of the ray's parameter; empty if its first number is larger than its second.
@@ -14,7 +14,7 @@ const NONE: Interval = [f64::INFINITY, f64::NEG_INFINITY];
 
 /// The interval of `origin + t·direction` (local) that contains all points within `d` of the form.
 pub(crate) fn interval(
-    form: &Form<f64>,
+    bone: &Bone<f64>,
     d: f64,
     origin: DVec3,
     direction: DVec3,
@@ -22,10 +22,10 @@ pub(crate) fn interval(
     // Rounding must not cut anything off.
     let d = d * (1.0 + 1e-9) + 1e-12;
     let ray = Ray { origin, direction };
-    let found = match form {
-        Form::Point(_) => ray.ball(DVec3::ZERO, d),
-        Form::Segment(segment) => ray.capsule(segment.half, d),
-        Form::Arc(arc) => {
+    let found = match bone {
+        Bone::Point => ray.ball(DVec3::ZERO, d),
+        Bone::Segment(segment) => ray.capsule(segment.half, d),
+        Bone::Arc(arc) => {
             let r = arc.radius;
             let (near, far) = (r - r * arc.versine, r);
             // Measured from the centre, x towards the arc's middle or its gap's.
@@ -51,7 +51,7 @@ pub(crate) fn interval(
                 hull
             }
         }
-        Form::Triangle(triangle) => {
+        Bone::Triangle(triangle) => {
             let mut hull = ray.slab(2, -d, d);
             for axis in 0..2 {
                 let c = triangle.corners.map(|corner| corner[axis]);
@@ -67,7 +67,29 @@ pub(crate) fn interval(
             }
             hull
         }
-        Form::Plane(_) => ray.slab(2, -d, d),
+        Bone::Polygon(polygon) => {
+            let mut hull = ray.slab(2, -d, d);
+            for axis in 0..2 {
+                // An edge starts at `start·along + offset·left`.
+                let ends = polygon.edges.iter().map(|edge| match axis {
+                    0 => edge.start * edge.along[0] - edge.offset * edge.along[1],
+                    _ => edge.start * edge.along[1] + edge.offset * edge.along[0],
+                });
+                let low = ends.clone().fold(f64::INFINITY, f64::min);
+                let high = ends.fold(f64::NEG_INFINITY, f64::max);
+                hull = meet(hull, ray.slab(axis, low - d, high + d));
+            }
+            hull
+        }
+        Bone::Curve(curve) => {
+            let mut hull = NONE;
+            for span in &curve.spans {
+                let (center, radius) = span.ball();
+                hull = join(hull, ray.ball(center, radius + d));
+            }
+            hull
+        }
+        Bone::Plane => ray.slab(2, -d, d),
     };
     (found[0] <= found[1]).then_some(found)
 }

@@ -67,6 +67,28 @@ pub trait Real:
     /// Sine and cosine, for |x| up to 10⁴ or so.
     fn sin_cos(self) -> (Self, Self);
 
+    /// e^x; 0 for x below −87 in single precision.
+    fn exp(self) -> Self;
+    /// The natural logarithm of a positive, normal number.
+    fn ln(self) -> Self;
+
+    /// ln(1+x), x > −1, to the last digits also where x is small.
+    #[inline(always)]
+    fn ln_1p(self) -> Self {
+        let one = Self::splat(1.0);
+        let sum = one + self;
+        sum.ln() + (self - (sum - one)) / sum
+    }
+
+    /// The inverse of the hyperbolic sine.
+    #[inline(always)]
+    fn asinh(self) -> Self {
+        let one = Self::splat(1.0);
+        let x = self.abs();
+        let square = x * x;
+        self.sign_to((x + square / (one + (one + square).sqrt())).ln_1p())
+    }
+
     /// `magnitude` with the sign of `self`.
     #[inline(always)]
     fn sign_to(self, magnitude: Self) -> Self {

@@ -1,6 +1,5 @@
 //! From the user's radius, blobbiness and strength to a kernel's width and height.
-use crate::{Kernel, Skeleton, THRESHOLD};
-use core::f64::consts::PI;
+use crate::{Kernel, Skeleton, THRESHOLD, endless, metaballs, plane};
 use serde::{Deserialize, Serialize};
 
 /// How a blobbiness B is read (`blobscale`).
@@ -31,36 +30,107 @@ pub struct Shaping {
 }
 
 impl Shaping {
-    /// The kernel's width parameter s (an inverse length), or `None` if radius or blobbiness are
-    /// zero, negative (the radius), or not finite.
+    /// The blobbiness |B| in Blinn's dimensionless sense, `|B|·R²` if it was given absolutely.
+    fn relative(&self) -> f64 {
+        let b = self.blobbiness.abs();
+        match self.blob_scale {
+            BlobScale::Relative => b,
+            BlobScale::Absolute => b * self.radius * self.radius,
+        }
+    }
+
+    /// The kernel's width parameter, an inverse length: distances times it are the kernel's u
+    /// (fields.md, section 4). `None` if radius or blobbiness are zero, negative (the radius), or
+    /// not finite.
+    ///
+    /// Cauchy and Gauss `√|B|/R`. For compact kernels 1/D, with the depth D at which their
+    /// logarithmic slope at R is Blinn's, `−2|B|`: quartic `D = R√(1+2/|B|)`, compact6 `R√(1+3/|B|)`,
+    /// metaballs `R/u` with `u = |B|/(1+|B|)` if that is over ⅓, else `u² = |B|/(3(1+|B|))`; soft: v = 1−u²
+    /// solves `(12+4|B|)v² + (5|B|−2)v = 10`. The inverse and the squared kernel have no width: 1/R,
+    /// whatever B is.
     #[must_use]
     pub fn width(&self) -> Option<f64> {
-        let root = self.blobbiness.abs().sqrt();
-        let width = match self.blob_scale {
-            BlobScale::Relative => root / self.radius,
-            BlobScale::Absolute => root,
+        let b = self.relative();
+        let at_radius = match self.kernel {
+            Kernel::Cauchy | Kernel::Gauss => b.sqrt(),
+            Kernel::Inverse | Kernel::Squared => 1.0,
+            Kernel::Quartic => 1.0 / (1.0 + 2.0 / b).sqrt(),
+            Kernel::Compact6 => 1.0 / (1.0 + 3.0 / b).sqrt(),
+            Kernel::Metaballs => {
+                let outer = b / (1.0 + b);
+                if outer > metaballs::INNER {
+                    outer
+                } else {
+                    (outer / 3.0).sqrt()
+                }
+            }
+            Kernel::Soft => {
+                let (two_a, half_b) = (12.0 + 4.0 * b, (5.0 * b - 2.0) / 2.0);
+                // The stable one of the two forms of the positive root.
+                let root = (half_b * half_b + 10.0 * two_a).sqrt();
+                let v = if half_b > 0.0 {
+                    10.0 / (half_b + root)
+                } else {
+                    (root - half_b) / two_a
+                };
+                (1.0 - v).max(0.0).sqrt()
+            }
         };
+        let width = at_radius / self.radius;
         let usable = |x: f64| x.is_finite() && x > 0.0;
-        (usable(self.radius) && usable(width)).then_some(width)
+        (usable(self.radius) && b.is_finite() && usable(width)).then_some(width)
     }
 
     /// The factor on the integral of the kernel over a skeleton of this kind (thesis, section
     /// 3.3.2): with it, a point, an infinite line and an infinite plane have `F = T` at the
-    /// distance R, times the strength.
+    /// distance R, times the strength. Where infinite ones have no finite field (inverse lines,
+    /// inverse and squared planes), finite ones of half-length 10·R stand for them.
     ///
     /// It depends on the skeleton's dimension only, not on its size. So cutting a segment, an arc
     /// or a triangle in two changes nothing, which is what keeps joints free of bulges.
     #[must_use]
     pub fn height(&self, skeleton: &Skeleton) -> Option<f64> {
         let s = self.width()?;
-        let sr = s * self.radius;
-        let x = 1.0 + sr * sr;
+        let x = s * self.radius;
         let field_at_radius = match skeleton.dimension() {
-            0 => 1.0 / (x * x),
-            1 => PI / (2.0 * s * x * x.sqrt()),
-            _ => PI / (s * s * x),
+            0 => self.kernel.value(x),
+            1 => endless::line(self.kernel, x) / s,
+            _ => plane::jet(self.kernel, [0.0, 0.0, x]).value / (s * s),
         };
         let height = self.strength * THRESHOLD / field_at_radius;
         height.is_finite().then_some(height)
+    }
+
+    /// The radius R at which a point with this blobbiness has the depth of influence `depth`: a
+    /// compact kernel's support, or where an infinite kernel has fallen to `influence·T`. `None` if
+    /// there is none.
+    #[must_use]
+    pub fn radius_of_depth(&self, depth: f64) -> Option<f64> {
+        let field_at = |radius: f64| {
+            let shaping = Self { radius, ..*self };
+            let s = shaping.width()?;
+            if self.kernel.is_compact() {
+                // Grows with the radius, and is 1 where the support is `depth`.
+                return Some(1.0 / (s * depth));
+            }
+            let k = self.kernel;
+            Some(k.value(s * depth) / k.value(s * radius) / self.influence)
+        };
+        if !(depth.is_finite() && depth > 0.0 && self.influence > 0.0) {
+            return None;
+        }
+        // The field at the depth grows with the radius.
+        let (mut low, mut high) = (0.0, depth);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if field_at(middle).is_none_or(|f| f < 1.0) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        field_at(high)
+            .is_some_and(|f| f >= 1.0 - 1e-9)
+            .then_some(high)
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// A skeletal element.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Skeleton {
     /// A point.
     Point {
@@ -36,6 +36,16 @@ pub enum Skeleton {
         /// Its corners.
         corners: [DVec3; 3],
     },
+    /// A planar polygon.
+    Polygon {
+        /// Its corners: the outer ring, then any holes, which lie inside it and do not touch.
+        rings: Vec<Vec<DVec3>>,
+    },
+    /// A cubic Bézier curve.
+    Curve {
+        /// Its control points.
+        control: [DVec3; 4],
+    },
     /// An infinite plane.
     Plane {
         /// A point of it.
@@ -46,13 +56,13 @@ pub enum Skeleton {
 }
 
 impl Skeleton {
-    /// 0 for points, 1 for segments and arcs, 2 for triangles and planes.
+    /// 0 for points, 1 for segments, arcs and curves, 2 for triangles, polygons and planes.
     #[must_use]
     pub fn dimension(&self) -> u8 {
         match self {
             Self::Point { .. } => 0,
-            Self::Segment { .. } | Self::Arc { .. } => 1,
-            Self::Triangle { .. } | Self::Plane { .. } => 2,
+            Self::Segment { .. } | Self::Arc { .. } | Self::Curve { .. } => 1,
+            Self::Triangle { .. } | Self::Polygon { .. } | Self::Plane { .. } => 2,
         }
     }
 
@@ -64,6 +74,13 @@ impl Skeleton {
             Self::Segment { base, apex } => (apex - base).length(),
             Self::Arc { radius, angle, .. } => radius * angle.clamp(0.0, core::f64::consts::TAU),
             Self::Triangle { corners: [a, b, c] } => (b - a).cross(c - a).length() / 2.0,
+            Self::Polygon { ref rings } => (area_vector(rings).length() / 2.0).abs(),
+            Self::Curve { control } => {
+                let c = cubic(control);
+                let breaks: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0).collect();
+                let mut speed = |t: f64| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
+                crate::quadrature::integral(&mut speed, &breaks, 1e-12)
+            }
             Self::Plane { .. } => f64::INFINITY,
         }
     }
@@ -116,6 +133,22 @@ impl Skeleton {
                     })
                     .unwrap_or(a)
             }
+            Self::Polygon { ref rings } => {
+                let n = area_vector(rings).try_normalize();
+                let foot = n.zip(rings.first().and_then(|ring| ring.first()));
+                let inside = foot
+                    .map(|(n, o)| point - n * (point - *o).dot(n))
+                    .filter(|q| n.is_some_and(|n| is_inside(rings, n, *q)));
+                edges(rings)
+                    .map(|(p, q)| nearest_on_segment(point, p, q))
+                    .chain(inside)
+                    .min_by(|p, q| {
+                        p.distance_squared(point)
+                            .total_cmp(&q.distance_squared(point))
+                    })
+                    .unwrap_or(DVec3::ZERO)
+            }
+            Self::Curve { control } => nearest_on_cubic(point, control),
             Self::Plane { point: p, normal } => {
                 let n = normal.try_normalize().unwrap_or(DVec3::Z);
                 point - n * n.dot(point - p)
@@ -168,6 +201,9 @@ impl Skeleton {
                     / (2.0 * normal.length_squared());
                 Some((p + offset, offset.length() * (1.0 + 1e-12)))
             }
+            Self::Polygon { ref rings } => Some(ball_around(rings.iter().flatten())),
+            // The curve lies in the hull of its control points.
+            Self::Curve { control } => Some(ball_around(control.iter())),
             Self::Plane { .. } => None,
         }
     }
@@ -193,9 +229,98 @@ impl Skeleton {
                     && angle.is_finite()
             }
             Self::Triangle { corners } => corners.iter().all(|p| p.is_finite()),
+            Self::Polygon { ref rings } => rings.iter().flatten().all(|p| p.is_finite()),
+            Self::Curve { control } => control.iter().all(|p| p.is_finite()),
             Self::Plane { point, normal } => point.is_finite() && normal.is_finite(),
         }
     }
+}
+
+/// The edges of all rings.
+fn edges(rings: &[Vec<DVec3>]) -> impl Iterator<Item = (DVec3, DVec3)> {
+    rings
+        .iter()
+        .flat_map(|ring| (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()])))
+}
+
+/// Normal of a polygon, twice as long as its area is large: of the outer ring less the holes, which
+/// may run either way round.
+pub(crate) fn area_vector(rings: &[Vec<DVec3>]) -> DVec3 {
+    let of = |ring: &[DVec3]| -> DVec3 {
+        let o = ring.first().copied().unwrap_or_default();
+        ring.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum()
+    };
+    let Some((outer, holes)) = rings.split_first() else {
+        return DVec3::ZERO;
+    };
+    let whole = of(outer);
+    holes.iter().fold(whole, |sum, hole| {
+        let hole = of(hole);
+        if hole.dot(whole) > 0.0 {
+            sum - hole
+        } else {
+            sum + hole
+        }
+    })
+}
+
+/// Whether a point of the polygon's plane lies inside: an odd number of edges crosses a line from it.
+fn is_inside(rings: &[Vec<DVec3>], normal: DVec3, point: DVec3) -> bool {
+    let x = normal.any_orthonormal_vector();
+    let y = normal.cross(x);
+    let mut inside = false;
+    for (a, b) in edges(rings) {
+        let (a, b) = (a - point, b - point);
+        let (ay, by) = (a.dot(y), b.dot(y));
+        if (ay > 0.0) != (by > 0.0) && a.dot(x) + (b - a).dot(x) * (ay / (ay - by)) > 0.0 {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+/// Centre of the bounding box, and the distance of the furthest point.
+fn ball_around<'a>(points: impl Iterator<Item = &'a DVec3> + Clone) -> (DVec3, f64) {
+    let low = points.clone().fold(DVec3::INFINITY, |low, p| low.min(*p));
+    let high = points
+        .clone()
+        .fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
+    let center = (low + high) / 2.0;
+    let radius = points.fold(0.0, |r: f64, p| r.max(p.distance(center)));
+    (center, radius * (1.0 + 1e-12))
+}
+
+/// A Bézier curve's coefficients in powers of t.
+pub(crate) fn cubic([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
+    [
+        a,
+        (b - a) * 3.0,
+        (a - b * 2.0 + c) * 3.0,
+        d - a + (b - c) * 3.0,
+    ]
+}
+
+/// The point of a Bézier curve nearest to `point`: the best of samples, improved by bisection of the
+/// steps to either side.
+fn nearest_on_cubic(point: DVec3, control: [DVec3; 4]) -> DVec3 {
+    let c = cubic(control);
+    let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+    let distance = |t: f64| at(t).distance_squared(point);
+    const SAMPLES: i32 = 128;
+    let mut best = (0..=SAMPLES)
+        .map(|i| f64::from(i) / f64::from(SAMPLES))
+        .min_by(|s, t| distance(*s).total_cmp(&distance(*t)))
+        .unwrap_or(0.0);
+    let mut step = 1.0 / f64::from(SAMPLES);
+    while step > 1e-12 {
+        step *= 0.5;
+        for t in [(best - step).max(0.0), (best + step).min(1.0)] {
+            if distance(t) < distance(best) {
+                best = t;
+            }
+        }
+    }
+    at(best)
 }
 
 /// The point of a segment nearest to `point`.

@@ -1,7 +1,10 @@
 //! A primitive made ready for evaluation: its closed form and the frame in which that is written.
-use crate::cauchy::{Arc, Plane, Point, Segment, Triangle};
+use crate::bone::curve::Span;
+use crate::bone::{Arc, Bone, Curve, Polygon, Segment, Triangle};
+use crate::form::Form;
+use crate::skeleton::area_vector;
 use crate::waves::Waves;
-use crate::{Jet, Real, Skeleton};
+use crate::{Jet, Kernel, Real, Skeleton};
 use glam::{DMat3, DVec3};
 
 /// Local coordinates: `axes·(p − origin)`; the axes are orthogonal and as long as the kernel's
@@ -52,43 +55,8 @@ impl Frame<f64> {
     }
 }
 
-/// A closed form in its local frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Form<S> {
-    Point(Point),
-    Segment(Segment<S>),
-    Arc(Arc<S>),
-    Triangle(Triangle<S>),
-    Plane(Plane),
-}
-
-impl<S: Copy> Form<S> {
-    #[inline(always)]
-    pub fn jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
-        let horizon = R::splat(R::HORIZON);
-        let p = p.map(|x| x.min(horizon).max(-horizon));
-        match self {
-            Self::Point(form) => form.jet(p),
-            Self::Segment(form) => form.jet(p),
-            Self::Arc(form) => form.jet(p),
-            Self::Triangle(form) => form.jet(p),
-            Self::Plane(form) => form.jet(p),
-        }
-    }
-
-    fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Form<Q> {
-        match self {
-            Self::Point(form) => Form::Point(*form),
-            Self::Segment(form) => Form::Segment(Segment { half: f(form.half) }),
-            Self::Arc(form) => Form::Arc(form.cast(f)),
-            Self::Triangle(form) => Form::Triangle(form.cast(f)),
-            Self::Plane(form) => Form::Plane(*form),
-        }
-    }
-}
-
 /// Frame, form and factor.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Term<S> {
     pub(crate) frame: Frame<S>,
     pub(crate) form: Form<S>,
@@ -146,23 +114,28 @@ impl Prepared {
             frame: double.frame.cast(round),
             form: double.form.cast(round),
             amplitude: round(double.amplitude),
-            waves: double.waves.map(|waves| waves.cast(round)),
+            waves: double.waves.as_ref().map(|waves| waves.cast(round)),
         };
         Self { double, single }
     }
 }
 
 /// The local frame and closed form of a skeleton, for the kernel's width parameter s.
-pub(crate) fn place(skeleton: &Skeleton, s: f64) -> (Frame<f64>, Form<f64>) {
+pub(crate) fn place(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Form<f64>) {
+    let (frame, bone) = place_bone(skeleton, s);
+    (frame, Form { kernel, bone })
+}
+
+fn place_bone(skeleton: &Skeleton, s: f64) -> (Frame<f64>, Bone<f64>) {
     match *skeleton {
-        Skeleton::Point { center } => (frame(center, DMat3::IDENTITY, s), Form::Point(Point)),
+        Skeleton::Point { center } => (frame(center, DMat3::IDENTITY, s), Bone::Point),
         Skeleton::Segment { base, apex } => {
             let x = (apex - base).try_normalize().unwrap_or(DVec3::X);
             let y = x.any_orthonormal_vector();
             let half = s * (apex - base).length() / 2.0;
             (
                 frame((base + apex) / 2.0, DMat3::from_cols(x, y, x.cross(y)), s),
-                Form::Segment(Segment { half }),
+                Bone::Segment(Segment { half }),
             )
         }
         Skeleton::Arc {
@@ -180,7 +153,7 @@ pub(crate) fn place(skeleton: &Skeleton, s: f64) -> (Frame<f64>, Form<f64>) {
             let z = u.cross(v);
             (
                 frame(center + x * radius, DMat3::from_cols(x, z.cross(x), z), s),
-                Form::Arc(arc),
+                Bone::Arc(arc),
             )
         }
         Skeleton::Triangle { corners: [a, b, c] } => {
@@ -203,7 +176,43 @@ pub(crate) fn place(skeleton: &Skeleton, s: f64) -> (Frame<f64>, Form<f64>) {
             });
             (
                 frame(origin, axes, s),
-                Form::Triangle(Triangle::new(corners)),
+                Bone::Triangle(Triangle::new(corners)),
+            )
+        }
+        Skeleton::Polygon { ref rings } => {
+            let z = area_vector(rings).try_normalize().unwrap_or(DVec3::Z);
+            let x = z.any_orthonormal_vector();
+            let axes = DMat3::from_cols(x, z.cross(x), z);
+            let corners: Vec<DVec3> = rings.iter().flatten().copied().collect();
+            let origin = corners.iter().sum::<DVec3>() / corners.len().max(1) as f64;
+            let flat: Vec<Vec<[f64; 2]>> = rings
+                .iter()
+                .map(|ring| {
+                    ring.iter()
+                        .map(|p| {
+                            let local = axes.transpose() * (*p - origin) * s;
+                            [local.x, local.y]
+                        })
+                        .collect()
+                })
+                .collect();
+            (frame(origin, axes, s), Bone::Polygon(Polygon::new(flat)))
+        }
+        Skeleton::Curve { control } => {
+            let origin = control.iter().sum::<DVec3>() / 4.0;
+            let [a, b, c, d] = control.map(|p| (p - origin) * s);
+            let position = [
+                a,
+                (b - a) * 3.0,
+                (a - b * 2.0 + c) * 3.0,
+                d - a + (b - c) * 3.0,
+            ];
+            let spans = vec![Span {
+                position: position.map(|c| c.to_array()),
+            }];
+            (
+                frame(origin, DMat3::IDENTITY, s),
+                Bone::Curve(Curve { spans }),
             )
         }
         Skeleton::Plane { point, normal } => {
@@ -211,7 +220,7 @@ pub(crate) fn place(skeleton: &Skeleton, s: f64) -> (Frame<f64>, Form<f64>) {
             let x = z.any_orthonormal_vector();
             (
                 frame(point, DMat3::from_cols(x, z.cross(x), z), s),
-                Form::Plane(Plane),
+                Bone::Plane,
             )
         }
     }

@@ -1,6 +1,6 @@
 //! Profiles in a primitive's local frame: the factor on its field and that factor's gradient.
 use crate::angle::direction;
-use crate::term::Form;
+use crate::bone::Bone;
 use crate::{Jet, Profile, Real, Wave};
 
 /// Where the natural parameters u, v of a primitive are read from.
@@ -37,21 +37,21 @@ pub(crate) struct Waves<S> {
 }
 
 impl Waves<f64> {
-    pub fn new(profile: &Profile, form: &Form<f64>) -> Self {
-        let parameters = match form {
-            Form::Point(_) | Form::Plane(_) => Parameters::None,
-            Form::Segment(segment) => Parameters::Linear {
+    pub fn new(profile: &Profile, bone: &Bone<f64>) -> Self {
+        let parameters = match bone {
+            Bone::Point | Bone::Plane | Bone::Polygon(_) | Bone::Curve(_) => Parameters::None,
+            Bone::Segment(segment) => Parameters::Linear {
                 gradient: [[inverse(2.0 * segment.half), 0.0], [0.0; 2]],
                 start: [0.5, 0.0],
             },
-            Form::Arc(arc) => Parameters::Angle {
+            Bone::Arc(arc) => Parameters::Angle {
                 radius: arc.radius,
                 side: arc.side,
                 start: arc.half_angle,
                 rate: inverse(2.0 * arc.half_angle),
                 mean: mean(profile),
             },
-            Form::Triangle(triangle) => {
+            Bone::Triangle(triangle) => {
                 // The inverse of the matrix of the sides from corner 0.
                 let [[ax, ay], b, c] = triangle.corners;
                 let e1 = [b[0] - ax, b[1] - ay];
@@ -71,28 +71,6 @@ impl Waves<f64> {
             rise: profile.times * (profile.bounds[1] - profile.bounds[0]),
             parameters,
         }
-    }
-}
-
-impl Waves<f64> {
-    /// A bound ω on how fast the factor varies: its k-th derivative is at most ωᵏ times its largest
-    /// value, where it is smooth (along an arc: at the circle's radius).
-    pub fn frequency(&self) -> f64 {
-        let rates = match &self.parameters {
-            Parameters::None => [0.0; 2],
-            Parameters::Linear { gradient, .. } => gradient.map(|[x, y]| (x * x + y * y).sqrt()),
-            Parameters::Angle { radius, rate, .. } => {
-                [if *radius > 0.0 { rate / radius } else { 0.0 }, 0.0]
-            }
-        };
-        let of_wave = |wave: Wave| match wave {
-            Wave::One => 0.0,
-            Wave::X | Wave::Sin | Wave::Cos | Wave::Saw | Wave::Step => 1.0,
-            Wave::Sin2 | Wave::Cos2 | Wave::Hat => 2.0,
-        };
-        (0..2)
-            .map(|i| of_wave(self.waves[i]) * self.scale[i].abs() * rates[i])
-            .sum()
     }
 }
 

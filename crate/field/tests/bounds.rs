@@ -21,7 +21,7 @@ fn random_primitive(random: &mut Random, kind: Kind) -> Primitive {
         times: 1.2,
     };
     let profile = random.pick(&[None, None, Some(wave)]);
-    primitive(skeleton, &shaping, profile)
+    primitive(skeleton.clone(), &shaping, profile)
 }
 
 /// A point at exactly this distance from a place on the skeleton, so at most that from it.
@@ -58,7 +58,7 @@ tests! {
                 let size = random.decades(-1.0, 2.0);
                 let skeleton = random.skeleton(kind, size);
                 let shaping = Shaping { influence: random.decades(-4.0, -1.0), ..shaping(1.0, 1.0) };
-                let primitive = primitive(skeleton, &shaping, None);
+                let primitive = primitive(skeleton.clone(), &shaping, None);
                 let level = shaping.influence * THRESHOLD;
                 assert!(primitive.bound_at(primitive.influence * (1.0 + 1e-9)) <= level * (1.0 + 1e-9));
                 if primitive.influence == 0.0 {
@@ -82,7 +82,7 @@ tests! {
                     Kind::Point | Kind::Plane => 0.99,
                     Kind::Segment => 0.5,
                     // Half a plane beside an edge, and needles.
-                    Kind::Arc | Kind::Triangle => 0.1,
+                    _ => 0.1,
                 };
                 assert!(largest <= level * 1.01, "{primitive:?}");
                 assert!(largest >= level * factor, "{largest} of {level}: {primitive:?}");
@@ -149,7 +149,7 @@ tests! {
             let (mut inside, mut all) = (0.0, 0.0);
             for _ in 0..300 {
                 let skeleton = random.skeleton(kind, 10.0);
-                let primitive = primitive(skeleton, &shaping(0.1, 1.0), None);
+                let primitive = primitive(skeleton.clone(), &shaping(0.1, 1.0), None);
                 let target = at_distance(&mut random, &skeleton, 0.5 * primitive.influence);
                 let origin = random.direction() * 30.0;
                 let direction = (target - origin).normalize();
@@ -167,70 +167,6 @@ tests! {
             let share = inside / all;
             let least = if kind == Kind::Arc { 0.2 } else { 0.8 };
             assert!(share > least, "{kind:?}: {share}");
-        }
-    }
-
-    /// Cubic Hermite interpolants on spans of the certified length keep their promise.
-    fn hermite_steps_are_certified() {
-        for kind in KINDS {
-            let mut random = Random::new(25);
-            let mut worst = 0.0_f64;
-            for _ in 0..400 {
-                let mut primitive = random_primitive(&mut random, kind);
-                if kind == Kind::Arc {
-                    primitive = common::primitive(primitive.skeleton, &random.shaping(1.0), None);
-                }
-                for _ in 0..20 {
-                    let far = random.pick(&[-3.0, 0.5]);
-                    let near = random.near(&primitive.skeleton, far - 0.5, far + 0.5);
-                    let direction = random.direction();
-                    let error = primitive.bound_at(0.0) * random.decades(-8.0, -1.0);
-                    let h = primitive.hermite_step(error);
-                    let start = near - direction * h * random.unit();
-                    if kinked(&primitive, start) || kinked(&primitive, start + direction * h) {
-                        continue;
-                    }
-                    worst = worst.max(check_span(&primitive, start, direction, h, error));
-                    // And the longer spans far from the skeleton.
-                    let gap = (primitive.skeleton.distance(start) - h).max(0.0);
-                    let longer = primitive.hermite_step_beyond(error, gap);
-                    assert!(longer >= h * (1.0 - 1e-12));
-                    let gap = primitive.skeleton.distance(start) - longer;
-                    if gap > 0.0 && primitive.profile.is_none() {
-                        let h = primitive.hermite_step_beyond(error, gap).min(longer);
-                        check_span(&primitive, start, direction, h, error);
-                    }
-                }
-            }
-            // The bound is of use: some spans use a good part of it.
-            assert!(worst > 0.2, "{kind:?}: {worst}");
-        }
-    }
-
-    fn hermite_step_of_a_point() {
-        let primitive = primitive(Skeleton::Point { center: DVec3::ZERO }, &shaping(0.5, 2.0), None);
-        let h = primitive.hermite_step(1e-4);
-        let want = 0.1875 * libm::pow(primitive.width * h, 4.0) * primitive.height;
-        assert!((want - 1e-4).abs() < 1e-12);
-    }
-
-    fn slopes_are_bounded() {
-        for kind in KINDS {
-            let mut random = Random::new(26);
-            let mut worst = 0.0_f64;
-            for _ in 0..300 {
-                let size = random.decades(-2.0, 1.5);
-                let skeleton = random.skeleton(kind, size);
-                let primitive = primitive(skeleton, &random.shaping(1.0), None);
-                let bound = primitive.slope_bound();
-                for _ in 0..60 {
-                    let point = random.near(&skeleton, -1.5, 0.5);
-                    let slope = jet::<f64>(&primitive, point).1.length();
-                    assert!(slope <= bound * (1.0 + 1e-6), "{slope} > {bound}: {primitive:?} at {point:?}");
-                    worst = worst.max(slope / bound);
-                }
-            }
-            assert!(worst > 0.5, "{kind:?}: {worst}");
         }
     }
 
@@ -257,43 +193,5 @@ tests! {
                 }
             }
         }
-    }
-}
-
-/// The share of `error` that the interpolant of a span uses.
-fn check_span(primitive: &Primitive, start: DVec3, direction: DVec3, h: f64, error: f64) -> f64 {
-    let (a, da) = primitive.along_ray(start, direction, 0.0);
-    let (b, db) = primitive.along_ray(start, direction, h);
-    let mut worst = 0.0_f64;
-    for i in 1..16 {
-        let t = f64::from(i) / 16.0;
-        let (u, v) = (1.0 - t, t);
-        let cubic = a * u * u * (1.0 + 2.0 * t)
-            + b * v * v * (3.0 - 2.0 * t)
-            + h * (da * u * u * t - db * v * v * u);
-        let (exact, _) = primitive.along_ray(start, direction, h * t);
-        worst = worst.max((cubic - exact).abs());
-    }
-    assert!(
-        worst <= error * (1.0 + 1e-6) + 1e-13 * primitive.bound_at(0.0),
-        "{worst} > {error} on {h}: {primitive:?}, {start:?} {direction:?}"
-    );
-    worst / error
-}
-
-/// Whether a point is past the ends of a primitive that has a profile.
-fn kinked(primitive: &Primitive, point: DVec3) -> bool {
-    let past = |d: DVec3, e: DVec3| !(0.0..=1.0).contains(&(d.dot(e) / e.length_squared()));
-    match (&primitive.profile, primitive.skeleton) {
-        (Some(_), Skeleton::Segment { base, apex }) => past(point - base, apex - base),
-        (Some(_), Skeleton::Triangle { corners: [a, b, c] }) => {
-            let [u, v] = [(b, c), (c, b)].map(|(p, q)| {
-                // Across the other side from a.
-                let side = (p - a) - (q - a) * ((p - a).dot(q - a) / (q - a).length_squared());
-                (side, side.dot(p - a) / side.length_squared())
-            });
-            past(point - a, u.0 * u.1) || past(point - a, v.0 * v.1)
-        }
-        _ => false,
     }
 }

@@ -50,7 +50,7 @@ fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
                 },
             ]
         }
-        Skeleton::Point { .. } | Skeleton::Plane { .. } => return None,
+        _ => return None,
     })
 }
 
@@ -82,6 +82,7 @@ fn moved(skeleton: &Skeleton, turn: DQuat, shift: DVec3) -> Skeleton {
             point: to(point),
             normal: turn * normal,
         },
+        Skeleton::Polygon { .. } | Skeleton::Curve { .. } => unreachable!("not drawn"),
     }
 }
 
@@ -108,7 +109,7 @@ tests! {
                 let shaping = random.shaping(1.0);
                 let at = random.unit();
                 let Some(parts) = halves(&skeleton, at) else { continue };
-                let whole = primitive(skeleton, &shaping, None);
+                let whole = primitive(skeleton.clone(), &shaping, None);
                 let sum = Field {
                     primitives: parts.map(|part| primitive(part, &shaping, None)).to_vec(),
                 };
@@ -137,7 +138,7 @@ tests! {
                 let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, TAU));
                 let shift = random.vector(3.0);
                 let point = random.near(&skeleton, -2.0, 1.0);
-                let here = primitive(skeleton, &shaping, None);
+                let here = primitive(skeleton.clone(), &shaping, None);
                 let there = primitive(moved(&skeleton, turn, shift), &shaping, None);
                 let (value, gradient) = jet::<f64>(&here, point);
                 let (other, other_gradient) = jet::<f64>(&there, turn * point + shift);
@@ -170,7 +171,7 @@ tests! {
                         DVec3::new(0.0, 0.0, 4.0) * long,
                     ] }, 1e-5),
                 ] {
-                    let primitive = primitive(skeleton, &shaping, None);
+                    let primitive = primitive(skeleton.clone(), &shaping, None);
                     let (value, gradient) = jet::<f64>(&primitive, DVec3::Y * radius);
                     assert!((value - THRESHOLD).abs() < tolerance, "{value}: {skeleton:?} {shaping:?}");
                     assert!(gradient.y < 0.0);
@@ -190,7 +191,7 @@ tests! {
             let point = random.near(&skeleton, -1.0, 0.0);
             let at = |strength: f64| {
                 let shaping = Shaping { strength, ..shaping(0.5, 1.0) };
-                jet::<f64>(&primitive(skeleton, &shaping, None), point)
+                jet::<f64>(&primitive(skeleton.clone(), &shaping, None), point)
             };
             let (value, gradient) = at(1.0);
             assert!(value > 0.0);
@@ -202,21 +203,21 @@ tests! {
     fn refusals() {
         let point = Skeleton::Point { center: DVec3::ZERO };
         let good = shaping(1.0, 1.0);
-        assert!(Primitive::new(point, &good, None).is_some());
+        assert!(Primitive::new(point.clone(), &good, None).is_some());
         for bad in [0.0, f64::NAN, f64::INFINITY, -f64::INFINITY] {
-            assert!(Primitive::new(point, &Shaping { radius: bad, ..good }, None).is_none());
-            assert!(Primitive::new(point, &Shaping { blobbiness: bad, ..good }, None).is_none());
-            assert!(Primitive::new(point, &Shaping { strength: bad, ..good }, None).is_none());
+            assert!(Primitive::new(point.clone(), &Shaping { radius: bad, ..good }, None).is_none());
+            assert!(Primitive::new(point.clone(), &Shaping { blobbiness: bad, ..good }, None).is_none());
+            assert!(Primitive::new(point.clone(), &Shaping { strength: bad, ..good }, None).is_none());
         }
-        assert!(Primitive::new(point, &Shaping { radius: -1.0, ..good }, None).is_none());
+        assert!(Primitive::new(point.clone(), &Shaping { radius: -1.0, ..good }, None).is_none());
         let long = Skeleton::Segment { base: DVec3::ZERO, apex: DVec3::X * 1e9 };
-        assert!(Primitive::new(long, &good, None).is_none());
+        assert!(Primitive::new(long.clone(), &good, None).is_none());
         let nowhere = Skeleton::Segment { base: DVec3::NAN, apex: DVec3::X };
         assert!(Primitive::new(nowhere, &good, None).is_none());
         for extreme in [1e-300, 1e300] {
-            let _ = Primitive::new(point, &Shaping { radius: extreme, ..good }, None);
-            let _ = Primitive::new(point, &Shaping { blobbiness: extreme, ..good }, None);
-            let _ = Primitive::new(long, &Shaping { strength: extreme, ..good }, None);
+            let _ = Primitive::new(point.clone(), &Shaping { radius: extreme, ..good }, None);
+            let _ = Primitive::new(point.clone(), &Shaping { blobbiness: extreme, ..good }, None);
+            let _ = Primitive::new(long.clone(), &Shaping { strength: extreme, ..good }, None);
         }
     }
 
@@ -235,7 +236,7 @@ tests! {
                     bounds: [random.range(0.0, 1.0), random.range(0.0, 1.0)],
                     times: random.range(0.5, 2.0),
                 };
-                let primitive = primitive(skeleton, &random.shaping(0.5), Some(profile));
+                let primitive = primitive(skeleton.clone(), &random.shaping(0.5), Some(profile));
                 let point = single(random.near(&skeleton, -2.0, 0.5));
                 if let Skeleton::Arc { center, u, v, .. } = skeleton {
                     let d = point - center;
@@ -284,8 +285,8 @@ tests! {
             times: 1.15,
         };
         let arc = Skeleton::Arc { center: DVec3::ZERO, u: DVec3::X, v: DVec3::Y, radius: 2.0, angle: 3.0 };
-        let with = primitive(arc, &shaping(0.3, 1.0), Some(profile));
-        let without = primitive(arc, &shaping(0.3, 1.0), None);
+        let with = primitive(arc.clone(), &shaping(0.3, 1.0), Some(profile));
+        let without = primitive(arc.clone(), &shaping(0.3, 1.0), None);
         let factor = |t: f64| {
             let (sine, cosine) = libm::sincos(3.0 * t);
             let p = DVec3::new(2.0 * cosine, 2.0 * sine, 0.2);

@@ -16,119 +16,71 @@
 //! Gradient, with S = sin δ and K = ∫₀^δ sin⁴:
 //! `∇f/r = 2(δ−sin δ cos δ)∇A/Δ^{3/2} − 8AK∇Δ/Δ^{5/2} − 4AS³∇c/(Δ^{3/2}√(D₁D₂)) − sin 2α·∇(D₁D₂)/(D₁D₂)²`.
 use crate::angle::angle;
+use crate::bone::Arc;
 use crate::{Jet, Real};
 
-/// An arc through, or with its gap around, the origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arc<S> {
-    /// Radius of the circle.
-    pub radius: S,
-    /// 1 if the origin is the arc's middle, −1 if it is the gap's.
-    pub side: S,
-    /// Sine of half the angle.
-    pub sine: S,
-    /// Sine of the angle.
-    pub double_sine: S,
-    /// `1 − σ cos α`, in [0, 1].
-    pub versine: S,
-    /// Half the angle.
-    pub half_angle: S,
-}
+/// Value and gradient at a local position.
+#[inline(always)]
+pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
+    let one = R::splat(1.0);
+    let two = R::splat(2.0);
+    let four = R::splat(4.0);
+    let radius = R::lift(arc.radius);
+    let side = R::lift(arc.side);
+    let sine_half = R::lift(arc.sine);
+    let double_sine = R::lift(arc.double_sine);
+    let versine = R::lift(arc.versine);
 
-impl Arc<f64> {
-    /// From radius and angle, which is in [0, 2π].
-    pub(crate) fn new(radius: f64, angle: f64) -> Self {
-        let half_angle = angle / 2.0;
-        let (sine, cosine) = libm::sincos(half_angle);
-        let (quarter_sine, quarter_cosine) = libm::sincos(half_angle / 2.0);
-        let inner = cosine >= 0.0;
-        let root = if inner { quarter_sine } else { quarter_cosine };
-        Self {
-            radius,
-            side: if inner { 1.0 } else { -1.0 },
-            sine: sine.max(0.0),
-            double_sine: 2.0 * sine * cosine,
-            versine: 2.0 * root * root,
-            half_angle,
-        }
-    }
-}
+    let (x2, y2, z2) = (x * x, y * y, z * z);
+    let centred = radius + x;
+    let zone = one + z2;
+    // ρ² − r², without subtracting large squares.
+    let excess = two * radius * x + x2 + y2;
+    let rho = (centred * centred + y2).sqrt();
+    let outer = rho + radius;
+    let gap = excess / outer.max(R::splat(1e-30));
+    let near = zone + gap * gap;
+    let far = zone + outer * outer;
+    let total = R::splat(0.5) * (near + far);
+    let i_delta = one / (near * far);
+    let root = i_delta.sqrt();
 
-impl<S: Copy> Arc<S> {
-    pub(crate) fn cast<Q>(&self, f: impl Fn(S) -> Q) -> Arc<Q> {
-        Arc {
-            radius: f(self.radius),
-            side: f(self.side),
-            sine: f(self.sine),
-            double_sine: f(self.double_sine),
-            versine: f(self.versine),
-            half_angle: f(self.half_angle),
-        }
-    }
+    // The ends.
+    let end_x = x + radius * versine;
+    let chord = radius * sine_half;
+    let (y_1, y_2) = (y + chord, y - chord);
+    let common = zone + end_x * end_x;
+    let (i1, i2) = (one / (common + y_1 * y_1), one / (common + y_2 * y_2));
+    let ends = i1 * i2;
+    let ends_root = ends.sqrt();
 
-    /// Value and gradient at a local position.
-    #[inline(always)]
-    pub fn jet<R: Real<Scalar = S>>(&self, [x, y, z]: [R; 3]) -> Jet<R> {
-        let one = R::splat(1.0);
-        let two = R::splat(2.0);
-        let four = R::splat(4.0);
-        let radius = R::lift(self.radius);
-        let side = R::lift(self.side);
-        let sine_half = R::lift(self.sine);
-        let double_sine = R::lift(self.double_sine);
-        let versine = R::lift(self.versine);
+    let sine = sine_half * (near * far).sqrt() * ends_root;
+    let cosine = side * (zone + x2 + y2 - total * versine) * ends_root;
+    let turn = angle(sine, cosine);
 
-        let (x2, y2, z2) = (x * x, y * y, z * z);
-        let centred = radius + x;
-        let zone = one + z2;
-        // ρ² − r², without subtracting large squares.
-        let excess = two * radius * x + x2 + y2;
-        let rho = (centred * centred + y2).sqrt();
-        let outer = rho + radius;
-        let gap = excess / outer.max(R::splat(1e-30));
-        let near = zone + gap * gap;
-        let far = zone + outer * outer;
-        let total = R::splat(0.5) * (near + far);
-        let i_delta = one / (near * far);
-        let root = i_delta.sqrt();
+    let weight = four * root * i_delta;
+    let value = radius * (weight * total * turn.sin2 + double_sine * ends);
 
-        // The ends.
-        let end_x = x + radius * versine;
-        let chord = radius * sine_half;
-        let (y_1, y_2) = (y + chord, y - chord);
-        let common = zone + end_x * end_x;
-        let (i1, i2) = (one / (common + y_1 * y_1), one / (common + y_2 * y_2));
-        let ends = i1 * i2;
-        let ends_root = ends.sqrt();
-
-        let sine = sine_half * (near * far).sqrt() * ends_root;
-        let cosine = side * (zone + x2 + y2 - total * versine) * ends_root;
-        let turn = angle(sine, cosine);
-
-        let weight = four * root * i_delta;
-        let value = radius * (weight * total * turn.sin2 + double_sine * ends);
-
-        // Coefficients of the gradients of A, Δ, c and of the ends' distances.
-        let of_total = weight * turn.sin2;
-        let of_delta = R::splat(-8.0) * total * i_delta * root * turn.sin4;
-        let of_cosine = -weight * total * sine * sine * sine * ends_root;
-        let of_ends = -two * double_sine * ends;
-        let planar = four * (zone + excess) * i_delta;
-        let axial = four * total * i_delta;
-        let cx = side * two * (x - versine * centred);
-        let cyz = side * two * (one - versine);
-        let gradient = [
-            two * of_total * centred
-                + of_delta * planar * centred
-                + of_cosine * cx
-                + of_ends * end_x * (i1 + i2),
-            (two * of_total + of_delta * planar + of_cosine * cyz) * y
-                + of_ends * (y_1 * i1 + y_2 * i2),
-            (two * of_total + of_delta * axial + of_cosine * cyz + of_ends * (i1 + i2)) * z,
-        ];
-        Jet {
-            value,
-            gradient: gradient.map(|g| radius * g),
-        }
+    // Coefficients of the gradients of A, Δ, c and of the ends' distances.
+    let of_total = weight * turn.sin2;
+    let of_delta = R::splat(-8.0) * total * i_delta * root * turn.sin4;
+    let of_cosine = -weight * total * sine * sine * sine * ends_root;
+    let of_ends = -two * double_sine * ends;
+    let planar = four * (zone + excess) * i_delta;
+    let axial = four * total * i_delta;
+    let cx = side * two * (x - versine * centred);
+    let cyz = side * two * (one - versine);
+    let gradient = [
+        two * of_total * centred
+            + of_delta * planar * centred
+            + of_cosine * cx
+            + of_ends * end_x * (i1 + i2),
+        (two * of_total + of_delta * planar + of_cosine * cyz) * y
+            + of_ends * (y_1 * i1 + y_2 * i2),
+        (two * of_total + of_delta * axial + of_cosine * cyz + of_ends * (i1 + i2)) * z,
+    ];
+    Jet {
+        value,
+        gradient: gradient.map(|g| radius * g),
     }
 }

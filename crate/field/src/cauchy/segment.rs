@@ -12,47 +12,36 @@
 //! Gradient: `∂f/∂x = 1/A² − 1/B²`, and `∂f/∂y = −4y·∫du/(p²+u²)³` with
 //! `p⁵·∫ = ∫₀^θ sin⁴ + C sin³θ + C² sin θ cos θ`, `C = p²/√(AB)`.
 use crate::angle::angle;
+use crate::bone::Segment;
 use crate::{Jet, Real};
 
-/// A segment on the x axis, its middle at the origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment<S> {
-    /// Half the length.
-    pub half: S,
-}
-
-impl<S> Segment<S> {
-    /// Value and gradient at a local position.
-    #[inline(always)]
-    pub fn jet<R: Real<Scalar = S>>(&self, [x, y, z]: [R; 3]) -> Jet<R>
-    where
-        S: Copy,
-    {
-        let one = R::splat(1.0);
-        let half = R::lift(self.half);
-        let length = half + half;
-        let p2 = one + y * y + z * z;
-        let (a, b) = (half + x, half - x);
-        let (aa, bb) = (p2 + a * a, p2 + b * b);
-        let (ia, ib) = (one / aa, one / bb);
-        let product = ia * ib;
-        let root = product.sqrt();
-        let p = p2.sqrt();
-        let ip = one / p;
-        let sine = p * length * root;
-        let cosine = (p2 - a * b) * root;
-        let turn = angle(sine, cosine);
-        let ip3 = ip * ip * ip;
-        let c = p2 * root;
-        let sixth = ip3 * (ip * ip) * (turn.sin4 + sine * c * (sine * sine + c * cosine));
-        let radial = R::splat(-4.0) * sixth;
-        Jet {
-            value: ip3 * turn.sin2 + length * product,
-            gradient: [
-                R::splat(-2.0) * x * length * (ia + ib) * product,
-                radial * y,
-                radial * z,
-            ],
-        }
+/// Value and gradient at a local position.
+#[inline(always)]
+pub fn jet<R: Real>(segment: &Segment<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
+    let one = R::splat(1.0);
+    let half = R::lift(segment.half);
+    let length = half + half;
+    let p2 = one + y * y + z * z;
+    let (a, b) = (half + x, half - x);
+    let (aa, bb) = (p2 + a * a, p2 + b * b);
+    let (ia, ib) = (one / aa, one / bb);
+    let product = ia * ib;
+    let root = product.sqrt();
+    let p = p2.sqrt();
+    let ip = one / p;
+    let sine = p * length * root;
+    let cosine = (p2 - a * b) * root;
+    let turn = angle(sine, cosine);
+    let ip3 = ip * ip * ip;
+    let c = p2 * root;
+    let sixth = ip3 * (ip * ip) * (turn.sin4 + sine * c * (sine * sine + c * cosine));
+    let radial = R::splat(-4.0) * sixth;
+    Jet {
+        value: ip3 * turn.sin2 + length * product,
+        gradient: [
+            R::splat(-2.0) * x * length * (ia + ib) * product,
+            radial * y,
+            radial * z,
+        ],
     }
 }

@@ -24,170 +24,95 @@
 //! a [segment](super::segment); across it `∂f/∂z = −z/c²·(2f + Σ h·∫dt/(w²+t²)²)`. The parts of
 //! these sums that cancel (Σ l·n = 0) are removed symbolically.
 use crate::angle::{angle, direction, sliver};
+use crate::bone::Triangle;
 use crate::{Jet, Real};
 
-/// An edge, prepared.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge<S> {
-    /// Its unit direction.
-    pub along: [S; 2],
-    /// Its length.
-    pub length: S,
-    /// `along·start`.
-    pub start: S,
-    /// `inward·start`.
-    pub offset: S,
-}
+/// Value and gradient at a local position.
+#[inline(always)]
+pub fn jet<R: Real>(triangle: &Triangle<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
+    let zero = R::splat(0.0);
+    let one = R::splat(1.0);
+    let two = R::splat(2.0);
+    let c2 = one + z * z;
+    let from = triangle
+        .corners
+        .map(|[cx, cy]| [x - R::lift(cx), y - R::lift(cy)]);
+    let d = from.map(|[dx, dy]| c2 + dx * dx + dy * dy);
+    let i = d.map(|d| one / d);
+    let double_area = R::lift(triangle.double_area);
 
-/// A triangle in the plane z = 0, counter-clockwise.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Triangle<S> {
-    /// Corners.
-    pub corners: [[S; 2]; 3],
-    /// Edges; edge i is opposite corner i.
-    pub edges: [Edge<S>; 3],
-    /// Twice the area.
-    pub double_area: S,
-    /// Twice the area times twice the circumcentre as seen from corner 0.
-    pub circum: [S; 2],
-}
+    let mut plain = zero;
+    let mut plain_size = zero;
+    let mut slivers = zero;
+    let mut slivers_size = zero;
+    let mut sphere_angle = zero;
+    let mut chords = zero;
+    let mut steepest = one;
+    let mut in_plane = [zero; 2];
+    let mut across = zero;
+    for k in 0..3 {
+        let edge = &triangle.edges[k];
+        let [ax, ay] = edge.along.map(R::lift);
+        let length = R::lift(edge.length);
+        let t0 = R::lift(edge.start) - (ax * x + ay * y);
+        let t1 = t0 + length;
+        let h = ax * y - ay * x - R::lift(edge.offset);
+        let w2 = c2 + h * h;
+        let w = w2.sqrt();
+        // One division for 1/w and 1/(w+|h|): 1−|k| = c²/(w(w+|h|)).
+        let rim = w + h.abs();
+        let i_both = one / (w * rim);
+        let iw = i_both * rim;
+        let ii = i[(k + 1) % 3] * i[(k + 2) % 3];
+        let root = ii.sqrt();
+        let sine = w * length * root;
+        let cosine = (w2 + t0 * t1) * root;
+        let turn = angle(sine, cosine);
 
-impl Triangle<f64> {
-    /// From corners in counter-clockwise order. Coincident or collinear ones are allowed.
-    pub(crate) fn new(corners: [[f64; 2]; 3]) -> Self {
-        let edges = [0, 1, 2].map(|i| {
-            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
-            let d = [b[0] - a[0], b[1] - a[1]];
-            let length = (d[0] * d[0] + d[1] * d[1]).sqrt();
-            let along = if length > 0.0 {
-                [d[0] / length, d[1] / length]
-            } else {
-                [1.0, 0.0]
-            };
-            Edge {
-                along,
-                length,
-                start: along[0] * a[0] + along[1] * a[1],
-                offset: along[0] * a[1] - along[1] * a[0],
-            }
-        });
-        let [v0, v1, v2] = corners;
-        let e1 = [v1[0] - v0[0], v1[1] - v0[1]];
-        let e2 = [v2[0] - v0[0], v2[1] - v0[1]];
-        let (n1, n2) = (e1[0] * e1[0] + e1[1] * e1[1], e2[0] * e2[0] + e2[1] * e2[1]);
-        Self {
-            corners,
-            edges,
-            double_area: e1[0] * e2[1] - e1[1] * e2[0],
-            circum: [n1 * e2[1] - n2 * e1[1], n2 * e1[0] - n1 * e2[0]],
+        let ratio = h * iw;
+        let size = ratio.abs();
+        plain = plain + ratio * turn.theta;
+        plain_size = plain_size + size * turn.theta;
+        let part = sliver(&turn, sine, cosine, c2 * i_both);
+        slivers = slivers + ratio.sign_to(part.half_area);
+        slivers_size = slivers_size + part.half_area.abs();
+        sphere_angle = sphere_angle + ratio.sign_to(turn.theta - part.shortfall);
+        chords = chords + length * length * ii;
+        steepest = steepest.min(one - c2 * iw * iw * sine * sine);
+
+        let cubic = turn.sin2 * iw * iw * iw;
+        in_plane = [in_plane[0] - ay * cubic, in_plane[1] + ax * cubic];
+        across = across + h * cubic;
+        if k > 0 {
+            // Dₖ − D₀, of which the sums over edges l·n·D and l·h·D are made.
+            let [sx, sy] = [
+                R::lift(triangle.corners[k][0]) - R::lift(triangle.corners[0][0]),
+                R::lift(triangle.corners[k][1]) - R::lift(triangle.corners[0][1]),
+            ];
+            let step = -(sx * (from[0][0] + from[k][0]) + sy * (from[0][1] + from[k][1]));
+            let weight = step * length * i[0] * i[1] * i[2];
+            in_plane = [in_plane[0] - ay * weight, in_plane[1] + ax * weight];
+            across = across + h * weight;
         }
     }
-}
+    across = across + double_area * i[1] * i[2];
 
-impl<S: Copy> Triangle<S> {
-    pub(crate) fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Triangle<Q> {
-        Triangle {
-            corners: self.corners.map(|corner| corner.map(f)),
-            edges: self.edges.map(|edge| Edge {
-                along: edge.along.map(f),
-                length: f(edge.length),
-                start: f(edge.start),
-                offset: f(edge.offset),
-            }),
-            double_area: f(self.double_area),
-            circum: self.circum.map(f),
-        }
-    }
-
-    /// Value and gradient at a local position.
-    #[inline(always)]
-    pub fn jet<R: Real<Scalar = S>>(&self, [x, y, z]: [R; 3]) -> Jet<R> {
-        let zero = R::splat(0.0);
-        let one = R::splat(1.0);
-        let two = R::splat(2.0);
-        let c2 = one + z * z;
-        let from = self
-            .corners
-            .map(|[cx, cy]| [x - R::lift(cx), y - R::lift(cy)]);
-        let d = from.map(|[dx, dy]| c2 + dx * dx + dy * dy);
-        let i = d.map(|d| one / d);
-        let double_area = R::lift(self.double_area);
-
-        let mut plain = zero;
-        let mut plain_size = zero;
-        let mut slivers = zero;
-        let mut slivers_size = zero;
-        let mut sphere_angle = zero;
-        let mut chords = zero;
-        let mut steepest = one;
-        let mut in_plane = [zero; 2];
-        let mut across = zero;
-        for k in 0..3 {
-            let edge = &self.edges[k];
-            let [ax, ay] = edge.along.map(R::lift);
-            let length = R::lift(edge.length);
-            let t0 = R::lift(edge.start) - (ax * x + ay * y);
-            let t1 = t0 + length;
-            let h = ax * y - ay * x - R::lift(edge.offset);
-            let w2 = c2 + h * h;
-            let w = w2.sqrt();
-            // One division for 1/w and 1/(w+|h|): 1−|k| = c²/(w(w+|h|)).
-            let rim = w + h.abs();
-            let i_both = one / (w * rim);
-            let iw = i_both * rim;
-            let ii = i[(k + 1) % 3] * i[(k + 2) % 3];
-            let root = ii.sqrt();
-            let sine = w * length * root;
-            let cosine = (w2 + t0 * t1) * root;
-            let turn = angle(sine, cosine);
-
-            let ratio = h * iw;
-            let size = ratio.abs();
-            plain = plain + ratio * turn.theta;
-            plain_size = plain_size + size * turn.theta;
-            let part = sliver(&turn, sine, cosine, c2 * i_both);
-            slivers = slivers + ratio.sign_to(part.half_area);
-            slivers_size = slivers_size + part.half_area.abs();
-            sphere_angle = sphere_angle + ratio.sign_to(turn.theta - part.shortfall);
-            chords = chords + length * length * ii;
-            steepest = steepest.min(one - c2 * iw * iw * sine * sine);
-
-            let cubic = turn.sin2 * iw * iw * iw;
-            in_plane = [in_plane[0] - ay * cubic, in_plane[1] + ax * cubic];
-            across = across + h * cubic;
-            if k > 0 {
-                // Dₖ − D₀, of which the sums over edges l·n·D and l·h·D are made.
-                let [sx, sy] = [
-                    R::lift(self.corners[k][0]) - R::lift(self.corners[0][0]),
-                    R::lift(self.corners[k][1]) - R::lift(self.corners[0][1]),
-                ];
-                let step = -(sx * (from[0][0] + from[k][0]) + sy * (from[0][1] + from[k][1]));
-                let weight = step * length * i[0] * i[1] * i[2];
-                in_plane = [in_plane[0] - ay * weight, in_plane[1] + ax * weight];
-                across = across + h * weight;
-            }
-        }
-        across = across + double_area * i[1] * i[2];
-
-        let [gx, gy] = self.circum.map(R::lift);
-        let numerator = (double_area * d[0] - gx * from[0][0] - gy * from[0][1])
-            * i[0]
-            * (two * c2 * i[1])
-            * i[2];
-        let half_sphere = direction(numerator, two - c2 * chords);
-        // (2) is wrong by a multiple of π where Ω/2 leaves (−π, π], and unstable where two corners'
-        // images are nearly opposite. There (1) has no cancellation.
-        let sound = R::both(
-            (half_sphere - sphere_angle).abs().lt(one),
-            R::splat(0.25).lt(steepest),
-        );
-        let smaller = (half_sphere.abs() + slivers_size).lt(plain_size);
-        let sum = R::select(R::both(sound, smaller), half_sphere - slivers, plain);
-        let ic2 = one / c2;
-        let value = R::splat(0.5) * ic2 * sum;
-        Jet {
-            value,
-            gradient: [in_plane[0], in_plane[1], -z * ic2 * (two * value + across)],
-        }
+    let [gx, gy] = triangle.circum.map(R::lift);
+    let numerator =
+        (double_area * d[0] - gx * from[0][0] - gy * from[0][1]) * i[0] * (two * c2 * i[1]) * i[2];
+    let half_sphere = direction(numerator, two - c2 * chords);
+    // (2) is wrong by a multiple of π where Ω/2 leaves (−π, π], and unstable where two corners'
+    // images are nearly opposite. There (1) has no cancellation.
+    let sound = R::both(
+        (half_sphere - sphere_angle).abs().lt(one),
+        R::splat(0.25).lt(steepest),
+    );
+    let smaller = (half_sphere.abs() + slivers_size).lt(plain_size);
+    let sum = R::select(R::both(sound, smaller), half_sphere - slivers, plain);
+    let ic2 = one / c2;
+    let value = R::splat(0.5) * ic2 * sum;
+    Jet {
+        value,
+        gradient: [in_plane[0], in_plane[1], -z * ic2 * (two * value + across)],
     }
 }

@@ -106,4 +106,14 @@ impl Real for f64 {
     fn sin_cos(self) -> (Self, Self) {
         libm::sincos(self)
     }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        libm::exp(self)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        libm::log(self)
+    }
 }

@@ -90,6 +90,82 @@ impl Real for f32 {
     fn sin_cos(self) -> (Self, Self) {
         sin_cos(self)
     }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        exp(self)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        ln(self)
+    }
+}
+
+impl Binary for f32 {
+    #[inline(always)]
+    fn power_of_two(n: Self) -> Self {
+        f32::from_bits(((n as i32 + 127) << 23) as u32)
+    }
+
+    #[inline(always)]
+    fn parts(self) -> (Self, Self) {
+        let bits = self.to_bits() as i32;
+        let exponent = (bits - ROOT_HALF_BITS) >> 23;
+        (
+            f32::from_bits((bits - (exponent << 23)) as u32),
+            exponent as f32,
+        )
+    }
+}
+
+/// The bits of √½ in single precision.
+pub(super) const ROOT_HALF_BITS: i32 = 0x3F35_04F3;
+
+/// What the exponential and the logarithm need to know of how single precision numbers are stored.
+pub(super) trait Binary: Real {
+    /// 2ⁿ of an integer −126 ≤ n ≤ 127.
+    fn power_of_two(n: Self) -> Self;
+    /// m in [√½, √2) and the integer n of x = m·2ⁿ, x positive and normal.
+    fn parts(self) -> (Self, Self);
+}
+
+/// `eˣ` in single precision: x less the nearest multiple of ln 2 (in two parts, the first with so
+/// few bits that its products are exact), then Taylor's polynomial to degree 7, whose error for
+/// |r| ≤ ½·ln 2 is below 6·10⁻⁹.
+#[inline(always)]
+pub(super) fn exp<R: Binary>(x: R) -> R {
+    let low = R::splat(-87.0);
+    let cut = x.max(low).min(R::splat(88.0));
+    let n = (cut * R::splat(core::f64::consts::LOG2_E) + R::splat(0.5)).floor();
+    let r = cut - n * R::splat(0.693_359_375);
+    let r = r - n * R::splat(-2.121_944_400_546_905_8e-4);
+    let power = R::splat(1.0)
+        + (r + r
+            * r
+            * polynomial(
+                r,
+                [
+                    0.5,
+                    1.0 / 6.0,
+                    1.0 / 24.0,
+                    1.0 / 120.0,
+                    1.0 / 720.0,
+                    1.0 / 5040.0,
+                ],
+            ));
+    R::select(x.lt(low), R::splat(0.0), power * R::power_of_two(n))
+}
+
+/// The logarithm in single precision: with `s = (m−1)/(m+1)`, `ln m = 2(s + s³/3 + s⁵/5 + …)`;
+/// |s| ≤ 0.1716, so the terms up to s⁹ leave 4·10⁻¹⁰.
+#[inline(always)]
+pub(super) fn ln<R: Binary>(x: R) -> R {
+    let (m, n) = x.parts();
+    let s = (m - R::splat(1.0)) / (m + R::splat(1.0));
+    let square = s * s;
+    let rest = s * square * polynomial(square, [2.0 / 3.0, 0.4, 2.0 / 7.0, 2.0 / 9.0]);
+    n * R::splat(0.693_359_375) + (s + s + (rest + n * R::splat(-2.121_944_400_546_905_8e-4)))
 }
 
 /// The tail of the arctangent in single precision: Chebyshev fit, error below 4·10⁻⁷, which

@@ -1,6 +1,8 @@
 //! `wide::f32x8`, eight lanes of the shipping path.
+use super::single::Binary;
 use super::{Real, single};
-use wide::f32x8;
+use wide::bytemuck::cast;
+use wide::{f32x8, i32x8};
 
 impl Real for f32x8 {
     type Scalar = f32;
@@ -76,5 +78,29 @@ impl Real for f32x8 {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         single::sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        single::exp(self)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        single::ln(self)
+    }
+}
+
+impl Binary for f32x8 {
+    #[inline(always)]
+    fn power_of_two(n: Self) -> Self {
+        cast((n.fast_trunc_int() + i32x8::splat(127)) << 23)
+    }
+
+    #[inline(always)]
+    fn parts(self) -> (Self, Self) {
+        let bits: i32x8 = cast(self);
+        let exponent = (bits - i32x8::splat(single::ROOT_HALF_BITS)) >> 23;
+        (cast(bits - (exponent << 23)), f32x8::from_i32x8(exponent))
     }
 }

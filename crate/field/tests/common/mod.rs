@@ -16,7 +16,7 @@ macro_rules! tests {
     )*};
 }
 
-/// The five kinds of skeleton.
+/// The kinds of skeleton.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Point,
@@ -24,14 +24,28 @@ pub enum Kind {
     Arc,
     Triangle,
     Plane,
+    Polygon,
+    Curve,
 }
 
+/// The kinds that have closed forms of the Cauchy kernel.
 pub const KINDS: [Kind; 5] = [
     Kind::Point,
     Kind::Segment,
     Kind::Arc,
     Kind::Triangle,
     Kind::Plane,
+];
+
+/// All kinds.
+pub const ALL_KINDS: [Kind; 7] = [
+    Kind::Point,
+    Kind::Segment,
+    Kind::Arc,
+    Kind::Triangle,
+    Kind::Plane,
+    Kind::Polygon,
+    Kind::Curve,
 ];
 
 /// A splitmix64 generator.
@@ -133,6 +147,27 @@ impl Random {
                 point: shift,
                 normal: x,
             },
+            Kind::Polygon => {
+                // A star, not convex as a rule, sometimes with a hole around its centre.
+                let count = 3 + (self.unit() * 5.0) as usize;
+                let mut ring = |low: f64, high: f64, count: usize| -> Vec<DVec3> {
+                    (0..count)
+                        .map(|i| {
+                            let (sine, cosine) = libm::sincos(TAU * i as f64 / count as f64);
+                            let r = size * self.range(low, high);
+                            shift + (x * cosine + y * sine) * r
+                        })
+                        .collect()
+                };
+                let mut rings = vec![ring(0.5, 1.0, count)];
+                if count % 2 == 0 {
+                    rings.push(ring(0.1, 0.3, 3));
+                }
+                Skeleton::Polygon { rings }
+            }
+            Kind::Curve => Skeleton::Curve {
+                control: core::array::from_fn(|_| shift + self.vector(size)),
+            },
         }
     }
 
@@ -170,6 +205,20 @@ impl Random {
                 a + (b - a) * s + (c - a) * t
             }
             Skeleton::Plane { point, .. } => point,
+            Skeleton::Polygon { ref rings } => {
+                let ring = &rings[(inside * rings.len() as f64) as usize];
+                let at = (self.unit() * ring.len() as f64) as usize;
+                let (p, q) = (ring[at], ring[(at + 1) % ring.len()]);
+                let center = rings[0].iter().sum::<DVec3>() / rings[0].len() as f64;
+                self.pick(&[p, p + (q - p) * around, p + (center - p) * inside, center])
+            }
+            Skeleton::Curve {
+                control: [a, b, c, d],
+            } => {
+                let t = self.pick(&[0.0, 1.0, inside, inside]);
+                let s = 1.0 - t;
+                a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t)
+            }
         }
     }
 
@@ -180,6 +229,10 @@ impl Random {
             Skeleton::Segment { base, apex } => (apex - base).normalize_or_zero(),
             Skeleton::Arc { u, v, .. } => u.cross(v),
             Skeleton::Triangle { corners: [a, b, c] } => (b - a).cross(c - a).normalize_or_zero(),
+            Skeleton::Polygon { ref rings } => {
+                let [a, b, c] = [rings[0][0], rings[0][1], rings[0][2]];
+                (b - a).cross(c - a).normalize_or_zero()
+            }
             _ => DVec3::ZERO,
         };
         let any = self.direction();
@@ -210,7 +263,7 @@ pub fn shaping(radius: f64, blobbiness: f64) -> Shaping {
 }
 
 pub fn primitive(skeleton: Skeleton, shaping: &Shaping, profile: Option<Profile>) -> Primitive {
-    Primitive::new(skeleton, shaping, profile)
+    Primitive::new(skeleton.clone(), shaping, profile)
         .unwrap_or_else(|| panic!("no flesh: {skeleton:?} {shaping:?}"))
 }
 
@@ -255,5 +308,9 @@ pub fn extent(skeleton: &Skeleton) -> f64 {
         Skeleton::Arc { center, radius, .. } => center.length() + radius,
         Skeleton::Triangle { corners } => corners.iter().fold(0.0, |l, p| p.length().max(l)),
         Skeleton::Plane { point, .. } => point.length(),
+        Skeleton::Polygon { ref rings } => {
+            rings.iter().flatten().fold(0.0, |l, p| p.length().max(l))
+        }
+        Skeleton::Curve { control } => control.iter().fold(0.0, |l, p| p.length().max(l)),
     }
 }

@@ -1,0 +1,5 @@
+//! The gauss kernel.
+
+pub mod arc;
+pub mod polygon;
+pub mod segment;

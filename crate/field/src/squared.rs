@@ -1,0 +1,5 @@
+//! The squared kernel.
+
+pub mod arc;
+pub mod polygon;
+pub mod segment;
