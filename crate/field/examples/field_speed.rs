@@ -17,6 +17,7 @@ fn main() {
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,
+        taper: None,
     };
     let skeletons = [
         (

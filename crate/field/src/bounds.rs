@@ -59,19 +59,35 @@ fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
     }
 }
 
-/// A bound on the field of an arc. The Cauchy kernel has a sharp one; for others: a ball of radius
-/// δ holds at most πδ of a circle, so with h falling the field is at most
-/// `π(d·h(d) + ∫ h)` from d up to where the arc's length is used up.
+/// A bound on the field of an arc. The Cauchy kernel has a sharp one; for others see [`coiled`].
 fn arc_bound(kernel: Kernel, length: f64, radius: f64, d: f64) -> f64 {
     let most = length * kernel.value(d);
     if kernel == Kernel::Cauchy {
         return most.min(circle(radius, d));
     }
-    let end = length / PI;
-    if end <= d {
-        return most;
+    let outward = |a: f64, b: f64| kernel.along(b) - kernel.along(a);
+    most.min(coiled(length, radius, d, |u| kernel.value(u), outward))
+}
+
+/// A bound on the integral over an arc of a falling function g of the distance, at distance d or more.
+///
+/// A ball of radius δ holds no more than πδ of a circle that is larger than it, and all of one that
+/// is not. So with l the arc's length the integral is at most
+/// `πd·g(d) + π∫g + (l−πr)·g(r)`, the integral from d to the smaller of r and l/π.
+/// `outward(a, b)` is the integral of g from a to b, or more.
+pub(crate) fn coiled(
+    length: f64,
+    radius: f64,
+    d: f64,
+    g: impl Fn(f64) -> f64,
+    outward: impl Fn(f64, f64) -> f64,
+) -> f64 {
+    let end = radius.min(length / PI);
+    if d >= end {
+        return length * g(d);
     }
-    most.min(PI * (d * kernel.value(d) + kernel.along(end) - kernel.along(d)))
+    let rest = (length - PI * radius).max(0.0);
+    PI * (d * g(d) + outward(d, end)) + rest * g(radius)
 }
 
 /// A bound on the Cauchy field of any arc of a circle at distance d or more from the arc.

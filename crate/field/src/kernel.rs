@@ -77,6 +77,12 @@ impl Kernel {
         )
     }
 
+    /// Whether its integral over an infinite plane is finite.
+    #[must_use]
+    pub fn falls_fast(self) -> bool {
+        !matches!(self, Self::Inverse | Self::Squared)
+    }
+
     /// The places u at which a derivative of the kernel jumps, in increasing order.
     #[must_use]
     pub fn kinks(self) -> &'static [f64] {

@@ -23,14 +23,21 @@
 
 mod angle;
 mod bone;
+pub mod bound;
 mod bounds;
+mod carlson;
 mod cauchy;
+mod clausen;
 mod curve;
 pub mod endless;
+mod envelope;
+mod far;
+mod error_function;
 mod form;
 mod gauss;
 mod inverse;
 pub mod kernel;
+mod legendre;
 mod metaballs;
 mod plane;
 mod point;
@@ -48,12 +55,13 @@ pub mod sum;
 mod term;
 mod waves;
 
-pub use kernel::Kernel;
+pub use bound::Bound;
+pub use kernel::{Derivatives, Kernel};
 pub use primitive::{Jet, Primitive};
 pub use profile::{Profile, Wave};
 pub use ray::AlongRay;
 pub use real::Real;
-pub use shaping::{BlobScale, Shaping};
+pub use shaping::{BlobScale, Shaping, Taper};
 pub use skeleton::Skeleton;
 pub use sum::Field;
 

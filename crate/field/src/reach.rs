@@ -83,9 +83,8 @@ pub(crate) fn interval(
         }
         Bone::Curve(curve) => {
             let mut hull = NONE;
-            for span in &curve.spans {
-                let (center, radius) = span.ball();
-                hull = join(hull, ray.ball(center, radius + d));
+            for stretch in &curve.stretches {
+                hull = join(hull, ray.ball(stretch.center, stretch.radius + d));
             }
             hull
         }

@@ -32,6 +32,10 @@ pub trait Real:
     /// Coordinates (in units of the kernel's width) are cut to ± this: beyond it the fourth powers
     /// that formulas contain would overflow, and the field there is below 10⁻³⁵ anyway.
     const HORIZON: f64;
+    /// Steps that [`carlson`](crate::carlson) takes: enough for the type's precision.
+    const DUPLICATIONS: usize;
+    /// Whether this is double precision.
+    const DOUBLE: bool = core::mem::size_of::<Self::Scalar>() == 8;
 
     /// The same constant in every lane, rounded to the type.
     fn splat(value: f64) -> Self;
@@ -66,6 +70,12 @@ pub trait Real:
     fn arctangent_tail(square: Self) -> Self;
     /// Sine and cosine, for |x| up to 10⁴ or so.
     fn sin_cos(self) -> (Self, Self);
+
+    /// Sine and cosine, for |x| ≤ π/4.
+    fn sin_cos_octant(self) -> (Self, Self);
+    /// `erfc x` of x ≥ 0, the complementary error function, to the last digits also where it is
+    /// tiny. `bell` is e^(−x²), which whoever wants the one mostly has.
+    fn erfc(self, bell: Self) -> Self;
 
     /// e^x; 0 for x below −87 in single precision.
     fn exp(self) -> Self;

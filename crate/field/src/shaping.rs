@@ -12,6 +12,15 @@ pub enum BlobScale {
     Absolute,
 }
 
+/// What a segment, an arc or a curve has at its other end. Along it both vary evenly with length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taper {
+    /// Radius in isolation there.
+    pub radius: f64,
+    /// Blobbiness there.
+    pub blobbiness: f64,
+}
+
 /// What the user says of a soft primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaping {
@@ -27,6 +36,8 @@ pub struct Shaping {
     pub strength: f64,
     /// ε of the depth of influence: the primitive is ignored where its field is below ε·T.
     pub influence: f64,
+    /// What differs at the other end, if anything.
+    pub taper: Option<Taper>,
 }
 
 impl Shaping {

@@ -1,8 +1,7 @@
 //! A primitive made ready for evaluation: its closed form and the frame in which that is written.
-use crate::bone::curve::Span;
 use crate::bone::{Arc, Bone, Curve, Polygon, Segment, Triangle};
 use crate::form::Form;
-use crate::skeleton::area_vector;
+use crate::skeleton::{area_vector, cubic};
 use crate::waves::Waves;
 use crate::{Jet, Kernel, Real, Skeleton};
 use glam::{DMat3, DVec3};
@@ -122,11 +121,11 @@ impl Prepared {
 
 /// The local frame and closed form of a skeleton, for the kernel's width parameter s.
 pub(crate) fn place(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Form<f64>) {
-    let (frame, bone) = place_bone(skeleton, s);
+    let (frame, bone) = place_bone(skeleton, kernel, s);
     (frame, Form { kernel, bone })
 }
 
-fn place_bone(skeleton: &Skeleton, s: f64) -> (Frame<f64>, Bone<f64>) {
+fn place_bone(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<f64>) {
     match *skeleton {
         Skeleton::Point { center } => (frame(center, DMat3::IDENTITY, s), Bone::Point),
         Skeleton::Segment { base, apex } => {
@@ -200,19 +199,10 @@ fn place_bone(skeleton: &Skeleton, s: f64) -> (Frame<f64>, Bone<f64>) {
         }
         Skeleton::Curve { control } => {
             let origin = control.iter().sum::<DVec3>() / 4.0;
-            let [a, b, c, d] = control.map(|p| (p - origin) * s);
-            let position = [
-                a,
-                (b - a) * 3.0,
-                (a - b * 2.0 + c) * 3.0,
-                d - a + (b - c) * 3.0,
-            ];
-            let spans = vec![Span {
-                position: position.map(|c| c.to_array()),
-            }];
+            let cubics = [cubic(control.map(|p| (p - origin) * s))];
             (
                 frame(origin, DMat3::IDENTITY, s),
-                Bone::Curve(Curve { spans }),
+                Bone::Curve(Curve::new(kernel, &cubics, &cubics, None)),
             )
         }
         Skeleton::Plane { point, normal } => {

@@ -22,7 +22,8 @@ impl Bounds {
         let boxes = scene
             .elements
             .iter()
-            .filter_map(|element| Solid::of(scene, element)?.bounds());
+            .flat_map(|element| Solid::of(scene, element))
+            .filter_map(|solid| solid.bounds());
         let sum = boxes.reduce(|(low, high), (a, b)| (low.min(a), high.max(b)));
         let camera = scene.camera;
         let seen = Self {

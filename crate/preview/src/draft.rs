@@ -85,19 +85,24 @@ impl Draft {
         let limit = Instances::limit(device);
         let mut lists: [Vec<Instance>; Kind::COUNT] = Default::default();
         for element in &scene.elements {
-            let Some(solid) = Solid::of(scene, element) else {
+            let solids = Solid::of(scene, element);
+            if solids.is_empty() {
                 drawn.invisible += 1;
                 continue;
-            };
-            let list = &mut lists[solid.kind as usize];
-            if drawn.elements == MAX_ELEMENTS || list.len() == limit {
+            }
+            let room = solids
+                .iter()
+                .all(|solid| lists[solid.kind as usize].len() + solids.len() <= limit);
+            if drawn.elements == MAX_ELEMENTS || !room {
                 drawn.left_out += 1;
                 continue;
             }
             drawn.elements += 1;
             let material = materials.slot(element.material);
-            let solid = solid.anchored(self.units.center);
-            list.push(Instance::new(&solid, material, self.units));
+            for solid in solids {
+                let solid = solid.anchored(self.units.center);
+                lists[solid.kind as usize].push(Instance::new(&solid, material, self.units));
+            }
         }
         for (kind, list) in Kind::ALL.into_iter().zip(&lists) {
             self.instances[kind as usize].write(device, queue, kind, list);

@@ -44,15 +44,18 @@ pub(crate) struct Solid {
 }
 
 impl Solid {
-    /// The solid that the draft shows for an element of a scene; none where there is nothing to
+    /// The solids that the draft shows for an element of a scene; none where there is nothing to
     /// see: no radius, no length, numbers that are not finite, or a soft element that adds no
     /// flesh because its strength is not positive.
-    pub(crate) fn of(scene: &Scene, element: &Element) -> Option<Self> {
+    pub(crate) fn of(scene: &Scene, element: &Element) -> Vec<Self> {
         let strength = scene.materials.get(element.material).map(|m| m.strength);
         if scene.is_soft(element) && strength.is_none_or(|s| s <= 0.0) {
-            return None;
+            return Vec::new();
         }
-        Self::new(&element.shape, scene.radius(element))
+        let radius = scene.radius(element);
+        let parts = element.shape.parts(radius);
+        let solids = parts.iter().filter_map(|part| Self::new(part, radius));
+        solids.collect()
     }
 
     /// The offset surface of a shape at the given radius.
@@ -73,6 +76,8 @@ impl Solid {
             } => Self::arc(center, u, v, sweep, angle, radius),
             Shape::Triangle { corners, .. } => Self::triangle(corners, radius),
             Shape::Plane { point, normal, .. } => Self::plane(point, normal, radius),
+            // Made of several solids.
+            Shape::Polygon { .. } | Shape::Curve { .. } => None,
         }?;
         let numbers = solid.a.iter().chain(&solid.b);
         (solid.origin.is_finite()

@@ -2,6 +2,7 @@
 
 mod common;
 
+use std::slice;
 use common::gpu::{Gpu, gpus};
 use common::reference::{self, Met};
 use common::scenes::{arc, by_index, by_normal, index_of, look, turned};
@@ -122,7 +123,7 @@ fn compare_around(what: &str, shape: Shape, center: DVec3, size: f64) {
                 up: DVec3::new(0.1, 1.0, 0.2),
                 fov,
             };
-            compare(gpu, &format!("{what}, {view}"), &[shape], camera);
+            compare(gpu, &format!("{what}, {view}"), slice::from_ref(&shape), camera);
         }
     }
 }
@@ -200,7 +201,7 @@ fn arcs_thin_fat_flat_and_self_crossing() {
         compare(
             gpu,
             "nearly straight",
-            &[bent],
+            slice::from_ref(&bent),
             look([0.5, 1.0, 3.0], [0.0, 0.0, 0.0], 45.0),
         );
     }
@@ -233,7 +234,7 @@ fn planes() {
                 compare(
                     gpu,
                     &format!("plane {radius}, {view}"),
-                    &[floor, ball],
+                    &[floor.clone(), ball.clone()],
                     look(eye, [0.0, -0.5, 0.0], 60.0),
                 );
             }
@@ -256,13 +257,13 @@ fn eyes_inside_see_the_inside() {
         for (what, shape) in [
             ("sphere", sphere([0.8, 0.1, 0.2], 0.6)),
             ("cylinder", cylinder([0.0; 3], [2.0, 0.3, 0.1], 0.4)),
-            ("ring", ring),
-            ("open ring", open),
+            ("ring", ring.clone()),
+            ("open ring", open.clone()),
             ("prism", triangle(corners, 0.5)),
         ] {
             for target in [[0.0, 0.0, 5.0], [1.0, 2.0, 0.0], [-1.0, -0.2, 0.0]] {
                 let camera = look([1.0, 0.1, 0.05], target, 90.0);
-                compare(gpu, &format!("inside a {what}"), &[shape], camera);
+                compare(gpu, &format!("inside a {what}"), slice::from_ref(&shape), camera);
             }
         }
     }
@@ -277,9 +278,9 @@ fn eyes_in_the_box_but_outside_the_shape() {
         let mut hits = [0; 2];
         for target in [[0.0, 0.0, 5.0], [1.0, 2.0, 0.0], [-1.0, -0.2, 0.1]] {
             let camera = look([0.1, 0.05, -0.1], target, 100.0);
-            hits[0] += compare_pixels(gpu, "in the hole", &[ring], camera);
+            hits[0] += compare_pixels(gpu, "in the hole", slice::from_ref(&ring), camera);
             let camera = look([0.5, -0.5, 0.3], target, 100.0);
-            hits[1] += compare_pixels(gpu, "beside the rod", &[rod], camera);
+            hits[1] += compare_pixels(gpu, "beside the rod", slice::from_ref(&rod), camera);
         }
         assert!(hits.iter().all(|&count| count > 50), "{hits:?}");
     }
@@ -297,9 +298,9 @@ fn edge_on_things_are_thin_but_there() {
         0.05,
     );
     for gpu in gpus() {
-        for (what, shape) in [("card", card), ("coin", coin), ("ring", ring)] {
+        for (what, shape) in [("card", &card), ("coin", &coin), ("ring", &ring)] {
             let camera = look([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0);
-            compare(gpu, &format!("{what}, edge on"), &[shape], camera);
+            compare(gpu, &format!("{what}, edge on"), slice::from_ref(shape), camera);
         }
     }
 }

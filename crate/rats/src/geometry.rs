@@ -50,7 +50,7 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
 }
 
 /// What three points make.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ThreePoints {
     /// A piece of a circle from the first over the second to the third.
     Arc(Shape),
@@ -105,6 +105,33 @@ fn straight(a: DVec3, b: DVec3, c: DVec3) -> ThreePoints {
     longest.map_or(ThreePoints::Same, |(base, apex)| {
         ThreePoints::Line(base, apex)
     })
+}
+
+/// Moves a polygon's corners onto one plane: through the middle of its outer ring, with the ring's area
+/// for a normal. Gives how far the furthest was from it, as a share of the polygon's size.
+pub fn flatten(rings: &mut [Vec<DVec3>]) -> f64 {
+    let Some(outer) = rings.first().filter(|ring| !ring.is_empty()) else {
+        return 0.0;
+    };
+    let middle = outer.iter().sum::<DVec3>() / outer.len() as f64;
+    let normal: DVec3 = (0..outer.len())
+        .map(|i| (outer[i] - middle).cross(outer[(i + 1) % outer.len()] - middle))
+        .sum();
+    let Some(normal) = normal.try_normalize() else {
+        return 0.0;
+    };
+    let (mut size, mut off) = (0.0f64, 0.0f64);
+    for corner in rings.iter_mut().flatten() {
+        let d = *corner - middle;
+        let height = d.dot(normal);
+        size = size.max(d.length());
+        off = off.max(height.abs());
+        // Corners that lie in the plane as well as rounding allows stay as they were written.
+        if height.abs() > 1e-12 * d.length() {
+            *corner -= normal * height;
+        }
+    }
+    off / size.max(f64::MIN_POSITIVE)
 }
 
 /// An affine map: `x ↦ linear·x + shift`.
@@ -201,6 +228,17 @@ impl Transform {
             }
             Shape::Triangle { corners, radius } => Shape::Triangle {
                 corners: corners.map(|corner| self.point(corner)),
+                radius: radius * self.growth,
+            },
+            Shape::Polygon { ref rings, radius } => Shape::Polygon {
+                rings: rings
+                    .iter()
+                    .map(|ring| ring.iter().map(|corner| self.point(*corner)).collect())
+                    .collect(),
+                radius: radius * self.growth,
+            },
+            Shape::Curve { control, radius } => Shape::Curve {
+                control: control.map(|point| self.point(point)),
                 radius: radius * self.growth,
             },
             Shape::Plane {

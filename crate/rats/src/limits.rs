@@ -27,6 +27,8 @@ pub const MAX_NESTED_EXPRESSIONS: usize = 64;
 pub const MAX_OPERANDS: usize = 4096;
 /// Shapes in a scene.
 pub const MAX_ELEMENTS: usize = 200_000;
+/// Corners of a polygon with its holes. (The original stopped at 128.)
+pub const MAX_CORNERS: usize = 1024;
 /// Objects and chains in a scene.
 pub const MAX_OBJECTS: usize = 200_000;
 /// Objects inside each other.

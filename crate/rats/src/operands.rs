@@ -1,6 +1,7 @@
 //! Operands that are values: numbers, triples, colours.
 
 use crate::colours;
+use crate::commands::OptionSpec;
 use crate::functions;
 use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
@@ -37,6 +38,26 @@ impl<'a> Reader<'_, 'a> {
                 format!("{what} must be a number, this is {}", other.kind()),
             )
             .maybe_hint(self.usage())),
+        }
+    }
+
+    /// Whether the next operand can only be a number: not an option word or the end. A scalar variable
+    /// counts, unless an option is called so.
+    pub fn is_number_next(&mut self, options: &[OptionSpec]) -> bool {
+        if !self.more() {
+            return false;
+        }
+        match self.datum() {
+            Some(Datum::Number(_) | Datum::Sign(b'-' | b'+' | b'(')) => true,
+            Some(Datum::Word(symbol)) => {
+                let word = self.scope.symbols.word(symbol);
+                let is_option = options.iter().any(|option| {
+                    let start = option.name.get(..word.len());
+                    start.is_some_and(|start| start.eq_ignore_ascii_case(word))
+                });
+                !is_option && matches!(self.scope.get(symbol), Some(Value::Scalar(_)))
+            }
+            _ => false,
         }
     }
 

@@ -39,15 +39,20 @@ fn check(project: &Project) {
     }
     // JSON knows no infinity and no NaN, so this finds them anywhere in the scene.
     let json = serde_json::to_string(scene).expect("a scene");
-    assert!(!json.contains("null") || json.matches("null").count() == profiles_missing(scene));
+    assert_eq!(json.matches("null").count(), absent(scene));
 }
 
-fn profiles_missing(scene: &scene::Scene) -> usize {
-    scene
-        .materials
-        .iter()
-        .filter(|m| m.profile.is_none())
-        .count()
+/// How many optional things the materials of a scene leave out.
+fn absent(scene: &scene::Scene) -> usize {
+    let of = |m: &scene::Material| {
+        [
+            m.profile.is_none(),
+            m.kernel.is_none(),
+            m.end_radius.is_none(),
+            m.end_blobbiness.is_none(),
+        ]
+    };
+    scene.materials.iter().flat_map(of).filter(|&is| is).count()
 }
 
 fn one_file(text: String) -> Project {

@@ -30,7 +30,7 @@ fn scene(text: &str) -> Scene {
 #[track_caller]
 fn place(operands: &str) -> DVec3 {
     let scene = scene(&format!("surface s diff Red\nsphere s 1 {operands}"));
-    match scene.elements[0].shape {
+    match scene.elements[0].shape.clone() {
         Shape::Sphere { center, .. } => center,
         other => panic!("{other:?}"),
     }
@@ -127,7 +127,7 @@ fn random_numbers_are_frozen() {
     );
     // What was drawn before does not matter after `seed`.
     let sphere = "seed 5\nsurface s diff Red\nsphere s 1 rand rand rand";
-    let shape = |text: &str| scene(text).elements[0].shape;
+    let shape = |text: &str| scene(text).elements[0].shape.clone();
     assert_eq!(shape(sphere), shape(&format!("var x = rand\n{sphere}")));
     assert_ne!(shape(sphere), shape(&sphere.replace('5', "6")));
 }
@@ -138,7 +138,7 @@ fn random_numbers_are_frozen() {
 fn variables() {
     let text = "var a = 2\nvar V = 1 2 3\nvar C = Red\nvar A = a + 1\nsurface s diff C\n";
     let scene_of = |sphere: &str| scene(&format!("{text}{sphere}"));
-    let sphere = |text: &str| match scene_of(text).elements[0].shape {
+    let sphere = |text: &str| match scene_of(text).elements[0].shape.clone() {
         Shape::Sphere { center, radius } => (center, radius),
         other => panic!("{other:?}"),
     };
@@ -251,7 +251,8 @@ fn surfaces() {
     );
     assert_eq!((s.specular, s.shine), ([1.0; 3], 40.0));
     assert_eq!((s.radius, s.blobbiness, s.strength), (0.3, -8.0, 2.0));
-    assert_eq!(s.kernel, Kernel::Cauchy);
+    assert_eq!(s.kernel, None);
+    assert_eq!(scene.elements[0].kernel, Kernel::Cauchy);
     assert!(s.is_soft());
     assert_eq!(t.diffuse, [0.8, 0.4, 0.0]);
     assert_eq!(t.ambient, [0.1, 0.05, 0.0]);
@@ -293,7 +294,7 @@ fn profiles() {
 // ---- PRIMITIVES
 
 fn shape(text: &str) -> Shape {
-    scene(&format!("surface s diff Red\n{text}")).elements[0].shape
+    scene(&format!("surface s diff Red\n{text}")).elements[0].shape.clone()
 }
 
 #[test]
@@ -377,7 +378,7 @@ fn centers(text: &str) -> Vec<DVec3> {
     scene(&format!("surface s diff Red\n{text}"))
         .elements
         .iter()
-        .map(|element| match element.shape {
+        .map(|element| match element.shape.clone() {
             Shape::Sphere { center, .. } => center,
             other => panic!("{other:?}"),
         })

@@ -23,7 +23,7 @@ rotate 1 1 0 30, SHELL
 ";
 
 /// Hash (FNV-1a) of the scene's bytes.
-const SCENE: u64 = 0x9E98_56C0_1AAC_5FAC;
+const SCENE: u64 = 0xADB6_A26F_4D43_D262;
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]

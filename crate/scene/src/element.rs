@@ -2,6 +2,7 @@
 //!
 //! All coordinates are world coordinates: objects and their transforms are already applied.
 
+use field::Kernel;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +13,8 @@ pub struct Element {
     pub shape: Shape,
     /// Index into [`crate::Scene::materials`].
     pub material: usize,
+    /// The kernel of its flesh, unless the material names one.
+    pub kernel: Kernel,
     /// Where in the text this element was written.
     pub origin: Origin,
 }
@@ -29,7 +32,7 @@ pub struct Origin {
 
 /// A shape. When soft, its axis, arc, face or plane is the skeleton; when hard, it is drawn as its
 /// offset surface at [`Shape::radius`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
     /// A ball. Soft: a point.
     Sphere {
@@ -70,6 +73,20 @@ pub enum Shape {
         /// Half the thickness; 0 for a plain flat triangle.
         radius: f64,
     },
+    /// A planar polygon with holes; as an offset surface, a prism of thickness `2·radius`.
+    Polygon {
+        /// Corners of the outer ring, then of the holes; each ring has at least three.
+        rings: Vec<Vec<DVec3>>,
+        /// Half the thickness; 0 for a plain flat polygon.
+        radius: f64,
+    },
+    /// A tube around a cubic Bézier curve, round at its ends. Soft: the curve itself.
+    Curve {
+        /// Control points.
+        control: [DVec3; 4],
+        /// Radius of the tube, > 0.
+        radius: f64,
+    },
     /// An infinite plane; as an offset surface, a slab of thickness `2·radius`.
     Plane {
         /// A point of the plane.
@@ -90,6 +107,8 @@ impl Shape {
             | Self::Cylinder { radius, .. }
             | Self::Arc { radius, .. }
             | Self::Triangle { radius, .. }
+            | Self::Polygon { radius, .. }
+            | Self::Curve { radius, .. }
             | Self::Plane { radius, .. } => radius,
         }
     }

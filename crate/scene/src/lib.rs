@@ -10,6 +10,7 @@ pub mod camera;
 pub mod element;
 pub mod light;
 pub mod material;
+pub mod parts;
 pub mod settings;
 pub mod soft;
 pub mod wire;

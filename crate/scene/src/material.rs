@@ -1,7 +1,7 @@
 //! What a shape is made of: colours for Phong's model, and the softness of its flesh.
 
 use crate::Rgb;
-use field::{Kernel, Profile};
+use field::{BlobScale, Kernel, Profile};
 use serde::{Deserialize, Serialize};
 
 /// A material, made by the command `surface` (or its synonym `material`).
@@ -19,17 +19,39 @@ pub struct Material {
     pub shine: f32,
     /// Radius in isolation R for soft elements whose own radius is overruled (`fragile`). 0: none.
     pub radius: f64,
+    /// Radius at the other end of lines, arcs and curves, along which it varies evenly.
+    pub end_radius: Option<f64>,
+    /// Depth of influence from which the radius follows, in the place of a radius. 0: none.
+    pub depth: f64,
     /// Blobbiness B (its magnitude counts; the datasets write it negative). 0 makes the material hard.
     pub blobbiness: f64,
+    /// Blobbiness at the other end of lines, arcs and curves.
+    pub end_blobbiness: Option<f64>,
     /// Multiplies the field; negative values carve.
     pub strength: f64,
-    /// Kernel of the soft elements.
-    pub kernel: Kernel,
+    /// Kernel of the soft elements, if the material names one.
+    pub kernel: Option<Kernel>,
     /// Profile (a texture whose target is `strength`), if any.
     pub profile: Option<Profile>,
 }
 
 impl Material {
+    /// Makes the flesh fit for bones scaled by a factor: radii and depths grow with them, and an
+    /// absolute blobbiness, a squared width, shrinks.
+    pub fn scale(&mut self, factor: f64, blob_scale: BlobScale) {
+        self.radius *= factor;
+        self.depth *= factor;
+        if let Some(radius) = &mut self.end_radius {
+            *radius *= factor;
+        }
+        if blob_scale == BlobScale::Absolute {
+            self.blobbiness /= factor * factor;
+            if let Some(blobbiness) = &mut self.end_blobbiness {
+                *blobbiness /= factor * factor;
+            }
+        }
+    }
+
     /// The share of the diffuse colour that a material glows with when the text gives no `ambient`.
     pub const AMBIENT_SHARE: f32 = 0.15;
 
@@ -49,9 +71,12 @@ impl Default for Material {
             specular: [0.0; 3],
             shine: 0.0,
             radius: 0.0,
+            end_radius: None,
+            depth: 0.0,
             blobbiness: 0.0,
+            end_blobbiness: None,
             strength: 1.0,
-            kernel: Kernel::Cauchy,
+            kernel: None,
             profile: None,
         }
     }

@@ -1,6 +1,6 @@
 //! Which elements are soft, and the convolution field they make together.
 
-use crate::{Element, Fragile, Scene, Shape};
+use crate::{Element, Fragile, Material, Scene, Shape};
 use field::{Field, Primitive, Skeleton};
 
 /// The convolution surface of a scene: the field, and which element each primitive came from.
@@ -40,18 +40,42 @@ impl Scene {
             sphere,
             ..
         } = self.settings.fragile;
-        let material = self.materials[element.material].radius;
+        let material = &self.materials[element.material];
+        let given = if material.depth > 0.0 {
+            let shaping = self.shaping(element, material, 1.0);
+            shaping.radius_of_depth(material.depth).unwrap_or(0.0)
+        } else {
+            material.radius
+        };
         let overruled = match element.shape {
-            Shape::Arc { .. } => arc,
+            Shape::Arc { .. } | Shape::Curve { .. } => arc,
             Shape::Cylinder { .. } => cylinder,
             Shape::Sphere { .. } => sphere,
             // These have no radius of their own in the language.
-            Shape::Triangle { .. } | Shape::Plane { .. } => true,
+            Shape::Triangle { .. } | Shape::Polygon { .. } | Shape::Plane { .. } => true,
         };
-        if overruled && material > 0.0 {
-            material
+        // Some commands write shapes without a radius (`dot`, `line`).
+        if (overruled || own == 0.0) && given > 0.0 {
+            given
         } else {
             own
+        }
+    }
+
+    /// What the field is told of an element with this radius.
+    fn shaping(&self, element: &Element, material: &Material, radius: f64) -> field::Shaping {
+        let tapers = material.end_radius.is_some() || material.end_blobbiness.is_some();
+        field::Shaping {
+            kernel: material.kernel.unwrap_or(element.kernel),
+            radius,
+            blobbiness: material.blobbiness,
+            blob_scale: self.settings.blob_scale,
+            strength: material.strength,
+            influence: self.settings.influence,
+            taper: tapers.then(|| field::Taper {
+                radius: material.end_radius.unwrap_or(radius),
+                blobbiness: material.end_blobbiness.unwrap_or(material.blobbiness),
+            }),
         }
     }
 
@@ -65,7 +89,7 @@ impl Scene {
                 continue;
             }
             let material = &self.materials[element.material];
-            let skeleton = match element.shape {
+            let skeleton = match element.shape.clone() {
                 Shape::Sphere { center, .. } => Skeleton::Point { center },
                 Shape::Cylinder { base, apex, .. } => Skeleton::Segment { base, apex },
                 Shape::Arc {
@@ -83,16 +107,11 @@ impl Scene {
                     angle,
                 },
                 Shape::Triangle { corners, .. } => Skeleton::Triangle { corners },
+                Shape::Polygon { rings, .. } => Skeleton::Polygon { rings },
+                Shape::Curve { control, .. } => Skeleton::Curve { control },
                 Shape::Plane { point, normal, .. } => Skeleton::Plane { point, normal },
             };
-            let shaping = field::Shaping {
-                kernel: material.kernel,
-                radius: self.radius(element),
-                blobbiness: material.blobbiness,
-                blob_scale: self.settings.blob_scale,
-                strength: material.strength,
-                influence: self.settings.influence,
-            };
+            let shaping = self.shaping(element, material, self.radius(element));
             // An element without a positive radius has no flesh; the language has said so.
             if let Some(primitive) = Primitive::new(skeleton, &shaping, material.profile) {
                 field.primitives.push(primitive);

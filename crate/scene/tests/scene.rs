@@ -17,6 +17,7 @@ fn element(shape: Shape, material: usize) -> Element {
     Element {
         shape,
         material,
+        kernel: field::Kernel::Cauchy,
         origin: Origin::default(),
     }
 }
@@ -131,7 +132,7 @@ fn fragile_lets_the_material_overrule_a_soft_primitives_radius() {
         radius: 0.1,
     };
     assert_eq!(
-        scene.radius(&element(tube, 0)),
+        scene.radius(&element(tube.clone(), 0)),
         0.1,
         "cylinders were not listed"
     );

@@ -75,6 +75,7 @@ fn element(shape: Shape, material: usize) -> Element {
     Element {
         shape,
         material,
+        kernel: field::Kernel::Cauchy,
         origin: Origin::default(),
     }
 }

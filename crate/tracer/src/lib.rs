@@ -12,7 +12,7 @@
 //! `refine` sends more rays where neighbouring pixels differ.
 //!
 //! The soft surface is found by the thesis' method (chapter 4), certified: `slabs` decides for a
-//! whole beam which primitive needs Hermite spans of which length (`bound` knows how large a field
+//! whole beam which primitive needs Hermite spans of which length (`field::Bound` knows how large a field
 //! and the error of a span can be), and `walk` follows single packets through the slabs, adds up
 //! their spans' cubics (`spans`) and takes their roots (`roots`). `walk` is the only part that knows
 //! how crossings are found: given slabs and rays it returns crossings.
@@ -31,7 +31,6 @@
 
 mod area;
 mod beam;
-mod bound;
 pub mod hard;
 mod hierarchy;
 mod lanes;

@@ -11,8 +11,8 @@
 //! rays' surroundings closer together: the beam is then divided into narrower ones instead, and each
 //! packet of rays goes on in its own.
 use crate::beam::Beam;
-use crate::bound::{Bound, Estimate};
 use core::ops::Range;
+use field::bound::{Bound, Estimate, SpanLength};
 
 /// How exactly spans follow the field.
 #[derive(Clone, Copy, Debug)]
@@ -296,7 +296,7 @@ impl<'a> Slabs<'a> {
     ) {
         let (center, radius) = self.beams.0[beam].ball(from, to);
         let h = to - from;
-        let h4 = (h * h) * (h * h) / 384.0;
+        let length = SpanLength::new(h);
         let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);
         self.scratch.clear();
         for &local in &self.ids[candidates.start as usize..candidates.end as usize] {
@@ -305,7 +305,10 @@ impl<'a> Slabs<'a> {
             if self.precision.truncate && near.distance >= bound.influence {
                 continue;
             }
-            let Estimate { magnitude, fourth } = bound.estimate(near);
+            let Estimate {
+                magnitude,
+                error: span_error,
+            } = bound.estimate(near, &length);
             if bound.adds() {
                 above += magnitude;
             }
@@ -315,7 +318,7 @@ impl<'a> Slabs<'a> {
             total += magnitude;
             // A span is between the values' and slopes' extremes, so it is never further off than
             // its bound says; a NaN counts as far off.
-            self.scratch.push((local, magnitude, fourth * h4));
+            self.scratch.push((local, magnitude, span_error));
         }
         // What is left of the budget is shared out half evenly, half by size. The shares add up
         // to no more than the whole.

@@ -1,14 +1,13 @@
 //! The soft surface, made ready: which primitives a beam can meet, where its rays hit, and what
 //! the surface is like there.
 use crate::beam::Beam;
-use crate::bound::Bound;
 use crate::hierarchy::Hierarchy;
 use crate::lanes::Lanes;
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::slabs::{Beams, Precision, Slabs};
 use crate::walk::{Bundle, Found, Memory, Quest, Walk};
-use field::{Primitive, Real, THRESHOLD};
+use field::{Bound, Primitive, Real, THRESHOLD};
 use glam::DVec3;
 use scene::Scene;
 use wide::f32x8;

@@ -24,9 +24,12 @@ impl Solids {
             if scene.is_soft(element) || element.material >= scene.materials.len() {
                 continue;
             }
-            if let Some(solid) = Solid::new(&element.shape, scene.radius(element)) {
-                solids.push(solid);
-                material.push(element.material as u32);
+            let radius = scene.radius(element);
+            for part in element.shape.parts(radius) {
+                if let Some(solid) = Solid::new(&part, radius) {
+                    solids.push(solid);
+                    material.push(element.material as u32);
+                }
             }
         }
         let mut balls = Vec::new();

@@ -4,7 +4,6 @@
 //! large or very small would lose digits. Before tracing it is moved to the origin and scaled by a
 //! power of two (which costs no digits) to about unit size. Nothing else changes: fields, angles
 //! and colours are the same.
-use field::BlobScale;
 use glam::DVec3;
 use scene::{LightKind, Scene, Shape};
 
@@ -79,6 +78,16 @@ impl Unit {
                     *corners = corners.map(|c| self.map(c));
                     *radius *= k;
                 }
+                Shape::Polygon { rings, radius } => {
+                    for corner in rings.iter_mut().flatten() {
+                        *corner = self.map(*corner);
+                    }
+                    *radius *= k;
+                }
+                Shape::Curve { control, radius } => {
+                    *control = control.map(|c| self.map(c));
+                    *radius *= k;
+                }
                 Shape::Plane { point, radius, .. } => {
                     *point = self.map(*point);
                     *radius *= k;
@@ -86,11 +95,7 @@ impl Unit {
             }
         }
         for material in &mut scene.materials {
-            material.radius *= k;
-            // An absolute blobbiness is a squared width, 1/length².
-            if scene.settings.blob_scale == BlobScale::Absolute {
-                material.blobbiness /= k * k;
-            }
+            material.scale(k, scene.settings.blob_scale);
         }
         for light in &mut scene.lights {
             if let LightKind::Point { position } = &mut light.kind {
@@ -116,7 +121,23 @@ impl Unit {
 
 /// The corners of a box that holds a shape's skeleton.
 fn corners(shape: &Shape) -> (DVec3, DVec3) {
+    let around = |points: &mut dyn Iterator<Item = &DVec3>| {
+        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        points.fold(start, |(low, high), p| {
+            // A coordinate that is not a number must not be passed over.
+            let p = if p.is_nan() { DVec3::NAN } else { *p };
+            if low.is_nan() {
+                (low, high)
+            } else if p.is_nan() {
+                (p, p)
+            } else {
+                (low.min(p), high.max(p))
+            }
+        })
+    };
     match *shape {
+        Shape::Polygon { ref rings, .. } => around(&mut rings.iter().flatten()),
+        Shape::Curve { ref control, .. } => around(&mut control.iter()),
         Shape::Sphere { center, .. } => (center, center),
         Shape::Cylinder { base, apex, .. } => (base.min(apex), base.max(apex)),
         Shape::Arc { center, sweep, .. } => {

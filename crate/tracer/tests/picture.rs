@@ -299,6 +299,8 @@ fn strange_scenes_end() {
                     }
                 }
                 Shape::Triangle { corners, .. } => corners[1] = corners[0] + bad,
+                Shape::Polygon { rings, .. } => rings[0][0].x = bad,
+                Shape::Curve { control, .. } => control[2].y = bad,
                 Shape::Plane { normal, .. } => *normal *= bad,
                 Shape::Sphere { radius, .. } => *radius = bad,
             }

@@ -19,6 +19,8 @@ pub struct Arc<S> {
     pub versine: S,
     /// Half the angle.
     pub half_angle: S,
+    /// The ends' angle from the x axis, in [0, π/2]: half the arc's angle, or half the gap's.
+    pub end_angle: S,
 }
 
 impl Arc<f64> {
@@ -36,6 +38,7 @@ impl Arc<f64> {
             double_sine: 2.0 * sine * cosine,
             versine: 2.0 * root * root,
             half_angle,
+            end_angle: 2.0 * libm::asin(root.min(1.0)),
         }
     }
 }
@@ -49,6 +52,7 @@ impl<S: Copy> Arc<S> {
             double_sine: f(self.double_sine),
             versine: f(self.versine),
             half_angle: f(self.half_angle),
+            end_angle: f(self.end_angle),
         }
     }
 }

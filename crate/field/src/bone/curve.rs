@@ -1,65 +1,647 @@
-//! A cubic curve, cut into spans.
+//! A curve made of cubics, cut into spans that Gauss–Legendre quadrature takes in one step; the
+//! kernel's width and the field's density may vary along it.
+//!
+//! In units of the kernel's width (the largest, if it varies) the field at p is
+//!
+//! `∫ α G(ω·|p − q(t)|²) |q′(t)| dt`
+//!
+//! with the density α and the thinness ω, the square of the width parameter in units of its largest
+//! value. Without a [`Law`] both are 1.
+//!
+//! A span is accepted when
+//! - its direction turns by at most [`Demands::turn`] from the span's middle, so that the distance
+//!   from a point has at most one extremum on it, near which it is almost a parabola;
+//! - a polynomial through its speed at [`Demands::terms`] Chebyshev points (and through α and ω, whose
+//!   polynomials are kept) is right to [`Demands::tolerance`] between them, so that Gauss–Legendre
+//!   with half as many nodes is right to that, too;
+//! - a smooth kernel's span is at most 2 widths long: the integrand, whose singularities are about a
+//!   width away from it, then calls for at most 9 nodes in single precision, 16 in double;
+//! - for a kernel with a pole, the speed varies at most threefold, since the pole's scale in t is the
+//!   distance over the speed.
+//!
+//! The curve is cut at the slowest places first, so that cusps are ends. Spans shorter than
+//! [`Demands::least`] are accepted as they are. Should there be more than [`MOST`] spans, turn and
+//! length are doubled and the tolerance is multiplied by 16, until there are not: a smooth kernel's
+//! curve of more than a thousand widths is then a string of beads that begin to show (4 nodes a width
+//! leave 10⁻⁶ of the field, 2 nodes 10⁻³).
+//!
+//! Both precisions have spans of their own: what double precision wants would cost single precision
+//! three times as much.
+use crate::Kernel;
+use core::f64::consts::PI;
+use glam::DVec3;
 
-/// A cubic Bézier curve in local coordinates.
+/// The most terms of the polynomials in t that are kept.
+pub const TERMS: usize = 12;
+
+/// How many of them single precision's spans have.
+pub const SINGLE_TERMS: usize = 8;
+
+/// The most spans (see the module).
+const MOST: usize = 512;
+
+/// α and ω at a fraction of the curve's length.
+pub(crate) type Law<'a> = &'a dyn Fn(f64) -> [f64; 2];
+
+/// A cubic's coefficients in powers of a parameter.
+pub(crate) type Cubic = [DVec3; 4];
+
+/// A curve in local coordinates, prepared for one kernel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve<S> {
-    /// Its pieces, in order.
+    /// For smooth kernels: places and weights.
+    pub nodes: Vec<Node<S>>,
+    /// For other kernels: its pieces.
     pub spans: Vec<Span<S>>,
+    /// Nodes in (−1, 1) and weights of the rule by which a span, or its part within the kernel's
+    /// support, is integrated.
+    pub rule: Vec<[S; 2]>,
+    /// Whether α or ω vary.
+    pub tapered: bool,
+    /// Pieces for bounds, in double precision only.
+    pub stretches: Vec<Stretch>,
+    /// What single precision is to make of it.
+    single: Option<Box<Curve<S>>>,
 }
 
-/// A piece of it: `c₀ + c₁t + c₂t² + c₃t³`, 0 ≤ t ≤ 1.
+/// A place on the curve that stands for its surroundings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node<S> {
+    /// Where.
+    pub position: [S; 3],
+    /// `α|q′|dt`.
+    pub weight: S,
+    /// ω.
+    pub thinness: S,
+}
+
+/// A piece: `c₀ + c₁t + c₂t² + c₃t³`, −1 ≤ t ≤ 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span<S> {
     /// The coefficients.
     pub position: [[S; 3]; 4],
+    /// `c₁c₁, 3c₁c₂, 2c₂c₂ + 4c₁c₃, 5c₂c₃, 3c₃c₃`.
+    pub products: [S; 5],
+    /// α, coefficients in powers of t.
+    pub density: [S; TERMS],
+    /// ω, coefficients in powers of t.
+    pub thinness: [S; TERMS],
+}
+
+/// A piece as bounds see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Centre of a ball that holds it.
+    pub center: DVec3,
+    /// The ball's radius.
+    pub radius: f64,
+    /// `∫α|q′|dt`, from above.
+    pub mass: f64,
+    /// The smallest ω, from below.
+    pub thinness: f64,
+}
+
+/// How finely a curve is cut.
+#[derive(Clone, Copy)]
+struct Demands {
+    /// Radians by which the direction may differ from that of the span's middle.
+    turn: f64,
+    /// Of polynomials, relative; of smooth kernels' integrals.
+    tolerance: f64,
+    /// Terms of polynomials in t.
+    terms: usize,
+    /// Longest span of a smooth kernel, in widths.
+    longest: f64,
+    /// Length below which a span is accepted in any case.
+    least: f64,
+    /// Nodes on either side of the nearest point within the support of a compact kernel.
+    clipped: usize,
+    /// Panels, and nodes in each, of a kernel with a pole.
+    pole: [usize; 2],
+}
+
+impl Demands {
+    const DOUBLE: Self = Self {
+        turn: 0.15,
+        tolerance: 1e-11,
+        terms: TERMS,
+        longest: 2.0,
+        least: 1e-9,
+        clipped: 10,
+        pole: [6, 14],
+    };
+    const SINGLE: Self = Self {
+        turn: 0.4,
+        tolerance: 1e-6,
+        terms: SINGLE_TERMS,
+        longest: 2.0,
+        least: 1e-6,
+        clipped: 6,
+        pole: [1, 20],
+    };
+
+    fn relaxed(self) -> Self {
+        Self {
+            turn: self.turn * 2.0,
+            tolerance: self.tolerance * 16.0,
+            longest: self.longest * 2.0,
+            ..self
+        }
+    }
 }
 
 impl<S: Copy> Curve<S> {
+    /// For single precision: what was prepared for that.
     pub(crate) fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Curve<Q> {
+        let source = self.single.as_deref().unwrap_or(self);
         Curve {
-            spans: self
-                .spans
-                .iter()
-                .map(|span| Span {
-                    position: span.position.map(|c| c.map(f)),
-                })
-                .collect(),
+            nodes: source.nodes.iter().map(|node| node.cast(f)).collect(),
+            spans: source.spans.iter().map(|span| span.cast(f)).collect(),
+            rule: source.rule.iter().map(|pair| pair.map(f)).collect(),
+            tapered: source.tapered,
+            stretches: Vec::new(),
+            single: None,
+        }
+    }
+}
+
+impl<S: Copy> Node<S> {
+    fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Node<Q> {
+        Node {
+            position: self.position.map(f),
+            weight: f(self.weight),
+            thinness: f(self.thinness),
+        }
+    }
+}
+
+impl<S: Copy> Span<S> {
+    fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Span<Q> {
+        Span {
+            position: self.position.map(|c| c.map(f)),
+            products: self.products.map(f),
+            density: self.density.map(f),
+            thinness: self.thinness.map(f),
         }
     }
 }
 
 impl Curve<f64> {
-    /// An upper bound on the field at distance d or more: all of the curve at that distance.
-    pub(crate) fn bound_at(&self, kernel: crate::Kernel, d: f64) -> f64 {
-        self.length() * kernel.value(d)
+    /// From cubics over 0 ≤ t ≤ 1 that follow one another, in a fine version for double precision and
+    /// a coarse one for single.
+    pub(crate) fn new(
+        kernel: Kernel,
+        fine: &[Cubic],
+        coarse: &[Cubic],
+        law: Option<Law<'_>>,
+    ) -> Self {
+        let single = Self::prepare(kernel, coarse, law, Demands::SINGLE);
+        let mut double = Self::prepare(kernel, fine, law, Demands::DOUBLE);
+        // Fewer and larger pieces serve bounds better.
+        double.stretches.clone_from(&single.stretches);
+        double.single = Some(Box::new(single));
+        double
     }
 
-    /// The curve's length, from above: that of its spans' control polygons.
-    pub(crate) fn length(&self) -> f64 {
-        self.spans
+    fn prepare(
+        kernel: Kernel,
+        cubics: &[Cubic],
+        law: Option<Law<'_>>,
+        mut demands: Demands,
+    ) -> Self {
+        let mut pieces = cut(kernel, cubics, law, demands);
+        for _ in 0..12 {
+            if pieces.len() <= MOST {
+                break;
+            }
+            demands = demands.relaxed();
+            pieces = cut(kernel, cubics, law, demands);
+        }
+        let smooth = matches!(kernel, Kernel::Cauchy | Kernel::Gauss);
+        let windowed = matches!(kernel, Kernel::Inverse | Kernel::Squared);
+        let mut curve = Self {
+            nodes: Vec::new(),
+            spans: Vec::new(),
+            rule: if windowed {
+                panels(demands.pole)
+            } else {
+                gauss_legendre(demands.clipped)
+            },
+            tapered: law.is_some(),
+            stretches: pieces.iter().map(Piece::stretch).collect(),
+            single: None,
+        };
+        if smooth {
+            let rules: Vec<_> = (0..=40).map(gauss_legendre).collect();
+            for piece in &pieces {
+                curve.nodes.extend(piece.nodes(kernel, demands, &rules));
+            }
+        } else {
+            curve.spans = pieces.iter().map(|piece| piece.span(demands)).collect();
+        }
+        curve
+    }
+
+    /// An upper bound on the field at distance d or more: all of the curve at that distance.
+    pub(crate) fn bound_at(&self, kernel: Kernel, d: f64) -> f64 {
+        self.stretches
             .iter()
-            .map(|span| {
-                let [_, b, c, d] = span.position.map(glam::DVec3::from_array);
-                let (p, q, r) = (b / 3.0, (b + c) / 3.0, b / 3.0 + c * (2.0 / 3.0) + d);
-                p.length() + q.length() + r.length()
-            })
+            .map(|stretch| stretch.mass * kernel.value(d * stretch.thinness.sqrt()))
             .sum()
+    }
+
+    /// The largest radius of a compact kernel's support on it: 1, unless it is tapered.
+    pub(crate) fn support(&self) -> f64 {
+        let thinnest = self.stretches.iter().map(|stretch| stretch.thinness);
+        1.0 / thinnest.fold(1.0, f64::min).sqrt()
     }
 }
 
-impl Span<f64> {
-    /// A ball that holds the span: around the middle of its box.
-    pub(crate) fn ball(&self) -> (glam::DVec3, f64) {
-        let [a, b, c, d] = self.position.map(glam::DVec3::from_array);
-        let control = [a, a + b / 3.0, a + b * (2.0 / 3.0) + c / 3.0, a + b + c + d];
-        let low = control.iter().fold(glam::DVec3::INFINITY, |l, p| l.min(*p));
-        let high = control
+/// Where the kernel is integrated in one step: a cubic over −1 ≤ t ≤ 1, and its place on the curve.
+struct Piece<'a> {
+    c: Cubic,
+    length: f64,
+    /// The length of the curve before it, and of all of the curve.
+    start: f64,
+    total: f64,
+    law: Option<Law<'a>>,
+}
+
+impl Piece<'_> {
+    fn at(&self, t: f64) -> DVec3 {
+        let [a, b, c, d] = self.c;
+        a + t * (b + t * (c + t * d))
+    }
+
+    fn tangent(&self, t: f64) -> DVec3 {
+        tangent(&self.c, t)
+    }
+
+    /// α and ω.
+    fn law(&self, t: f64) -> [f64; 2] {
+        self.law.map_or([1.0; 2], |law| {
+            let fraction = (self.start + arc(&self.c, -1.0, t)) / self.total;
+            law(if fraction.is_finite() {
+                fraction.clamp(0.0, 1.0)
+            } else {
+                0.0
+            })
+        })
+    }
+
+    /// Whether it may stay whole.
+    fn suits(&self, kernel: Kernel, demands: Demands) -> bool {
+        if self.length <= demands.least * self.total.min(1.0) {
+            return true;
+        }
+        let terms = demands.terms;
+        let between: Vec<f64> = (0..=terms)
+            .map(|i| libm::cos(PI * i as f64 / terms as f64))
+            .collect();
+        let tangents: Vec<DVec3> = between.iter().map(|t| self.tangent(*t)).collect();
+        let fastest = tangents.iter().fold(0.0, |l: f64, v| l.max(v.length()));
+        let slowest = tangents.iter().fold(fastest, |l: f64, v| l.min(v.length()));
+        let middle = self.tangent(0.0).normalize_or_zero();
+        let (sine, cosine) = libm::sincos(demands.turn.min(1.5));
+        let straight = tangents.iter().all(|v| {
+            let along = v.dot(middle);
+            // Where a cusp is an end, the direction there is nothing but rounding.
+            v.length() <= 1e-6 * fastest
+                || along > 0.0 && v.cross(middle).length() * cosine <= along * sine
+        });
+        let room = match kernel {
+            Kernel::Cauchy | Kernel::Gauss => self.width() <= demands.longest,
+            Kernel::Inverse | Kernel::Squared => {
+                fastest <= 3.0 * slowest || self.length <= 1e-7
+            }
+            _ => true,
+        };
+        if !(straight && room) {
+            return false;
+        }
+        let places = chebyshev_points(terms);
+        let exact = |at_places: &[f64], f: &dyn Fn(usize) -> f64| {
+            let p = fit(at_places);
+            let largest = at_places.iter().fold(0.0, |l: f64, v| l.max(v.abs()));
+            let error = |(i, t): (usize, &f64)| (horner(&p, *t) - f(i)).abs();
+            between
+                .iter()
+                .enumerate()
+                .all(|it| error(it) <= demands.tolerance * largest)
+        };
+        let speeds: Vec<f64> = places.iter().map(|t| self.tangent(*t).length()).collect();
+        if !exact(&speeds, &|i| tangents[i].length()) {
+            return false;
+        }
+        if self.law.is_none() {
+            return true;
+        }
+        let laws: Vec<_> = places.iter().map(|t| self.law(*t)).collect();
+        let laws_between: Vec<_> = between.iter().map(|t| self.law(*t)).collect();
+        [0, 1].into_iter().all(|which| {
+            let values: Vec<f64> = laws.iter().map(|law| law[which]).collect();
+            exact(&values, &|i| laws_between[i][which])
+        })
+    }
+
+    /// Length in units of the kernel's width here, counted longer where the curve is bent: there the
+    /// singularities of a Cauchy kernel may be nearer than a width. On a circle of radius r they are
+    /// no nearer than `√(2r(√(r²+1)−r))`.
+    fn width(&self) -> f64 {
+        let mut largest: f64 = 0.0;
+        for i in -2..=2 {
+            let t = 0.5 * f64::from(i);
+            let v = self.tangent(t);
+            let a = 2.0 * (self.c[2] + 3.0 * t * self.c[3]);
+            let speed = v.length();
+            let thin = self.law(t)[1].sqrt();
+            let radius = thin * speed * speed * speed / v.cross(a).length();
+            let near = if radius < 1e3 {
+                (2.0 * radius / ((radius * radius + 1.0).sqrt() + radius)).sqrt()
+            } else {
+                1.0
+            };
+            largest = largest.max(thin * self.length / near.max(0.05));
+        }
+        largest
+    }
+
+    fn nodes(&self, kernel: Kernel, demands: Demands, rules: &[Vec<[f64; 2]>]) -> Vec<Node<f64>> {
+        let half = self.width().min(demands.longest) / 2.0;
+        // The error of n nodes is about ρ^−2n, where 1/half = (ρ − 1/ρ)/2 for poles at ±i; for exp(−x²)
+        // it is about (half²/4)ⁿ/n!.
+        let order = (2..36).find(|&n| {
+            let error = if kernel == Kernel::Gauss {
+                (1..=n).fold(4.0 * half, |e, i| e * half * half / (4.0 * i as f64))
+            } else {
+                let rho = 1.0 / half + (1.0 + 1.0 / (half * half)).sqrt();
+                libm::pow(rho, -2.0 * n as f64)
+            };
+            error <= demands.tolerance
+        });
+        // As many as the speed times the kernel's first terms want.
+        let order = (order.unwrap_or(36) + 1).max(demands.terms / 2 + 1);
+        let order = if self.length <= demands.least {
+            1
+        } else {
+            order
+        };
+        rules[order]
             .iter()
-            .fold(glam::DVec3::NEG_INFINITY, |h, p| h.max(*p));
+            .map(|&[t, weight]| {
+                let [density, thinness] = self.law(t);
+                Node {
+                    position: self.at(t).to_array(),
+                    weight: weight * density * self.tangent(t).length(),
+                    thinness,
+                }
+            })
+            .collect()
+    }
+
+    fn span(&self, demands: Demands) -> Span<f64> {
+        let [_, c1, c2, c3] = self.c;
+        let mut span = Span {
+            position: self.c.map(|c| c.to_array()),
+            products: [
+                c1.dot(c1),
+                3.0 * c1.dot(c2),
+                2.0 * c2.dot(c2) + 4.0 * c1.dot(c3),
+                5.0 * c2.dot(c3),
+                3.0 * c3.dot(c3),
+            ],
+            density: [0.0; TERMS],
+            thinness: [0.0; TERMS],
+        };
+        span.density[0] = 1.0;
+        span.thinness[0] = 1.0;
+        if self.law.is_some() {
+            let values: Vec<_> = chebyshev_points(demands.terms)
+                .iter()
+                .map(|t| self.law(*t))
+                .collect();
+            let of = |i: usize| fit(&values.iter().map(|v| v[i]).collect::<Vec<f64>>());
+            span.density[..demands.terms].copy_from_slice(&of(0));
+            span.thinness[..demands.terms].copy_from_slice(&of(1));
+        }
+        span
+    }
+
+    fn stretch(&self) -> Stretch {
+        let [a, b, c, d] = self.c;
+        // Bézier points of the cubic over −1 ≤ t ≤ 1.
+        let control = [
+            a - b + c - d,
+            a - b / 3.0 - c / 3.0 + d,
+            a + b / 3.0 - c / 3.0 - d,
+            a + b + c + d,
+        ];
+        let low = control.iter().fold(DVec3::INFINITY, |l, p| l.min(*p));
+        let high = control.iter().fold(DVec3::NEG_INFINITY, |h, p| h.max(*p));
         let center = (low + high) / 2.0;
-        let radius = control
+        let reach = control
             .iter()
             .fold(0.0, |r: f64, p| r.max(p.distance(center)));
-        (center, radius * (1.0 + 1e-12))
+        let (mut mass, mut thinness) = (self.length, 1.0);
+        if self.law.is_some() {
+            // Both are smooth and vary little on a piece; a hundredth is left for what lies between.
+            let (mut most, mut least) = (0.0_f64, f64::INFINITY);
+            for i in -8..=8 {
+                let [alpha, omega] = self.law(f64::from(i) / 8.0);
+                most = most.max(alpha.abs());
+                least = least.min(omega);
+            }
+            mass *= most * 1.01;
+            thinness = least * 0.99;
+        }
+        // 10⁻⁶ is more than the coarse version of a circle differs by.
+        Stretch {
+            center,
+            radius: reach * (1.0 + 1e-6),
+            mass: mass * (1.0 + 1e-6),
+            thinness,
+        }
     }
+}
+
+fn tangent(c: &Cubic, t: f64) -> DVec3 {
+    c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])
+}
+
+/// The positive nodes and the weights of the Gauss–Legendre rule of 16 points.
+const RULE16: [[f64; 2]; 8] = [
+    [0.989_400_934_991_649_9, 0.027_152_459_411_754_096],
+    [0.944_575_023_073_232_6, 0.062_253_523_938_647_894],
+    [0.865_631_202_387_831_8, 0.095_158_511_682_492_79],
+    [0.755_404_408_355_003, 0.124_628_971_255_533_88],
+    [0.617_876_244_402_643_8, 0.149_595_988_816_576_74],
+    [0.458_016_777_657_227_37, 0.169_156_519_395_002_54],
+    [0.281_603_550_779_258_9, 0.182_603_415_044_923_58],
+    [0.095_012_509_837_637_44, 0.189_450_610_455_068_5],
+];
+
+/// The length between two parameters, if the speed is smooth there.
+fn arc(c: &Cubic, from: f64, to: f64) -> f64 {
+    let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
+    let speed = |t: f64| tangent(c, t).length();
+    let pairs = RULE16.map(|[x, w]| w * (speed(middle - half * x) + speed(middle + half * x)));
+    half * pairs.iter().sum::<f64>()
+}
+
+/// The part of a cubic over from ≤ t ≤ to, as one over −1 ≤ t ≤ 1.
+fn part([a, b, c, d]: Cubic, from: f64, to: f64) -> Cubic {
+    let (m, h) = ((from + to) / 2.0, (to - from) / 2.0);
+    [
+        a + m * (b + m * (c + m * d)),
+        h * (b + m * (2.0 * c + 3.0 * m * d)),
+        h * h * (c + 3.0 * m * d),
+        h * h * h * d,
+    ]
+}
+
+/// The pieces of a curve, in order.
+fn cut<'a>(
+    kernel: Kernel,
+    cubics: &[Cubic],
+    law: Option<Law<'a>>,
+    demands: Demands,
+) -> Vec<Piece<'a>> {
+    let mut parts = Vec::new();
+    for c in cubics {
+        parts.extend(slowest(c).windows(2).map(|ends| (*c, ends[0], ends[1])));
+    }
+    let total: f64 = parts.iter().map(|(c, a, b)| length(c, *a, *b)).sum();
+    let (mut pieces, mut start) = (Vec::new(), 0.0);
+    for (cubic, low, high) in parts {
+        // Depth first, so that pieces come in order.
+        let mut waiting = vec![(low, high, 0)];
+        while let Some((low, high, depth)) = waiting.pop() {
+            let c = part(cubic, low, high);
+            let piece = Piece {
+                c,
+                length: arc(&c, -1.0, 1.0),
+                start,
+                total,
+                law,
+            };
+            if depth >= 40 || pieces.len() > 8 * MOST || piece.suits(kernel, demands) {
+                start += piece.length;
+                pieces.push(piece);
+            } else {
+                let middle = (low + high) / 2.0;
+                waiting.push((middle, high, depth + 1));
+                waiting.push((low, middle, depth + 1));
+            }
+        }
+    }
+    pieces
+}
+
+/// A cubic's length between two parameters.
+fn length(c: &Cubic, from: f64, to: f64) -> f64 {
+    let mut speed = |t: f64| tangent(c, t).length();
+    let breaks: Vec<f64> = (0..=8)
+        .map(|i| from + (to - from) * f64::from(i) / 8.0)
+        .collect();
+    crate::quadrature::integral(&mut speed, &breaks, 1e-13)
+}
+
+/// 0, the places between at which a cubic is much slower than elsewhere, and 1.
+fn slowest(c: &Cubic) -> Vec<f64> {
+    let speed = |t: f64| tangent(c, t).length();
+    let rate = |t: f64| tangent(c, t).dot(2.0 * c[2] + 6.0 * t * c[3]);
+    let mean = [0.0, 0.25, 0.5, 0.75, 1.0].map(speed).iter().sum::<f64>() / 5.0;
+    const SAMPLES: i32 = 48;
+    let place = |i: i32| f64::from(i) / f64::from(SAMPLES);
+    let mut places = vec![0.0];
+    for i in 0..SAMPLES {
+        let (mut low, mut high) = (place(i), place(i + 1));
+        if !(rate(low) < 0.0 && rate(high) >= 0.0) {
+            continue;
+        }
+        for _ in 0..60 {
+            let middle = (low + high) / 2.0;
+            if rate(middle) < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        if low > 0.0 && high < 1.0 && speed(low) < 0.2 * mean {
+            places.push(low);
+        }
+    }
+    places.push(1.0);
+    places
+}
+
+/// The zeros of the Chebyshev polynomial of degree n.
+fn chebyshev_points(n: usize) -> Vec<f64> {
+    (0..n)
+        .map(|i| libm::cos(PI * (i as f64 + 0.5) / n as f64))
+        .collect()
+}
+
+/// Coefficients in powers of t of the polynomial with these values at the Chebyshev points.
+fn fit(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let mut sum = vec![0.0; n];
+    // Tₖ in powers of t, from Tₖ₊₁ = 2t·Tₖ − Tₖ₋₁.
+    let (mut before, mut here) = (vec![0.0; n], vec![0.0; n]);
+    here[0] = 1.0;
+    for k in 0..n {
+        let turn = PI * k as f64 / n as f64;
+        let term = |(i, v): (usize, &f64)| v * libm::cos(turn * (i as f64 + 0.5));
+        let mean = values.iter().enumerate().map(term).sum::<f64>() / n as f64;
+        let weight = if k == 0 { mean } else { 2.0 * mean };
+        let factor = if k == 0 { 1.0 } else { 2.0 };
+        let mut next = vec![0.0; n];
+        for i in 0..n {
+            sum[i] += weight * here[i];
+            let shifted = if i == 0 { 0.0 } else { here[i - 1] };
+            next[i] = factor * shifted - before[i];
+        }
+        before = core::mem::replace(&mut here, next);
+    }
+    sum
+}
+
+fn horner(p: &[f64], t: f64) -> f64 {
+    p.iter().rev().fold(0.0, |sum, c| sum * t + c)
+}
+
+/// Nodes in (−1, 1) and weights of the Gauss–Legendre rule of n points: the zeros of Pₙ, by Newton's
+/// method from Tricomi's approximation.
+fn gauss_legendre(n: usize) -> Vec<[f64; 2]> {
+    (0..n)
+        .map(|i| {
+            let mut x = libm::cos(PI * (i as f64 + 0.75) / (n as f64 + 0.5));
+            let mut slope = 0.0;
+            for _ in 0..8 {
+                let (mut before, mut here) = (1.0, x);
+                for k in 2..=n {
+                    let k = k as f64;
+                    (before, here) = (
+                        here,
+                        ((2.0 * k - 1.0) * x * here - (k - 1.0) * before) / k,
+                    );
+                }
+                slope = n as f64 * (x * here - before) / (x * x - 1.0);
+                x -= here / slope;
+            }
+            [x, 2.0 / ((1.0 - x * x) * slope * slope)]
+        })
+        .collect()
+}
+
+/// The rule of several panels of equal length, each with the same number of nodes.
+fn panels([panels, nodes]: [usize; 2]) -> Vec<[f64; 2]> {
+    let half = 1.0 / panels as f64;
+    let rule = gauss_legendre(nodes);
+    let mut all = Vec::new();
+    for i in 0..panels {
+        let middle = half * (2 * i + 1) as f64 - 1.0;
+        all.extend(rule.iter().map(|[x, w]| [middle + half * x, half * w]));
+    }
+    all
 }

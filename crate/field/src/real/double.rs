@@ -19,6 +19,7 @@ impl Real for f64 {
     type Mask = bool;
     const LANES: usize = 1;
     const HORIZON: f64 = 1e60;
+    const DUPLICATIONS: usize = 8;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -105,6 +106,16 @@ impl Real for f64 {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         libm::sincos(self)
+    }
+
+    #[inline(always)]
+    fn sin_cos_octant(self) -> (Self, Self) {
+        libm::sincos(self)
+    }
+
+    #[inline(always)]
+    fn erfc(self, _bell: Self) -> Self {
+        libm::erfc(self)
     }
 
     #[inline(always)]

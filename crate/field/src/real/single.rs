@@ -1,5 +1,6 @@
 //! `f32`, one lane of the shipping path.
 use super::{Real, Scalar, polynomial};
+use crate::error_function;
 use crate::term::{Prepared, Term};
 
 impl Scalar for f32 {
@@ -19,6 +20,7 @@ impl Real for f32 {
     type Mask = bool;
     const LANES: usize = 1;
     const HORIZON: f64 = 1e9;
+    const DUPLICATIONS: usize = 5;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -89,6 +91,16 @@ impl Real for f32 {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn sin_cos_octant(self) -> (Self, Self) {
+        sin_cos_octant(self)
+    }
+
+    #[inline(always)]
+    fn erfc(self, bell: Self) -> Self {
+        error_function::erfc(self, bell)
     }
 
     #[inline(always)]
@@ -183,16 +195,9 @@ pub(super) fn arctangent_tail<R: Real>(square: R) -> R {
     )
 }
 
-/// Sine and cosine in single precision: the argument is brought to |r| ≤ π/4 by subtracting a
-/// multiple of π/2 in three parts (the first two have so few bits that their products are exact),
-/// then Chebyshev fits with errors below 4·10⁻⁹. Absolute error below 10⁻⁶ for |x| ≤ 10⁴.
+/// Sine and cosine in single precision for |r| ≤ π/4: Chebyshev fits with errors below 4·10⁻⁹.
 #[inline(always)]
-pub(super) fn sin_cos<R: Real>(x: R) -> (R, R) {
-    let half = R::splat(0.5);
-    let turns = (x * R::splat(core::f64::consts::FRAC_2_PI) + half).floor();
-    let r = x - turns * R::splat(1.5703125);
-    let r = r - turns * R::splat(4.837512969970703e-4);
-    let r = r - turns * R::splat(7.549_789_954_891e-8);
+pub(super) fn sin_cos_octant<R: Real>(r: R) -> (R, R) {
     let square = r * r;
     let sine = r + r
         * square
@@ -204,7 +209,7 @@ pub(super) fn sin_cos<R: Real>(x: R) -> (R, R) {
                 -0.000_195_876_390_987_376_2,
             ],
         );
-    let cosine = R::splat(1.0) - square * half
+    let cosine = R::splat(1.0) - square * R::splat(0.5)
         + square
             * square
             * polynomial(
@@ -215,6 +220,20 @@ pub(super) fn sin_cos<R: Real>(x: R) -> (R, R) {
                     0.000_024_547_689_772_460_03,
                 ],
             );
+    (sine, cosine)
+}
+
+/// Sine and cosine in single precision: the argument is brought to |r| ≤ π/4 by subtracting a
+/// multiple of π/2 in three parts (the first two have so few bits that their products are exact),
+/// then comes [`sin_cos_octant`]. Absolute error below 10⁻⁶ for |x| ≤ 10⁴.
+#[inline(always)]
+pub(super) fn sin_cos<R: Real>(x: R) -> (R, R) {
+    let half = R::splat(0.5);
+    let turns = (x * R::splat(core::f64::consts::FRAC_2_PI) + half).floor();
+    let r = x - turns * R::splat(1.5703125);
+    let r = r - turns * R::splat(4.837512969970703e-4);
+    let r = r - turns * R::splat(7.549_789_954_891e-8);
+    let (sine, cosine) = sin_cos_octant(r);
     // Quadrant 0…3: odd quadrants swap the two, quadrants 2 and 3 negate the sine, 1 and 2 the cosine.
     let quadrant = turns - (turns * R::splat(0.25)).floor() * R::splat(4.0);
     let odd = half.lt(quadrant - (quadrant * half).floor() * R::splat(2.0));

@@ -1,6 +1,7 @@
 //! `wide::f32x8`, eight lanes of the shipping path.
 use super::single::Binary;
 use super::{Real, single};
+use crate::error_function;
 use wide::bytemuck::cast;
 use wide::{f32x8, i32x8};
 
@@ -9,6 +10,7 @@ impl Real for f32x8 {
     type Mask = Self;
     const LANES: usize = 8;
     const HORIZON: f64 = <f32 as Real>::HORIZON;
+    const DUPLICATIONS: usize = <f32 as Real>::DUPLICATIONS;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -78,6 +80,16 @@ impl Real for f32x8 {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         single::sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn sin_cos_octant(self) -> (Self, Self) {
+        single::sin_cos_octant(self)
+    }
+
+    #[inline(always)]
+    fn erfc(self, bell: Self) -> Self {
+        error_function::erfc(self, bell)
     }
 
     #[inline(always)]

@@ -259,6 +259,7 @@ pub fn shaping(radius: f64, blobbiness: f64) -> Shaping {
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,
+        taper: None,
     }
 }
 
@@ -290,11 +291,34 @@ pub fn sensitivity(primitive: &Primitive, point: DVec3) -> f64 {
     let size = extent(&primitive.skeleton);
     let slope = jet::<f64>(primitive, point).1.length();
     let mut sum = slope * (point.length() + size);
-    if let Skeleton::Triangle { corners: [a, b, c] } = primitive.skeleton {
+    let longest = match &primitive.skeleton {
+        Skeleton::Triangle { corners: [a, b, c] } => (*b - *a)
+            .length()
+            .max((*c - *b).length())
+            .max((*a - *c).length()),
+        Skeleton::Polygon { rings } => rings
+            .iter()
+            .flat_map(|ring| (0..ring.len()).map(|i| ring[i].distance(ring[(i + 1) % ring.len()])))
+            .fold(0.0, f64::max),
+        _ => 0.0,
+    };
+    if longest > 0.0 {
         // A needle's width is uncertain by its length: so is the field, by a line's of that width.
-        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-        let q = 1.0 + (primitive.width * primitive.skeleton.distance(point)).powi(2);
-        let line = longest.min(PI / 2.0 * q.sqrt() / primitive.width) / (q * q);
+        let square = (primitive.width * primitive.skeleton.distance(point)).powi(2);
+        let line = match primitive.kernel {
+            Kernel::Inverse => {
+                let k = (square + 1e-10).sqrt() / primitive.width;
+                2.0 * libm::asinh(longest / (2.0 * k)) / primitive.width
+            }
+            Kernel::Squared => {
+                let k = (square + 1e-10).sqrt() / primitive.width;
+                2.0 * libm::atan(longest / (2.0 * k)) / (k * primitive.width * primitive.width)
+            }
+            _ => {
+                let q = 1.0 + square;
+                longest.min(PI / 2.0 * q.sqrt() / primitive.width) / (q * q)
+            }
+        };
         sum += primitive.height.abs() * longest * line;
     }
     sum

@@ -174,6 +174,7 @@ fn frame_sees_everything_and_no_more_than_needed() {
             radius: 3.0,
         },
         material: 0,
+        kernel: field::Kernel::Cauchy,
         origin: Origin::default(),
     };
     let scene = Scene {

@@ -118,6 +118,7 @@ fn ball_around(shape: &Shape, radius: f64) -> (DVec3, f64) {
             (center, far[0].max(far[1]).max(far[2]) + radius)
         }
         Shape::Plane { .. } => unreachable!("solved directly"),
+        Shape::Polygon { .. } | Shape::Curve { .. } => unreachable!("drawn as their parts"),
     }
 }
 
@@ -165,6 +166,7 @@ fn inside(shape: &Shape, radius: f64, p: DVec3) -> bool {
             (p - corners[0]).dot(normal).abs() <= radius && inside_edges(corners, p)
         }
         Shape::Plane { .. } => unreachable!("solved directly"),
+        Shape::Polygon { .. } | Shape::Curve { .. } => unreachable!("drawn as their parts"),
     }
 }
 
@@ -174,6 +176,7 @@ fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
     match *shape {
         Shape::Sphere { center, .. } => return (p - center).normalize(),
         Shape::Plane { normal, .. } => return normal,
+        Shape::Polygon { .. } | Shape::Curve { .. } => unreachable!("drawn as their parts"),
         Shape::Cylinder { base, apex, .. } => {
             let axis = (apex - base).normalize();
             let along = (p - base).dot(axis);

@@ -7,6 +7,7 @@ pub fn element(shape: Shape, material: usize) -> Element {
     Element {
         shape,
         material,
+        kernel: field::Kernel::Cauchy,
         origin: Origin::default(),
     }
 }
@@ -14,7 +15,7 @@ pub fn element(shape: Shape, material: usize) -> Element {
 /// A scene in which every element shines in a colour that tells its index (below 215).
 pub fn by_index(shapes: &[Shape], camera: Camera) -> Scene {
     Scene {
-        elements: (0..).zip(shapes).map(|(i, s)| element(*s, i)).collect(),
+        elements: (0..).zip(shapes).map(|(i, s)| element(s.clone(), i)).collect(),
         materials: (0..shapes.len())
             .map(|i| Material {
                 ambient: colour_of(Some(i)),
@@ -55,7 +56,7 @@ pub fn by_normal(shapes: &[Shape], camera: Camera, sign: f64) -> Scene {
         }
     };
     Scene {
-        elements: shapes.iter().map(|s| element(*s, 0)).collect(),
+        elements: shapes.iter().map(|s| element(s.clone(), 0)).collect(),
         materials: vec![Material {
             ambient: [0.0; 3],
             diffuse: [1.0; 3],

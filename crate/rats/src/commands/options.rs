@@ -42,12 +42,23 @@ pub static SURFACE: &[OptionSpec] = &[
         "0",
         "Phong's exponent: the larger, the smaller the highlight",
     ),
-    option("radius", "r", "0", "radius in isolation of soft shapes"),
+    option(
+        "radius",
+        "r [end]",
+        "0",
+        "radius in isolation of soft shapes; a second one at the other end of lines, arcs, curves (ours)",
+    ),
     option(
         "blobbiness",
-        "b",
+        "b [end]",
         "0",
-        "softness: negative; near 0 is blobby, far from 0 crisp; 0 is hard",
+        "softness: negative; near 0 is blobby, far from 0 crisp; 0 is hard; a second one at the other end (ours)",
+    ),
+    option(
+        "depth",
+        "d",
+        "0",
+        "depth of influence, from which the radius follows (ours)",
     ),
     option(
         "strength",
@@ -64,8 +75,8 @@ pub static SURFACE: &[OptionSpec] = &[
     option("texture", "t1 [+ t2 …]", "", "layers of textures"),
     option(
         "kernel",
-        "NAME",
-        "cauchy",
+        "cauchy | gauss | inverse | squared | metaballs | soft | quartic | compact6",
+        "the command's own: cauchy, or as it says",
         "the kernel of soft shapes (ours)",
     ),
 ];

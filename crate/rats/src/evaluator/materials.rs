@@ -8,6 +8,7 @@ use crate::limits::MAX_MAGNITUDE;
 use crate::operands::Share;
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
+use crate::suggest;
 use crate::syntax::Command;
 use field::Kernel;
 use scene::{Material, Rgb};
@@ -46,7 +47,6 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         Some(old) => run.palette.surfaces[run.material(old)?].clone(),
         None => Surface {
             material: Material::default(),
-            kernel_given: false,
             origin: (0, 0..0),
             used: false,
         },
@@ -99,8 +99,22 @@ fn field<'a>(
         "index" => _ = read.number_in("the index of refraction", 0.01, 100.0)?,
         "dispersion" => _ = read.number_in("the dispersion", 0.0, 100.0)?,
         "shine" => material.shine = read.number_in("the shine", 0.0, 1e6)? as f32,
-        "radius" => material.radius = read.number_in("the radius", 0.0, MAX_MAGNITUDE)?,
-        "blobbiness" => material.blobbiness = read.number("the blobbiness")?,
+        "radius" => {
+            material.radius = read.number_in("the radius", 0.0, MAX_MAGNITUDE)?;
+            material.end_radius = None;
+            if read.is_number_next(SURFACE) {
+                let what = "the radius at the other end";
+                material.end_radius = Some(read.number_in(what, 0.0, MAX_MAGNITUDE)?);
+            }
+        }
+        "blobbiness" => {
+            material.blobbiness = read.number("the blobbiness")?;
+            material.end_blobbiness = None;
+            if read.is_number_next(SURFACE) {
+                material.end_blobbiness = Some(read.number("the blobbiness at the other end")?);
+            }
+        }
+        "depth" => material.depth = read.number_in("the depth", 0.0, MAX_MAGNITUDE)?,
         "strength" => material.strength = read.number("the strength")?,
         "skip" => skip(read, span, fields)?,
         "texture" => {
@@ -109,10 +123,7 @@ fn field<'a>(
                 fields.textures.push(read.name("the texture's name")?);
             }
         }
-        _ => {
-            material.kernel = kernel(read)?;
-            surface.kernel_given = true;
-        }
+        _ => material.kernel = Some(kernel(read)?),
     }
     Ok(())
 }
@@ -138,33 +149,14 @@ fn skip<'a>(read: &mut Reader<'_, 'a>, span: Range<usize>, fields: &mut Fields<'
     Ok(())
 }
 
-/// The kernels of the language that this version does not have.
-const OTHER_KERNELS: [&str; 7] = [
-    "gauss",
-    "inverse",
-    "squared",
-    "metaballs",
-    "soft",
-    "quartic",
-    "compact6",
-];
-
 fn kernel(read: &mut Reader<'_, '_>) -> Outcome<Kernel> {
     let name = read.name("the kernel's name")?;
-    if name.text.eq_ignore_ascii_case("cauchy") {
-        return Ok(Kernel::Cauchy);
-    }
-    let known = OTHER_KERNELS
-        .iter()
-        .find(|kernel| kernel.eq_ignore_ascii_case(name.text));
-    Err(match known {
-        Some(kernel) => Problem::new(
-            name.span,
-            format!("the kernel `{kernel}` is not in this version"),
-        )
-        .hint("`cauchy` is"),
-        None => Problem::new(name.span, format!("there is no kernel `{}`", name.text))
-            .hint("`cauchy` is the kernel of this version"),
+    let lower = name.text.to_ascii_lowercase();
+    Kernel::named(&lower).ok_or_else(|| {
+        let names = Kernel::ALL.map(Kernel::name);
+        let hint = suggest::hint(&lower, names)
+            .unwrap_or_else(|| format!("kernels are {}", names.join(", ")));
+        Problem::new(name.span, format!("there is no kernel `{}`", name.text)).hint(hint)
     })
 }
 

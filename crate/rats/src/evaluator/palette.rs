@@ -17,8 +17,6 @@ use std::ops::Range;
 pub struct Surface {
     /// The material.
     pub material: Material,
-    /// Whether the text names its kernel.
-    pub kernel_given: bool,
     /// The file and place of its name.
     pub origin: (usize, Range<usize>),
     /// Whether a shape is made of it.

@@ -5,7 +5,7 @@ use super::Evaluator;
 use super::model::Part;
 use crate::Severity;
 use crate::limits::MAX_MAGNITUDE;
-use field::BlobScale;
+use glam::DVec3;
 use scene::{Element, Material, Scene, Shape};
 use std::collections::HashMap;
 
@@ -68,7 +68,7 @@ impl Evaluator<'_> {
 fn settle(part: &Part, scene: &mut Scene, grown: &mut HashMap<(usize, u64), usize>) -> Element {
     let mut element = part.element.clone();
     if part.is_pipe {
-        let Material { radius, .. } = scene.materials[element.material];
+        let radius = scene.materials[element.material].radius;
         // The scene knows cylinders only; `fragile pipe` is settled here.
         if scene.settings.fragile.pipe
             && scene.materials[element.material].is_soft()
@@ -81,14 +81,11 @@ fn settle(part: &Part, scene: &mut Scene, grown: &mut HashMap<(usize, u64), usiz
     // What is scaled has flesh scaled alike: the material's radius grows, an absolute width shrinks.
     if part.growth != 1.0 && scene.materials[element.material].is_soft() {
         let key = (element.material, part.growth.to_bits());
-        let absolute = scene.settings.blob_scale == BlobScale::Absolute;
+        let blob_scale = scene.settings.blob_scale;
         let materials = &mut scene.materials;
         element.material = *grown.entry(key).or_insert_with(|| {
             let mut material = materials[key.0].clone();
-            material.radius *= part.growth;
-            if absolute {
-                material.blobbiness /= part.growth * part.growth;
-            }
+            material.scale(part.growth, blob_scale);
             materials.push(material);
             materials.len() - 1
         });
@@ -109,7 +106,10 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
     let needs_radius = is_soft
         || matches!(
             element.shape,
-            Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Arc { .. }
+            Shape::Sphere { .. }
+                | Shape::Cylinder { .. }
+                | Shape::Arc { .. }
+                | Shape::Curve { .. }
         );
     if needs_radius && radius <= 0.0 {
         return Some(if is_soft {
@@ -134,6 +134,11 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
             let (ab, ac) = (b - a, c - a);
             ab.cross(ac).length() <= 1e-12 * ab.length() * ac.length()
         }
+        Shape::Polygon { ref rings, .. } => !has_area(rings),
+        Shape::Curve {
+            control: [a, b, c, d],
+            ..
+        } => a == b && b == c && c == d,
     };
     degenerate.then(|| {
         let message: fn() -> String = match element.shape {
@@ -143,10 +148,30 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
             Shape::Arc { .. } => || {
                 String::from("this arc has no length (sweep radius or width 0), so it is left out")
             },
+            Shape::Curve { .. } => || {
+                String::from("this curve's points are all the same, so it is left out")
+            },
+            Shape::Polygon { .. } => {
+                || String::from("this polygon has no area, so it is left out")
+            }
             _ => || String::from("this triangle has no area, so it is left out"),
         };
         (message, None)
     })
+}
+
+/// Whether a polygon's outer ring has an area that is more than rounding.
+fn has_area(rings: &[Vec<DVec3>]) -> bool {
+    let Some(outer) = rings.first().filter(|ring| ring.len() >= 3) else {
+        return false;
+    };
+    let area: DVec3 = outer
+        .windows(2)
+        .map(|w| (w[0] - outer[0]).cross(w[1] - outer[0]))
+        .sum();
+    let reach = outer.iter().map(|p| p.distance(outer[0]));
+    let longest = reach.fold(0.0, f64::max);
+    area.length() > 1e-12 * longest * longest
 }
 
 fn too_far() -> String {
@@ -162,6 +187,8 @@ fn is_in_bounds(part: &Part) -> bool {
         Shape::Cylinder { base, apex, .. } => fits(base) && fits(apex),
         Shape::Arc { center, sweep, .. } => fits(center) && sweep.abs() <= MAX_MAGNITUDE,
         Shape::Triangle { corners, .. } => corners.into_iter().all(fits),
+        Shape::Polygon { ref rings, .. } => rings.iter().flatten().copied().all(fits),
+        Shape::Curve { control, .. } => control.into_iter().all(fits),
         Shape::Plane { point, normal, .. } => fits(point) && normal.is_finite(),
     };
     places && shape.radius().abs() <= MAX_MAGNITUDE && (1e-9..=1e9).contains(&part.growth)

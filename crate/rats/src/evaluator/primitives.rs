@@ -5,9 +5,11 @@ use super::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::CommandSpec;
 use crate::geometry::{self, ThreePoints};
+use crate::limits::MAX_CORNERS;
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
 use crate::syntax::Command;
+use field::Kernel;
 use scene::{Element, Shape};
 
 /// Reads the material's name, which shapes of a chain leave out, then the rest.
@@ -42,7 +44,7 @@ fn operands<'a, T>(
 impl<'a> Evaluator<'a> {
     fn add(&mut self, command: &'a Command, name: &Name<'a>, shape: Shape) -> Outcome<Flow> {
         let material = self.material(name)?;
-        self.add_of(command, material, shape, false)
+        self.add_of(command, material, shape, Kernel::Cauchy, false)
     }
 
     fn add_of(
@@ -50,12 +52,14 @@ impl<'a> Evaluator<'a> {
         command: &'a Command,
         material: usize,
         shape: Shape,
+        kernel: Kernel,
         is_pipe: bool,
     ) -> Outcome<Flow> {
         let part = Part {
             element: Element {
                 shape,
                 material,
+                kernel,
                 origin: self.origin(command),
             },
             growth: 1.0,
@@ -107,7 +111,7 @@ pub fn pipe<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
             )
         });
     }
-    run.add_of(command, material, shape, true)
+    run.add_of(command, material, shape, Kernel::Cauchy, true)
 }
 
 /// `arc sn a b P N a1 a2`
@@ -206,37 +210,84 @@ pub fn plane<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
     run.add(command, &name, shape)
 }
 
-/// A primitive whose kernel the opcode names and which this version does not have: drawn if its material
-/// names another kernel.
-fn of_other_kernel<'a>(
+/// `polygon sn V1 … Vn [hole W1 … Wm …]`
+pub fn polygon<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let (name, mut rings) = operands(run, command, |read| {
+        let mut rings = vec![Vec::new()];
+        while read.more() {
+            if read.keyword("hole") {
+                rings.push(Vec::new());
+                continue;
+            }
+            let corner = read.vector("a corner")?;
+            rings.last_mut().expect("one at least").push(corner);
+        }
+        Ok(rings)
+    })?;
+    let corners: usize = rings.iter().map(Vec::len).sum();
+    if corners > MAX_CORNERS {
+        return Err(Problem::new(
+            command.span.clone(),
+            format!("a polygon can have {MAX_CORNERS} corners at most, this one has {corners}"),
+        ));
+    }
+    if rings.iter().any(|ring| ring.len() < 3) {
+        return Err(Problem::new(
+            command.span.clone(),
+            "a polygon, and each hole of it, needs at least three corners",
+        ));
+    }
+    let off = geometry::flatten(&mut rings);
+    if off > 1e-3 {
+        run.say(Severity::Warning, command.span.clone(), || {
+            (
+                String::from("the corners do not lie in one plane: they are moved onto it"),
+                Some(format!(
+                    "the furthest is {:.1}% of the polygon's size away from it",
+                    100.0 * off
+                )),
+            )
+        });
+    }
+    run.add(command, &name, Shape::Polygon { rings, radius: 0.0 })
+}
+
+/// `curve sn b P1 P2 P3 P4 [P5 P6 P7 …]`: cubic Bézier curves, each beginning where the last one ends.
+pub fn curve<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let (name, (radius, points)) = operands(run, command, |read| {
+        let radius = read.number("the tube radius")?;
+        let mut points = vec![read.vector("the first control point")?];
+        while points.len() < 4 || read.more() {
+            for what in ["the second control point", "the third control point", "the end point"] {
+                points.push(read.vector(what)?);
+            }
+        }
+        Ok((radius, points))
+    })?;
+    for i in (0..points.len() - 1).step_by(3) {
+        let control = [points[i], points[i + 1], points[i + 2], points[i + 3]];
+        run.add(command, &name, Shape::Curve { control, radius })?;
+    }
+    Ok(Flow::Next)
+}
+
+/// A primitive whose kernel the opcode names, and which has no radius of its own: its material's counts.
+fn of_kernel<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
-    kernel: &str,
+    kernel: Kernel,
     rest: fn(&mut Reader<'_, 'a>) -> Outcome<Shape>,
 ) -> Outcome<Flow> {
     let (name, mut shape) = operands(run, command, rest)?;
     let material = run.material(&name)?;
-    let surface = &run.palette.surfaces[material];
-    if !surface.kernel_given {
-        let word = run.scope.symbols.word(command.word);
-        run.say(Severity::Warning, command.word_span.clone(), || {
-            (
-                format!(
-                    "`{word}` is understood but not carried out in this version: its kernel is {kernel}"
-                ),
-                Some(format!(
-                    "write `kernel cauchy` in the material `{}` to draw it with that kernel",
-                    name.text
-                )),
-            )
-        });
-        return Ok(Flow::Next);
+    let surface = &run.palette.surfaces[material].material;
+    if !surface.is_soft() {
+        // Drawn as an offset surface, which has a radius.
+        if let Shape::Sphere { radius, .. } | Shape::Cylinder { radius, .. } = &mut shape {
+            *radius = surface.radius;
+        }
     }
-    // These have no radius of their own.
-    if let Shape::Sphere { radius, .. } | Shape::Cylinder { radius, .. } = &mut shape {
-        *radius = surface.material.radius;
-    }
-    run.add_of(command, material, shape, false)
+    run.add_of(command, material, shape, kernel, false)
 }
 
 fn point(read: &mut Reader<'_, '_>) -> Outcome<Shape> {
@@ -248,17 +299,17 @@ fn point(read: &mut Reader<'_, '_>) -> Outcome<Shape> {
 
 /// `dot sn POS`
 pub fn dot<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_other_kernel(run, command, "polynomial", point)
+    of_kernel(run, command, Kernel::Quartic, point)
 }
 
 /// `gauss sn POS`
 pub fn gauss<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_other_kernel(run, command, "Gaussian", point)
+    of_kernel(run, command, Kernel::Gauss, point)
 }
 
 /// `line sn BASE APEX`
 pub fn line<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_other_kernel(run, command, "Gaussian", |read| {
+    of_kernel(run, command, Kernel::Gauss, |read| {
         Ok(Shape::Cylinder {
             base: read.vector("the base")?,
             apex: read.vector("the apex")?,
@@ -269,5 +320,5 @@ pub fn line<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 
 /// `triad sn V1 V2 V3`
 pub fn triad<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_other_kernel(run, command, "Newtonian", corners)
+    of_kernel(run, command, Kernel::Inverse, corners)
 }

@@ -71,6 +71,8 @@ impl Solid {
             Shape::Plane { point, normal, .. } => {
                 Plane::new(point, normal, radius).map(Self::Plane)
             }
+            // Made of several solids: see `Shape::parts`.
+            Shape::Polygon { .. } | Shape::Curve { .. } => None,
         }
     }
 

@@ -70,6 +70,7 @@ pub fn element(shape: Shape, material: usize) -> Element {
     Element {
         shape,
         material,
+        kernel: field::Kernel::Cauchy,
         origin: Origin::default(),
     }
 }

@@ -1,0 +1,322 @@
+//! How rough a kernel is, by distance: what a derivative along any straight line can at most be at a
+//! distance u or more, and what the integrals of that over a line and a plane at that distance are.
+//!
+//! The order of the derivative is the highest that the kernel has everywhere: 4 for smooth kernels; 2
+//! for those whose slope has kinks (metaballs, soft, quartic), 3 for compact6. The cubic Hermite
+//! interpolant on a span of length h is then within `c·hᵐ·max|f⁽ᵐ⁾|` of the function, with Peano's
+//! constants c₂ = 1/16, c₃ = 1/96, c₄ = 1/384, both at a span's middle.
+//!
+//! The Cauchy kernel's envelopes are formulas; the other kernels' are tables, made once, from upper
+//! sums over steps of 1/64 octave.
+use crate::{Derivatives, Kernel};
+use core::f64::consts::TAU;
+use std::sync::OnceLock;
+
+/// Peano's constant for each order, 2 to 4.
+pub const PEANO: [f64; 3] = [1.0 / 16.0, 1.0 / 96.0, 1.0 / 384.0];
+
+/// Bounds on a derivative at some distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roughness {
+    /// At one point.
+    pub point: f64,
+    /// Integrated over a straight line at that distance.
+    pub line: f64,
+    /// Integrated over a plane at that distance.
+    pub plane: f64,
+    /// Integrated over the distance from there on.
+    pub outward: f64,
+}
+
+/// The order of the derivative that is bounded.
+#[must_use]
+pub fn order(kernel: Kernel) -> usize {
+    kernel.smoothness().saturating_add(1).min(4)
+}
+
+/// A bound on the fourth derivative along any line inside a compact kernel's support, if all of the
+/// line is inside (for metaballs: the outer piece's, at its inner end, or none within reach of the
+/// kink at ⅓, so infinite).
+#[must_use]
+pub fn inside4(kernel: Kernel) -> f64 {
+    match kernel {
+        // 12G″ + 48yG‴ at y ≤ q ≤ 1, G″ = 2c₂ + 6c₃v, G‴ = −6c₃.
+        Kernel::Soft | Kernel::Quartic | Kernel::Compact6 => {
+            let [c2, c3] = kernel.polynomial().unwrap_or_default();
+            24.0 * c2 + 288.0 * c3
+        }
+        _ => f64::INFINITY,
+    }
+}
+
+/// The bounds at a distance of `u ≥ 0` or more.
+#[inline]
+#[must_use]
+pub fn roughness(kernel: Kernel, u: f64) -> Roughness {
+    if kernel == Kernel::Cauchy {
+        return cauchy(u);
+    }
+    if kernel.is_compact() && u >= 1.0 {
+        return Roughness {
+            point: 0.0,
+            line: 0.0,
+            plane: 0.0,
+            outward: 0.0,
+        };
+    }
+    table(kernel)[index(u)]
+}
+
+/// With x = 1+u², the Cauchy kernel along any ray, `k(t) = (P²+t²)⁻²`, has
+/// `|k⁗| = 24·|35w⁴−42w²+3|/(1+w²)²·X⁻⁴`, w = t/P, where X = P²(1+w²) is the value of x at t. The constants
+/// are upper envelopes of its integrals, checked numerically in this file's tests.
+#[inline]
+fn cauchy(u: f64) -> Roughness {
+    let x = 1.0 + u * u;
+    let y = 1.0 / x;
+    let root = y.sqrt();
+    let c = 1.0 - y;
+    Roughness {
+        point: cauchy_point(x, y),
+        line: ((103.0 + 729.0 * c * c * c) * (y * y * y * root)).min(90.6),
+        plane: ((121.0 + 775.0 * c * c * c) * (y * y * y)).min(112.0),
+        // |k⁗| ≤ 840/(1+u²)⁴, and half the line's through the centre.
+        outward: (120.0 * (y * y * y) / u).min(45.3),
+    }
+}
+
+#[inline]
+fn cauchy_point(x: f64, y: f64) -> f64 {
+    let w = x - 1.0;
+    let share = (35.0 * w * w - 42.0 * w + 3.0) * y * y;
+    (24.0 * (1.005 * share).max(4.3) * (y * y) * (y * y)).min(72.0)
+}
+
+/// Tables start at 2⁻¹⁸ (below which there is one entry) and end at 2¹⁴, with 32 entries an octave.
+const FIRST: i32 = -18;
+const OCTAVES: usize = 32;
+const STEPS: usize = 32;
+
+/// The entry of a distance: from the exponent and the first bits of its mantissa.
+#[inline]
+fn index(u: f64) -> usize {
+    let from = (1023 + i64::from(FIRST)) << 5;
+    let place = (u.to_bits() >> 47) as i64 - from;
+    (place + 1).clamp(0, (OCTAVES * STEPS) as i64) as usize
+}
+
+fn table(kernel: Kernel) -> &'static [Roughness] {
+    const NONE: OnceLock<Vec<Roughness>> = OnceLock::new();
+    static TABLES: [OnceLock<Vec<Roughness>>; Kernel::ALL.len()] = [NONE; Kernel::ALL.len()];
+    TABLES[kernel as usize].get_or_init(|| tabulate(kernel))
+}
+
+/// Fine steps in one step of the table.
+const FINE: usize = 2;
+/// What a derivative may rise by within a fine step (1/64 octave), over its larger end: where it is
+/// curved, and near a place where it vanishes the envelope of what comes further out counts.
+const SLACK: f64 = 1.03;
+
+fn tabulate(kernel: Kernel) -> Vec<Roughness> {
+    let order = order(kernel);
+    // Distances between fine steps; from 0 to the first in one step.
+    let mut places = vec![0.0];
+    for octave in 0..OCTAVES as i32 {
+        let base = libm::exp2(f64::from(FIRST + octave));
+        for i in 0..STEPS * FINE {
+            places.push(base * (1.0 + i as f64 / (STEPS * FINE) as f64));
+        }
+    }
+    places.push(libm::exp2(f64::from(FIRST + OCTAVES as i32)));
+    // At a distance or more, from the far end inwards.
+    let mut rough = vec![0.0f64; places.len()];
+    let mut largest = 0.0f64;
+    for i in (0..places.len()).rev() {
+        let mut here = along_any_line(kernel, order, places[i]);
+        for kink in kernel.kinks() {
+            let next = places.get(i + 1).copied().unwrap_or(f64::INFINITY);
+            if (places[i]..=next).contains(kink) {
+                for side in [1.0 - 1e-12, 1.0 + 1e-12] {
+                    here = here.max(along_any_line(kernel, order, kink * side));
+                }
+            }
+        }
+        largest = largest.max(SLACK * here);
+        rough[i] = largest;
+    }
+    // The step from 0 on may hold a peak of its own near a pole.
+    rough[0] = largest.max(SLACK * along_any_line(kernel, order, 0.0));
+    let last = places.len() - 1;
+    // Entry 0 stands for all below the first place.
+    let starts = core::iter::once(0).chain((0..=OCTAVES * STEPS).map(|i| 1 + i * FINE));
+    starts
+        .map(|start| {
+            let start = start.min(last);
+            let near = places[start] * places[start];
+            let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
+            let mut before = 0.0;
+            for i in start..last {
+                let far = places[i + 1] * places[i + 1];
+                let t = (far - near).max(0.0).sqrt();
+                line += 2.0 * rough[i] * (t - before);
+                plane += TAU / 2.0 * rough[i] * (far - places[i] * places[i]);
+                outward += rough[i] * (places[i + 1] - places[i]);
+                before = t;
+            }
+            // Beyond the last place everything falls faster than r⁻⁴.
+            line += 2.0 * rough[last] * places[last];
+            plane += TAU * rough[last] * places[last] * places[last];
+            outward += rough[last] * places[last];
+            Roughness {
+                point: rough[start],
+                line,
+                plane,
+                outward,
+            }
+        })
+        .collect()
+}
+
+/// The largest derivative of this order over all directions at a distance u. With y the square of the
+/// direction's share of the distance: `2G′+4yG″`, `√y(12G″+8yG‴)`, `12G″+48yG‴+16y²G⁗`.
+fn along_any_line(kernel: Kernel, order: usize, u: f64) -> f64 {
+    let q = u * u;
+    let Derivatives([_, g1, g2, g3, g4]) = kernel.derivatives(q);
+    let at = |y: f64| match order {
+        2 => (2.0 * g1 + 4.0 * y * g2).abs(),
+        3 => (y.sqrt() * (12.0 * g2 + 8.0 * y * g3)).abs(),
+        _ => (12.0 * g2 + y * (48.0 * g3 + 16.0 * y * g4)).abs(),
+    };
+    // Ends, and where the derivative by y vanishes.
+    let stationary = match order {
+        3 => -g2 / (2.0 * g3),
+        4 => -1.5 * g3 / g4,
+        _ => 0.0,
+    };
+    let inner = if stationary > 0.0 && stationary < q {
+        at(stationary)
+    } else {
+        0.0
+    };
+    at(0.0).max(at(q)).max(inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The kernel along a line that passes at distance √p2, at t.
+    fn on_line(kernel: Kernel, p2: f64, t: f64) -> f64 {
+        kernel.derivatives(p2 + t * t).0[0]
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn no_derivative_exceeds_its_envelope() {
+        for kernel in Kernel::ALL {
+            let order = order(kernel);
+            let mut tightest = 0.0f64;
+            for i in 0..300 {
+                // From 0.05 on: nearer to a pole differences say nothing.
+                let u = 0.05 + 0.01 * f64::from(i);
+                let h = 2e-3 * u.min(0.3);
+                let bound = roughness(kernel, u - 3.0 * h).point;
+                for j in 0..=20 {
+                    let t = u * f64::from(j) / 20.0;
+                    let p2 = (u * u - t * t).max(0.0);
+                    let k = |s: f64| on_line(kernel, p2, t + s * h);
+                    let difference = match order {
+                        2 => (k(1.0) - 2.0 * k(0.0) + k(-1.0)) / (h * h),
+                        3 => (k(1.5) - 3.0 * k(0.5) + 3.0 * k(-0.5) - k(-1.5)) / (h * h * h),
+                        _ => {
+                            (k(2.0) - 4.0 * k(1.0) + 6.0 * k(0.0) - 4.0 * k(-1.0) + k(-2.0))
+                                / (h * h * h * h)
+                        }
+                    };
+                    let noise = 1e-14 * kernel.value((u - 3.0 * h).max(0.0)) / h.powi(order as i32);
+                    assert!(
+                        difference.abs() <= bound + noise,
+                        "{kernel:?} {u} {t}: {difference} > {bound}"
+                    );
+                    if noise < 0.01 * bound {
+                        tightest = tightest.max(difference.abs() / bound);
+                    }
+                }
+            }
+            assert!(tightest > 0.8, "{kernel:?}: {tightest}");
+        }
+    }
+
+    /// The integrals over a line and a plane, by a midpoint rule.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn integrals_are_bounds_and_near() {
+        for kernel in Kernel::ALL {
+            for u in [0.02, 0.1, 0.3, 0.7, 0.95, 1.5, 3.0] {
+                let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
+                let n = 40_000;
+                // t = u·sinh-like steps: fine near the foot, wide far away.
+                for i in 0..n {
+                    let t = |i: f64| 1e-2 * u * libm::expm1(i / f64::from(n) * 14.0);
+                    let (a, b) = (t(f64::from(i)), t(f64::from(i + 1)));
+                    let middle = 0.5 * (a + b);
+                    let there = (u * u + middle * middle).sqrt();
+                    let here = along_any_line(kernel, order(kernel), there);
+                    line += 2.0 * here * (b - a);
+                    plane += TAU * middle * here * (b - a);
+                    outward += along_any_line(kernel, order(kernel), u + middle) * (b - a);
+                }
+                let bound = roughness(kernel, u);
+                // Derivatives themselves; envelopes never fall below what comes further out.
+                assert!(
+                    line <= bound.line * 1.001,
+                    "{kernel:?} {u}: {line} {bound:?}"
+                );
+                assert!(
+                    plane <= bound.plane * 1.001,
+                    "{kernel:?} {u}: {plane} {bound:?}"
+                );
+                assert!(
+                    outward <= bound.outward * 1.001,
+                    "{kernel:?} {u}: {outward} {bound:?}"
+                );
+                if bound.line > 0.0 {
+                    assert!(line >= 0.3 * bound.line, "{kernel:?} {u}: {line} {bound:?}");
+                    assert!(
+                        plane >= 0.3 * bound.plane,
+                        "{kernel:?} {u}: {plane} {bound:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn cauchys_formulas_are_envelopes() {
+        for i in 0..400 {
+            let x = 1.0 + 0.01 * f64::from(i * i) / 4.0;
+            let bound = cauchy((x - 1.0).sqrt());
+            for j in 0..200 {
+                let at = x + 0.008 * f64::from(j * j);
+                let here = along_any_line(Kernel::Cauchy, 4, (at - 1.0).sqrt());
+                assert!(
+                    here <= bound.point * (1.0 + 1e-9),
+                    "{x} {at}: {here} {bound:?}"
+                );
+            }
+            let (mut line, mut plane) = (0.0, 0.0);
+            let reach = 40.0 * x.sqrt();
+            let n = 4000;
+            for j in 0..n {
+                let v = (f64::from(j) + 0.5) / f64::from(n) * reach;
+                let dv = reach / f64::from(n);
+                let here = cauchy_point(x + v * v, 1.0 / (x + v * v));
+                line += 2.0 * dv * here;
+                plane += TAU * v * dv * here;
+            }
+            assert!(line <= bound.line * 1.001, "{x} {line} {bound:?}");
+            assert!(plane <= bound.plane * 1.001, "{x} {plane} {bound:?}");
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! What [`field::Bound`] promises: no field exceeds it, no Hermite span is further off than it says.
+mod common;
+
+use common::{ALL_KINDS, Kind, Random, primitive};
+use field::bound::{Bound, Estimate, SpanLength};
+use field::{Kernel, Primitive, Shaping};
+use glam::DVec3;
+
+/// A random primitive of this kernel and kind.
+fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind) -> Primitive {
+    let size = random.decades(-1.5, 1.0);
+    let skeleton = random.skeleton(kind, size);
+    let shaping = Shaping {
+        kernel,
+        ..random.shaping(1.0)
+    };
+    primitive(skeleton, &shaping, None)
+}
+
+/// The largest distance between a primitive and its interpolant on a span.
+fn span_error(primitive: &Primitive, start: DVec3, direction: DVec3, h: f64) -> f64 {
+    let at = |t: f64| primitive.along_ray(start, direction, t);
+    let ((a, da), (b, db)) = (at(0.0), at(h));
+    let mut worst = 0.0_f64;
+    for i in 1..16 {
+        let t = f64::from(i) / 16.0;
+        let (u, v) = (1.0 - t, t);
+        let cubic = a * u * u * (1.0 + 2.0 * t)
+            + b * v * v * (3.0 - 2.0 * t)
+            + h * (da * u * u * t - db * v * v * u);
+        worst = worst.max((cubic - at(h * t).0).abs());
+    }
+    worst
+}
+
+fn bounds_hold(kernel: Kernel) {
+    for kind in ALL_KINDS {
+        let mut random = Random::new(31);
+        let (mut tightest, mut tightest_span) = (0.0_f64, 0.0_f64);
+        for _ in 0..400 {
+            let primitive = random_primitive(&mut random, kernel, kind);
+            let bound = Bound::new(&primitive);
+            for _ in 0..10 {
+                // A ball, and spans within it.
+                let center = random.near(&primitive.skeleton, -1.0, 0.4);
+                let radius = random.decades(-2.0, 0.0) / primitive.width;
+                let near = bound.nearness(center, radius);
+                let nearest = primitive.skeleton.nearest(center);
+                let way = (nearest - center).normalize_or_zero();
+                let p = center + way * radius;
+                let reach = primitive.skeleton.distance(p);
+                assert!(
+                    near.distance <= reach * (1.0 + 1e-9) + 1e-9,
+                    "{primitive:?} {p}"
+                );
+                let magnitude = bound.magnitude(near);
+                let value = primitive.value(p.to_array()).abs();
+                assert!(
+                    value <= magnitude * (1.0 + 1e-6),
+                    "{value} > {magnitude}: {primitive:?} {p}"
+                );
+                tightest = tightest.max(value / magnitude);
+                let direction = random.direction();
+                let h = 2.0 * radius;
+                let Estimate { error, .. } = bound.estimate(near, &SpanLength::new(h));
+                let off = span_error(&primitive, center - direction * radius, direction, h);
+                // Rounding in f64, and of cells that are integrated numerically.
+                let noise = 1e-9 * magnitude;
+                assert!(
+                    off <= error + noise,
+                    "{off} > {error} on {h}: {primitive:?} {center}"
+                );
+                if noise < 0.01 * error {
+                    tightest_span = tightest_span.max(off / error);
+                }
+            }
+        }
+        // The bounds are of use: somewhere a good part of them is taken up.
+        let least = if kind == Kind::Curve { 0.0 } else { 0.02 };
+        assert!(
+            tightest > 0.3 && tightest_span > least,
+            "{kind:?}: {tightest} {tightest_span}"
+        );
+    }
+}
+
+tests! {
+    fn cauchy() {
+        bounds_hold(Kernel::Cauchy);
+    }
+    fn gauss() {
+        bounds_hold(Kernel::Gauss);
+    }
+    fn inverse() {
+        bounds_hold(Kernel::Inverse);
+    }
+    fn squared() {
+        bounds_hold(Kernel::Squared);
+    }
+    fn metaballs() {
+        bounds_hold(Kernel::Metaballs);
+    }
+    fn soft() {
+        bounds_hold(Kernel::Soft);
+    }
+    fn quartic() {
+        bounds_hold(Kernel::Quartic);
+    }
+    fn compact6() {
+        bounds_hold(Kernel::Compact6);
+    }
+}

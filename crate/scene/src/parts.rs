@@ -1,0 +1,149 @@
+//! What a shape's offset surface is made of, for renderers that know balls, cylinders, arcs, triangles
+//! and planes only: a polygon is cut into triangles, a curve into short cylinders with balls between.
+
+use crate::Shape;
+use glam::DVec3;
+
+/// Straight pieces that stand for a curve.
+const PIECES: usize = 32;
+
+impl Shape {
+    /// The simple shapes whose union is this shape's offset surface at the given radius; the shape
+    /// itself if it is simple.
+    #[must_use]
+    pub fn parts(&self, radius: f64) -> Vec<Self> {
+        match self {
+            Self::Polygon { rings, .. } => triangles(rings)
+                .into_iter()
+                .map(|corners| Self::Triangle { corners, radius })
+                .collect(),
+            Self::Curve { control, .. } => {
+                let at = |i: usize| along(control, i as f64 / PIECES as f64);
+                let mut parts = vec![Self::Sphere {
+                    center: at(0),
+                    radius,
+                }];
+                for i in 0..PIECES {
+                    let (base, apex) = (at(i), at(i + 1));
+                    parts.push(Self::Cylinder { base, apex, radius });
+                    parts.push(Self::Sphere {
+                        center: apex,
+                        radius,
+                    });
+                }
+                parts
+            }
+            simple => vec![simple.clone()],
+        }
+    }
+}
+
+/// The point of a Bézier curve at t.
+fn along([a, b, c, d]: &[DVec3; 4], t: f64) -> DVec3 {
+    let s = 1.0 - t;
+    *a * (s * s * s) + *b * (3.0 * s * s * t) + *c * (3.0 * s * t * t) + *d * (t * t * t)
+}
+
+/// A polygon's triangles, by cutting off ears.
+fn triangles(rings: &[Vec<DVec3>]) -> Vec<[DVec3; 3]> {
+    let Some(outer) = rings.first().filter(|ring| ring.len() >= 3) else {
+        return Vec::new();
+    };
+    let normal: DVec3 = outer
+        .windows(2)
+        .map(|w| (w[0] - outer[0]).cross(w[1] - outer[0]))
+        .sum();
+    let Some(z) = normal.try_normalize() else {
+        return Vec::new();
+    };
+    let x = z.any_orthonormal_vector();
+    let y = z.cross(x);
+    let corners: Vec<DVec3> = rings.iter().flatten().copied().collect();
+    let flat: Vec<[f64; 2]> = corners
+        .iter()
+        .map(|p| [(*p - outer[0]).dot(x), (*p - outer[0]).dot(y)])
+        .collect();
+    let mut start = 0;
+    let holes: Vec<usize> = rings
+        .iter()
+        .take(rings.len() - 1)
+        .map(|ring| {
+            start += ring.len();
+            start
+        })
+        .collect();
+    let mut indices: Vec<usize> = Vec::new();
+    earcut::Earcut::new().earcut(flat, &holes, &mut indices);
+    indices
+        .chunks_exact(3)
+        .map(|i| [corners[i[0]], corners[i[1]], corners[i[2]]])
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(parts: &[Shape]) -> f64 {
+        parts
+            .iter()
+            .map(|part| match part {
+                Shape::Triangle {
+                    corners: [a, b, c], ..
+                } => (*b - *a).cross(*c - *a).length() / 2.0,
+                other => panic!("{other:?} is no triangle"),
+            })
+            .sum()
+    }
+
+    #[test]
+    fn polygons_keep_their_area() {
+        let square = |half: f64| {
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+                .map(|[x, y]| DVec3::new(x * half, y * half, 0.5 * x * half))
+                .to_vec()
+        };
+        let slant = 1.25f64.sqrt();
+        let whole = Shape::Polygon {
+            rings: vec![square(2.0)],
+            radius: 0.1,
+        };
+        assert!((area(&whole.parts(0.1)) - 16.0 * slant).abs() < 1e-12);
+        // Holes may run either way round.
+        for turned in [false, true] {
+            let mut hole = square(1.0);
+            if turned {
+                hole.reverse();
+            }
+            let holed = Shape::Polygon {
+                rings: vec![square(2.0), hole],
+                radius: 0.1,
+            };
+            assert!((area(&holed.parts(0.1)) - 12.0 * slant).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_degenerate_polygon_has_no_parts() {
+        let line = vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0];
+        for rings in [vec![], vec![vec![]], vec![line]] {
+            let shape = Shape::Polygon { rings, radius: 0.0 };
+            assert!(shape.parts(0.0).is_empty(), "{shape:?}");
+        }
+    }
+
+    #[test]
+    fn a_curve_is_a_chain() {
+        let control = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y];
+        let shape = Shape::Curve {
+            control,
+            radius: 0.1,
+        };
+        let parts = shape.parts(0.2);
+        assert!(parts.iter().all(|part| part.radius() == 0.2));
+        let Shape::Sphere { center, .. } = parts[parts.len() - 1] else {
+            panic!("no ball at the end");
+        };
+        assert_eq!(center, control[3]);
+    }
+}
