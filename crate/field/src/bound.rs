@@ -326,9 +326,9 @@ impl Bound {
             _ if self.whole.is_finite() && !kernel.falls_fast() => f64::INFINITY,
             _ => plane::jet(kernel, [0.0, 0.0, u]).value,
         };
-        let whole = self.whole * point;
-        let endless = self.endless * endless;
-        if whole < endless { whole } else { endless }
+        // Infinity times 0 says nothing either way.
+        let least = |a: f64, b: f64| if a < b || b.is_nan() { a } else { b };
+        least(self.whole * point, self.endless * endless)
     }
 
     /// A distance from the skeleton beyond which `|f|` is at most `share`.

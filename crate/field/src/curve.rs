@@ -11,8 +11,10 @@
 //!   taper). The rule is applied to what lies inside. Outside the support the field is exactly 0.
 //!   Metaballs' inner piece, ωg < 1/9, is found in the same way and integrated by itself.
 //! - Kernels with a pole (inverse, squared): the integrand has a peak of the width
-//!   `b = √((g* + ε²/ω)/|q′|²)` around t*. With `s = b·sinh x` it becomes smooth: `1/√(s²+b²)`
-//!   becomes a constant and `1/(s²+b²)` a hyperbolic secant.
+//!   `b = √((g* + ε²/ω)/|q′|²)` around t*. With `s = b·sinh x` this becomes smooth: `ds/√(s²+b²)` is
+//!   `dx`, and `ds/(s²+b²)` is `dx/(b·cosh x)`, which is as wide as 1 however long the interval of x.
+//!   So `x = (π/2)·sinh y` on top: it takes the singularities of the secant from ±iπ/2 to where
+//!   those of y are, and the interval from ±12 (for points on the curve itself) to ±2.8.
 //!
 //! The gradient `2∫ αωG′|q′|·(p−q) dt` comes from the same nodes: with `q − p = Σ eₖsᵏ` it is
 //! `−2Σ eₖ ∫αωG′|q′|sᵏ`. Ends of the support do not move it, since kernels are continuous.
@@ -24,6 +26,9 @@ use crate::inverse::POLE2;
 use crate::metaballs::INNER2;
 use crate::{Jet, Kernel, Real};
 
+/// In `x = STEEP·sinh y` (see the module).
+const STEEP: f64 = core::f64::consts::FRAC_PI_2;
+
 /// Value and gradient at a local position.
 #[inline]
 pub fn jet<R: Real>(kernel: Kernel, bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R> {
@@ -31,8 +36,8 @@ pub fn jet<R: Real>(kernel: Kernel, bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R
     match kernel {
         Kernel::Cauchy => smooth(bone, p, |q| Kernel::Cauchy.pair(q)),
         Kernel::Gauss => smooth(bone, p, |q| Kernel::Gauss.pair(q)),
-        Kernel::Inverse => with_pole(bone, p, |q| Kernel::Inverse.pair(q)),
-        Kernel::Squared => with_pole(bone, p, |q| Kernel::Squared.pair(q)),
+        Kernel::Inverse => with_pole(bone, p, false, |q| Kernel::Inverse.pair(q)),
+        Kernel::Squared => with_pole(bone, p, true, |q| Kernel::Squared.pair(q)),
         Kernel::Metaballs => compact(bone, p, true, |q| Kernel::Metaballs.pair(q)),
         Kernel::Soft => compact(bone, p, false, |q| Kernel::Soft.pair(q)),
         Kernel::Quartic => compact(bone, p, false, |q| Kernel::Quartic.pair(q)),
@@ -67,9 +72,15 @@ fn smooth<R: Real>(bone: &Curve<R::Scalar>, p: [R; 3], pair: impl Fn(R) -> (R, R
 }
 
 #[inline(always)]
-fn with_pole<R: Real>(bone: &Curve<R::Scalar>, p: [R; 3], pair: impl Fn(R) -> (R, R)) -> Jet<R> {
+fn with_pole<R: Real>(
+    bone: &Curve<R::Scalar>,
+    p: [R; 3],
+    twice: bool,
+    pair: impl Fn(R) -> (R, R),
+) -> Jet<R> {
     let one = R::splat(1.0);
     let half = R::splat(0.5);
+    let twice = twice || R::DOUBLE;
     let mut total = Jet::zero();
     for span in &bone.spans {
         let mut t = Slope::new(span, p).extremum(|slope, t| slope.at(t));
@@ -92,17 +103,28 @@ fn with_pole<R: Real>(bone: &Curve<R::Scalar>, p: [R; 3], pair: impl Fn(R) -> (R
             .sqrt()
             .min(R::splat(8.0));
         let inverse = one / b;
-        let low = ((-one - t) * inverse).asinh();
-        let high = ((one - t) * inverse).asinh();
+        let steep = R::splat(STEEP);
+        let place = |end: R| {
+            let x = ((end - t) * inverse).asinh();
+            if twice { (x / steep).asinh() } else { x }
+        };
+        let (low, high) = (place(-one), place(one));
         let (middle, reach) = (half * (high + low), half * (high - low));
-        let (half_b, step) = (half * b, half * b * reach);
+        let (half_b, half_steep) = (half * b, half * steep);
         let mut sums = Sums::zero();
         for [node, weight] in &bone.rule {
-            let grown = (middle + reach * R::lift(*node)).exp();
+            let mut x = middle + reach * R::lift(*node);
+            let mut rate = R::lift(*weight) * reach;
+            if twice {
+                let grown = x.exp();
+                let shrunk = one / grown;
+                x = half_steep * (grown - shrunk);
+                rate = rate * half_steep * (grown + shrunk);
+            }
+            let grown = x.exp();
             let shrunk = one / grown;
             let s = half_b * (grown - shrunk);
-            let weight = R::lift(*weight) * step * (grown + shrunk);
-            sums.add(&around, s, weight, &pair);
+            sums.add(&around, s, rate * half_b * (grown + shrunk), &pair);
         }
         total = total.plus(sums.finish(&around));
     }
@@ -215,7 +237,7 @@ impl<R: Real> Slope<R> {
         let mut t = zero;
         // Which end was moved in the step before: 1 the upper, −1 the lower one.
         let mut before = zero;
-        for _ in 0..if R::DOUBLE { 10 } else { 3 } {
+        for _ in 0..if R::DOUBLE { 10 } else { 5 } {
             t = (low * above - high * below) / nonzero(above - below);
             t = t.max(-one).min(one);
             let here = sign * f(self, t);
@@ -232,7 +254,8 @@ impl<R: Real> Slope<R> {
             );
             before = R::select(up, one, -one);
         }
-        R::select(crosses, t, R::select(zero.lt(first), -one, one))
+        // The function may be 0 at an end.
+        R::select(crosses, t, R::select(zero.lt(first + last), -one, one))
     }
 }
 
@@ -311,17 +334,26 @@ struct Side<R> {
     end: R,
     start: R,
     slope: R,
+    /// Half the second derivative at the start, but for that of ω.
+    bend: R,
     stop: R,
 }
 
 impl<R: Real> Side<R> {
     #[inline(always)]
     fn new(around: &Around<'_, R>, end: R) -> Self {
-        let (start, slope) = around.level(R::splat(0.0));
+        let zero = R::splat(0.0);
+        let (start, slope) = around.level(zero);
+        let mut bend = around.square[2];
+        if around.tapered {
+            let (thinness, rate) = around.thinness(zero);
+            bend = thinness * bend + rate * around.square[1];
+        }
         Self {
             end,
             start,
             slope: end * slope,
+            bend: end * end * bend,
             stop: around.level(end).0,
         }
     }
@@ -332,10 +364,10 @@ impl<R: Real> Side<R> {
     fn inside(&self, around: &Around<'_, R>, level: R) -> [R; 2] {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let (first, last) = (self.start - level, self.stop - level);
-        // Counted so that it rises. The parabola with the same start, slope and stop.
+        // Counted so that it rises. The parabola that touches it at the start.
         let rising = self.start.lt(self.stop);
         let sign = R::select(rising, one, -one);
-        let bend = last - first - self.slope;
+        let bend = self.bend;
         let root = (self.slope * self.slope - R::splat(4.0) * first * bend)
             .max(zero)
             .sqrt();
@@ -343,7 +375,7 @@ impl<R: Real> Side<R> {
         let mut place = -(two * first) / nonzero(self.slope + sign * root);
         place = place.max(zero).min(one);
         let least = R::splat(1e-3) * (last - first).abs();
-        for _ in 0..if R::DOUBLE { 6 } else { 2 } {
+        for _ in 0..if R::DOUBLE { 6 } else { 3 } {
             let (value, rate) = around.level(self.end * place);
             let rate = (sign * self.end * rate).max(least);
             place = place - sign * (value - level) / nonzero(rate);

@@ -25,7 +25,11 @@ pub enum Wave {
     Step,
 }
 
-/// `times · (low + (high−low)·fu(scale_u·u)·fv(scale_v·v))` with u, v in [0, 1] along the primitive.
+/// `times · (low + (high−low)·fu(scale_u·u)·fv(scale_v·v))` with u, v in [0, 1] along the primitive;
+/// on a triangle also times `1 − restriction·(1−b)`, where `b = 27·λ₀λ₁λ₂` of the barycentric
+/// coordinates is 1 in the middle and 0 on and beyond the edges. So a restricted triangle blends less
+/// with its neighbours, and a mesh of them shows creases, up to the full wrinkle at 1 (thesis, figures
+/// 3.18 and 3.19; the shape of b is ours).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     /// Waves of u and v.
@@ -36,6 +40,21 @@ pub struct Profile {
     pub bounds: [f64; 2],
     /// A factor on the whole.
     pub times: f64,
+    /// How much of a triangle's field is taken away at its edges, 0 to 1.
+    pub restriction: f64,
+}
+
+impl Default for Profile {
+    /// The profile that changes nothing.
+    fn default() -> Self {
+        Self {
+            waves: [Wave::One; 2],
+            scale: [1.0; 2],
+            bounds: [0.0, 1.0],
+            times: 1.0,
+            restriction: 0.0,
+        }
+    }
 }
 
 impl Profile {

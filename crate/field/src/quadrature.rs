@@ -433,7 +433,15 @@ fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
         }
         _ => product,
     };
-    profile.times * (low + (high - low) * product)
+    let restricted = match skeleton {
+        Skeleton::Triangle { .. } => {
+            let inside = u > 0.0 && v > 0.0 && u + v < 1.0;
+            let middle = if inside { 27.0 * u * v * (1.0 - u - v) } else { 0.0 };
+            1.0 - profile.restriction * (1.0 - middle)
+        }
+        _ => 1.0,
+    };
+    profile.times * (low + (high - low) * product) * restricted
 }
 
 /// The waves' mean over u, where v is 0; between two multiples of ½ every wave is smooth.

@@ -65,6 +65,9 @@ pub trait Real:
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Where both masks hold.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Whether the mask holds in any lane. Only to leave out work whose result would be the same
+    /// bits as what stands in for it: else lanes would differ from `f32`.
+    fn any(mask: Self::Mask) -> bool;
 
     /// `Q(y)` of `arctan x = x − x³/3 + x⁵·Q(x²)`, for 0 ≤ y ≤ tan²(π/8), to the type's precision.
     fn arctangent_tail(square: Self) -> Self;

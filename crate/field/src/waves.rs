@@ -33,6 +33,8 @@ pub(crate) struct Waves<S> {
     scale: [S; 2],
     low: S,
     rise: S,
+    /// See [`Profile`]; 0 but on triangles.
+    restriction: S,
     parameters: Parameters<S>,
 }
 
@@ -69,6 +71,10 @@ impl Waves<f64> {
             scale: profile.scale,
             low: profile.times * profile.bounds[0],
             rise: profile.times * (profile.bounds[1] - profile.bounds[0]),
+            restriction: match bone {
+                Bone::Triangle(_) => profile.restriction,
+                _ => 0.0,
+            },
             parameters,
         }
     }
@@ -109,6 +115,7 @@ impl<S: Copy> Waves<S> {
             scale: self.scale.map(f),
             low: f(self.low),
             rise: f(self.rise),
+            restriction: f(self.restriction),
             parameters: match &self.parameters {
                 Parameters::None => Parameters::None,
                 Parameters::Linear { gradient, start } => Parameters::Linear {
@@ -204,9 +211,21 @@ impl<S: Copy> Waves<S> {
             value = mean + g * swing;
         }
         let rise = R::lift(self.rise);
+        let value = R::lift(self.low) + rise * value;
+        let gradient = gradient.map(|g| rise * g);
+        // 1 − restriction·(1−b); b and its derivatives vanish outside the triangle.
+        let restriction = R::lift(self.restriction);
+        let [u, v] = parameters;
+        let w = one - u - v;
+        let inside = zero.lt(u.min(v).min(w));
+        let steep = |x: R| R::select(inside, R::splat(27.0) * restriction * x, zero);
+        let factor = one - restriction + steep(u * v * w);
+        let (by_u, by_v) = (steep(v * (w - u)), steep(u * (w - v)));
+        let [gu, gv] = gradients;
+        let of = |i: usize| factor * gradient[i] + value * (by_u * gu[i] + by_v * gv[i]);
         Jet {
-            value: R::lift(self.low) + rise * value,
-            gradient: [rise * gradient[0], rise * gradient[1], zero],
+            value: value * factor,
+            gradient: [of(0), of(1), zero],
         }
     }
 }

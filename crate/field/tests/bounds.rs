@@ -19,6 +19,7 @@ fn random_primitive(random: &mut Random, kind: Kind) -> Primitive {
         scale: [9.0, 3.0],
         bounds: [0.5, 1.7],
         times: 1.2,
+        restriction: 0.0,
     };
     let profile = random.pick(&[None, None, Some(wave)]);
     primitive(skeleton.clone(), &shaping, profile)

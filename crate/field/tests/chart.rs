@@ -113,7 +113,7 @@ fn single_matches_double(kernel: Kernel, kind: Kind) {
         if matches!(kernel, Kernel::Inverse | Kernel::Squared) {
             // A rounding of the coordinates changes a slope by as much of it as it changes the
             // distance from the pole; within a rounding of a pole the slope has no meaning.
-            let rounding = 64.0 * EPSILON32 * (point.length() + extent(&skeleton));
+            let rounding = 8.0 * EPSILON32 * (point.length() + extent(&skeleton));
             let distance = skeleton.distance(point);
             if distance <= rounding {
                 continue;

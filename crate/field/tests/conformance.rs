@@ -150,6 +150,7 @@ tests! {
                     scale: [22.0, 5.0],
                     bounds: [0.5, 0.7],
                     times: 1.15,
+                    restriction: 0.0,
                 };
                 let profile = random.pick(&[None, Some(profile)]);
                 let primitive = primitive(skeleton.clone(), &random.shaping(1.0), profile);
@@ -163,7 +164,7 @@ tests! {
                 }
             }
         }
-        assert_eq!(hash, 0xC3A3_C9CD_3043_095D, "{hash:#018x}");
+        assert_eq!(hash, 0x81B1_BE67_ED41_2DC7, "{hash:#018x}");
     }
 
     /// Against a five-point difference of the value.

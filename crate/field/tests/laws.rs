@@ -235,6 +235,7 @@ tests! {
                     scale: [random.range(0.5, 25.0), random.range(0.5, 25.0)],
                     bounds: [random.range(0.0, 1.0), random.range(0.0, 1.0)],
                     times: random.range(0.5, 2.0),
+                    restriction: random.pick(&[0.0, 0.7]),
                 };
                 let primitive = primitive(skeleton.clone(), &random.shaping(0.5), Some(profile));
                 let point = single(random.near(&skeleton, -2.0, 0.5));
@@ -283,6 +284,7 @@ tests! {
             scale: [22.0, 22.0],
             bounds: [0.5, 0.7],
             times: 1.15,
+            restriction: 0.0,
         };
         let arc = Skeleton::Arc { center: DVec3::ZERO, u: DVec3::X, v: DVec3::Y, radius: 2.0, angle: 3.0 };
         let with = primitive(arc.clone(), &shaping(0.3, 1.0), Some(profile));

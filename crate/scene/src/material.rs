@@ -33,6 +33,8 @@ pub struct Material {
     pub kernel: Option<Kernel>,
     /// Profile (a texture whose target is `strength`), if any.
     pub profile: Option<Profile>,
+    /// How much of a triangle's field is taken away at its edges, 0 to 1.
+    pub restriction: f64,
 }
 
 impl Material {
@@ -54,6 +56,18 @@ impl Material {
 
     /// The share of the diffuse colour that a material glows with when the text gives no `ambient`.
     pub const AMBIENT_SHARE: f32 = 0.15;
+
+    /// The profile with the restriction in it.
+    #[must_use]
+    pub fn whole_profile(&self) -> Option<Profile> {
+        if self.restriction == 0.0 {
+            return self.profile;
+        }
+        Some(Profile {
+            restriction: self.restriction,
+            ..self.profile.unwrap_or_default()
+        })
+    }
 
     /// Whether elements of this material become part of the convolution surface.
     #[must_use]
@@ -78,6 +92,7 @@ impl Default for Material {
             strength: 1.0,
             kernel: None,
             profile: None,
+            restriction: 0.0,
         }
     }
 }

@@ -113,7 +113,7 @@ impl Scene {
             };
             let shaping = self.shaping(element, material, self.radius(element));
             // An element without a positive radius has no flesh; the language has said so.
-            if let Some(primitive) = Primitive::new(skeleton, &shaping, material.profile) {
+            if let Some(primitive) = Primitive::new(skeleton, &shaping, material.whole_profile()) {
                 field.primitives.push(primitive);
                 indices.push(index);
             }

@@ -71,6 +71,7 @@ fn pictures_with_profiles_show_the_exact_surface() {
                 scale: [8.0, 1.0],
                 bounds: [0.6, 1.0],
                 times: 1.2,
+                restriction: 0.0,
             });
         }
         let [slightly, visibly] = difference(&scene);

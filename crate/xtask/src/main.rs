@@ -4,6 +4,7 @@
 //! node packages, tools in `.tools/`, on Debian and Ubuntu the browser), says what it runs, and
 //! otherwise fails with a sentence that says what to install.
 
+mod bench;
 mod check;
 mod dist;
 mod examples;
@@ -40,6 +41,8 @@ enum Command {
         /// Only this part.
         part: Option<check::Part>,
     },
+    /// Measure, and write BENCHMARKS.md.
+    Bench,
     /// Draw the thumbnails of the examples, www/examples/*.png, with our own renderer.
     Examples,
 }
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
         Command::Serve { port, release } => serve::serve(port, release),
         Command::Dist => dist::dist().map(|_| ()),
         Command::Test { part } => check::test(part),
+        Command::Bench => bench::bench(),
         Command::Examples => examples::draw(),
     };
     match done {

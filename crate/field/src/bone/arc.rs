@@ -38,7 +38,11 @@ impl Arc<f64> {
             double_sine: 2.0 * sine * cosine,
             versine: 2.0 * root * root,
             half_angle,
-            end_angle: 2.0 * libm::asin(root.min(1.0)),
+            end_angle: if angle < core::f64::consts::TAU {
+                2.0 * libm::asin(root.min(1.0))
+            } else {
+                0.0
+            },
         }
     }
 }

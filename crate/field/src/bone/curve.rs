@@ -16,8 +16,8 @@
 //!   with half as many nodes is right to that, too;
 //! - a smooth kernel's span is at most 2 widths long: the integrand, whose singularities are about a
 //!   width away from it, then calls for at most 9 nodes in single precision, 16 in double;
-//! - for a kernel with a pole, the speed varies at most threefold, since the pole's scale in t is the
-//!   distance over the speed.
+//! - the speed varies at most threefold, so that a distance is a known change of t (spans of less
+//!   than [`Demands::slow`] may do otherwise).
 //!
 //! The curve is cut at the slowest places first, so that cusps are ends. Spans shorter than
 //! [`Demands::least`] are accepted as they are. Should there be more than [`MOST`] spans, turn and
@@ -114,9 +114,11 @@ struct Demands {
     longest: f64,
     /// Length below which a span is accepted in any case.
     least: f64,
+    /// Length below which a span's speed may vary.
+    slow: f64,
     /// Nodes on either side of the nearest point within the support of a compact kernel.
     clipped: usize,
-    /// Panels, and nodes in each, of a kernel with a pole.
+    /// Nodes of the inverse kernel, and of the squared one.
     pole: [usize; 2],
 }
 
@@ -128,7 +130,8 @@ impl Demands {
         longest: 2.0,
         least: 1e-9,
         clipped: 10,
-        pole: [6, 14],
+        slow: 1e-5,
+        pole: [48, 36],
     };
     const SINGLE: Self = Self {
         turn: 0.4,
@@ -137,7 +140,8 @@ impl Demands {
         longest: 2.0,
         least: 1e-6,
         clipped: 6,
-        pole: [1, 20],
+        slow: 1e-3,
+        pole: [20, 12],
     };
 
     fn relaxed(self) -> Self {
@@ -218,23 +222,21 @@ impl Curve<f64> {
             pieces = cut(kernel, cubics, law, demands);
         }
         let smooth = matches!(kernel, Kernel::Cauchy | Kernel::Gauss);
-        let windowed = matches!(kernel, Kernel::Inverse | Kernel::Squared);
         let mut curve = Self {
             nodes: Vec::new(),
             spans: Vec::new(),
-            rule: if windowed {
-                panels(demands.pole)
-            } else {
-                gauss_legendre(demands.clipped)
-            },
+            rule: gauss_legendre(match kernel {
+                Kernel::Inverse => demands.pole[0],
+                Kernel::Squared => demands.pole[1],
+                _ => demands.clipped,
+            }),
             tapered: law.is_some(),
             stretches: pieces.iter().map(Piece::stretch).collect(),
             single: None,
         };
         if smooth {
-            let rules: Vec<_> = (0..=40).map(gauss_legendre).collect();
             for piece in &pieces {
-                curve.nodes.extend(piece.nodes(kernel, demands, &rules));
+                curve.nodes.extend(piece.nodes(kernel, demands));
             }
         } else {
             curve.spans = pieces.iter().map(|piece| piece.span(demands)).collect();
@@ -309,14 +311,13 @@ impl Piece<'_> {
             v.length() <= 1e-6 * fastest
                 || along > 0.0 && v.cross(middle).length() * cosine <= along * sine
         });
-        let room = match kernel {
-            Kernel::Cauchy | Kernel::Gauss => self.width() <= demands.longest,
-            Kernel::Inverse | Kernel::Squared => {
-                fastest <= 3.0 * slowest || self.length <= 1e-7
-            }
-            _ => true,
+        let (slow, longest) = match kernel {
+            Kernel::Cauchy | Kernel::Gauss => (demands.slow, demands.longest),
+            Kernel::Inverse | Kernel::Squared => (1e-7, f64::INFINITY),
+            _ => (demands.slow, f64::INFINITY),
         };
-        if !(straight && room) {
+        let even = fastest <= 3.0 * slowest || self.length <= slow;
+        if !(straight && even) || longest.is_finite() && self.width() > longest {
             return false;
         }
         let places = chebyshev_points(terms);
@@ -366,7 +367,7 @@ impl Piece<'_> {
         largest
     }
 
-    fn nodes(&self, kernel: Kernel, demands: Demands, rules: &[Vec<[f64; 2]>]) -> Vec<Node<f64>> {
+    fn nodes(&self, kernel: Kernel, demands: Demands) -> Vec<Node<f64>> {
         let half = self.width().min(demands.longest) / 2.0;
         // The error of n nodes is about ρ^−2n, where 1/half = (ρ − 1/ρ)/2 for poles at ±i; for exp(−x²)
         // it is about (half²/4)ⁿ/n!.
@@ -381,14 +382,14 @@ impl Piece<'_> {
         });
         // As many as the speed times the kernel's first terms want.
         let order = (order.unwrap_or(36) + 1).max(demands.terms / 2 + 1);
-        let order = if self.length <= demands.least {
+        let order = if self.length <= demands.least * self.total.min(1.0) {
             1
         } else {
             order
         };
-        rules[order]
-            .iter()
-            .map(|&[t, weight]| {
+        gauss_legendre(order)
+            .into_iter()
+            .map(|[t, weight]| {
                 let [density, thinness] = self.law(t);
                 Node {
                     position: self.at(t).to_array(),
@@ -632,16 +633,4 @@ fn gauss_legendre(n: usize) -> Vec<[f64; 2]> {
             [x, 2.0 / ((1.0 - x * x) * slope * slope)]
         })
         .collect()
-}
-
-/// The rule of several panels of equal length, each with the same number of nodes.
-fn panels([panels, nodes]: [usize; 2]) -> Vec<[f64; 2]> {
-    let half = 1.0 / panels as f64;
-    let rule = gauss_legendre(nodes);
-    let mut all = Vec::new();
-    for i in 0..panels {
-        let middle = half * (2 * i + 1) as f64 - 1.0;
-        all.extend(rule.iter().map(|[x, w]| [middle + half * x, half * w]));
-    }
-    all
 }

@@ -10,13 +10,15 @@
 //! below erfc L of the whole circle's field. The integral runs over the part of the arc within that
 //! window. It has one peak and no other feature, of width L times less than the window's: its
 //! Chebyshev coefficients fall like those of e^(−L²x²), which are `e^(−L²/2)·I_k(L²/2)` for the even
-//! degrees 2k. With n nodes those up to degree 2n−1 count exactly, and the rest is 10⁻⁷ (L = 3.6,
-//! n = 16) or 10⁻¹⁵ (L = 6.3, n = 40) of the peak.
+//! degrees 2k. With n nodes those up to degree 2n−1 count exactly, and the rest is about 10⁻⁷ (L = 3.6,
+//! n = 16) or 10⁻¹⁵ (L = 6.3, n = 40) of the peak. Where the window would be a little wider than a half
+//! circle, what is integrated may reach further out than L: there it is up to 10⁻⁶ and 10⁻¹².
 //!
-//! Azimuths jump by 2π somewhere. An arc of at most a half circle, whose middle is brought to
-//! |u| ≤ π, reaches |u| = 3π/2 at most: the window is either narrower than π/2 and meets it in
-//! one piece, or takes it whole. A longer arc is the sum of its halves, whose terms are positive.
-//! Azimuths are measured from the origin's, so short arcs of huge circles keep their digits.
+//! Azimuths jump by 2π somewhere. An arc of at most a half circle whose middle is at |u| ≤ π
+//! reaches |u| = 3π/2 at most: the window is either narrower than π/2 and meets it in one piece, or
+//! takes it whole. A longer arc is the sum of its halves: all terms are positive, and nothing cancels
+//! in a gap or on the axis. Azimuths are measured from that of the origin, the arc's or the gap's
+//! middle, so short arcs of huge circles and narrow gaps keep their digits.
 //!
 //! Gradient: in the plane, away from the axis and along the circle,
 //! `−2·∫ ((ρ−r) + 2r·sin²(u/2), −2r·sin(u/2)cos(u/2))`, each times the integrand of f; across it `−2zf`.
@@ -36,28 +38,44 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     let radius = R::lift(arc.radius);
     let half_angle = R::lift(arc.half_angle);
 
+    // The field is even in y. With ψ ≥ 0 there are fewer cases.
+    let beside = y.abs();
     let centred = radius + x;
     let rho = (centred * centred + y * y).sqrt();
     // ρ − r, without subtracting large squares.
     let gap = (two * radius * x + x * x + y * y) / (rho + radius).max(tiny);
     // On the axis any azimuth will do, but it must be the same everywhere.
     let axis = rho.lt(tiny);
-    let azimuth = R::select(axis, R::splat(0.0), direction(y, centred));
+    let azimuth = R::select(axis, R::splat(0.0), direction(beside, centred));
     let reciprocal = R::splat(1.0) / rho.max(tiny);
     let outward = [
         R::select(axis, R::splat(1.0), centred * reciprocal),
-        R::select(axis, R::splat(0.0), y * reciprocal),
+        R::select(axis, R::splat(0.0), beside * reciprocal),
     ];
 
     let coupling = two * two * radius * rho;
     let reach = window(coupling);
     let sums = if arc.side.lane(0) > 0.0 {
-        piece(coupling, reach, -azimuth, half_angle)
+        piece(coupling, reach, -azimuth, [-half_angle, half_angle])
     } else {
-        let half = R::splat(0.5) * half_angle;
-        let middle = R::splat(PI) - half;
-        let one = piece(coupling, reach, nearest_turn(middle - azimuth), half);
-        let other = piece(coupling, reach, nearest_turn(-middle - azimuth), half);
+        // Azimuths count from the gap's middle. The halves meet opposite, at the same bits of u;
+        // the other ends keep the digits of a small gap.
+        let zero = R::splat(0.0);
+        let half_gap = R::lift(direction(
+            arc.sine,
+            <R::Scalar as Real>::splat(1.0) - arc.versine,
+        ));
+        let seam = R::splat(PI) - azimuth;
+        let one = piece(coupling, reach, zero, [half_gap - azimuth, seam]);
+        let end = -half_gap - azimuth;
+        let turn = R::splat(TAU);
+        // The middle of the other half, (seam + end + 2π)/2, beyond π?
+        let wraps = zero.lt(seam + end);
+        let other = [
+            R::select(wraps, seam - turn, seam),
+            R::select(wraps, end, end + turn),
+        ];
+        let other = piece(coupling, reach, zero, other);
         [one[0] + other[0], one[1] + other[1], one[2] + other[2]]
     };
 
@@ -69,19 +87,10 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
         value,
         gradient: [
             radial * outward[0] - tangential * outward[1],
-            radial * outward[1] + tangential * outward[0],
+            y.sign_to(radial * outward[1] + tangential * outward[0]),
             -two * z * value,
         ],
     }
-}
-
-/// An angle in (−2π, 2π) brought to [−π, π].
-#[inline(always)]
-fn nearest_turn<R: Real>(angle: R) -> R {
-    let pi = R::splat(PI);
-    let turn = R::splat(TAU);
-    let angle = R::select(pi.lt(angle), angle - turn, angle);
-    R::select(angle.lt(-pi), angle + turn, angle)
 }
 
 /// Half the window: the angle w of `√coupling·sin(w/2) = L`, or a little more; past all if that
@@ -100,19 +109,22 @@ fn window<R: Real>(coupling: R) -> R {
 }
 
 /// The integrals of `e^(−coupling·s²)·(1, s², s·c)`, s and c the sine and cosine of u/2, over
-/// `middle ± half` within ± `reach`.
+/// `from + limits` within ± `reach`; `from` apart, lest a short piece lose its length's digits.
 #[inline(always)]
-fn piece<R: Real>(coupling: R, reach: R, middle: R, half: R) -> [R; 3] {
+fn piece<R: Real>(coupling: R, reach: R, from: R, limits: [R; 2]) -> [R; 3] {
     let zero = R::splat(0.0);
-    // The limits from the middle, lest a short piece lose its length's digits.
-    let low = (-half).max(-reach - middle);
-    let high = half.min(reach - middle);
+    let low = limits[0].max(-reach - from);
+    let high = limits[1].min(reach - from);
     // Mean and half the difference of the limits of u/2.
     let quarter = R::splat(0.25);
-    let mean = R::splat(0.5) * middle + quarter * (high + low);
-    let (mean_sine, mean_cosine) = mean.sin_cos();
+    let mean = R::splat(0.5) * from + quarter * (high + low);
     let spread = quarter * (high - low).max(zero);
     let mut sums = [zero; 3];
+    if !R::any(zero.lt(spread)) {
+        return sums;
+    }
+    // |u| ≤ 3π/2: a quarter of the mean is in the first octant, and twice doubled again.
+    let (mean_sine, mean_cosine) = double(double((quarter * mean).sin_cos_octant()));
     for &(node, weight) in legendre::choose::<R>(&SINGLE, &DOUBLE) {
         // At most π/4, since the piece is at most a half circle. The two nodes ± share it.
         let (sine, cosine) = (spread * R::splat(node)).sin_cos_octant();
@@ -127,6 +139,14 @@ fn piece<R: Real>(coupling: R, reach: R, middle: R, half: R) -> [R; 3] {
             sums[2] = sums[2] + e * (s * c);
         }
     }
+    // Adding 0 makes 0 of −0, as where all was left out.
     let length = spread + spread;
-    sums.map(|sum| sum * length)
+    sums.map(|sum| sum * length + zero)
+}
+
+/// Sine and cosine of twice the angle.
+#[inline(always)]
+fn double<R: Real>((sine, cosine): (R, R)) -> (R, R) {
+    let twice = sine + sine;
+    (twice * cosine, R::splat(1.0) - twice * sine)
 }

@@ -11,10 +11,10 @@
 //! Nothing is split at the azimuth and no term is subtracted. Where C is negative
 //! `M = ½Δ sin²α/(√(D₁D₂) − C)`; a closed circle has M = 0, a complete integral.
 //!
-//! Gradient, by the chain rule, where the derivative of R_F by its first argument is what the other
-//! two leave of its sum of derivatives, which is elementary:
-//! `∇f = −(2rs/3)·[3∇M/√(M(M+s²n)(M+s²m)) + R_n·s²∇n + R_m·s²∇m]`, `R_n = R_D(M, M+s²m, M+s²n)` and R_m the
-//! other. `∇M/√M` is computed as a whole, since M may be 0.
+//! Gradient, by the chain rule. M moves all three arguments at once, and the sum of R_F's three derivatives
+//! is elementary, so that two R_D are enough:
+//! `∇f = −(2rs/3)·[3∇M/√(M(M+s²n)(M+s²m)) + R_n·s²∇n + R_m·s²∇m]`, `R_n = R_D(M, M+s²m, M+s²n)`,
+//! `R_m = R_D(M, M+s²n, M+s²m)`. `∇M/√M` is computed as a whole, since M may be 0.
 use crate::bone::Arc;
 use crate::carlson::elliptic;
 use crate::squared::arc::Places;
@@ -39,6 +39,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let s = s2.sqrt();
 
     let product = (places.ends[0] * places.ends[1]).sqrt();
+    // δ < π/2
     let acute = zero.lt(places.cosine);
     let sine = R::lift(arc.sine);
     let twice = R::select(acute, product + places.cosine, product - places.cosine);

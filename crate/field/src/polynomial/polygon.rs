@@ -19,10 +19,10 @@
 //! - where the whole polygon is inside the disc, Q and g are counted from their values at the polygon's
 //!   middle, which add `2·area·Q(v₀)` and nothing;
 //! - where it is not, but all parts inside are far from the foot for their length, Φ is counted from
-//!   its value outside: the sum is `2πW·M·Q(0) − Σ h·∫ Ψ/s² dt`, where W is how often the polygon winds around
-//!   the foot and `Ψ = c₂v³/6 + c₃v⁴/8` vanishes towards the rim. There the same four nodes are right to
-//!   2·10⁻⁷ of Ψ: a part's half length is at most a quarter of its distance d from the pole of 1/s², so the
-//!   error falls as (4+√15)⁻ⁿ, n = 8. That is for single precision; double has digits to lose;
+//!   its value outside: the sum is `2πW·M·Q(0) − Σ h·∫ Ψ/s² dt`, where W is how often the polygon winds
+//!   around the foot and `Ψ = c₂v³/6 + c₃v⁴/8` vanishes towards the rim. With a part's half length at
+//!   most 1/k of its distance from the foot, where 1/s² has its pole, the error of n nodes is below
+//!   `(2k)⁻²ⁿ`, and so that of the same four 2·10⁻⁷ of Ψ for k = 4 (single precision) and 10⁻¹⁷ for 64;
 //! - where no edge meets the disc, the angles, which add up to 2πW, are rounded to that: outside the
 //!   kernel's reach the field is 0 to the last bit.
 use super::GAUSS4;
@@ -55,10 +55,11 @@ pub fn jet<R: Real>([c2, c3]: [f64; 2], edges: &[Edge<R::Scalar>], [x, y, z]: [R
     let tiny = R::splat(1e-30);
     let [d2, d3] = [c2 + c2, R::splat(3.0) * c3];
     let [sixth, eighth, quarter] = [1.0 / 6.0, 0.125, 0.25].map(R::splat);
+    let far_enough = if R::DOUBLE { 64.0 } else { 4.0 };
     // Sums over edges of Q − Q₀ and the like.
     let (mut value, mut slope, mut linear, mut angle) = (zero, zero, zero, zero);
     let mut in_plane = [zero; 2];
-    // The sums over Ψ, the angle at which the parts inside are seen, and whether all are far.
+    // Sums of Ψ and the like, the angle at which the parts inside are seen, and whether all are far.
     let (mut rim, mut rim1, mut seen, mut far) = (zero, zero, zero, one);
     for edge in edges {
         let part = Clipped::new(edge, disc2, x, y);
@@ -83,26 +84,22 @@ pub fn jet<R: Real>([c2, c3]: [f64; 2], edges: &[Edge<R::Scalar>], [x, y, z]: [R
                 q = q + weighted * (c2 * sixth * m_sum + c3 * eighth * (disc2 * m_sum + squares));
                 q1 = q1 + weighted * (c2 * (R::splat(0.5)) + c3 * R::splat(0.5) * m_sum);
                 g = g + weighted * (c2 * sum + c3 * squares);
-                if !R::DOUBLE {
-                    let near = R::splat(weight) / (part.h * part.h + t * t).max(tiny);
-                    let square = v * v * near;
-                    psi = psi + square * v * (c2 * sixth + c3 * eighth * v);
-                    psi1 = psi1 + square * (d2 * quarter + d3 * sixth * v);
-                    sight = sight + near;
-                }
+                let near = R::splat(weight) / (part.h * part.h + t * t).max(tiny);
+                let square = v * v * near;
+                psi = psi + square * v * (c2 * sixth + c3 * eighth * v);
+                psi1 = psi1 + square * (d2 * quarter + d3 * sixth * v);
+                sight = sight + near;
             }
         }
-        if !R::DOUBLE {
-            let scale = part.h * part.half;
-            rim = rim + scale * psi;
-            rim1 = rim1 + scale * psi1;
-            seen = seen + scale * sight;
-            let away = part.h * part.h + part.middle * part.middle;
-            let short = (R::splat(16.0) * part.half * part.half).lt(away);
-            far = far.min(R::select(short, one, zero));
-        }
-        value = value + part.h * part.half * q;
-        slope = slope + part.h * part.half * q1;
+        let scale = part.h * part.half;
+        rim = rim + scale * psi;
+        rim1 = rim1 + scale * psi1;
+        seen = seen + scale * sight;
+        let away = part.h * part.h + part.middle * part.middle;
+        let short = (R::splat(far_enough * far_enough) * part.half * part.half).lt(away);
+        far = far.min(R::select(short, one, zero));
+        value = value + scale * q;
+        slope = slope + scale * q1;
         linear = linear + part.h * length;
         angle = angle + part.outside(edge);
         let [ax, ay] = edge.along.map(R::lift);
@@ -118,14 +115,11 @@ pub fn jet<R: Real>([c2, c3]: [f64; 2], edges: &[Edge<R::Scalar>], [x, y, z]: [R
     let q = c2 * sixth * squares + c3 * eighth * cubes;
     let q1 = d2 * quarter * (disc2 + middle) + d3 * sixth * squares;
     let weight = R::select(inside, double_area, disc2 * angle + linear);
-    let mut value = value + weight * q;
-    let mut slope = slope + weight * q1;
-    if !R::DOUBLE {
-        let around = disc2 * whole_turns(angle + seen);
-        let rim_serves = R::both(zero.lt(far), middle.lt(tiny));
-        value = R::select(rim_serves, around * q - rim, value);
-        slope = R::select(rim_serves, around * q1 - rim1, slope);
-    }
+    // Or, counted from outside.
+    let around = disc2 * whole_turns(angle + seen);
+    let outer = R::both(zero.lt(far), middle.lt(tiny));
+    let value = R::select(outer, around * q - rim, value + weight * q);
+    let slope = R::select(outer, around * q1 - rim1, slope + weight * q1);
     Jet {
         value,
         gradient: [in_plane[0], in_plane[1], -two * z * slope],
@@ -133,27 +127,27 @@ pub fn jet<R: Real>([c2, c3]: [f64; 2], edges: &[Edge<R::Scalar>], [x, y, z]: [R
 }
 
 /// An edge and its part inside the disc around the foot.
-struct Clipped<R> {
+pub(crate) struct Clipped<R> {
     /// The foot's place along the edge's direction, and across it.
-    along: R,
-    inward: R,
+    pub along: R,
+    pub inward: R,
     /// The edge's start, from the foot of the perpendicular.
-    start: R,
+    pub start: R,
     /// The foot's signed distance from the edge's line.
-    h: R,
+    pub h: R,
     /// Half the disc's chord on that line, and its square.
-    reach: R,
-    reach2: R,
+    pub reach: R,
+    pub reach2: R,
     /// The part's middle, from the foot of the perpendicular, and half its length.
-    middle: R,
-    half: R,
+    pub middle: R,
+    pub half: R,
     /// 1 if the part is the whole edge, else 0.
-    whole: R,
+    pub whole: R,
 }
 
 impl<R: Real> Clipped<R> {
     #[inline(always)]
-    fn new(edge: &Edge<R::Scalar>, disc2: R, x: R, y: R) -> Self {
+    pub(crate) fn new(edge: &Edge<R::Scalar>, disc2: R, x: R, y: R) -> Self {
         let zero = R::splat(0.0);
         let one = R::splat(1.0);
         let half = R::splat(0.5);
@@ -183,7 +177,7 @@ impl<R: Real> Clipped<R> {
 
     /// The angle at which the foot sees the parts outside.
     #[inline(always)]
-    fn outside(&self, edge: &Edge<R::Scalar>) -> R {
+    pub(crate) fn outside(&self, edge: &Edge<R::Scalar>) -> R {
         let zero = R::splat(0.0);
         let one = R::splat(1.0);
         let end = self.start + R::lift(edge.length);

@@ -82,6 +82,11 @@ impl Real for f64 {
         a && b
     }
 
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+
     /// Chebyshev fit, error below 3·10⁻¹⁷.
     #[inline(always)]
     fn arctangent_tail(square: Self) -> Self {

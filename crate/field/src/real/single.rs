@@ -84,6 +84,11 @@ impl Real for f32 {
     }
 
     #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+
+    #[inline(always)]
     fn arctangent_tail(square: Self) -> Self {
         arctangent_tail(square)
     }
@@ -149,7 +154,9 @@ pub(super) trait Binary: Real {
 pub(super) fn exp<R: Binary>(x: R) -> R {
     let low = R::splat(-87.0);
     let cut = x.max(low).min(R::splat(88.0));
-    let n = (cut * R::splat(core::f64::consts::LOG2_E) + R::splat(0.5)).floor();
+    // Adding 1.5·2²³ rounds to a whole number, faster than `floor` where processors lack that.
+    let whole = R::splat(12_582_912.0);
+    let n = (cut * R::splat(core::f64::consts::LOG2_E) + whole) - whole;
     let r = cut - n * R::splat(0.693_359_375);
     let r = r - n * R::splat(-2.121_944_400_546_905_8e-4);
     let power = R::splat(1.0)

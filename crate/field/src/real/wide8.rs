@@ -73,6 +73,11 @@ impl Real for f32x8 {
     }
 
     #[inline(always)]
+    fn any(mask: Self) -> bool {
+        mask.any()
+    }
+
+    #[inline(always)]
     fn arctangent_tail(square: Self) -> Self {
         single::arctangent_tail(square)
     }

@@ -160,7 +160,7 @@ impl Random {
                         .collect()
                 };
                 let mut rings = vec![ring(0.5, 1.0, count)];
-                if count % 2 == 0 {
+                if count.is_multiple_of(2) {
                     rings.push(ring(0.1, 0.3, 3));
                 }
                 Skeleton::Polygon { rings }

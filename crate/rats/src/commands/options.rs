@@ -67,6 +67,12 @@ pub static SURFACE: &[OptionSpec] = &[
         "multiplies the field; negative carves",
     ),
     option(
+        "restriction",
+        "f",
+        "0",
+        "share of a triangle's field taken away at its edges: 1 creases a mesh (ours)",
+    ),
+    option(
         "skip",
         "pixel | shadow | reflected | transmitted …",
         "",

@@ -114,6 +114,9 @@ fn field<'a>(
                 material.end_blobbiness = Some(read.number("the blobbiness at the other end")?);
             }
         }
+        "restriction" => {
+            material.restriction = read.number_in("the restriction", 0.0, 1.0)?;
+        }
         "depth" => material.depth = read.number_in("the depth", 0.0, MAX_MAGNITUDE)?,
         "strength" => material.strength = read.number("the strength")?,
         "skip" => skip(read, span, fields)?,

@@ -91,6 +91,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
                 scale: [options.scale.x, options.scale.y],
                 bounds: options.bounds,
                 times: options.times,
+                restriction: 0.0,
             });
             for (what, span) in options.not_drawn {
                 not_drawn(run, span, format!("`{what}` of a strength"));
