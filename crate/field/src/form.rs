@@ -2,12 +2,15 @@
 //!
 //! | | point | segment | arc | triangle, polygon | plane | curve |
 //! |---|---|---|---|---|---|---|
-//! | cauchy | closed | closed | closed | closed | closed | Gauss–Legendre |
-//! | gauss | closed | erf | Gauss–Legendre | edge sum of Gauss–Legendre | closed | Gauss–Legendre |
-//! | inverse | closed | closed | Carlson | closed | windowed | Gauss–Legendre |
-//! | squared | closed | closed | closed | edge sum | windowed | Gauss–Legendre |
-//! | metaballs | closed | closed | Carlson | closed | closed | Gauss–Legendre |
-//! | soft, quartic, compact6 | closed | closed | closed | closed | closed | Gauss–Legendre |
+//! | cauchy | closed | closed | closed | closed | closed | G–L |
+//! | gauss | closed | closed (erf) | G–L | closed (Owen's T, by recurrence) | closed | G–L |
+//! | inverse | closed | closed | elliptic (Carlson) | closed | closed, windowed | G–L |
+//! | squared | closed | closed | closed | closed (Clausen) | closed, windowed | G–L |
+//! | metaballs | closed | closed | closed inside, G–L outside | closed inside, G–L outside | closed | G–L |
+//! | soft, quartic, compact6 | closed | closed (by exact quadrature) | closed | closed | closed | G–L |
+//!
+//! G–L: Gauss–Legendre integrals, whose errors stand in the cells' own files. BENCHMARKS.md lists each
+//! cell's cost and the worst error of single precision.
 use crate::bone::Bone;
 use crate::{
     Jet, Kernel, Real, cauchy, curve, gauss, inverse, metaballs, plane, point, polynomial, squared,

@@ -153,9 +153,9 @@ fn page(native: &[Vec<String>], wasm: &[Vec<String>]) -> Result<String> {
     }
     writeln!(
         out,
-        "\n## Fields: worst relative error of single precision\n\nAgainst double precision, where the \
-         field is at least T/1000, on random primitives of radius 1 that are a hundredth to ten long, \
-         less what rounding their coordinates explains. The test `single_precision_is_as_exact_as_listed` \
+        "\n## Fields: worst relative error of single precision\n\nAgainst double precision, at points 0.05 or more \
+         from the skeleton where the field is at least T/10, of random primitives of radius 1 that are a \
+         hundredth to ten long and no needles. The test `single_precision_is_as_exact_as_listed` \
          bounds every cell. The same bits natively and as wasm.\n"
     )?;
     table(&mut out, |kernel, kind| {

@@ -16,7 +16,8 @@
 //!
 //! Elsewhere q* = z², at the foot.
 //!
-//! The pieces are integrated by a Gauss–Legendre rule of n nodes: in single precision 6, in double 20. An
+//! The pieces are integrated by a Gauss–Legendre rule of n nodes: in single precision 6 (the middle one, a
+//! polynomial or over a far pole, 4), in double 20. An
 //! integrand's singularities are at u = 0 and, where parts are far, s = 0, so its error is
 //! O(ϱ⁻²ⁿ) with the sum ϱ of half axes of the largest ellipse around the piece that is clear of these. The
 //! worst piece, from u = ⅓ straight out to u = 1, has ϱ = 2.4, and an amplitude (of what is
@@ -61,8 +62,9 @@ pub fn jet<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
     let scale = one / from_foot.max(tiny);
     let mean = R::select(at_middle, lift * scale, zero);
     let mean1 = R::select(at_middle, -half * drop * scale, zero);
-    // H at the reference, of which the gradient is in need at the foot only.
-    let base = R::select(far, zero, foot.height());
+    // H at the reference. Around a whole polygon a constant adds nothing to the gradient.
+    let whole = zero.lt(inside);
+    let base = R::select(far, zero, R::select(whole, zero, foot.height()));
 
     let (mut value, mut slope, mut angle, mut seen) = (zero, zero, zero, zero);
     let mut in_plane = [zero; 2];
