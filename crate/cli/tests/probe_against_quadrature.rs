@@ -160,3 +160,93 @@ fn probe_agrees_with_quadrature_on_random_scenes() {
         }
     }
 }
+
+/// One shape of every kind of skeleton, as the language writes it.
+fn shape_of(kind: &str, random: &mut Random) -> String {
+    let mut point = || words(random.point(1.0));
+    match kind {
+        "sphere" => format!("sphere m 0.4 {}", point()),
+        "cylinder" => format!("cylinder m 0.4 {} {}", point(), point()),
+        "arc" => format!(
+            "arc m 0.9 0.4 {} {} 20 {}",
+            point(),
+            point(),
+            random.within(20.0, 360.0)
+        ),
+        "triangle" => format!("triangle m {} {} {}", point(), point(), point()),
+        "polygon" => {
+            // A star with a hole, tilted.
+            let center = random.point(0.3);
+            let (x, y) = (DVec3::new(1.0, 0.2, 0.1), DVec3::new(-0.1, 0.9, -0.3));
+            let mut ring = |low: f64, high: f64, count: usize| -> String {
+                (0..count)
+                    .map(|i| {
+                        let angle = std::f64::consts::TAU * i as f64 / count as f64;
+                        let (sine, cosine) = libm::sincos(angle);
+                        let corner = center + (x * cosine + y * sine) * random.within(low, high);
+                        words(corner) + ", "
+                    })
+                    .collect()
+            };
+            let (outer, inner) = (ring(0.7, 1.2, 7), ring(0.2, 0.4, 4));
+            format!("polygon {{ m {outer} hole {inner} }}")
+        }
+        "curve" => format!(
+            "curve m 0.4 {} {} {} {}",
+            point(),
+            point(),
+            point(),
+            point()
+        ),
+        _ => format!("plane m {} {}", point(), point()),
+    }
+}
+
+/// Every kernel on every kind of skeleton: double precision to 10⁻⁹, single to 10⁻⁴ (of the field, or of
+/// what matters of it).
+#[test]
+fn probe_agrees_with_quadrature_in_every_cell() {
+    let folder = Folder::new("chart");
+    let kinds = [
+        "sphere", "cylinder", "arc", "triangle", "polygon", "curve", "plane",
+    ];
+    for kernel in field::Kernel::ALL.map(field::Kernel::name) {
+        for (number, kind) in kinds.into_iter().enumerate() {
+            let mut random = Random(100 + number as u64);
+            let text = format!(
+                "surface m diffuse White blob -1.5 radius 0.4 kernel {kernel}\n{}\n",
+                shape_of(kind, &mut random)
+            );
+            let file = folder.write(&format!("{kernel}-{kind}.rat"), &text);
+            let project = rats::Project {
+                files: vec![rats::File {
+                    name: "chart.rat".into(),
+                    text,
+                }],
+            };
+            let surface = rats::compile(&project).scene.soft_surface();
+            let [primitive] = &surface.field.primitives[..] else {
+                panic!("{kernel} {kind}: one primitive");
+            };
+            assert_eq!(primitive.kernel.name(), kernel);
+            let points: Vec<DVec3> = (0..30).map(|_| random.point(1.6)).collect();
+            let input: String = points.iter().map(|&point| words(point) + "\n").collect();
+            for (precision, bound, least) in [("f64", 1e-9, 1e-3), ("f32", 1e-4, 0.1)] {
+                let output = sinew(
+                    &["probe", &file, "--points", "-", "--precision", precision],
+                    &input,
+                );
+                for (point, line) in points.iter().zip(printed(&output).lines()) {
+                    let line: Value = serde_json::from_str(line).expect("JSON");
+                    let truth = quadrature::value(primitive, *point);
+                    let value = line["field"].as_f64().expect("a number");
+                    let error = (value - truth).abs() / truth.abs().max(least);
+                    assert!(
+                        error <= bound,
+                        "{kernel} {kind}, {precision}, {point}: {value} against {truth}, error {error:e}"
+                    );
+                }
+            }
+        }
+    }
+}

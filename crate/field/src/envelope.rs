@@ -106,8 +106,8 @@ fn index(u: f64) -> usize {
 }
 
 fn table(kernel: Kernel) -> &'static [Roughness] {
-    const NONE: OnceLock<Vec<Roughness>> = OnceLock::new();
-    static TABLES: [OnceLock<Vec<Roughness>>; Kernel::ALL.len()] = [NONE; Kernel::ALL.len()];
+    static TABLES: [OnceLock<Vec<Roughness>>; Kernel::ALL.len()] =
+        [const { OnceLock::new() }; Kernel::ALL.len()];
     TABLES[kernel as usize].get_or_init(|| tabulate(kernel))
 }
 

@@ -576,13 +576,64 @@ fn moved(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton
     }
 }
 
+/// A point, a plane and a line that is as good as infinite have F = T at a radius from them, and for
+/// compact kernels nothing at the depth of influence.
+fn radius_in_isolation(kernel: Kernel, kind: Kind) {
+    let mut random = Random::new(107);
+    for _ in 0..40 {
+        let radius = random.decades(-1.0, 1.0);
+        let shaping = Shaping {
+            radius,
+            kernel,
+            ..shaping(1.0, random.decades(-1.0, 1.0))
+        };
+        // Of the inverse kernel, a line of ten radii either way stands for an infinite one.
+        let reach = if kernel == Kernel::Inverse { 10.0 } else { 1e5 };
+        let skeleton = match kind {
+            Kind::Point => Skeleton::Point {
+                center: DVec3::ZERO,
+            },
+            Kind::Plane => Skeleton::Plane {
+                point: DVec3::ZERO,
+                normal: DVec3::Y,
+            },
+            Kind::Segment => Skeleton::Segment {
+                base: DVec3::X * (reach * radius),
+                apex: DVec3::NEG_X * (reach * radius),
+            },
+            _ => continue,
+        };
+        let primitive = primitive(skeleton, &shaping, None);
+        let (value, _) = jet::<f64>(&primitive, DVec3::Y * radius);
+        let tolerance = if kernel == Kernel::Squared {
+            1e-4
+        } else {
+            1e-9
+        };
+        assert!((value - 1.0).abs() < tolerance, "{value}: {primitive:?}");
+        if kind == Kind::Point {
+            // The radius that follows from a depth of influence is the one that has it.
+            let depth = if kernel.is_compact() {
+                1.0 / primitive.width
+            } else {
+                primitive.influence
+            };
+            let found = shaping.radius_of_depth(depth).expect("a radius");
+            assert!(
+                (found - radius).abs() < 1e-6 * radius,
+                "{found} instead of {radius}: {primitive:?}"
+            );
+        }
+    }
+}
+
 /// Every check on every kind of skeleton, one test each, in a module named after the kernel.
 macro_rules! chart {
     ($($module:ident: $kernel:expr;)*) => {$(
         mod $module {
             use super::*;
             chart!(@checks $kernel, matches_quadrature, single_matches_double, gradient_is_the_derivative,
-                superposition, rigid_motion_and_scale, falls_to_nothing, degenerate_geometry);
+                superposition, rigid_motion_and_scale, falls_to_nothing, degenerate_geometry, radius_in_isolation);
         }
     )*};
     (@checks $kernel:expr, $($check:ident),*) => {
