@@ -23,8 +23,11 @@ pub struct Bound {
     /// Length and radius of an arc in kernel widths; 0 for others.
     coil: [f64; 2],
     kernel: Kernel,
-    /// The kernel's width parameter.
+    /// The kernel's width parameter: the smallest, of a tapered bone, since kernels and envelopes fall
+    /// with the width times the distance.
     width: f64,
+    /// The largest width parameter, by which derivatives grow.
+    finest: f64,
     /// |height| times the skeleton's measure (1 for points, infinite for planes): the field's size
     /// is that times the kernel if all of the skeleton is at one distance.
     whole: f64,
@@ -131,7 +134,8 @@ impl Bound {
                 *normal = normal.try_normalize().unwrap_or(DVec3::Z);
             }
         }
-        let (kernel, width) = (primitive.kernel, primitive.width);
+        let (kernel, finest) = (primitive.kernel, primitive.width);
+        let mut width = finest;
         let (low, high) = primitive.profile.map_or((1.0, 1.0), |p| {
             let [a, b] = p.bounds.map(|b| b * p.times);
             (a.min(b), a.max(b))
@@ -141,10 +145,19 @@ impl Bound {
         } else {
             (low, high)
         };
-        let height = primitive.height.abs() * low.abs().max(high.abs());
+        let mut height = primitive.height.abs() * low.abs().max(high.abs());
+        let mut whole = height * measure;
+        if let Some([mass, density, thinness]) = primitive.taper_bounds() {
+            // All of the bone as if it had the smallest width; lines as if the largest density, too.
+            whole = height * mass;
+            height *= density;
+            width *= thinness.sqrt();
+            coil = [0.0; 2];
+        }
         let endless = match (dimension, &skeleton) {
             // A curve may coil, so that it is nowhere near a straight line.
             (_, Skeleton::Curve { .. }) => f64::INFINITY,
+            (_, Skeleton::Arc { .. }) if primitive.tapered.is_some() => f64::INFINITY,
             (0, _) => 1.0,
             (1, _) => 1.0 / width,
             _ => 1.0 / (width * width),
@@ -169,7 +182,8 @@ impl Bound {
             coil,
             kernel,
             width,
-            whole: height * measure,
+            finest,
+            whole,
             endless: height * endless,
             extent,
             middle,
@@ -229,7 +243,7 @@ impl Bound {
             Skeleton::Plane { point, normal } => (center - *point).dot(*normal).abs(),
         };
         let within = self.kernel.is_compact()
-            && (center.distance(self.middle) + radius + self.extent) * self.width <= 1.0;
+            && (center.distance(self.middle) + radius + self.extent) * self.finest <= 1.0;
         Nearness {
             distance: (distance - radius).max(0.0),
             within,
@@ -259,8 +273,8 @@ impl Bound {
     #[inline]
     #[must_use]
     pub fn estimate(&self, near: Nearness, length: &SpanLength) -> Estimate {
-        let (kernel, width) = (self.kernel, self.width);
-        let u = near.distance * width;
+        let (kernel, width) = (self.kernel, self.finest);
+        let u = near.distance * self.width;
         let magnitude = self.magnitude(near);
         // Derivatives by length instead of by kernel widths.
         let order = envelope::order(kernel);

@@ -119,7 +119,11 @@ pub(crate) fn depth(form: &Form<f64>, factor: f64, level: f64) -> f64 {
         return 0.0;
     }
     if form.kernel.is_compact() {
-        return 1.0;
+        // A tapered bone's unit is the support where that is smallest.
+        return match &form.bone {
+            Bone::Curve(curve) => curve.support(),
+            _ => 1.0,
+        };
     }
     let mut outside = 1.0;
     while !below(outside) {

@@ -1,6 +1,7 @@
 //! A skeletal element with its kernel: one term of the field.
+use crate::bone::Bone;
 use crate::real::Scalar;
-use crate::term::{Prepared, Term, place};
+use crate::term::{Prepared, Term, place, tapered_curve};
 use crate::waves::Waves;
 use crate::{AlongRay, Kernel, Profile, Real, Shaping, Skeleton, THRESHOLD};
 use crate::{bounds, reach};
@@ -50,20 +51,23 @@ impl<R: Real> Jet<R> {
 /// One term of the field: a skeleton convolved with a kernel.
 ///
 /// `f(p) = height · ∫ h(|p−q|) dq` over the skeleton (for a point: `height·h`), times the profile.
+/// With a [`Taper`](crate::Taper) height and width depend on q.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Primitive {
     /// The bone.
     pub skeleton: Skeleton,
     /// The kernel.
     pub kernel: Kernel,
-    /// The kernel's width parameter s, an inverse length.
+    /// The kernel's width parameter s, an inverse length; the largest, if it varies.
     pub width: f64,
-    /// The factor on the whole: normalisation times strength.
+    /// The factor on the whole: normalisation times strength; at the start, if it varies.
     pub height: f64,
     /// Depth of influence: beyond this distance from the skeleton |f| < ε·T.
     pub influence: f64,
     /// The profile, if any.
     pub profile: Option<Profile>,
+    /// The shaping, if width and height vary along the skeleton.
+    pub tapered: Option<Shaping>,
     pub(crate) prepared: Prepared,
 }
 
@@ -71,13 +75,25 @@ pub struct Primitive {
 /// them are numbers of single precision.
 const LARGEST: f64 = 1e8;
 
+/// The largest width parameter along a tapered bone. It is smooth, and at an end unless radius and
+/// blobbiness work against each other: then a sample is near enough. `None` if there is no flesh
+/// somewhere.
+fn largest_width(shaping: &Shaping) -> Option<f64> {
+    (0..=64).try_fold(0.0, |largest: f64, i| {
+        Some(largest.max(shaping.at(f64::from(i) / 64.0).width()?))
+    })
+}
+
 impl Primitive {
     /// `None` if the shaping gives no flesh: radius, blobbiness or strength zero or not finite, the
     /// radius negative, the skeleton not finite, or larger than 10⁸ kernel widths.
     #[must_use]
     pub fn new(skeleton: Skeleton, shaping: &Shaping, profile: Option<Profile>) -> Option<Self> {
-        let width = shaping.width()?;
-        let height = shaping.height(&skeleton)?;
+        let tapered = shaping.varies_along(&skeleton).then_some(*shaping);
+        let (width, height) = match tapered {
+            None => (shaping.width()?, shaping.height(&skeleton)?),
+            Some(shaping) => (largest_width(&shaping)?, shaping.at(0.0).height(&skeleton)?),
+        };
         let peak = profile.map_or(1.0, |p| p.largest());
         let usable = skeleton.is_finite() && peak.is_finite() && height != 0.0;
         let size = match &skeleton {
@@ -92,7 +108,7 @@ impl Primitive {
         if !usable || size * width > LARGEST {
             return None;
         }
-        let (frame, form) = place(&skeleton, shaping.kernel, width);
+        let (frame, mut form) = place(&skeleton, shaping.kernel, width);
         let amplitude = match skeleton.dimension() {
             0 => height,
             1 => height / width,
@@ -101,9 +117,20 @@ impl Primitive {
         if !amplitude.is_finite() {
             return None;
         }
+        // A profile is read off the skeleton's own form, tapered or not.
+        let waves = profile.map(|profile| Waves::new(&profile, &form.bone));
+        if let Some(shaping) = tapered {
+            let law = |fraction: f64| {
+                let here = shaping.at(fraction);
+                let (s, h) = (here.width(), here.height(&skeleton));
+                let thin = s.unwrap_or(width) / width;
+                [h.unwrap_or(height) / height, thin * thin]
+            };
+            let kernel = shaping.kernel;
+            form.bone = Bone::Curve(tapered_curve(&skeleton, &frame, kernel, &law));
+        }
         let level = THRESHOLD * shaping.influence.max(f64::MIN_POSITIVE);
         let influence = bounds::depth(&form, amplitude.abs() * peak, level) / width;
-        let waves = profile.map(|profile| Waves::new(&profile, &form.bone));
         Some(Self {
             skeleton,
             kernel: shaping.kernel,
@@ -111,6 +138,7 @@ impl Primitive {
             height,
             influence,
             profile,
+            tapered,
             prepared: Prepared::new(Term {
                 frame,
                 form,
@@ -163,6 +191,18 @@ impl Primitive {
         let peak = self.profile.map_or(1.0, |p| p.largest());
         let distance = (distance * self.width).max(0.0);
         term.amplitude.abs() * peak * bounds::bound_at(&term.form, distance)
+    }
+
+    /// Of a tapered bone: its length, weighted with the height in units of `height`; the largest such
+    /// height; and the smallest square of the width parameter in units of `width`'s. The first two
+    /// from above, the third from below.
+    pub(crate) fn taper_bounds(&self) -> Option<[f64; 3]> {
+        self.tapered?;
+        let Bone::Curve(curve) = &self.prepared.double.form.bone else {
+            return None;
+        };
+        let [mass, density, thinness] = curve.extremes();
+        Some([mass / self.width, density, thinness])
     }
 
     /// The field along the ray `origin + t·direction`, ready to be evaluated often.

@@ -2,7 +2,7 @@
 //!
 //! [`value`] integrates the kernel over the skeleton adaptively, and shares nothing with the closed
 //! forms but the definition of the field. It is slow (10² to 10⁵ kernel evaluations).
-use crate::{Field, Kernel, Primitive, Profile, Skeleton, Wave};
+use crate::{Field, Kernel, Primitive, Profile, Shaping, Skeleton, Wave};
 use glam::DVec3;
 
 /// Nodes in [0, 1) and weights of Kronrod's 15-point rule, and weights of the 7-point Gauss rule
@@ -127,7 +127,11 @@ pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
     let factor = primitive
         .profile
         .map_or(1.0, |profile| factor(&profile, &primitive.skeleton, point));
-    primitive.height * factor * over(primitive, &primitive.skeleton, point)
+    factor
+        * match &primitive.tapered {
+            Some(shaping) => over_tapered(primitive, shaping, point),
+            None => primitive.height * over(primitive, &primitive.skeleton, point),
+        }
 }
 
 /// The kernel's integral over a skeleton.
@@ -250,50 +254,7 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
             let c = crate::skeleton::cubic(control);
             let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
             let speed = |t: f64| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
-            let distance = |t: f64| at(t).distance(point);
-            // Panels around every place where the distance has a minimum, and where it passes a kink.
-            const SAMPLES: usize = 400;
-            let place = |i: usize| i as f64 / SAMPLES as f64;
-            let mut breaks = Vec::new();
-            for i in 0..SAMPLES {
-                let (a, b) = (place(i), place(i + 1));
-                let before = distance(place(i.saturating_sub(1)));
-                if distance(a) <= before && distance(a) <= distance(b) {
-                    let (mut low, mut high) = (place(i.saturating_sub(1)), b);
-                    for _ in 0..60 {
-                        let third = (high - low) / 3.0;
-                        if distance(low + third) < distance(high - third) {
-                            high -= third;
-                        } else {
-                            low += third;
-                        }
-                    }
-                    let middle = 0.5 * (low + high);
-                    let mut reach = 1e-6;
-                    breaks.push(middle);
-                    while reach < 1.0 {
-                        breaks.extend([middle - reach, middle + reach]);
-                        reach *= 4.0;
-                    }
-                    // The samples next to it may both be on the same side of a kink.
-                    for (a, b) in [(a.min(middle), middle), (middle, b.max(middle))] {
-                        breaks.extend(
-                            k.kinks()
-                                .iter()
-                                .filter_map(|u| passes(&distance, u / s, a, b)),
-                        );
-                    }
-                }
-                breaks.extend(
-                    k.kinks()
-                        .iter()
-                        .filter_map(|u| passes(&distance, u / s, a, b)),
-                );
-            }
-            breaks.extend((0..=16).map(|i| f64::from(i) / 16.0));
-            breaks.retain(|t| (0.0..=1.0).contains(t));
-            breaks.sort_unstable_by(f64::total_cmp);
-            breaks.dedup();
+            let breaks = breaks_along(k, &|t| s * at(t).distance(point));
             integral(&mut |t| h(at(t)) * speed(t), &breaks, 1e-13)
         }
         Skeleton::Plane { point: p, normal } => {
@@ -323,8 +284,109 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
     }
 }
 
+/// The field of a tapered bone: of every place's own radius and blobbiness.
+fn over_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> f64 {
+    let k = primitive.kernel;
+    let skeleton = &primitive.skeleton;
+    // Place, and length per unit of t.
+    let at: Box<dyn Fn(f64) -> (DVec3, f64)> = match *skeleton {
+        Skeleton::Segment { base, apex } => Box::new(move |t| {
+            let d = apex - base;
+            (base + d * t, d.length())
+        }),
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius,
+            angle,
+        } => Box::new(move |t| {
+            let (sine, cosine) = libm::sincos(angle * t);
+            (center + radius * (u * cosine + v * sine), radius * angle)
+        }),
+        Skeleton::Curve { control } => {
+            let c = crate::skeleton::cubic(control);
+            Box::new(move |t| {
+                let tangent = c[1] + t * (2.0 * c[2] + 3.0 * t * c[3]);
+                (c[0] + t * (c[1] + t * (c[2] + t * c[3])), tangent.length())
+            })
+        }
+        _ => return 0.0,
+    };
+    // Length up to t: exact at the ends of steps, and integrated from the one before t.
+    const STEPS: usize = 64;
+    let place = |i: usize| i as f64 / STEPS as f64;
+    let mut speed = |t: f64| at(t).1;
+    let mut lengths = vec![0.0];
+    for i in 0..STEPS {
+        let step = integral(&mut speed, &[place(i), place(i + 1)], 1e-13);
+        lengths.push(lengths[i] + step);
+    }
+    let total = lengths[STEPS];
+    let here = |t: f64| {
+        let i = ((t * STEPS as f64) as usize).min(STEPS - 1);
+        let rest = match skeleton {
+            Skeleton::Curve { .. } => {
+                integral(&mut |t: f64| at(t).1, &[place(i), t.max(place(i))], 1e-11)
+            }
+            _ => (t - place(i)) * total,
+        };
+        shaping.at((lengths[i] + rest) / total)
+    };
+    let width = |t: f64| here(t).width().unwrap_or(0.0);
+    let breaks = breaks_along(k, &|t| width(t) * at(t).0.distance(point));
+    let mut integrand = |t: f64| {
+        let (q, speed) = at(t);
+        let shaping = here(t);
+        let (s, h) = (shaping.width(), shaping.height(skeleton));
+        let square = q.distance_squared(point);
+        h.unwrap_or(0.0) * kernel(k, s.unwrap_or(0.0), square) * speed
+    };
+    integral(&mut integrand, &breaks, 1e-13)
+}
+
+/// Breaks in [0, 1] for an integrand that depends on a distance, in kernel widths: around every place
+/// where the distance has a minimum, and where it passes a kink.
+fn breaks_along(k: Kernel, distance: &dyn Fn(f64) -> f64) -> Vec<f64> {
+    const SAMPLES: usize = 400;
+    let place = |i: usize| i as f64 / SAMPLES as f64;
+    let mut breaks = Vec::new();
+    for i in 0..=SAMPLES {
+        let (a, b) = (place(i), place(i + 1).min(1.0));
+        let before = distance(place(i.saturating_sub(1)));
+        if distance(a) <= before && distance(a) <= distance(b) {
+            let (mut low, mut high) = (place(i.saturating_sub(1)), b);
+            for _ in 0..60 {
+                let third = (high - low) / 3.0;
+                if distance(low + third) < distance(high - third) {
+                    high -= third;
+                } else {
+                    low += third;
+                }
+            }
+            let middle = 0.5 * (low + high);
+            let mut reach = 1e-6;
+            breaks.push(middle);
+            while reach < 1.0 {
+                breaks.extend([middle - reach, middle + reach]);
+                reach *= 4.0;
+            }
+            // The samples next to it may both be on the same side of a kink.
+            for (a, b) in [(a.min(middle), middle), (middle, b.max(middle))] {
+                breaks.extend(k.kinks().iter().filter_map(|u| passes(distance, *u, a, b)));
+            }
+        }
+        breaks.extend(k.kinks().iter().filter_map(|u| passes(distance, *u, a, b)));
+    }
+    breaks.extend((0..=16).map(|i| f64::from(i) / 16.0));
+    breaks.retain(|t| (0.0..=1.0).contains(t));
+    breaks.sort_unstable_by(f64::total_cmp);
+    breaks.dedup();
+    breaks
+}
+
 /// Where a function passes a level between two places, if it does.
-fn passes(f: &impl Fn(f64) -> f64, level: f64, mut a: f64, mut b: f64) -> Option<f64> {
+fn passes(f: &dyn Fn(f64) -> f64, level: f64, mut a: f64, mut b: f64) -> Option<f64> {
     let below = f(a) < level;
     if below == (f(b) < level) {
         return None;
@@ -436,7 +498,11 @@ fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
     let restricted = match skeleton {
         Skeleton::Triangle { .. } => {
             let inside = u > 0.0 && v > 0.0 && u + v < 1.0;
-            let middle = if inside { 27.0 * u * v * (1.0 - u - v) } else { 0.0 };
+            let middle = if inside {
+                27.0 * u * v * (1.0 - u - v)
+            } else {
+                0.0
+            };
             1.0 - profile.restriction * (1.0 - middle)
         }
         _ => 1.0,

@@ -6,6 +6,7 @@
 //! our own are used, never a fused multiply-add and never a platform's `sin` or `atan`. So results
 //! have the same bits on every platform, and a lane of `f32x8` has the same bits as `f32` alone.
 
+use crate::Jet;
 use crate::term::{Prepared, Term};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -101,6 +102,11 @@ pub trait Real:
         let square = x * x;
         self.sign_to((x + square / (one + (one + square).sqrt())).ln_1p())
     }
+
+    /// A term's value and local gradient at a local position. Compiled once for each type, in this
+    /// crate: the chart's formulas are too long to be compiled again wherever one is used.
+    #[doc(hidden)]
+    fn evaluate(term: &Term<Self::Scalar>, local: [Self; 3]) -> Jet<Self>;
 
     /// `magnitude` with the sign of `self`.
     #[inline(always)]

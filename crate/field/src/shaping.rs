@@ -12,14 +12,28 @@ pub enum BlobScale {
     Absolute,
 }
 
-/// What a segment, an arc or a curve has at its other end. Along it both vary evenly with length.
+/// What a segment, an arc or a curve has at its other end. Along it radius R and blobbiness B vary
+/// evenly with length; other skeletons take no notice.
+///
+/// At every place q of the bone the kernel has the width s and the height that a uniform bone of that
+/// R and B has (thesis, section 3.3.2): `f(p) = ∫ height·h(s·|p−q|) dq`. For a constant B both go
+/// with 1/R, which is the scale-invariant integral of SCALIS (Zanni et al. 2013): of a figure
+/// magnified with its radii, the field at magnified places is the same. A slender cone so has the
+/// radius R(q) all along.
+///
+/// The inverse kernel's field, height·h = const/r, does not depend on R at all (its line has the
+/// radius that its length gives it), so that a taper changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taper {
-    /// Radius in isolation there.
+    /// Radius in isolation there. One that is smaller than [`SLIMMEST`] of the larger end's, 0 for
+    /// example, is taken to be that, so that the field at a tip is finite.
     pub radius: f64,
     /// Blobbiness there.
     pub blobbiness: f64,
 }
+
+/// The smallest radius of a tapered bone's thin end, as a part of its thick end's.
+pub const SLIMMEST: f64 = 1e-3;
 
 /// What the user says of a soft primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +55,38 @@ pub struct Shaping {
 }
 
 impl Shaping {
+    /// Whether a skeleton with this shaping has a different kernel at every place.
+    #[must_use]
+    pub fn varies_along(&self, skeleton: &Skeleton) -> bool {
+        let differs = self.taper.is_some_and(|end| {
+            end.radius != self.radius || end.blobbiness.abs() != self.blobbiness.abs()
+        });
+        differs && skeleton.dimension() == 1
+    }
+
+    /// What a tapered bone has at a fraction of its length.
+    #[must_use]
+    pub fn at(&self, fraction: f64) -> Self {
+        let Some(end) = self.taper else {
+            return *self;
+        };
+        let mix = |a: f64, b: f64| a + (b - a) * fraction;
+        let slim = |radius: f64| {
+            // Not what is negative: that is a mistake.
+            if radius >= 0.0 {
+                radius.max(SLIMMEST * self.radius.max(end.radius))
+            } else {
+                radius
+            }
+        };
+        Self {
+            radius: mix(slim(self.radius), slim(end.radius)),
+            blobbiness: mix(self.blobbiness.abs(), end.blobbiness.abs()),
+            taper: None,
+            ..*self
+        }
+    }
+
     /// The blobbiness |B| in Blinn's dimensionless sense, `|B|·R²` if it was given absolutely.
     fn relative(&self) -> f64 {
         let b = self.blobbiness.abs();

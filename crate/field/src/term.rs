@@ -1,4 +1,5 @@
 //! A primitive made ready for evaluation: its closed form and the frame in which that is written.
+use crate::bone::curve::Law;
 use crate::bone::{Arc, Bone, Curve, Polygon, Segment, Triangle};
 use crate::form::Form;
 use crate::skeleton::{area_vector, cubic};
@@ -68,6 +69,11 @@ impl<S: Copy> Term<S> {
     /// Value and local gradient at a local position.
     #[inline(always)]
     pub(crate) fn local_jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+        R::evaluate(self, p)
+    }
+
+    #[inline(always)]
+    pub(crate) fn local_jet_inline<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
         let jet = self.form.jet(p);
         let amplitude = R::lift(self.amplitude);
         let jet = Jet {
@@ -212,6 +218,62 @@ fn place_bone(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<
                 frame(point, DMat3::from_cols(x, z.cross(x), z), s),
                 Bone::Plane,
             )
+        }
+    }
+}
+
+/// A segment, an arc or a curve in its local frame, with a width and a height that vary along it.
+pub(crate) fn tapered_curve(
+    skeleton: &Skeleton,
+    frame: &Frame<f64>,
+    kernel: Kernel,
+    law: Law<'_>,
+) -> Curve<f64> {
+    let local = |control: [DVec3; 4]| cubic(control.map(|p| frame.local_point(p)));
+    match *skeleton {
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius,
+            angle,
+        } => {
+            let (u, v) = orthonormal(u, v);
+            let angle = angle.clamp(0.0, core::f64::consts::TAU);
+            // A cubic over the angle φ is off by 1.8·10⁻⁵·φ⁶ of the radius, outward: 2.5·10⁻¹³ for
+            // π/64, and 6.6·10⁻⁸ for π/8, less if the circle is many widths large.
+            let cubics = |widest: f64| -> Vec<_> {
+                let pieces = (angle / widest).ceil().max(1.0);
+                let turn = angle / pieces;
+                let reach = 4.0 / 3.0 * libm::tan(turn / 4.0);
+                let corner = |i: u32| {
+                    let (sine, cosine) = libm::sincos(turn * f64::from(i));
+                    let p = center + radius * (u * cosine + v * sine);
+                    (p, radius * reach * (v * cosine - u * sine))
+                };
+                (0..pieces as u32)
+                    .map(|i| {
+                        let ((a, along_a), (b, along_b)) = (corner(i), corner(i + 1));
+                        local([a, a + along_a, b - along_b, b])
+                    })
+                    .collect()
+            };
+            let scale = DVec3::from_array(frame.axes[0]).length();
+            let coarse =
+                core::f64::consts::FRAC_PI_8 / libm::cbrt((radius * scale).max(1.0)).sqrt();
+            let fine = core::f64::consts::PI / 64.0;
+            Curve::new(kernel, &cubics(fine), &cubics(coarse.max(fine)), Some(law))
+        }
+        _ => {
+            let control = match *skeleton {
+                Skeleton::Curve { control } => control,
+                Skeleton::Segment { base, apex } => {
+                    [0.0, 1.0, 2.0, 3.0].map(|i| base + (apex - base) * (i / 3.0))
+                }
+                _ => [DVec3::ZERO; 4],
+            };
+            let cubics = [local(control)];
+            Curve::new(kernel, &cubics, &cubics, Some(law))
         }
     }
 }

@@ -53,7 +53,14 @@ fn matches_quadrature(kernel: Kernel) {
             let point = random.near(&primitive.skeleton, -4.0, far);
             let want = quadrature::value(&primitive, point);
             let (value, gradient) = jet::<f64>(&primitive, point);
-            let mut tolerance = 1e-9 * want.abs()
+            // The width of metaballs has a kink where |B| passes ½ (Shaping::width), which the spans
+            // only close in on.
+            let relative = if kernel == Kernel::Metaballs {
+                1e-8
+            } else {
+                1e-9
+            };
+            let mut tolerance = relative * want.abs()
                 + 1e-13 * peak(&primitive)
                 + 64.0 * f64::EPSILON * sensitivity(&primitive, point);
             if let Skeleton::Arc { radius, .. } = primitive.skeleton {
@@ -89,7 +96,15 @@ fn single_matches_double(kernel: Kernel) {
                 );
                 // As on the chart; 32 units in the last place of the input.
                 let slack = 32.0 * f64::from(f32::EPSILON) * sensitivity(&primitive, point);
-                let tolerance = 1e-5 * want.abs() + 2e-6 * peak(&primitive) + slack;
+                let distance = primitive.skeleton.distance(point);
+                // Next to a pole it counts that the ends of spans are rounded: a gap or an overlap
+                // of 10⁻⁸ widths, where the squared kernel is 10¹⁰ high and its field 10⁵.
+                let relative = if has_pole(kernel) && distance < 1e-3 {
+                    3e-4
+                } else {
+                    1e-5
+                };
+                let tolerance = relative * want.abs() + 2e-6 * peak(&primitive) + slack;
                 assert!(
                     (value - want).abs() <= tolerance,
                     "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {:?} {:?} at {point:?}",
@@ -97,7 +112,6 @@ fn single_matches_double(kernel: Kernel) {
                     primitive.skeleton,
                     primitive.tapered
                 );
-                let distance = primitive.skeleton.distance(point);
                 if has_pole(kernel) && distance < 1e-3 {
                     // Here a rounding of the coordinates turns the gradient.
                     continue;

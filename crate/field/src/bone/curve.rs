@@ -97,6 +97,8 @@ pub struct Stretch {
     pub radius: f64,
     /// `∫α|q′|dt`, from above.
     pub mass: f64,
+    /// The largest α, from above.
+    pub density: f64,
     /// The smallest ω, from below.
     pub thinness: f64,
 }
@@ -129,7 +131,7 @@ impl Demands {
         terms: TERMS,
         longest: 2.0,
         least: 1e-9,
-        clipped: 10,
+        clipped: 14,
         slow: 1e-5,
         pole: [48, 36],
     };
@@ -235,8 +237,9 @@ impl Curve<f64> {
             single: None,
         };
         if smooth {
+            let mut rules = vec![Vec::new(); 48];
             for piece in &pieces {
-                curve.nodes.extend(piece.nodes(kernel, demands));
+                curve.nodes.extend(piece.nodes(kernel, demands, &mut rules));
             }
         } else {
             curve.spans = pieces.iter().map(|piece| piece.span(demands)).collect();
@@ -252,10 +255,20 @@ impl Curve<f64> {
             .sum()
     }
 
+    /// `∫α|q′|dt` and the largest α, from above, and the smallest ω, from below.
+    pub(crate) fn extremes(&self) -> [f64; 3] {
+        self.stretches.iter().fold([0.0, 0.0, 1.0], |e, stretch| {
+            [
+                e[0] + stretch.mass,
+                e[1].max(stretch.density),
+                e[2].min(stretch.thinness),
+            ]
+        })
+    }
+
     /// The largest radius of a compact kernel's support on it: 1, unless it is tapered.
     pub(crate) fn support(&self) -> f64 {
-        let thinnest = self.stretches.iter().map(|stretch| stretch.thinness);
-        1.0 / thinnest.fold(1.0, f64::min).sqrt()
+        1.0 / self.extremes()[2].sqrt()
     }
 }
 
@@ -367,7 +380,12 @@ impl Piece<'_> {
         largest
     }
 
-    fn nodes(&self, kernel: Kernel, demands: Demands) -> Vec<Node<f64>> {
+    fn nodes(
+        &self,
+        kernel: Kernel,
+        demands: Demands,
+        rules: &mut [Vec<[f64; 2]>],
+    ) -> Vec<Node<f64>> {
         let half = self.width().min(demands.longest) / 2.0;
         // The error of n nodes is about ρ^−2n, where 1/half = (ρ − 1/ρ)/2 for poles at ±i; for exp(−x²)
         // it is about (half²/4)ⁿ/n!.
@@ -387,9 +405,12 @@ impl Piece<'_> {
         } else {
             order
         };
-        gauss_legendre(order)
-            .into_iter()
-            .map(|[t, weight]| {
+        if rules[order].is_empty() {
+            rules[order] = gauss_legendre(order);
+        }
+        rules[order]
+            .iter()
+            .map(|&[t, weight]| {
                 let [density, thinness] = self.law(t);
                 Node {
                     position: self.at(t).to_array(),
@@ -443,7 +464,7 @@ impl Piece<'_> {
         let reach = control
             .iter()
             .fold(0.0, |r: f64, p| r.max(p.distance(center)));
-        let (mut mass, mut thinness) = (self.length, 1.0);
+        let (mut density, mut thinness) = (1.0, 1.0);
         if self.law.is_some() {
             // Both are smooth and vary little on a piece; a hundredth is left for what lies between.
             let (mut most, mut least) = (0.0_f64, f64::INFINITY);
@@ -452,14 +473,15 @@ impl Piece<'_> {
                 most = most.max(alpha.abs());
                 least = least.min(omega);
             }
-            mass *= most * 1.01;
+            density = most * 1.01;
             thinness = least * 0.99;
         }
         // 10⁻⁶ is more than the coarse version of a circle differs by.
         Stretch {
             center,
             radius: reach * (1.0 + 1e-6),
-            mass: mass * (1.0 + 1e-6),
+            mass: density * self.length * (1.0 + 1e-6),
+            density,
             thinness,
         }
     }
@@ -618,14 +640,11 @@ fn gauss_legendre(n: usize) -> Vec<[f64; 2]> {
         .map(|i| {
             let mut x = libm::cos(PI * (i as f64 + 0.75) / (n as f64 + 0.5));
             let mut slope = 0.0;
-            for _ in 0..8 {
+            for _ in 0..6 {
                 let (mut before, mut here) = (1.0, x);
                 for k in 2..=n {
                     let k = k as f64;
-                    (before, here) = (
-                        here,
-                        ((2.0 * k - 1.0) * x * here - (k - 1.0) * before) / k,
-                    );
+                    (before, here) = (here, ((2.0 * k - 1.0) * x * here - (k - 1.0) * before) / k);
                 }
                 slope = n as f64 * (x * here - before) / (x * x - 1.0);
                 x -= here / slope;

@@ -1,5 +1,6 @@
 //! `f64`, the reference precision.
 use super::{Real, Scalar, polynomial};
+use crate::Jet;
 use crate::term::{Prepared, Term};
 
 impl Scalar for f64 {
@@ -20,6 +21,11 @@ impl Real for f64 {
     const LANES: usize = 1;
     const HORIZON: f64 = 1e60;
     const DUPLICATIONS: usize = 8;
+
+    #[inline(never)]
+    fn evaluate(term: &Term<f64>, local: [Self; 3]) -> Jet<Self> {
+        term.local_jet_inline(local)
+    }
 
     #[inline(always)]
     fn splat(value: f64) -> Self {

@@ -1,5 +1,6 @@
 //! `f32`, one lane of the shipping path.
 use super::{Real, Scalar, polynomial};
+use crate::Jet;
 use crate::error_function;
 use crate::term::{Prepared, Term};
 
@@ -21,6 +22,11 @@ impl Real for f32 {
     const LANES: usize = 1;
     const HORIZON: f64 = 1e9;
     const DUPLICATIONS: usize = 5;
+
+    #[inline(never)]
+    fn evaluate(term: &Term<f32>, local: [Self; 3]) -> Jet<Self> {
+        term.local_jet_inline(local)
+    }
 
     #[inline(always)]
     fn splat(value: f64) -> Self {

@@ -9,9 +9,10 @@ use glam::DVec3;
 #[macro_export]
 macro_rules! tests {
     ($($(#[$attribute:meta])* fn $name:ident() $body:block)*) => {$(
-        $(#[$attribute])*
+        // First, as it looks only at the attributes after it (`ignore`).
         #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
         #[cfg_attr(not(target_arch = "wasm32"), test)]
+        $(#[$attribute])*
         fn $name() $body
     )*};
 }
