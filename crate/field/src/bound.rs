@@ -20,6 +20,8 @@ pub struct Bound {
     turn: (f64, f64),
     /// sin(φ/2)/(φ/2) for an arc's largest φ, see [`Bound::nearness`].
     sag: f64,
+    /// Balls that hold the pieces of a curve.
+    balls: Vec<(DVec3, f64)>,
     /// Length and radius of an arc in kernel widths; 0 for others.
     coil: [f64; 2],
     kernel: Kernel,
@@ -180,6 +182,7 @@ impl Bound {
             turn,
             sag,
             coil,
+            balls: primitive.prepared.double.balls(),
             kernel,
             width,
             finest,
@@ -239,7 +242,13 @@ impl Bound {
                 }
             }
             Skeleton::Triangle { corners } => self.triangle_distance(*corners, center),
-            Skeleton::Polygon { .. } | Skeleton::Curve { .. } => self.skeleton.distance(center),
+            Skeleton::Polygon { .. } => self.skeleton.distance(center),
+            // Within a ball nothing is known of the distance, which a pole asks for.
+            Skeleton::Curve { .. } if !self.kernel.falls_fast() => self.skeleton.distance(center),
+            Skeleton::Curve { .. } => {
+                let far = self.balls.iter().map(|(c, r)| center.distance(*c) - r);
+                far.fold(f64::INFINITY, f64::min).max(0.0)
+            }
             Skeleton::Plane { point, normal } => (center - *point).dot(*normal).abs(),
         };
         let within = self.kernel.is_compact()

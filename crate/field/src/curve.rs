@@ -143,6 +143,11 @@ fn compact<R: Real>(
     let one = R::splat(1.0);
     let mut total = Jet::zero();
     for span in &bone.spans {
+        let away: [R; 3] = core::array::from_fn(|i| p[i] - R::lift(span.position[0][i]));
+        // What no lane can see would add zeros.
+        if !R::any(dot(away, away).lt(R::lift(span.reach2))) {
+            continue;
+        }
         let slope = Slope::new(span, p);
         let t = if bone.tapered {
             slope.extremum(|slope, t| {

@@ -9,6 +9,7 @@
 pub mod camera;
 pub mod element;
 pub mod light;
+pub mod limbs;
 pub mod material;
 pub mod parts;
 pub mod settings;

@@ -1,5 +1,6 @@
 //! Which elements are soft, and the convolution field they make together.
 
+use crate::limbs;
 use crate::{Element, Fragile, Material, Scene, Shape};
 use field::{Field, Primitive, Skeleton};
 
@@ -112,10 +113,18 @@ impl Scene {
                 Shape::Plane { point, normal, .. } => Skeleton::Plane { point, normal },
             };
             let shaping = self.shaping(element, material, self.radius(element));
-            // An element without a positive radius has no flesh; the language has said so.
-            if let Some(primitive) = Primitive::new(skeleton, &shaping, material.whole_profile()) {
-                field.primitives.push(primitive);
-                indices.push(index);
+            let profile = material.whole_profile();
+            // A profile runs along the whole bone.
+            let pieces = match profile {
+                None => limbs::cut(skeleton, shaping),
+                Some(_) => vec![(skeleton, shaping)],
+            };
+            for (bone, shaping) in pieces {
+                // An element without a positive radius has no flesh; the language has said so.
+                if let Some(primitive) = Primitive::new(bone, &shaping, profile) {
+                    field.primitives.push(primitive);
+                    indices.push(index);
+                }
             }
         }
         SoftSurface {

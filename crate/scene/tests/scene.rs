@@ -196,3 +196,60 @@ fn a_scene_survives_the_journey_to_a_worker() {
         );
     }
 }
+
+/// Cutting long and tapered bones into pieces leaves the field as it is.
+#[test]
+fn limbs_are_cut_without_a_trace() {
+    use field::{BlobScale, Field, Kernel, Primitive, Shaping, Taper};
+    let bones = [
+        Skeleton::Segment {
+            base: DVec3::ZERO,
+            apex: DVec3::new(3.0, 0.5, 0.0),
+        },
+        Skeleton::Arc {
+            center: DVec3::ZERO,
+            u: DVec3::X,
+            v: DVec3::Y,
+            radius: 1.5,
+            angle: 4.0,
+        },
+        Skeleton::Curve {
+            control: [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 3.0, 0.5), DVec3::Y],
+        },
+    ];
+    for kernel in [Kernel::Cauchy, Kernel::Gauss, Kernel::Quartic] {
+        for bone in &bones {
+            for end in [None, Some((0.1, -3.0)), Some((0.0, -1.0))] {
+                let shaping = Shaping {
+                    kernel,
+                    radius: 0.4,
+                    blobbiness: -1.0,
+                    blob_scale: BlobScale::Relative,
+                    strength: 1.0,
+                    influence: 1e-3,
+                    taper: end.map(|(radius, blobbiness)| Taper { radius, blobbiness }),
+                };
+                let pieces = scene::limbs::cut(bone.clone(), shaping);
+                if end.is_some() {
+                    assert!(pieces.len() > 3, "{} pieces", pieces.len());
+                }
+                let one = |(bone, shaping): &(Skeleton, Shaping)| {
+                    Primitive::new(bone.clone(), shaping, None).expect("flesh")
+                };
+                let whole = one(&(bone.clone(), shaping));
+                let cut = Field {
+                    primitives: pieces.iter().map(one).collect(),
+                };
+                for i in 0..40 {
+                    let t = f64::from(i);
+                    let p = DVec3::new(libm::sin(t), libm::cos(1.7 * t), 0.3 * libm::sin(2.3 * t));
+                    let (a, b) = (whole.value(p.to_array()), cut.jet(p).value);
+                    assert!(
+                        (a - b).abs() <= 1e-7 * a.max(1.0),
+                        "{a} {b}: {kernel:?} {bone:?} {end:?}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -86,6 +86,8 @@ pub struct Span<S> {
     pub density: [S; TERMS],
     /// ω, coefficients in powers of t.
     pub thinness: [S; TERMS],
+    /// Square of the distance from c₀ beyond which a compact kernel sees nothing of the span.
+    pub reach2: S,
 }
 
 /// A piece as bounds see it.
@@ -188,6 +190,7 @@ impl<S: Copy> Span<S> {
             products: self.products.map(f),
             density: self.density.map(f),
             thinness: self.thinness.map(f),
+            reach2: f(self.reach2),
         }
     }
 }
@@ -434,18 +437,27 @@ impl Piece<'_> {
             ],
             density: [0.0; TERMS],
             thinness: [0.0; TERMS],
+            reach2: 0.0,
         };
         span.density[0] = 1.0;
         span.thinness[0] = 1.0;
+        let mut slimmest = 1.0_f64;
         if self.law.is_some() {
             let values: Vec<_> = chebyshev_points(demands.terms)
                 .iter()
                 .map(|t| self.law(*t))
                 .collect();
+            // Between the points a little less may occur.
+            slimmest = values
+                .iter()
+                .fold(slimmest, |least, v| least.min(0.8 * v[1]));
             let of = |i: usize| fit(&values.iter().map(|v| v[i]).collect::<Vec<f64>>());
             span.density[..demands.terms].copy_from_slice(&of(0));
             span.thinness[..demands.terms].copy_from_slice(&of(1));
         }
+        let reach = c1.length() + c2.length() + c3.length() + 1.0 / slimmest.sqrt();
+        // Rounding must not leave anything out.
+        span.reach2 = reach * reach * 1.001;
         span
     }
 

@@ -1,0 +1,117 @@
+//! Long curves and limbs that taper, cut into pieces for whoever looks for the surface.
+//!
+//! A convolution surface does not change when a bone is cut in two (superposition), but what is known
+//! of a piece without evaluating it is sharper: a short one is nowhere near most rays, and along it the
+//! width of a taper hardly varies.
+
+use field::{Shaping, Skeleton, Taper};
+use glam::DVec3;
+
+/// The most pieces of one bone.
+const MOST: usize = 16;
+/// A piece is about this many radii long …
+const LENGTH: f64 = 2.0;
+/// … and its radius and blobbiness vary by this factor at most, until there are [`MOST`] pieces.
+const CHANGE: f64 = 1.25;
+
+/// The pieces of a curve or of a tapered segment or arc, each with its part of the taper; any other bone
+/// as it is.
+#[must_use]
+pub fn cut(skeleton: Skeleton, shaping: Shaping) -> Vec<(Skeleton, Shaping)> {
+    let is_limb = match skeleton {
+        Skeleton::Curve { .. } => true,
+        Skeleton::Segment { .. } | Skeleton::Arc { .. } => shaping.taper.is_some(),
+        _ => false,
+    };
+    if !is_limb {
+        return vec![(skeleton, shaping)];
+    }
+    let count = pieces(&skeleton, &shaping);
+    let bones: Vec<Skeleton> = (0..count)
+        .map(|i| part(&skeleton, share(i, count), share(i + 1, count)))
+        .collect();
+    // Tapers vary evenly with length, which the parameter of a curve does not.
+    let lengths: Vec<f64> = bones.iter().map(Skeleton::measure).collect();
+    let whole: f64 = lengths.iter().sum();
+    let mut before = 0.0;
+    bones
+        .into_iter()
+        .zip(lengths)
+        .map(|(bone, length)| {
+            let [start, end] = [before, before + length].map(|at| shaping.at(at / whole));
+            before += length;
+            let piece = Shaping {
+                taper: shaping.taper.map(|_| Taper {
+                    radius: end.radius,
+                    blobbiness: end.blobbiness,
+                }),
+                ..start
+            };
+            (bone, piece)
+        })
+        .collect()
+}
+
+fn share(i: usize, count: usize) -> f64 {
+    i as f64 / count as f64
+}
+
+/// Into how many pieces a bone is cut.
+fn pieces(skeleton: &Skeleton, shaping: &Shaping) -> usize {
+    let end = shaping.at(1.0);
+    let radius = 0.5 * (shaping.radius + end.radius);
+    let by_length = skeleton.measure() / (LENGTH * radius);
+    let change = |a: f64, b: f64| {
+        let ratio = (a / b).abs();
+        libm::log(ratio.max(1.0 / ratio)) / libm::log(CHANGE)
+    };
+    let by_change =
+        change(shaping.radius, end.radius).max(change(shaping.blobbiness, end.blobbiness));
+    let wanted = by_length.max(by_change);
+    // A number that is no number, or infinite at a tip of radius 0, is taken for very many.
+    if wanted < MOST as f64 {
+        (wanted.ceil() as usize).max(1)
+    } else {
+        MOST
+    }
+}
+
+/// The piece of a bone between two shares of its parameter.
+fn part(skeleton: &Skeleton, from: f64, to: f64) -> Skeleton {
+    match *skeleton {
+        Skeleton::Segment { base, apex } => Skeleton::Segment {
+            base: base.lerp(apex, from),
+            apex: base.lerp(apex, to),
+        },
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius,
+            angle,
+        } => {
+            let (sine, cosine) = libm::sincos(angle * from);
+            Skeleton::Arc {
+                center,
+                u: u * cosine + v * sine,
+                v: v * cosine - u * sine,
+                radius,
+                angle: angle * (to - from),
+            }
+        }
+        Skeleton::Curve { control } => {
+            let (_, rest) = halves(control, from);
+            let (piece, _) = halves(rest, (to - from) / (1.0 - from));
+            Skeleton::Curve { control: piece }
+        }
+        ref other => other.clone(),
+    }
+}
+
+/// A Bézier curve cut at t (de Casteljau).
+fn halves([a, b, c, d]: [DVec3; 4], t: f64) -> ([DVec3; 4], [DVec3; 4]) {
+    let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
+    let (abc, bcd) = (ab.lerp(bc, t), bc.lerp(cd, t));
+    let m = abc.lerp(bcd, t);
+    ([a, ab, abc, m], [m, bcd, cd, d])
+}
