@@ -2,12 +2,12 @@
 
 mod common;
 
-use std::slice;
 use common::gpu::{Gpu, gpus};
 use common::reference::{self, Met};
 use common::scenes::{arc, by_index, by_normal, index_of, look, turned};
 use glam::{DQuat, DVec3};
 use scene::{Camera, Scene, Shape};
+use std::slice;
 
 const SIZE: [u32; 2] = [56, 42];
 
@@ -123,7 +123,12 @@ fn compare_around(what: &str, shape: Shape, center: DVec3, size: f64) {
                 up: DVec3::new(0.1, 1.0, 0.2),
                 fov,
             };
-            compare(gpu, &format!("{what}, {view}"), slice::from_ref(&shape), camera);
+            compare(
+                gpu,
+                &format!("{what}, {view}"),
+                slice::from_ref(&shape),
+                camera,
+            );
         }
     }
 }
@@ -263,7 +268,12 @@ fn eyes_inside_see_the_inside() {
         ] {
             for target in [[0.0, 0.0, 5.0], [1.0, 2.0, 0.0], [-1.0, -0.2, 0.0]] {
                 let camera = look([1.0, 0.1, 0.05], target, 90.0);
-                compare(gpu, &format!("inside a {what}"), slice::from_ref(&shape), camera);
+                compare(
+                    gpu,
+                    &format!("inside a {what}"),
+                    slice::from_ref(&shape),
+                    camera,
+                );
             }
         }
     }
@@ -300,7 +310,12 @@ fn edge_on_things_are_thin_but_there() {
     for gpu in gpus() {
         for (what, shape) in [("card", &card), ("coin", &coin), ("ring", &ring)] {
             let camera = look([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0);
-            compare(gpu, &format!("{what}, edge on"), slice::from_ref(shape), camera);
+            compare(
+                gpu,
+                &format!("{what}, edge on"),
+                slice::from_ref(shape),
+                camera,
+            );
         }
     }
 }

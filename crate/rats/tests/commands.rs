@@ -294,7 +294,9 @@ fn profiles() {
 // ---- PRIMITIVES
 
 fn shape(text: &str) -> Shape {
-    scene(&format!("surface s diff Red\n{text}")).elements[0].shape.clone()
+    scene(&format!("surface s diff Red\n{text}")).elements[0]
+        .shape
+        .clone()
 }
 
 #[test]

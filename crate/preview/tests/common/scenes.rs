@@ -15,7 +15,10 @@ pub fn element(shape: Shape, material: usize) -> Element {
 /// A scene in which every element shines in a colour that tells its index (below 215).
 pub fn by_index(shapes: &[Shape], camera: Camera) -> Scene {
     Scene {
-        elements: (0..).zip(shapes).map(|(i, s)| element(s.clone(), i)).collect(),
+        elements: (0..)
+            .zip(shapes)
+            .map(|(i, s)| element(s.clone(), i))
+            .collect(),
         materials: (0..shapes.len())
             .map(|i| Material {
                 ambient: colour_of(Some(i)),

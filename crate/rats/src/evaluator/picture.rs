@@ -106,10 +106,7 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
     let needs_radius = is_soft
         || matches!(
             element.shape,
-            Shape::Sphere { .. }
-                | Shape::Cylinder { .. }
-                | Shape::Arc { .. }
-                | Shape::Curve { .. }
+            Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Arc { .. } | Shape::Curve { .. }
         );
     if needs_radius && radius <= 0.0 {
         return Some(if is_soft {
@@ -148,12 +145,10 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
             Shape::Arc { .. } => || {
                 String::from("this arc has no length (sweep radius or width 0), so it is left out")
             },
-            Shape::Curve { .. } => || {
-                String::from("this curve's points are all the same, so it is left out")
-            },
-            Shape::Polygon { .. } => {
-                || String::from("this polygon has no area, so it is left out")
+            Shape::Curve { .. } => {
+                || String::from("this curve's points are all the same, so it is left out")
             }
+            Shape::Polygon { .. } => || String::from("this polygon has no area, so it is left out"),
             _ => || String::from("this triangle has no area, so it is left out"),
         };
         (message, None)

@@ -258,7 +258,11 @@ pub fn curve<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         let radius = read.number("the tube radius")?;
         let mut points = vec![read.vector("the first control point")?];
         while points.len() < 4 || read.more() {
-            for what in ["the second control point", "the third control point", "the end point"] {
+            for what in [
+                "the second control point",
+                "the third control point",
+                "the end point",
+            ] {
                 points.push(read.vector(what)?);
             }
         }
