@@ -1,25 +1,25 @@
 //! The mathematics of convolution surfaces.
 //!
-//! A skeleton (points, segments, arcs, triangles, planes) is convolved with a kernel h(r), a bump
+//! A skeleton (points, segments, arcs, triangles, polygons, planes, curves) is convolved with a kernel h(r), a bump
 //! that falls with distance. The result is a smooth field F in space, the sum of one term per
 //! [`Primitive`]; the surface is where F equals [`THRESHOLD`], and inside is where F is larger.
 //! This room knows only mathematics: values, gradients, bounds and ray intervals.
 //!
 //! Where to find what:
-//! - the formula of a Cauchy arc is in `cauchy/arc.rs`, and so on; [`quadrature`] is what it is
-//!   tested against;
+//! - the formula of a Cauchy arc is in `cauchy/arc.rs`, and so on; `form.rs` is the chart that says which
+//!   formula serves which kernel on which bone; [`quadrature`] is what they are tested against;
 //! - [`Shaping`] turns a radius, a blobbiness and a strength into a kernel's width and height;
 //! - [`Primitive`] is a term of the field: its value and gradient, its depth of influence, where a
 //!   ray meets that, how far a cubic may stand in for it;
 //! - [`Real`] is the number formulas are written in: `f64`, `f32`, or eight `f32` side by side.
 //!
 //! # Accuracy
-//! In double precision values agree with quadrature to 10⁻¹¹, from 10⁻⁶ to 10⁶ kernel widths away,
-//! for skeletons from a thousandth to 300 widths long. In single precision they are exact for a
-//! point and a skeleton that differ from those given by at most 8 units in the last place (point),
-//! 9 (segment, triangle), 42 (arc), 4 (plane), measured on 2·10⁶ cases each; in scenes a few units
-//! large with radii of 0.2 to 2 that is a relative error below 10⁻⁵. Only one thing is lost: the
-//! slope of a triangle's field across its plane, more than 100 widths away from it.
+//! In double precision every cell of the chart agrees with quadrature to 10⁻⁹ (Cauchy to 10⁻¹¹, from
+//! 10⁻⁶ to 10⁶ kernel widths away). In single precision the worst relative error of a cell, at places
+//! that matter to a picture, is listed in BENCHMARKS.md: 10⁻⁵ or less for most, 10⁻⁴ for Gauss arcs.
+//! Sums over edges (triangles and polygons, but for Cauchy's) lose digits where their terms cancel, far
+//! outside and for needles: there it is the error compared to the largest field that stays below 2·10⁻⁶.
+//! Of a Cauchy triangle the slope across its plane is lost more than 100 widths away.
 
 mod angle;
 mod bone;
