@@ -2,6 +2,7 @@
 
 use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
+use crate::lab::Lesson;
 use crate::notice::Notice;
 use crate::{picture, platform, share};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
@@ -11,6 +12,13 @@ impl App {
         let pressed = |modifiers: Modifiers, key: Key| {
             ctx.input_mut(|input| input.consume_shortcut(&KeyboardShortcut::new(modifiers, key)))
         };
+        if self.lab.is_open() {
+            // The text is out of sight, so no key may change it.
+            if pressed(Modifiers::NONE, Key::Escape) {
+                commands.push(Command::CloseLab);
+            }
+            return;
+        }
         // The longer combination first: the shorter one matches it too.
         if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z)
             || pressed(Modifiers::COMMAND, Key::Y)
@@ -94,6 +102,21 @@ impl App {
                 let result = self.work.open_saved(&id);
                 self.opened_or(ctx, result);
             }
+            Command::OpenText { name, text } => {
+                let result = self.work.open_text(&name, text);
+                self.opened_or(ctx, result);
+            }
+            Command::OpenLab(lesson) => self.open_lab(lesson),
+            Command::ShowLab => self.open_lab(self.lab.lesson()),
+            Command::CloseLab => {
+                platform::push_hash(self.lab.came_from());
+                self.lab.close();
+            }
+            Command::ShareLab => {
+                let text = "Link to this lesson copied.";
+                ctx.copy_text(format!("{}{}", platform::page(), self.lab.lesson().hash()));
+                self.lab.say(text, now);
+            }
             Command::New => {
                 let result = self.work.open_new();
                 self.opened_or(ctx, result);
@@ -131,9 +154,18 @@ impl App {
         ctx.request_repaint();
     }
 
+    fn open_lab(&mut self, lesson: Lesson) {
+        self.lab.open(lesson, &platform::hash());
+        platform::push_hash(&lesson.hash());
+    }
+
     fn opened_or(&mut self, ctx: &Context, result: Result<(), String>) {
         match result {
             Ok(()) => {
+                if self.lab.is_open() {
+                    // So that the way back leads to the lesson.
+                    platform::push_hash("");
+                }
                 platform::set_hash("");
                 self.opened(ctx);
             }

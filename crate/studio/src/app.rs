@@ -8,6 +8,7 @@ use crate::draft::Draft;
 use crate::editor::Editor;
 use crate::gallery::Gallery;
 use crate::keyboard::Keyboard;
+use crate::lab::{Lab, Lesson};
 use crate::notice::Notice;
 use crate::pool::Pool;
 use crate::render::{Phase, Renderer};
@@ -89,6 +90,7 @@ pub struct App {
     pub(crate) editor: Editor,
     pub(crate) sliders: Sliders,
     pub(crate) gallery: Gallery,
+    pub(crate) lab: Lab,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) notice: Option<Notice>,
     pub(crate) tab: Tab,
@@ -121,7 +123,11 @@ impl App {
         let calm = !platform::troubled();
         // Until the start has gone well, a stop counts as a bad start.
         platform::set_troubled(true);
-        let (work, trouble) = Work::start(parts.shelf.clone(), &platform::hash(), calm);
+        let hash = platform::hash();
+        let lesson = Lesson::of_hash(&hash);
+        // A link to a lesson carries no work.
+        let carried = if lesson.is_some() { "" } else { &hash };
+        let (work, trouble) = Work::start(parts.shelf.clone(), carried, calm);
         parts.requests.attach(ctx);
         let settings: Settings = parts.shelf.borrow().settings();
         ctx.set_theme(settings.theme);
@@ -130,6 +136,7 @@ impl App {
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
         let mut app = Self {
+            lab: Lab::new(pool.clone(), lesson),
             renderer: Renderer::new(pool),
             draft: render_state
                 .filter(|_| backend != Backend::None)
@@ -212,15 +219,22 @@ impl App {
             self.saved_settings = self.settings.clone();
             self.parts.shelf.borrow_mut().set_settings(&self.settings);
         }
-        if self.titled != self.work.name {
-            self.titled.clone_from(&self.work.name);
+        let title = self.lab.title().unwrap_or(&self.work.name);
+        if self.titled != title {
+            self.titled = title.to_owned();
             platform::set_title(&self.titled);
         }
         let session = &self.work.session;
         if session.enabled() {
             self.renderer
                 .want(session.generation(), self.size(ctx), now);
-            self.renderer.tick(ctx, now, || session.scene());
+            // No new picture begins while the lab is open, but one that runs is finished first.
+            if self.lab.is_open() && self.renderer.phase() != Phase::Tracing {
+                self.lab.pictures.tick(ctx);
+            } else {
+                self.lab.pictures.pause();
+                self.renderer.tick(ctx, now, || session.scene());
+            }
             if !self.healthy && now - started > HEALTHY {
                 self.healthy = true;
                 platform::set_troubled(false);
@@ -238,7 +252,10 @@ impl App {
         for answer in answers {
             answer();
         }
-        let mut waits = vec![self.work.wait(now), self.renderer.wait(now)];
+        let mut waits = vec![self.work.wait(now)];
+        if !self.lab.is_open() {
+            waits.push(self.renderer.wait(now));
+        }
         waits.push(match &self.notice {
             Some(notice) => notice.until.map(|until| until - now),
             None => None,
@@ -279,6 +296,7 @@ impl App {
 
     /// Another work is open: forget what belonged to the one before.
     pub(crate) fn opened(&mut self, ctx: &Context) {
+        self.lab.close();
         self.editor.reset(ctx);
         self.sliders.clear();
         self.renderer.clear();

@@ -17,7 +17,13 @@ pub fn show(
     let palette = theme::palette(ui.visuals());
     ui.horizontal_centered(|ui| {
         ui.add_space(if narrow { 6.0 } else { 12.0 });
-        icon::mark(ui);
+        if narrow {
+            ui.spacing_mut().item_spacing.x = 4.0;
+        }
+        // The narrowest phones need the room for buttons.
+        if ui.available_width() >= 376.0 {
+            icon::mark(ui);
+        }
         if !narrow {
             ui.label(RichText::new("Sinew").size(17.0).color(palette.strong));
             ui.add_space(6.0);
@@ -28,6 +34,13 @@ pub fn show(
         places::note(ui.ctx(), "examples", gallery.rect);
         if gallery.clicked() {
             commands.push(Command::ShowGallery);
+        }
+        let lab = ui
+            .button("Lab")
+            .on_hover_text("See and touch how convolution surfaces work");
+        places::note(ui.ctx(), "lab", lab.rect);
+        if lab.clicked() {
+            commands.push(Command::ShowLab);
         }
         if !narrow {
             name(ui, work, commands);
@@ -134,7 +147,7 @@ fn more(ui: &mut Ui, choice: theme::Choice, commands: &mut Vec<Command>) {
     });
 }
 
-fn theme_label(choice: theme::Choice) -> &'static str {
+pub(crate) fn theme_label(choice: theme::Choice) -> &'static str {
     match choice {
         theme::Choice::System => "as the system",
         theme::Choice::Dark => "dark",
@@ -143,7 +156,7 @@ fn theme_label(choice: theme::Choice) -> &'static str {
 }
 
 /// The other palette than the one on the screen.
-fn other_theme(ui: &Ui) -> theme::Choice {
+pub(crate) fn other_theme(ui: &Ui) -> theme::Choice {
     if ui.visuals().dark_mode {
         theme::Choice::Light
     } else {

@@ -1,6 +1,7 @@
 //! What the widgets ask the app to do. Widgets only read the state and list commands; the app
 //! carries them out after the frame, in one place ([`crate::app`]).
 
+use crate::lab::Lesson;
 use crate::{size, theme, view::Show};
 use scene::Camera;
 use std::ops::Range;
@@ -67,6 +68,21 @@ pub enum Command {
     OpenExample(usize),
     /// Open a saved work.
     OpenSaved(String),
+    /// Open a text as an example is opened.
+    OpenText {
+        /// Its name.
+        name: String,
+        /// The dataset.
+        text: String,
+    },
+    /// Go to a lesson of the lab.
+    OpenLab(Lesson),
+    /// Go to the lesson seen last.
+    ShowLab,
+    /// Leave the lab for the editor.
+    CloseLab,
+    /// Copy a link to the lesson.
+    ShareLab,
     /// Delete a saved work.
     Delete(String),
     /// Begin an empty work.

@@ -13,6 +13,7 @@
 //! | `camera()` | `{eye, target, up, fov}` in use |
 //! | `setCamera(camera)` | looks from there; `null` goes back to the camera of the text |
 //! | `cancel()`, `render()` | stops the picture; traces it again |
+//! | `lab()` | the open lesson of the lab, see below; null in the editor |
 //!
 //! `status()` gives `phase` (`"idle"`, `"waiting"` for a pause in typing, `"tracing"`, `"done"`,
 //! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null), `remaining`
@@ -23,6 +24,11 @@
 //! `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays, fieldEvaluations}`), `revision`
 //! (rises with each change of the text), `name`, `saved` (whether all changes are in the browser's
 //! storage).
+//!
+//! `lab()` gives `lesson` (the word in its link, as in `#lab=kernels`), `title`, `waiting` (small
+//! pictures still to be traced), `drawn` (small pictures there), `refused` (texts that the language
+//! does not draw yet) and `readings` (`{name: number}`: what the lesson shows as numbers). While the
+//! lab is open the picture of the text waits, and so does `finished()`.
 //!
 //! `sinew.debug` is for tests of the page itself and may change at any time: `killWorker(i)`
 //! (whether there was such a worker),
@@ -148,6 +154,8 @@ fn state(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
         p.requests.ask(Request::SetCamera(camera));
         Ok(JsValue::UNDEFINED)
     })?;
+    let p = parts.clone();
+    method(sinew, "lab", move |_, _| to_js(&p.outbox.borrow().lab))?;
     let p = parts.clone();
     method(sinew, "cancel", move |_, _| {
         p.requests.ask(Request::Cancel);

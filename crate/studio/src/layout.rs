@@ -6,7 +6,7 @@ use crate::command::Command;
 use crate::icon::{self, Icon};
 use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery, Show};
-use crate::{bar, files, help, notice, places, platform, problems, size, status};
+use crate::{bar, files, help, lab, notice, places, platform, problems, size, status};
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Rect, RichText,
     ScrollArea, Stroke, Ui, UiBuilder, pos2, vec2,
@@ -24,6 +24,10 @@ pub fn is_narrow(ctx: &Context) -> bool {
 /// Draws everything.
 pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     places::clear(ui.ctx());
+    if app.lab.is_open() {
+        lab::show(app, ui, commands);
+        return;
+    }
     let narrow = is_narrow(ui.ctx());
     let palette = theme::palette(ui.visuals());
     let line = Stroke::new(1.0, palette.line);

@@ -30,6 +30,7 @@ pub mod history;
 pub mod icon;
 pub mod indent;
 pub mod keyboard;
+pub mod lab;
 pub mod layout;
 pub mod marks;
 pub mod notice;

@@ -1,11 +1,11 @@
 //! Between the app and what is outside its window: serving requests, and telling how things are.
 
 use crate::app::App;
+use crate::lab::Lesson;
 use crate::notice::Notice;
 use crate::render::pass_label;
 use crate::report;
 use crate::request::Request;
-use crate::work::Origin;
 use crate::{places, platform};
 use egui::Context;
 use std::rc::Rc;
@@ -21,20 +21,13 @@ impl App {
         match request {
             Request::Ready(answer) => answers.push(answer),
             Request::Finished(answer) => self.finished.push(answer),
-            Request::HashChanged => match self.work.open_link(&platform::hash()) {
-                Ok(()) if self.work.origin == Origin::Link => {
-                    self.opened(ctx);
-                    self.welcome_link();
-                }
-                Ok(()) => {}
-                Err(trouble) => {
-                    let text = format!("{trouble} Your work stays open.");
-                    self.notice = Some(Notice::trouble(text));
-                }
-            },
+            Request::HashChanged => self.follow(ctx),
             Request::Load(project, answer) => {
                 let result = self.work.load(project);
                 if result.is_ok() {
+                    if self.lab.is_open() {
+                        platform::push_hash("");
+                    }
                     self.opened(ctx);
                 }
                 answers.push(Box::new(move || answer(result)));
@@ -49,6 +42,30 @@ impl App {
             }
             Request::Panic => panic!("asked for by sinew.debug.panic()"),
         }
+    }
+
+    /// Goes where the fragment of the address now leads: to a lesson, to a shared work, or back to
+    /// the editor.
+    fn follow(&mut self, ctx: &Context) {
+        let hash = platform::hash();
+        if let Some(lesson) = Lesson::of_hash(&hash) {
+            self.lab.open(lesson, "");
+            ctx.request_repaint();
+            return;
+        }
+        self.lab.close();
+        match self.work.open_link(&hash) {
+            Ok(true) => {
+                self.opened(ctx);
+                self.welcome_link();
+            }
+            Ok(false) => {}
+            Err(trouble) => {
+                let text = format!("{trouble} Your work stays open.");
+                self.notice = Some(Notice::trouble(text));
+            }
+        }
+        ctx.request_repaint();
     }
 
     pub(crate) fn report(&mut self, ctx: &Context) {
@@ -95,5 +112,6 @@ impl App {
         outbox.chosen = session.chosen_camera();
         outbox.camera = session.camera();
         outbox.places = places::all(ctx);
+        outbox.lab = self.lab.report();
     }
 }

@@ -112,7 +112,7 @@ impl Renderer {
         }
         self.wanted = Some((generation, size));
         if generation != old_generation {
-            self.pool.borrow_mut().cancel();
+            self.halt();
             self.phase = Phase::Waiting;
             self.due = now + DEBOUNCE;
         } else if self.phase != Phase::Cancelled {
@@ -151,6 +151,7 @@ impl Renderer {
                 scene: &scene,
                 size,
                 generation: self.number,
+                small: false,
             });
             self.phase = Phase::Tracing;
             changed = true;
@@ -172,7 +173,18 @@ impl Renderer {
                 Change::Tile(tile) => self.upload_tile(tile),
             }
         }
-        let progress = self.pool.borrow().progress();
+        let mut progress = self.pool.borrow().progress();
+        if progress
+            .generation
+            .is_some_and(|number| number != self.number)
+        {
+            // The workers were last at a picture of the lab.
+            progress = Progress {
+                workers: progress.workers,
+                restarted: progress.restarted,
+                ..self.progress.clone()
+            };
+        }
         changed |= progress != self.progress;
         self.progress = progress;
         if self.phase == Phase::Tracing
@@ -192,7 +204,7 @@ impl Renderer {
     /// Stops the running picture; what is there stays.
     pub fn cancel(&mut self) {
         if matches!(self.phase, Phase::Tracing | Phase::Waiting) {
-            self.pool.borrow_mut().cancel();
+            self.halt();
             self.phase = Phase::Cancelled;
         }
     }
@@ -200,7 +212,7 @@ impl Renderer {
     /// Traces the wanted picture (again) now.
     pub fn again(&mut self, now: f64) {
         if self.wanted.is_some() {
-            self.pool.borrow_mut().cancel();
+            self.halt();
             self.phase = Phase::Waiting;
             self.due = now;
         }
@@ -208,12 +220,19 @@ impl Renderer {
 
     /// Forgets the picture: another piece of work is open.
     pub fn clear(&mut self) {
-        self.pool.borrow_mut().cancel();
+        self.halt();
         self.assembly.clear();
         self.texture = None;
         self.wanted = None;
         self.shown = None;
         self.phase = Phase::Idle;
+    }
+
+    /// Frees the workers, if this picture has them: the lab uses them too.
+    fn halt(&self) {
+        if self.phase == Phase::Tracing {
+            self.pool.borrow_mut().cancel();
+        }
     }
 
     /// Where the picture stands.

@@ -91,6 +91,8 @@ pub struct Outbox {
     pub chosen: Option<Camera>,
     /// The camera in use.
     pub camera: Camera,
+    /// The open lesson of the lab.
+    pub lab: Option<crate::lab::Report>,
     /// Where the widgets are, in points.
     pub places: crate::places::Places,
 }

@@ -443,7 +443,7 @@ fn same_picture(a: &Scene, b: &Scene) -> bool {
         && a.elements
             .iter()
             .zip(&b.elements)
-            .all(|(a, b)| a.shape == b.shape && a.material == b.material)
+            .all(|(a, b)| a.shape == b.shape && a.material == b.material && a.kernel == b.kernel)
         && a.materials == b.materials
         && a.lights == b.lights
         && a.background == b.background

@@ -134,7 +134,7 @@ impl Sliders {
 }
 
 /// The accent on what is filled, and a knob that stands out from the rail.
-fn colours(ui: &mut Ui) {
+pub(crate) fn colours(ui: &mut Ui) {
     let palette = theme::palette(ui.visuals());
     let visuals = ui.visuals_mut();
     visuals.selection.bg_fill = palette.accent;

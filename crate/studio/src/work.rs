@@ -5,6 +5,7 @@
 //! of what the user made.
 
 use crate::examples;
+use crate::lab::Lesson;
 use crate::platform;
 use crate::session::{Kept, Session, check_size};
 use crate::share;
@@ -73,19 +74,20 @@ impl Work {
         (work, trouble)
     }
 
-    /// Opens what a fragment carries; does nothing if it is empty or carries what is open anyway.
+    /// Opens what a fragment carries and gives true; does nothing if it is empty or carries what is
+    /// open anyway.
     ///
     /// # Errors
     /// Says what is wrong with the link; then the open work stays.
-    pub fn open_link(&mut self, hash: &str) -> Result<(), String> {
+    pub fn open_link(&mut self, hash: &str) -> Result<bool, String> {
         let Some(shared) = share::open(hash) else {
-            return Ok(());
+            return Ok(false);
         };
         let shared = shared?;
         let same = self.session.project() == &shared.project
             && self.session.chosen_camera() == shared.camera;
         if same {
-            return Ok(());
+            return Ok(false);
         }
         let before = self.leave()?;
         self.begin(
@@ -98,7 +100,7 @@ impl Work {
             },
         );
         self.before = before;
-        Ok(())
+        Ok(true)
     }
 
     /// Opens an example.
@@ -108,6 +110,24 @@ impl Work {
     pub fn open_example(&mut self, index: usize) -> Result<(), String> {
         self.leave()?;
         self.begin_example(index);
+        Ok(())
+    }
+
+    /// Opens a text made by the lab, as an example is opened.
+    ///
+    /// # Errors
+    /// If the open work cannot be written; then it stays open.
+    pub fn open_text(&mut self, name: &str, text: String) -> Result<(), String> {
+        self.leave()?;
+        let file = File {
+            name: format!("{}.rat", name.to_lowercase().replace(' ', "-")),
+            text,
+        };
+        let kept = Kept {
+            project: Project { files: vec![file] },
+            ..Kept::default()
+        };
+        self.begin(name.to_owned(), Origin::Example, kept);
         Ok(())
     }
 
@@ -177,7 +197,9 @@ impl Work {
             let edited = state.0 != self.noted.0;
             self.noted = state;
             // An address that carries a link no longer says what is on the screen.
-            platform::set_hash("");
+            if Lesson::of_hash(&platform::hash()).is_none() {
+                platform::set_hash("");
+            }
             // Looking around in an example does not make it a work.
             if edited || self.origin == Origin::Own {
                 self.keep(now);

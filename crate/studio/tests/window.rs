@@ -422,13 +422,15 @@ fn nothing_overlaps_on_a_phone_or_a_desk() {
         for tab in ["text", "sliders", "problems"] {
             let at = window.place(&format!("tab {tab}")).center();
             window.click(at);
-            let mut names = vec!["share", "examples", "undo", "more", "picture", "status"];
+            let mut names = vec![
+                "share", "examples", "lab", "undo", "more", "picture", "status",
+            ];
             names.extend(["tab text", "tab sliders", "tab problems"]);
             if tab == "text" {
                 names.push("editor");
             }
             check_layout(&window, &names);
-            for name in ["share", "examples", "undo", "tab text"] {
+            for name in ["share", "examples", "lab", "undo", "tab text"] {
                 assert!(
                     window.place(name).height() >= 38.0,
                     "{name} is too small for a thumb"
@@ -440,7 +442,8 @@ fn nothing_overlaps_on_a_phone_or_a_desk() {
         let mut window = Window::open(width, height);
         window.load(&format!("sphree\n{TEXT}"));
         let names = [
-            "share", "examples", "undo", "picture", "editor", "sliders", "problems", "status",
+            "share", "examples", "lab", "undo", "picture", "editor", "sliders", "problems",
+            "status",
         ];
         check_layout(&window, &names);
     }

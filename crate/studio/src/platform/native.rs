@@ -52,6 +52,11 @@ pub fn set_hash(hash: &str) {
     HASH.set(hash.to_owned());
 }
 
+/// Changes the fragment and makes a new entry in the history.
+pub fn push_hash(hash: &str) {
+    set_hash(hash);
+}
+
 /// The storage.
 #[must_use]
 pub fn store() -> Box<dyn Store> {

@@ -61,6 +61,19 @@ pub fn set_hash(hash: &str) {
     }
 }
 
+/// Changes the fragment and makes a new entry in the history, so that the browser's way back leads
+/// to the present one.
+pub fn push_hash(hash: &str) {
+    if self::hash() == hash {
+        return;
+    }
+    let address = format!("{}{hash}", page());
+    if let Ok(history) = window().history() {
+        // Refused in some sandboxes; then only the way back is missing.
+        let _ = history.push_state_with_url(&JsValue::NULL, "", Some(&address));
+    }
+}
+
 /// Local storage, or memory where the browser allows none.
 #[must_use]
 pub fn store() -> Box<dyn Store> {

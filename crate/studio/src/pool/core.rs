@@ -41,6 +41,7 @@ impl<W: Workers> Core<W> {
             generation: job.generation,
             size: job.size,
             samples: job.scene.settings.samples,
+            small: job.small,
         };
         self.scheduler.start(plan, now);
         let request = Request::Begin {
@@ -100,7 +101,7 @@ impl<W: Workers> Core<W> {
                         pixels,
                     });
                 }
-                return wanted;
+                return wanted && self.scheduler.is_worth_a_look();
             }
             Answer::Failed(reason) => {
                 self.scheduler.died(index, &reason, now);

@@ -30,6 +30,8 @@ use tracer::{Pass, Tile};
 /// Longest side of a tile in pixels: small enough that a tile takes milliseconds, large enough that
 /// sending it takes a small share of that.
 pub const TILE: u32 = 32;
+/// The same for small pictures, of which there are many: fewer messages matter more.
+pub const SMALL_TILE: u32 = 56;
 /// Most workers, whatever the machine has: each holds its own copy of the scene.
 pub const MAX_WORKERS: usize = 16;
 
@@ -43,6 +45,9 @@ pub struct Job<'a> {
     pub size: [u32; 2],
     /// The caller's number for it, given back with each tile.
     pub generation: u64,
+    /// Whether it is seen only once it is finished, as the small pictures of the lab are: then only
+    /// the last pass is traced, and the app is not woken before the end.
+    pub small: bool,
 }
 
 /// A finished tile.

@@ -28,6 +28,8 @@ pub struct Plan {
     pub size: [u32; 2],
     /// At most n×n rays a pixel; with 1 there is no [`Pass::Smooth`].
     pub samples: u32,
+    /// Whether only the last pass is wanted, in one go.
+    pub small: bool,
 }
 
 /// The picture being traced.
@@ -56,14 +58,19 @@ pub struct Run {
 impl Run {
     /// Cuts a picture into tasks. One without pixels is finished at once.
     pub fn new(plan: Plan, now: f64) -> Self {
-        let passes: &[Pass] = if plan.samples > 1 {
+        let passes: &'static [Pass] = if plan.samples > 1 {
             &[Pass::Coarse, Pass::Full, Pass::Smooth]
         } else {
             &[Pass::Coarse, Pass::Full]
         };
+        let (passes, side) = if plan.small {
+            (&passes[passes.len() - 1..], super::SMALL_TILE)
+        } else {
+            (passes, super::TILE)
+        };
         let mut run = Self {
             plan,
-            tiles: tracer::tile::tiles(plan.size[0], plan.size[1], super::TILE),
+            tiles: tracer::tile::tiles(plan.size[0], plan.size[1], side),
             passes,
             next: 0,
             again: Vec::new(),

@@ -154,6 +154,14 @@ impl Scheduler {
         self.run.as_ref().map(|run| run.plan.generation)
     }
 
+    /// Whether a tile that has come can be seen: those of small pictures are seen all at once.
+    #[must_use]
+    pub fn is_worth_a_look(&self) -> bool {
+        self.run
+            .as_ref()
+            .is_none_or(|run| !run.plan.small || run.ended.is_some())
+    }
+
     /// Workers can be started from now on.
     pub fn launch(&mut self, now: f64) {
         self.launched = true;

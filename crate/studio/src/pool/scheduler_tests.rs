@@ -16,6 +16,7 @@ fn plan(generation: u64) -> Plan {
         generation,
         size: [128, 96],
         samples: 3,
+        small: false,
     }
 }
 
@@ -179,6 +180,20 @@ fn one_ray_a_pixel_needs_no_third_pass() {
     crowd.work_off();
     assert!(crowd.progress().finished);
     assert!(crowd.done.iter().all(|order| order.pass != Pass::Smooth));
+}
+
+#[test]
+fn a_small_picture_has_the_last_pass_alone_and_is_seen_when_it_is_finished() {
+    let mut crowd = Crowd::new(2);
+    let small = true;
+    crowd.scheduler.start(Plan { small, ..plan(1) }, 0.0);
+    crowd.obey();
+    assert!(!crowd.scheduler.is_worth_a_look());
+    crowd.work_off();
+    assert!(crowd.progress().finished);
+    assert!(crowd.scheduler.is_worth_a_look());
+    assert!(!crowd.done.is_empty());
+    assert!(crowd.done.iter().all(|order| order.pass == Pass::Smooth));
 }
 
 #[test]

@@ -32,6 +32,7 @@ fn a_picture_comes_complete_and_a_new_one_replaces_it() {
         scene: &scene,
         size: [100, 70],
         generation,
+        small: false,
     };
     pool.start(job(1));
     pool.start(job(2));
@@ -61,6 +62,7 @@ fn a_killed_worker_is_missed_and_the_picture_still_completes() {
         scene: &scene,
         size: [64, 64],
         generation: 1,
+        small: false,
     };
     pool.start(job);
     // It takes the time limit of starting or preparing to notice; a new picture is quicker, as a

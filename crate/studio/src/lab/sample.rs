@@ -1,0 +1,161 @@
+//! The field on a plane, eight points at a time, a little in each frame.
+
+use super::contour::Grid;
+use field::{BlobScale, Field, Kernel, Shaping};
+use glam::DVec3;
+use wide::f32x8;
+
+/// What the lessons say of a primitive: kernel, radius, magnitude of the blobbiness.
+#[must_use]
+pub fn shaping(kernel: Kernel, radius: f64, blobbiness: f64) -> Shaping {
+    Shaping {
+        kernel,
+        radius,
+        blobbiness: -blobbiness,
+        blob_scale: BlobScale::Relative,
+        strength: 1.0,
+        influence: 1e-3,
+        taper: None,
+    }
+}
+
+/// A rectangle in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// Its lower left corner.
+    pub corner: DVec3,
+    /// Along its lower side, whole.
+    pub across: DVec3,
+    /// Along its left side, whole.
+    pub up: DVec3,
+}
+
+impl Window {
+    /// The point at shares of both sides.
+    #[must_use]
+    pub fn at(&self, x: f64, y: f64) -> DVec3 {
+        self.corner + self.across * x + self.up * y
+    }
+}
+
+/// The field at eight points.
+#[must_use]
+pub fn eight(field: &Field, points: [DVec3; 8]) -> [f32; 8] {
+    let axis = |pick: fn(&DVec3) -> f64| f32x8::from(points.map(|p| pick(&p) as f32));
+    let point = [axis(|p| p.x), axis(|p| p.y), axis(|p| p.z)];
+    let mut sum = f32x8::splat(0.0);
+    for primitive in &field.primitives {
+        sum += primitive.jet::<f32x8>(point).value;
+    }
+    sum.to_array()
+}
+
+/// The field at one point.
+#[must_use]
+pub fn one(field: &Field, point: DVec3) -> f64 {
+    f64::from(eight(field, [point; 8])[0])
+}
+
+/// A grid that is being filled.
+#[derive(Clone, Debug, Default)]
+pub struct Filling {
+    /// The samples so far.
+    pub grid: Grid,
+}
+
+impl Filling {
+    /// An empty grid of a size.
+    #[must_use]
+    pub fn new(width: usize, height: usize) -> Self {
+        Self {
+            grid: Grid {
+                width: width.max(2),
+                height: height.max(2),
+                values: Vec::new(),
+            },
+        }
+    }
+
+    /// Whether every sample is there.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.grid.values.len() >= self.grid.width * self.grid.height
+    }
+
+    /// Goes on until the grid is full or `enough` says so, which it is asked now and then. Gives
+    /// whether the grid is full.
+    pub fn go_on(
+        &mut self,
+        field: &Field,
+        window: &Window,
+        mut enough: impl FnMut() -> bool,
+    ) -> bool {
+        let Grid { width, height, .. } = self.grid;
+        let all = width * height;
+        // A batch takes some tens of microseconds, whatever the field.
+        let batch = (4000 / field.primitives.len().max(1)).clamp(1, 64);
+        let mut done = 0;
+        while self.grid.values.len() < all {
+            let first = self.grid.values.len();
+            let points = core::array::from_fn(|lane| {
+                let index = (first + lane).min(all - 1);
+                let x = (index % width) as f64 / (width - 1) as f64;
+                let y = (index / width) as f64 / (height - 1) as f64;
+                window.at(x, y)
+            });
+            let values = eight(field, points);
+            let left = (all - first).min(8);
+            self.grid.values.extend_from_slice(&values[..left]);
+            done += 1;
+            if done % batch == 0 && enough() {
+                break;
+            }
+        }
+        self.is_full()
+    }
+}
+
+/// The field on a whole grid at once.
+#[must_use]
+pub fn whole(field: &Field, window: &Window, width: usize, height: usize) -> Grid {
+    let mut filling = Filling::new(width, height);
+    filling.go_on(field, window, || false);
+    filling.grid
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use field::{Primitive, Skeleton};
+
+    #[test]
+    fn samples_are_the_field() {
+        let shaping = shaping(Kernel::Cauchy, 0.5, 2.0);
+        let skeleton = Skeleton::Segment {
+            base: DVec3::NEG_X,
+            apex: DVec3::X,
+        };
+        let field = Field {
+            primitives: Primitive::new(skeleton, &shaping, None)
+                .into_iter()
+                .collect(),
+        };
+        let window = Window {
+            corner: DVec3::new(-2.0, -1.0, 0.0),
+            across: DVec3::X * 4.0,
+            up: DVec3::Y * 2.0,
+        };
+        let grid = whole(&field, &window, 61, 41);
+        assert_eq!(grid.values.len(), 61 * 41);
+        for (index, value) in grid.values.iter().enumerate() {
+            let point = window.at((index % 61) as f64 / 60.0, (index / 61) as f64 / 40.0);
+            let want = field.jet(point).value;
+            // Single precision; see the accuracy in the docs of `field`.
+            assert!((f64::from(*value) - want).abs() < 1e-5 * want.max(1.0));
+        }
+        let mut filling = Filling::new(61, 41);
+        assert!(!filling.go_on(&field, &window, || true));
+        while !filling.go_on(&field, &window, || true) {}
+        assert_eq!(filling.grid, grid);
+    }
+}

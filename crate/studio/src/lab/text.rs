@@ -1,0 +1,93 @@
+//! What the lessons say: a title, a few words for the list, and three sentences.
+
+use super::Lesson;
+
+/// The words of one lesson.
+pub struct Words {
+    /// Title.
+    pub title: &'static str,
+    /// A few words for the list.
+    pub about: &'static str,
+    /// Three sentences.
+    pub sentences: &'static str,
+}
+
+/// The words of a lesson.
+pub fn of(lesson: Lesson) -> Words {
+    match lesson {
+        Lesson::Kernels => Words {
+            title: "Kernels",
+            about: "how flesh thins with distance",
+            sentences: "A kernel says how much flesh a point of the skeleton gives at a distance r. \
+                        Whatever the kernel, it is scaled so that a lone point has its surface exactly \
+                        at the radius R, where its field equals the threshold T = 1. What differs is \
+                        the way down: some kernels fade for ever, others end at a certain depth and \
+                        see nothing beyond it.",
+        },
+        Lesson::Convolution => Words {
+            title: "Convolution in one dimension",
+            about: "geometry × kernel = field",
+            sentences: "Slide the kernel along the line: the field at a place is the area that kernel \
+                        and geometry have in common there. The surface lies where this field crosses \
+                        the iso-value, so bars that come near each other grow together. A kernel that \
+                        ends is a window: what lies outside it does not count, so a long bar looks \
+                        the same in its middle however much longer it grows.",
+        },
+        Lesson::Slice => Words {
+            title: "A slice through the field",
+            about: "your dataset, seen from inside",
+            sentences: "Here is the field of the dataset in your editor, cut by a plane. The surface \
+                        that the picture shows is one of these lines, F = T, and the other lines show \
+                        where it would go with another threshold. Move the plane and point at a place \
+                        to read the field there.",
+        },
+        Lesson::Grid => Words {
+            title: "Radius and blobbiness",
+            about: "the numbers behind a joint",
+            sentences: "Two bars make a T, and only two numbers change from picture to picture. The \
+                        radius says how thick a bar is by itself; the blobbiness says how freely its \
+                        flesh runs together with its neighbour's. Choose a picture to go on with it in \
+                        the editor.",
+        },
+        Lesson::Profiles => Words {
+            title: "Profiles",
+            about: "strength along a bone",
+            sentences: "A profile multiplies the field of a bone by a function along it, here drawn \
+                        below each picture. Where the function is large the flesh swells, where it is \
+                        small the flesh thins out or is gone. It is the field that is multiplied, not \
+                        the radius, so the outline does not copy the curve.",
+        },
+        Lesson::Chart => Words {
+            title: "The chart",
+            about: "eight kernels × seven primitives",
+            sentences: "Every kernel can be convolved with every primitive; this is the whole table, \
+                        traced just now. Some cells have a closed formula, some need an elliptic \
+                        integral, some a small numerical one, and that shows in the time they take. \
+                        Choose a cell to see how its field is computed.",
+        },
+        Lesson::Superposition => Words {
+            title: "Superposition",
+            about: "why a cut bone shows no seam",
+            sentences: "Cut the bone wherever you like: an integral over the whole is the sum of the \
+                        integrals over its parts, so a convolution surface does not notice. Next to it \
+                        the same parts give flesh by their distance instead, and near the cut both \
+                        parts count in full, so the surface bulges. That is why bones may be put \
+                        together from many pieces here.",
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_lesson_says_three_sentences() {
+        for lesson in Lesson::ALL {
+            let words = of(lesson);
+            assert_eq!(words.sentences.matches(". ").count(), 2, "{}", words.title);
+            assert!(words.sentences.ends_with('.'), "{}", words.title);
+            assert!(!words.sentences.contains("  "), "{}", words.title);
+        }
+    }
+}
