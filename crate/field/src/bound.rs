@@ -320,6 +320,44 @@ impl Bound {
         Estimate { magnitude, error }
     }
 
+    /// `|∇f|` is at most this at some nearness (a Lipschitz constant of the ball): where the profile,
+    /// if any, is smooth.
+    #[must_use]
+    pub fn slope(&self, near: Nearness) -> f64 {
+        let kernel = self.kernel;
+        let u = near.distance * self.width;
+        let Roughness {
+            point,
+            line,
+            plane,
+            outward,
+        } = envelope::steepness(kernel, u);
+        let over_endless = match (self.dimension, &self.skeleton) {
+            (0, _) => point,
+            (1, Skeleton::Arc { .. }) => {
+                let [length, radius] = self.coil;
+                let at = |u| envelope::steepness(kernel, u).point;
+                // Without a length there is no coil, and no line either.
+                let coiled = bounds::coiled(length, radius, u, at, |_, _| outward);
+                let line = near.stretch * line;
+                if line < coiled { line } else { coiled }
+            }
+            (1, _) => line,
+            // Of planes of poles: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from above.
+            (_, Skeleton::Plane { .. }) if kernel == Kernel::Inverse => core::f64::consts::TAU,
+            _ => plane,
+        };
+        let whole = self.whole * point;
+        let endless = self.endless * over_endless;
+        let slope = if whole < endless || endless.is_nan() {
+            whole
+        } else {
+            endless
+        };
+        // A wave of length 1/ω adds its own slope to the field's size.
+        slope * self.finest + self.magnitude(near) * self.ripple4.sqrt().sqrt()
+    }
+
     /// `|f|` is at most this at some nearness.
     #[inline]
     #[must_use]

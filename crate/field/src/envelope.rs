@@ -28,6 +28,16 @@ pub struct Roughness {
     pub outward: f64,
 }
 
+impl Roughness {
+    /// Of what is 0.
+    const NONE: Self = Self {
+        point: 0.0,
+        line: 0.0,
+        plane: 0.0,
+        outward: 0.0,
+    };
+}
+
 /// The order of the derivative that is bounded.
 #[must_use]
 pub fn order(kernel: Kernel) -> usize {
@@ -57,14 +67,20 @@ pub fn roughness(kernel: Kernel, u: f64) -> Roughness {
         return cauchy(u);
     }
     if kernel.is_compact() && u >= 1.0 {
-        return Roughness {
-            point: 0.0,
-            line: 0.0,
-            plane: 0.0,
-            outward: 0.0,
-        };
+        return Roughness::NONE;
     }
     table(kernel)[index(u)]
+}
+
+/// Bounds on the slope along any line, at a distance of `u ≥ 0` or more.
+#[must_use]
+pub fn steepness(kernel: Kernel, u: f64) -> Roughness {
+    static TABLES: [OnceLock<Vec<Roughness>>; Kernel::ALL.len()] =
+        [const { OnceLock::new() }; Kernel::ALL.len()];
+    if kernel.is_compact() && u >= 1.0 {
+        return Roughness::NONE;
+    }
+    TABLES[kernel as usize].get_or_init(|| tabulate(kernel, 1))[index(u)]
 }
 
 /// With x = 1+u², the Cauchy kernel along any ray, `k(t) = (P²+t²)⁻²`, has
@@ -108,7 +124,7 @@ fn index(u: f64) -> usize {
 fn table(kernel: Kernel) -> &'static [Roughness] {
     static TABLES: [OnceLock<Vec<Roughness>>; Kernel::ALL.len()] =
         [const { OnceLock::new() }; Kernel::ALL.len()];
-    TABLES[kernel as usize].get_or_init(|| tabulate(kernel))
+    TABLES[kernel as usize].get_or_init(|| tabulate(kernel, order(kernel)))
 }
 
 /// Fine steps in one step of the table.
@@ -117,8 +133,7 @@ const FINE: usize = 2;
 /// curved, and near a place where it vanishes the envelope of what comes further out counts.
 const SLACK: f64 = 1.03;
 
-fn tabulate(kernel: Kernel) -> Vec<Roughness> {
-    let order = order(kernel);
+fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
     // Distances between fine steps; from 0 to the first in one step.
     let mut places = vec![0.0];
     for octave in 0..OCTAVES as i32 {
@@ -163,9 +178,13 @@ fn tabulate(kernel: Kernel) -> Vec<Roughness> {
                 outward += rough[i] * (places[i + 1] - places[i]);
                 before = t;
             }
-            // Beyond the last place everything falls faster than r⁻⁴.
+            // Beyond the last place everything falls faster than r⁻⁴ (slopes of the inverse kernel: as
+            // r⁻², which over a plane has no end).
             line += 2.0 * rough[last] * places[last];
             plane += TAU * rough[last] * places[last] * places[last];
+            if order == 1 && kernel == Kernel::Inverse {
+                plane = f64::INFINITY;
+            }
             outward += rough[last] * places[last];
             Roughness {
                 point: rough[start],
@@ -178,11 +197,12 @@ fn tabulate(kernel: Kernel) -> Vec<Roughness> {
 }
 
 /// The largest derivative of this order over all directions at a distance u. With y the square of the
-/// direction's share of the distance: `2G′+4yG″`, `√y(12G″+8yG‴)`, `12G″+48yG‴+16y²G⁗`.
+/// direction's share of the distance: `2√y·G′`, `2G′+4yG″`, `√y(12G″+8yG‴)`, `12G″+48yG‴+16y²G⁗`.
 fn along_any_line(kernel: Kernel, order: usize, u: f64) -> f64 {
     let q = u * u;
     let Derivatives([_, g1, g2, g3, g4]) = kernel.derivatives(q);
     let at = |y: f64| match order {
+        1 => (2.0 * y.sqrt() * g1).abs(),
         2 => (2.0 * g1 + 4.0 * y * g2).abs(),
         3 => (y.sqrt() * (12.0 * g2 + 8.0 * y * g3)).abs(),
         _ => (12.0 * g2 + y * (48.0 * g3 + 16.0 * y * g4)).abs(),

@@ -36,7 +36,7 @@ fn span_error(primitive: &Primitive, start: DVec3, direction: DVec3, h: f64) -> 
 fn bounds_hold(kernel: Kernel) {
     for kind in ALL_KINDS {
         let mut random = Random::new(31);
-        let (mut tightest, mut tightest_span) = (0.0_f64, 0.0_f64);
+        let (mut tightest, mut tightest_span, mut tightest_slope) = (0.0_f64, 0.0_f64, 0.0_f64);
         for _ in 0..120 {
             let primitive = random_primitive(&mut random, kernel, kind);
             let bound = Bound::new(&primitive);
@@ -62,6 +62,14 @@ fn bounds_hold(kernel: Kernel) {
                     "{value} > {magnitude}: {primitive:?} {p}"
                 );
                 tightest = tightest.max(value / magnitude);
+                let gradient = DVec3::from_array(primitive.jet(p.to_array()).gradient);
+                let steepest = bound.slope(near);
+                let tolerance = 1e-6 * steepest + 1e3 * rounding * primitive.width;
+                assert!(
+                    gradient.length() <= steepest + tolerance,
+                    "{gradient} is steeper than {steepest}: {primitive:?} {p}"
+                );
+                tightest_slope = tightest_slope.max(gradient.length() / steepest);
                 let direction = random.direction();
                 let h = 2.0 * radius;
                 let Estimate { error, .. } = bound.estimate(near, &SpanLength::new(h));
@@ -86,8 +94,8 @@ fn bounds_hold(kernel: Kernel) {
             _ => 0.02,
         };
         assert!(
-            tightest > 0.3 && tightest_span > least,
-            "{kind:?}: {tightest} {tightest_span}"
+            tightest > 0.3 && tightest_span > least && tightest_slope > least,
+            "{kind:?}: {tightest} {tightest_span} {tightest_slope}"
         );
     }
 }
