@@ -94,7 +94,11 @@ impl Sliders {
         let fresh = fitting_range(value);
         let range = *self.ranges.entry(key.clone()).or_insert(fresh);
         let (low, high) = range;
-        let decimals = decimals(high - low);
+        let decimals = if counts(value) {
+            0
+        } else {
+            decimals(high - low)
+        };
         const FIELD: f32 = 66.0;
         let width = ui.available_width() - FIELD - 2.0 * ui.spacing().item_spacing.x;
         let slider = ui.scope(|ui| {
@@ -205,6 +209,11 @@ pub fn decimals(range: f64) -> usize {
     digits.clamp(0.0, 12.0) as usize
 }
 
+/// Whether a number is likely to count something (spikes, turns), so that it should stay whole.
+fn counts(value: f64) -> bool {
+    value.abs() >= 20.0 && value.fract() == 0.0
+}
+
 /// A number without the digits that no hand could set.
 fn rounded(value: f64, decimals: usize) -> f64 {
     format!("{value:.decimals$}").parse().unwrap_or(value)
@@ -218,6 +227,8 @@ mod tests {
     fn numbers_have_no_digits_that_no_hand_could_set() {
         assert_eq!(rounded(0.1 + 0.2, 4), 0.3);
         assert_eq!(rounded(1234.56, 0), 1235.0);
+        assert!(counts(100.0) && counts(-20.0));
+        assert!(!counts(-2.0) && !counts(254.8) && !counts(f64::NAN));
     }
 
     #[test]

@@ -178,7 +178,8 @@ fn gesture(ui: &Ui, response: &Response, rect: Rect, camera: Camera) -> Option<C
     }
     if response.contains_pointer() && touch.is_none() {
         let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        let factor = libm::exp(-f64::from(scroll) / 400.0) / f64::from(pinch);
+        // A notch of a wheel (100 or 120 points) comes nearer by an eighth.
+        let factor = libm::exp(-f64::from(scroll) / 800.0) / f64::from(pinch);
         if factor != 1.0 {
             new = orbit::zoom(new, factor);
         }
