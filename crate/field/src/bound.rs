@@ -244,7 +244,14 @@ impl Bound {
             Skeleton::Triangle { corners } => self.triangle_distance(*corners, center),
             Skeleton::Polygon { .. } => self.skeleton.distance(center),
             // Within a ball nothing is known of the distance, which a pole asks for.
-            Skeleton::Curve { .. } if !self.kernel.falls_fast() => self.skeleton.distance(center),
+            // (Of two bends the search may take the wrong one, by half its step.)
+            Skeleton::Curve { control } if !self.kernel.falls_fast() => {
+                let fastest = control
+                    .windows(2)
+                    .fold(0.0_f64, |v, w| v.max(3.0 * w[0].distance(w[1])));
+                let step = fastest / f64::from(crate::skeleton::SAMPLES);
+                (self.skeleton.distance(center) - 0.5 * step).max(0.0)
+            }
             Skeleton::Curve { .. } => {
                 let far = self.balls.iter().map(|(c, r)| center.distance(*c) - r);
                 far.fold(f64::INFINITY, f64::min).max(0.0)

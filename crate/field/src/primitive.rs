@@ -75,6 +75,9 @@ pub struct Primitive {
 /// them are numbers of single precision.
 const LARGEST: f64 = 1e8;
 
+/// Largest size, in kernel widths, of curves and bones that taper, which are integrated numerically.
+pub const LONGEST: f64 = 1e4;
+
 /// The largest width parameter along a tapered bone. It is smooth, and at an end unless radius and
 /// blobbiness work against each other: then a sample is near enough. `None` if there is no flesh
 /// somewhere.
@@ -86,7 +89,8 @@ fn largest_width(shaping: &Shaping) -> Option<f64> {
 
 impl Primitive {
     /// `None` if the shaping gives no flesh: radius, blobbiness or strength zero or not finite, the
-    /// radius negative, the skeleton not finite, or larger than 10⁸ kernel widths.
+    /// radius negative, the skeleton not finite, or larger than 10⁸ kernel widths
+    /// ([`LONGEST`], if it is a curve or tapers).
     #[must_use]
     pub fn new(skeleton: Skeleton, shaping: &Shaping, profile: Option<Profile>) -> Option<Self> {
         let tapered = shaping.varies_along(&skeleton).then_some(*shaping);
@@ -105,6 +109,10 @@ impl Primitive {
                 .bounding_sphere()
                 .map_or(0.0, |(_, radius)| 2.0 * radius),
         };
+        let numeric = tapered.is_some() || matches!(skeleton, Skeleton::Curve { .. });
+        if numeric && shaping.widths_along(skeleton.measure()) > LONGEST {
+            return None;
+        }
         if !usable || size * width > LARGEST {
             return None;
         }

@@ -87,6 +87,14 @@ impl Shaping {
         }
     }
 
+    /// About how many kernel widths long a bone of this length is: by the geometric mean of the widths
+    /// at its ends, as most of a taper is thicker than its tip.
+    #[must_use]
+    pub fn widths_along(&self, length: f64) -> f64 {
+        let [start, end] = [0.0, 1.0].map(|at| self.at(at).width().unwrap_or(0.0));
+        length * (start * end).sqrt()
+    }
+
     /// The blobbiness |B| in Blinn's dimensionless sense, `|B|·R²` if it was given absolutely.
     fn relative(&self) -> f64 {
         let b = self.blobbiness.abs();
@@ -158,27 +166,32 @@ impl Shaping {
         height.is_finite().then_some(height)
     }
 
-    /// The radius R at which a point with this blobbiness has the depth of influence `depth`: a
-    /// compact kernel's support, or where an infinite kernel has fallen to `influence·T`. `None` if
-    /// there is none.
+    /// The radius R at which a point, an infinite line or an infinite plane (`dimension` 0, 1, 2) with
+    /// this blobbiness has the depth of influence `depth`: a compact kernel's support, or where the
+    /// field of an infinite kernel has fallen to `influence·T`. `None` if there is none.
     #[must_use]
-    pub fn radius_of_depth(&self, depth: f64) -> Option<f64> {
+    pub fn radius_of_depth(&self, depth: f64, dimension: u8) -> Option<f64> {
+        let kernel = self.kernel;
+        let reference = |u: f64| match dimension {
+            0 => kernel.value(u),
+            1 => endless::line(kernel, u),
+            _ => plane::jet(kernel, [0.0, 0.0, u]).value,
+        };
         let field_at = |radius: f64| {
             let shaping = Self { radius, ..*self };
             let s = shaping.width()?;
-            if self.kernel.is_compact() {
+            if kernel.is_compact() {
                 // Grows with the radius, and is 1 where the support is `depth`.
                 return Some(1.0 / (s * depth));
             }
-            let k = self.kernel;
-            Some(k.value(s * depth) / k.value(s * radius) / self.influence)
+            Some(reference(s * depth) / reference(s * radius) / self.influence)
         };
         if !(depth.is_finite() && depth > 0.0 && self.influence > 0.0) {
             return None;
         }
         // The field at the depth grows with the radius.
         let (mut low, mut high) = (0.0, depth);
-        for _ in 0..200 {
+        for _ in 0..56 {
             let middle = 0.5 * (low + high);
             if field_at(middle).is_none_or(|f| f < 1.0) {
                 low = middle;

@@ -38,7 +38,8 @@ pub enum Skeleton {
     },
     /// A planar polygon.
     Polygon {
-        /// Its corners: the outer ring, then any holes, which lie inside it and do not touch.
+        /// Its corners: the outer ring, then any holes, which lie inside it. No two edges cross, else
+        /// what is known of its field without evaluating it is wrong.
         rings: Vec<Vec<DVec3>>,
     },
     /// A cubic Bézier curve.
@@ -300,13 +301,15 @@ pub(crate) fn cubic([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
     ]
 }
 
+/// Steps of the parameter between which the nearest point of a curve is looked for.
+pub(crate) const SAMPLES: i32 = 128;
+
 /// The point of a Bézier curve nearest to `point`: the best of samples, improved by bisection of the
 /// steps to either side.
 fn nearest_on_cubic(point: DVec3, control: [DVec3; 4]) -> DVec3 {
     let c = cubic(control);
     let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
     let distance = |t: f64| at(t).distance_squared(point);
-    const SAMPLES: i32 = 128;
     let mut best = (0..=SAMPLES)
         .map(|i| f64::from(i) / f64::from(SAMPLES))
         .min_by(|s, t| distance(*s).total_cmp(&distance(*t)))

@@ -618,7 +618,7 @@ fn radius_in_isolation(kernel: Kernel, kind: Kind) {
             } else {
                 primitive.influence
             };
-            let found = shaping.radius_of_depth(depth).expect("a radius");
+            let found = shaping.radius_of_depth(depth, 0).expect("a radius");
             assert!(
                 (found - radius).abs() < 1e-6 * radius,
                 "{found} instead of {radius}: {primitive:?}"

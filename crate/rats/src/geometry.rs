@@ -1,6 +1,6 @@
 //! The geometry behind the primitives: an arc's axes, the circle through three points, transforms.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use scene::Shape;
 
 /// The local axes u, v of an arc with unit normal `n`: u is the world's x axis made perpendicular to n
@@ -132,6 +132,59 @@ pub fn flatten(rings: &mut [Vec<DVec3>]) -> f64 {
         }
     }
     off / size.max(f64::MIN_POSITIVE)
+}
+
+/// Whether two edges of a flat polygon cross, or a hole is not inside it, or inside another hole.
+#[must_use]
+pub fn crosses_itself(rings: &[Vec<DVec3>]) -> bool {
+    let Some(outer) = rings.first().filter(|ring| ring.len() >= 3) else {
+        return false;
+    };
+    let normal: DVec3 = outer
+        .windows(2)
+        .map(|w| (w[0] - outer[0]).cross(w[1] - outer[0]))
+        .sum();
+    let Some(z) = normal.try_normalize() else {
+        return false;
+    };
+    let x = z.any_orthonormal_vector();
+    let y = z.cross(x);
+    let flat: Vec<Vec<DVec2>> = rings
+        .iter()
+        .map(|ring| {
+            let on = |p: &DVec3| DVec2::new((*p - outer[0]).dot(x), (*p - outer[0]).dot(y));
+            ring.iter().map(on).collect()
+        })
+        .collect();
+    let edges: Vec<(DVec2, DVec2)> = flat
+        .iter()
+        .flat_map(|ring| (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()])))
+        .collect();
+    // On which side of a line: points on it, where corners touch edges, are on neither.
+    let side = |(a, b): (DVec2, DVec2), p: DVec2| (b - a).perp_dot(p - a);
+    let apart = |e, (p, q)| side(e, p) * side(e, q) >= 0.0;
+    let crossing = edges.iter().enumerate().any(|(i, e)| {
+        let others = edges[i + 1..].iter();
+        others.clone().any(|f| !apart(*e, *f) && !apart(*f, *e))
+    });
+    let inside = |ring: &[DVec2], p: DVec2| {
+        let mut inside = false;
+        for i in 0..ring.len() {
+            let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
+            if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) {
+                inside = !inside;
+            }
+        }
+        inside
+    };
+    // Rings that do not cross are inside each other or apart as one of their points is.
+    let middle = |ring: &[DVec2]| (ring[0] + ring[1]) * 0.5;
+    crossing
+        || flat.iter().skip(1).enumerate().any(|(i, hole)| {
+            let p = middle(hole);
+            let mut others = flat.iter().enumerate().skip(1);
+            !inside(&flat[0], p) || others.any(|(j, other)| j != i + 1 && inside(other, p))
+        })
 }
 
 /// An affine map: `x ↦ linear·x + shift`.

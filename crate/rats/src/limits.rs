@@ -28,7 +28,9 @@ pub const MAX_OPERANDS: usize = 4096;
 /// Shapes in a scene.
 pub const MAX_ELEMENTS: usize = 200_000;
 /// Corners of a polygon with its holes. (The original stopped at 128.)
-pub const MAX_CORNERS: usize = 1024;
+pub const MAX_CORNERS: usize = 800;
+/// As how many shapes a curve counts, or a limb that tapers: it is integrated piece by piece.
+pub const CURVE_WEIGHT: usize = 64;
 /// Objects and chains in a scene.
 pub const MAX_OBJECTS: usize = 200_000;
 /// Objects inside each other.

@@ -107,6 +107,42 @@ fn elements() {
     fails(format!("var V = 1 1 1\n{text}"), "shapes");
 }
 
+/// Shapes that take long to prepare, or much room, count as many.
+#[test]
+fn heavy_elements() {
+    let curves = MAX_ELEMENTS / CURVE_WEIGHT + 1;
+    fails(
+        format!(
+            "surface s diff Red, blob -1, rad 1\nfor i = 1 to {curves} {{ curve s 1 0 0 0 1 0 0 1 1 0 0 1 i }}"
+        ),
+        "shapes",
+    );
+    fails(
+        format!(
+            "surface s diff Red, blob -1, rad 1 2\nfor i = 1 to {curves} {{ line s 0 0 0 1 0 i }}"
+        ),
+        "shapes",
+    );
+    let corners: String = (0..MAX_CORNERS / 2)
+        .map(|i| {
+            let (s, c) = libm::sincos(f64::from(i as u32) * 0.01);
+            format!(" {c:.4} {s:.4} 0")
+        })
+        .collect();
+    fails(
+        format!(
+            "surface s diff Red\nobject A\npolygon s{corners}\nclose\n\
+             for i = 1 to 1000 {{ instance A B }}"
+        ),
+        "shapes",
+    );
+    let many: String = (0..=MAX_CORNERS).map(|i| format!(" {i} 0 0")).collect();
+    fails(
+        format!("surface s diff Red\npolygon s{many}"),
+        "corners at most",
+    );
+}
+
 #[test]
 fn instances() {
     fails(

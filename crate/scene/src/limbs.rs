@@ -20,7 +20,7 @@ const CHANGE: f64 = 1.25;
 pub fn cut(skeleton: Skeleton, shaping: Shaping) -> Vec<(Skeleton, Shaping)> {
     let is_limb = match skeleton {
         Skeleton::Curve { .. } => true,
-        Skeleton::Segment { .. } | Skeleton::Arc { .. } => shaping.taper.is_some(),
+        Skeleton::Segment { .. } | Skeleton::Arc { .. } => shaping.varies_along(&skeleton),
         _ => false,
     };
     if !is_limb {

@@ -2,6 +2,7 @@
 
 use crate::limbs;
 use crate::{Element, Fragile, Material, Scene, Shape};
+use field::shaping::SLIMMEST;
 use field::{Field, Primitive, Skeleton};
 
 /// The convolution surface of a scene: the field, and which element each primitive came from.
@@ -44,9 +45,17 @@ impl Scene {
         let material = &self.materials[element.material];
         let given = if material.depth > 0.0 {
             let shaping = self.shaping(element, material, 1.0);
-            shaping.radius_of_depth(material.depth).unwrap_or(0.0)
+            let dimension = match element.shape {
+                Shape::Sphere { .. } => 0,
+                Shape::Cylinder { .. } | Shape::Arc { .. } | Shape::Curve { .. } => 1,
+                Shape::Triangle { .. } | Shape::Polygon { .. } | Shape::Plane { .. } => 2,
+            };
+            let radius = shaping.radius_of_depth(material.depth, dimension);
+            radius.unwrap_or(0.0)
         } else {
-            material.radius
+            // A tip may be at the start.
+            let end = material.end_radius.unwrap_or(0.0);
+            material.radius.max(SLIMMEST * end)
         };
         let overruled = match element.shape {
             Shape::Arc { .. } | Shape::Curve { .. } => arc,
@@ -61,6 +70,22 @@ impl Scene {
         } else {
             own
         }
+    }
+
+    /// Whether an element's bone is one that is integrated numerically, and too long for that.
+    #[must_use]
+    pub fn is_too_long(&self, element: &Element) -> bool {
+        let material = &self.materials[element.material];
+        let tapers = material.end_radius.is_some() || material.end_blobbiness.is_some();
+        // From above: an arc's circle, a curve's control polygon.
+        let length = match &element.shape {
+            Shape::Curve { control, .. } => control.windows(2).map(|w| w[0].distance(w[1])).sum(),
+            Shape::Cylinder { base, apex, .. } if tapers => base.distance(*apex),
+            Shape::Arc { sweep, angle, .. } if tapers => sweep * angle,
+            _ => return false,
+        };
+        let shaping = self.shaping(element, material, self.radius(element));
+        shaping.widths_along(length) > field::primitive::LONGEST
     }
 
     /// What the field is told of an element with this radius.
@@ -113,7 +138,12 @@ impl Scene {
                 Shape::Plane { point, normal, .. } => Skeleton::Plane { point, normal },
             };
             let shaping = self.shaping(element, material, self.radius(element));
-            let profile = material.whole_profile();
+            let profile = match skeleton {
+                Skeleton::Triangle { .. } => material.whole_profile(),
+                // They have no parameters that a profile could follow.
+                Skeleton::Polygon { .. } | Skeleton::Curve { .. } => None,
+                _ => material.profile,
+            };
             // A profile runs along the whole bone.
             let pieces = match profile {
                 None => limbs::cut(skeleton, shaping),

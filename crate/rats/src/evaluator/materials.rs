@@ -111,7 +111,16 @@ fn field<'a>(
             material.blobbiness = read.number("the blobbiness")?;
             material.end_blobbiness = None;
             if read.is_number_next(SURFACE) {
-                material.end_blobbiness = Some(read.number("the blobbiness at the other end")?);
+                let start = read.start();
+                let end = read.number("the blobbiness at the other end")?;
+                if end == 0.0 || material.blobbiness == 0.0 {
+                    return Err(Problem::new(
+                        read.since(start),
+                        "a blobbiness that varies must not be 0 at an end",
+                    )
+                    .hint("0 makes a material hard; near 0 is blobby, far from 0 crisp"));
+                }
+                material.end_blobbiness = Some(end);
             }
         }
         "restriction" => {

@@ -4,7 +4,7 @@
 //! comes to the same as applying them later: an inner object's before an outer one's.
 
 use crate::geometry::Transform;
-use crate::limits::{MAX_ELEMENTS, MAX_NESTED_OBJECTS, MAX_OBJECTS};
+use crate::limits::{CURVE_WEIGHT, MAX_ELEMENTS, MAX_NESTED_OBJECTS, MAX_OBJECTS};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
@@ -21,8 +21,22 @@ pub struct Part {
     pub growth: f64,
     /// Whether it was written as a pipe.
     pub is_pipe: bool,
+    /// Whether its width varies along it.
+    pub tapers: bool,
     /// Whether it has been removed.
     pub removed: bool,
+}
+
+impl Part {
+    /// As how many shapes it counts.
+    fn weight(&self) -> usize {
+        match &self.element.shape {
+            Shape::Polygon { rings, .. } => rings.iter().map(Vec::len).sum(),
+            Shape::Curve { .. } => CURVE_WEIGHT,
+            _ if self.tapers => CURVE_WEIGHT,
+            _ => 1,
+        }
+    }
 }
 
 /// An object that has been begun.
@@ -41,6 +55,8 @@ pub struct Model<'a> {
     open: Vec<Object<'a>>,
     closed: HashMap<&'a str, Range<usize>>,
     count: usize,
+    /// What the shapes weigh, see [`Part::weight`].
+    weight: usize,
     /// The last shape or closed object.
     last: Option<Range<usize>>,
     /// The material of the chain that is open.
@@ -53,14 +69,24 @@ impl<'a> Model<'a> {
     /// # Errors
     /// Fatally, if there are too many.
     pub fn push(&mut self, part: Part, span: &Range<usize>) -> Outcome<()> {
-        if self.parts.len() >= MAX_ELEMENTS {
+        let weight = self.weight + part.weight();
+        if weight > MAX_ELEMENTS {
+            let hint = if self.parts.len() < MAX_ELEMENTS / 2 {
+                format!(
+                    "a curve or a limb that tapers counts as {CURVE_WEIGHT} shapes, a polygon as \
+                     many as it has corners"
+                )
+            } else {
+                String::from("make fewer shapes, or fewer turns of a loop")
+            };
             return Err(Problem::new(
                 span.clone(),
                 format!("stopped here: there are more than {MAX_ELEMENTS} shapes"),
             )
-            .hint("make fewer shapes, or fewer turns of a loop")
+            .hint(hint)
             .fatal());
         }
+        self.weight = weight;
         self.last = Some(self.parts.len()..self.parts.len() + 1);
         self.parts.push(part);
         Ok(())
@@ -188,7 +214,10 @@ impl<'a> Model<'a> {
         self.parts[range].iter().any(|part| {
             matches!(
                 part.element.shape,
-                Shape::Sphere { .. } | Shape::Arc { .. } | Shape::Cylinder { .. }
+                Shape::Sphere { .. }
+                    | Shape::Arc { .. }
+                    | Shape::Cylinder { .. }
+                    | Shape::Curve { .. }
             )
         })
     }
@@ -196,6 +225,7 @@ impl<'a> Model<'a> {
     /// Forgets all shapes and objects; objects that are open stay open.
     pub fn clear(&mut self) {
         self.parts.clear();
+        self.weight = 0;
         self.closed.clear();
         self.last = None;
         for object in &mut self.open {

@@ -137,6 +137,17 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
             ..
         } => a == b && b == c && c == d,
     };
+    if is_soft && scene.is_too_long(element) {
+        return Some((
+            || {
+                String::from(
+                    "this curve or tapering limb is more than 10,000 kernel widths long, so it is \
+                     left out",
+                )
+            },
+            hint("give it a larger radius, or cut it into pieces"),
+        ));
+    }
     degenerate.then(|| {
         let message: fn() -> String = match element.shape {
             Shape::Cylinder { .. } => {

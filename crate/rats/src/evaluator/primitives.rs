@@ -55,7 +55,10 @@ impl<'a> Evaluator<'a> {
         kernel: Kernel,
         is_pipe: bool,
     ) -> Outcome<Flow> {
+        let flesh = &self.palette.surfaces[material].material;
         let part = Part {
+            tapers: matches!(shape, Shape::Cylinder { .. } | Shape::Arc { .. })
+                && (flesh.end_radius.is_some() || flesh.end_blobbiness.is_some()),
             element: Element {
                 shape,
                 material,
@@ -237,7 +240,17 @@ pub fn polygon<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
             "a polygon, and each hole of it, needs at least three corners",
         ));
     }
+    // Each pair of edges is looked at.
+    run.scope
+        .step((corners * corners / 50) as u64, &command.word_span)?;
     let off = geometry::flatten(&mut rings);
+    if geometry::crosses_itself(&rings) {
+        return Err(Problem::new(
+            command.span.clone(),
+            "edges of this polygon cross each other",
+        )
+        .hint("list the corners in order around it; holes lie inside, apart from each other"));
+    }
     if off > 1e-3 {
         run.say(Severity::Warning, command.span.clone(), || {
             (
