@@ -30,6 +30,7 @@ impl Evaluator<'_> {
         }
         let parts = std::mem::take(&mut self.model.parts);
         let mut grown = HashMap::new();
+        let mut warned = false;
         for part in parts.iter().filter(|part| !part.removed) {
             let element = if is_in_bounds(part) {
                 let element = settle(part, &mut scene, &mut grown);
@@ -38,7 +39,25 @@ impl Evaluator<'_> {
                 Err((too_far as fn() -> String, None))
             };
             match element {
-                Ok(element) => scene.elements.push(element),
+                Ok(element) => {
+                    if !warned && ignores_profile(&scene, &element) {
+                        warned = true;
+                        let origin = element.origin;
+                        let file = std::mem::replace(&mut self.file, origin.file as usize);
+                        let span = origin.start as usize..origin.end as usize;
+                        self.say(Severity::Warning, span, || {
+                            (
+                                String::from(
+                                    "a texture of the strength does nothing on polygons and curves \
+                                     in this version",
+                                ),
+                                None,
+                            )
+                        });
+                        self.file = file;
+                    }
+                    scene.elements.push(element);
+                }
                 Err((message, hint)) => {
                     let origin = part.element.origin;
                     let file = std::mem::replace(&mut self.file, origin.file as usize);
@@ -91,6 +110,13 @@ fn settle(part: &Part, scene: &mut Scene, grown: &mut HashMap<(usize, u64), usiz
         });
     }
     element
+}
+
+/// Whether an element's material has a profile that its shape has no parameters for.
+fn ignores_profile(scene: &Scene, element: &Element) -> bool {
+    matches!(element.shape, Shape::Polygon { .. } | Shape::Curve { .. })
+        && scene.materials[element.material].profile.is_some()
+        && scene.is_soft(element)
 }
 
 type Fault = (fn() -> String, Option<String>);
