@@ -10,28 +10,24 @@ use wide::f32x8;
 
 const EPSILON32: f64 = f32::EPSILON as f64 / 2.0;
 
-/// How exact a cell is: errors are at most `relative·|f| + floor·(the largest field it can have)`.
+/// How exact cells are: errors are at most `relative·|f| + floor·(the largest field it can have)`.
 #[derive(Clone, Copy)]
 struct Accuracy {
     relative: f64,
     floor: f64,
 }
 
-/// Of double precision against quadrature.
-fn double(_kernel: Kernel, _kind: Kind) -> Accuracy {
-    Accuracy {
-        relative: 1e-9,
-        floor: 1e-13,
-    }
-}
+/// Of double precision against quadrature, in every cell.
+const DOUBLE: Accuracy = Accuracy {
+    relative: 1e-9,
+    floor: 1e-13,
+};
 
-/// Of single precision against double.
-fn single_precision(_kernel: Kernel, _kind: Kind) -> Accuracy {
-    Accuracy {
-        relative: 1e-5,
-        floor: 2e-6,
-    }
-}
+/// Of single precision against double, in every cell.
+const SINGLE: Accuracy = Accuracy {
+    relative: 1e-5,
+    floor: 2e-6,
+};
 
 fn shaped(random: &mut Random, kernel: Kernel) -> Shaping {
     Shaping {
@@ -70,7 +66,7 @@ fn matches_quadrature(kernel: Kernel, kind: Kind) {
         let point = random.near(&skeleton, -4.0, far);
         let want = quadrature::value(&primitive, point);
         let (value, gradient) = jet::<f64>(&primitive, point);
-        let Accuracy { relative, floor } = double(kernel, kind);
+        let Accuracy { relative, floor } = DOUBLE;
         let tolerance = relative * want.abs()
             + floor * peak(&primitive)
             + 64.0 * f64::EPSILON * sensitivity(&primitive, point);
@@ -98,7 +94,7 @@ fn single_matches_double(kernel: Kernel, kind: Kind) {
             (value8.to_bits(), gradient8),
             "{primitive:?} at {point:?}"
         );
-        let Accuracy { relative, floor } = single_precision(kernel, kind);
+        let Accuracy { relative, floor } = SINGLE;
         let slack = 64.0 * EPSILON32 * sensitivity(&primitive, point);
         let tolerance = relative * want.abs() + floor * peak(&primitive) + slack;
         assert!(
@@ -182,7 +178,7 @@ fn superposition(kernel: Kernel, kind: Kind) {
             sum += value;
             slopes += gradient;
         }
-        let Accuracy { relative, floor } = double(kernel, kind);
+        let Accuracy { relative, floor } = DOUBLE;
         let tolerance = 2.0 * relative * value.abs() + 4.0 * floor * peak(&whole);
         assert!(
             (sum - value).abs() <= tolerance,
@@ -216,7 +212,7 @@ fn rigid_motion_and_scale(kernel: Kernel, kind: Kind) {
         let there = primitive(moved(&skeleton, turn, scale, shift), &there, None);
         let (value, gradient) = jet::<f64>(&here, point);
         let (after, slopes) = jet::<f64>(&there, to(point));
-        let Accuracy { relative, floor } = double(kernel, kind);
+        let Accuracy { relative, floor } = DOUBLE;
         let tolerance = 2.0 * relative * value.abs()
             + 4.0 * floor * peak(&here)
             + 64.0 * f64::EPSILON * (sensitivity(&here, point) + sensitivity(&there, to(point)));
