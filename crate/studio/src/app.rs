@@ -3,10 +3,12 @@
 //! [`App::tick`] does what time and messages demand and runs even while the tab is hidden;
 //! [`App::show`] draws one frame. Widgets only list [`Command`]s, which are carried out afterwards.
 
+use crate::asset_view::AssetView;
 use crate::command::Command;
 use crate::draft::Draft;
 use crate::editor::Editor;
 use crate::gallery::Gallery;
+use crate::help::Help;
 use crate::keyboard::Keyboard;
 use crate::lab::{Lab, Lesson};
 use crate::notice::Notice;
@@ -18,7 +20,7 @@ use crate::settings::Settings;
 use crate::sliders::Sliders;
 use crate::storage::Shelf;
 use crate::work::{Origin, Work};
-use crate::{Backend, platform, size, theme};
+use crate::{Backend, fonts, platform, size, theme};
 use egui::{Context, Ui};
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
@@ -88,8 +90,10 @@ pub struct App {
     pub(crate) backend: Backend,
     pub(crate) settings: Settings,
     pub(crate) editor: Editor,
+    pub(crate) asset_view: AssetView,
     pub(crate) sliders: Sliders,
     pub(crate) gallery: Gallery,
+    pub(crate) help: Help,
     pub(crate) lab: Lab,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) notice: Option<Notice>,
@@ -129,6 +133,7 @@ impl App {
         let carried = if lesson.is_some() { "" } else { &hash };
         let (work, trouble) = Work::start(parts.shelf.clone(), carried, calm);
         parts.requests.attach(ctx);
+        ctx.set_fonts(fonts::definitions());
         let settings: Settings = parts.shelf.borrow().settings();
         ctx.set_theme(settings.theme);
         let repaint = ctx.clone();
@@ -143,8 +148,10 @@ impl App {
                 .map(Draft::new),
             backend,
             editor: Editor::default(),
+            asset_view: AssetView::default(),
             sliders: Sliders::default(),
             gallery: Gallery::default(),
+            help: Help::default(),
             dialog: None,
             notice: None,
             tab: Tab::Text,
@@ -208,6 +215,7 @@ impl App {
     pub fn tick(&mut self, ctx: &Context) {
         let now = platform::now(ctx);
         let started = *self.started.get_or_insert(now);
+        self.catch_drops(ctx);
         let mut answers = Vec::new();
         for request in self.parts.requests.take() {
             self.serve(ctx, request, now, &mut answers);

@@ -26,6 +26,12 @@ pub enum Icon {
     More,
     /// A cross.
     Close,
+    /// A folder.
+    Open,
+    /// A framed landscape.
+    Image,
+    /// A triangle with its middle lines.
+    Mesh,
 }
 
 /// A square button; `name` is its tooltip and its name for screen readers.
@@ -58,7 +64,8 @@ pub fn button(ui: &mut Ui, icon: Icon, name: &str, enabled: bool) -> Response {
     }
 }
 
-fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
+/// Draws an icon around a point.
+pub fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
     let line = |points: &[(f32, f32)]| {
         let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
         painter.add(Shape::line(points, stroke));
@@ -123,6 +130,43 @@ fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
             for x in [-5.0, 0.0, 5.0] {
                 painter.circle_filled(at + vec2(x, 0.0), 1.6, stroke.color);
             }
+        }
+        Icon::Open => {
+            line(&[
+                (-6.5, 5.0),
+                (-6.5, -5.0),
+                (-2.5, -5.0),
+                (-1.0, -3.0),
+                (5.0, -3.0),
+                (5.0, -0.5),
+            ]);
+            line(&[
+                (-6.5, 5.0),
+                (-4.0, -0.5),
+                (7.5, -0.5),
+                (5.0, 5.0),
+                (-6.5, 5.0),
+            ]);
+        }
+        Icon::Image => {
+            line(&[
+                (-5.0, -4.0),
+                (5.0, -4.0),
+                (5.0, 4.0),
+                (-5.0, 4.0),
+                (-5.0, -4.0),
+            ]);
+            line(&[
+                (-5.0, 3.0),
+                (-1.5, -0.5),
+                (1.0, 2.0),
+                (2.5, 0.5),
+                (5.0, 3.0),
+            ]);
+        }
+        Icon::Mesh => {
+            line(&[(-5.0, 4.0), (0.0, -5.0), (5.0, 4.0), (-5.0, 4.0)]);
+            line(&[(-2.5, -0.5), (2.5, -0.5), (0.0, 4.0), (-2.5, -0.5)]);
         }
         Icon::Close => {
             line(&[(-4.0, -4.0), (4.0, 4.0)]);
