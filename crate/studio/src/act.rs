@@ -4,7 +4,7 @@ use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::lab::Lesson;
 use crate::notice::Notice;
-use crate::{picture, platform, share};
+use crate::{picture, platform, share, work};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 impl App {
@@ -104,6 +104,14 @@ impl App {
                 self.settings.theme = theme;
                 ctx.set_theme(theme);
             }
+            Command::Play => self.player.toggle(now),
+            Command::SetFilmFrame(frame) => {
+                self.player.pause();
+                session.set_film_frame(frame);
+            }
+            Command::SetFilmLength(count) => self.player.count = count,
+            Command::SaveFilm => self.begin_film(ctx),
+            Command::StopFilm => self.stop_film("You stopped it."),
             Command::SavePng => self.save_png(now),
             Command::Share => self.share(ctx, now),
             Command::OpenExample(index) => {
@@ -202,13 +210,7 @@ impl App {
         };
         match picture::png(image) {
             Ok(bytes) => {
-                let stem: String = self
-                    .work
-                    .name
-                    .chars()
-                    .map(|c| if c.is_alphanumeric() { c } else { '-' })
-                    .collect();
-                let name = format!("{}.png", if stem.is_empty() { "sinew" } else { &stem });
+                let name = format!("{}.png", work::file_stem(&self.work.name));
                 platform::download(&name, "image/png", &bytes);
                 let [width, height] = image.size;
                 let text = format!("Saved {name}, {width} × {height} pixels.");

@@ -7,6 +7,7 @@ use crate::asset_view::AssetView;
 use crate::command::Command;
 use crate::draft::Draft;
 use crate::editor::Editor;
+use crate::film::Player;
 use crate::gallery::Gallery;
 use crate::help::Help;
 use crate::keyboard::Keyboard;
@@ -16,6 +17,7 @@ use crate::pool::Pool;
 use crate::render::{Phase, Renderer};
 use crate::report::Shared;
 use crate::request::Requests;
+use crate::screening::Saving;
 use crate::settings::Settings;
 use crate::sliders::Sliders;
 use crate::storage::Shelf;
@@ -94,6 +96,8 @@ pub struct App {
     pub(crate) sliders: Sliders,
     pub(crate) gallery: Gallery,
     pub(crate) help: Help,
+    pub(crate) player: Player,
+    pub(crate) saving: Option<Saving>,
     pub(crate) lab: Lab,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) notice: Option<Notice>,
@@ -152,6 +156,8 @@ impl App {
             sliders: Sliders::default(),
             gallery: Gallery::default(),
             help: Help::default(),
+            player: Player::default(),
+            saving: None,
             dialog: None,
             notice: None,
             tab: Tab::Text,
@@ -232,6 +238,7 @@ impl App {
             self.titled = title.to_owned();
             platform::set_title(&self.titled);
         }
+        self.screen(now);
         let session = &self.work.session;
         if session.enabled() {
             self.renderer
@@ -264,6 +271,7 @@ impl App {
         if !self.lab.is_open() {
             waits.push(self.renderer.wait(now));
         }
+        waits.push(self.player.wait(now));
         waits.push(match &self.notice {
             Some(notice) => notice.until.map(|until| until - now),
             None => None,
@@ -293,7 +301,7 @@ impl App {
     }
 
     /// The size to trace at.
-    fn size(&self, ctx: &Context) -> [u32; 2] {
+    pub(crate) fn size(&self, ctx: &Context) -> [u32; 2] {
         if let Some(size) = self.forced_size {
             return size;
         }
@@ -305,6 +313,10 @@ impl App {
     /// Another work is open: forget what belonged to the one before.
     pub(crate) fn opened(&mut self, ctx: &Context) {
         self.lab.close();
+        self.player = Player::default();
+        if let Some(saving) = self.saving.take() {
+            self.forced_size = saving.forced;
+        }
         self.editor.reset(ctx);
         self.sliders.clear();
         self.renderer.clear();

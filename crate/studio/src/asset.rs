@@ -2,7 +2,7 @@
 //!
 //! Only their heads are read here; what they mean for the picture is the language's affair.
 
-use std::sync::Arc;
+pub use rats::Asset;
 
 /// Largest image or mesh, bytes.
 pub const MAX_ASSET: usize = 8 << 20;
@@ -12,15 +12,6 @@ pub const MAX_ALL: usize = 24 << 20;
 pub const MAX_ASSETS: usize = 16;
 /// Longest side of an image, pixels.
 pub const MAX_SIDE: u32 = 4096;
-
-/// An image or a mesh beside the texts of a work.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Asset {
-    /// What the text calls it.
-    pub name: String,
-    /// The file.
-    pub bytes: Arc<[u8]>,
-}
 
 /// What an asset is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -67,6 +67,16 @@ pub enum Command {
     SetSize(size::Choice),
     /// Another palette.
     SetTheme(theme::Choice),
+    /// Play the film, or pause it.
+    Play,
+    /// Show a frame of the film.
+    SetFilmFrame(u32),
+    /// How many frames the film has.
+    SetFilmLength(u32),
+    /// Write all frames of the film to a file.
+    SaveFilm,
+    /// Give that up.
+    StopFilm,
     /// Write the picture to a file.
     SavePng,
     /// Make a link, copy it, and put it into the address bar.

@@ -281,6 +281,10 @@ impl Editor {
                 if let Some(hint) = &diagnostic.hint {
                     ui.label(RichText::new(hint).color(palette.weak));
                 }
+                for related in &diagnostic.related {
+                    let text = format!("line {}: {}", related.line, related.message);
+                    ui.label(RichText::new(text).color(palette.note));
+                }
             }
         });
     }

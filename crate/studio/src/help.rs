@@ -3,7 +3,7 @@
 
 use crate::command::Command;
 use crate::reference::Reference;
-use crate::theme;
+use crate::{places, theme};
 use egui::{RichText, ScrollArea, Ui};
 
 const LANGUAGE: [(&str, &str); 9] = [
@@ -98,7 +98,9 @@ impl Help {
                 let open = self.page == page;
                 let colour = if open { palette.strong } else { palette.weak };
                 let title = RichText::new(title).size(17.0).color(colour);
-                if ui.selectable_label(open, title).clicked() {
+                let tab = ui.selectable_label(open, title);
+                places::note(ui.ctx(), format!("help {page:?}").to_lowercase(), tab.rect);
+                if tab.clicked() {
                     self.page = page;
                 }
             }

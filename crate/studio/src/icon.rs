@@ -1,7 +1,7 @@
 //! Buttons with small drawn pictures, so that they look the same whatever fonts there are.
 
 use crate::theme;
-use egui::{Painter, Pos2, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
+use egui::{Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
 /// What a button shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,10 @@ pub enum Icon {
     More,
     /// A cross.
     Close,
+    /// A triangle to the right.
+    Play,
+    /// Two bars.
+    Pause,
     /// A folder.
     Open,
     /// A framed landscape.
@@ -129,6 +133,17 @@ pub fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
         Icon::More => {
             for x in [-5.0, 0.0, 5.0] {
                 painter.circle_filled(at + vec2(x, 0.0), 1.6, stroke.color);
+            }
+        }
+        Icon::Play => {
+            let corners = [(-4.0, -6.0), (6.5, 0.0), (-4.0, 6.0)];
+            let corners = corners.map(|(x, y)| at + vec2(x, y)).to_vec();
+            painter.add(Shape::convex_polygon(corners, stroke.color, Stroke::NONE));
+        }
+        Icon::Pause => {
+            for x in [-3.0, 3.0] {
+                let bar = Rect::from_center_size(at + vec2(x, 0.0), vec2(3.0, 11.0));
+                painter.rect_filled(bar, 1.0, stroke.color);
             }
         }
         Icon::Open => {

@@ -6,7 +6,9 @@ use crate::command::Command;
 use crate::icon::{self, Icon};
 use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery, Show};
-use crate::{bar, files, intake, lab, notice, places, platform, problems, size, sliders, status};
+use crate::{
+    bar, files, intake, lab, notice, places, platform, problems, size, sliders, status, timeline,
+};
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Rect, RichText,
     ScrollArea, Stroke, Ui, UiBuilder, pos2, vec2,
@@ -281,6 +283,16 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let narrow = is_narrow(ui.ctx());
     ui.painter().rect_filled(place, 0.0, palette.stage);
+    let mut place = place;
+    if app.work.session.is_animated() {
+        let height = if narrow { 48.0 } else { STRIP };
+        let strip = Rect::from_min_max(pos2(place.left(), place.bottom() - height), place.max);
+        place.max.y = strip.top();
+        ui.painter().rect_filled(strip, 0.0, palette.panel);
+        let builder = UiBuilder::new().max_rect(strip).id_salt("timeline");
+        let frame = app.work.session.film_frame();
+        timeline::show(&mut ui.new_child(builder), &app.player, frame, commands);
+    }
     let margin = if narrow { 0.0 } else { 18.0 };
     let rect = view::fit(place.shrink(margin), app.work.session.frame());
     let scale = ui.ctx().pixels_per_point();

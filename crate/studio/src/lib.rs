@@ -25,6 +25,7 @@ pub mod emulation;
 pub mod entry;
 pub mod examples;
 pub mod files;
+pub mod film;
 pub mod fonts;
 pub mod gallery;
 #[cfg(target_arch = "wasm32")]
@@ -50,6 +51,7 @@ pub mod reference;
 pub mod render;
 pub mod report;
 pub mod request;
+mod screening;
 pub mod session;
 pub mod settings;
 pub mod share;
@@ -59,6 +61,7 @@ pub mod software;
 pub mod status;
 pub mod storage;
 pub mod theme;
+pub mod timeline;
 pub mod view;
 pub mod work;
 

@@ -6,6 +6,7 @@ use egui::{
     DragValue, EventFilter, Key, Pos2, Rect, Response, Role, Sense, Slider, Stroke, Ui, WidgetInfo,
     pos2, vec2,
 };
+use rats::{HotValue, hot};
 
 /// What the controls may do with the numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +77,8 @@ pub fn show(
                 let size = vec2(68.0, ui.spacing().interact_size.y);
                 let field = DragValue::new(value)
                     .speed((high - low) / 500.0)
-                    .max_decimals(4);
+                    .max_decimals(4)
+                    .custom_formatter(|value, _| hot::write(&HotValue::Scalar(value)));
                 let field = ui
                     .add_sized(size, field)
                     .accessible_name(&format!("{name}, {axis}"))

@@ -4,21 +4,30 @@
 use crate::command::Command;
 use crate::{places, theme};
 use egui::text::{LayoutJob, TextFormat};
-use egui::{CollapsingHeader, FontId, RichText, TextEdit, Ui};
-use rats::commands::{COMMANDS, CommandSpec, Group, OptionSpec};
+use egui::{CollapsingHeader, FontId, Label, RichText, TextEdit, Ui};
+use rats::commands::{CommandSpec, GROUPS, Group};
+use rats::{library, manual};
 
 /// The groups in the order in which a newcomer needs them.
-const GROUPS: [(Group, &str); 9] = [
+const ORDER: [(Group, &str); 9] = [
     (Group::Primitives, "Shapes"),
     (Group::Materials, "Materials and textures"),
     (Group::Objects, "Objects"),
     (Group::Scene, "Light and picture"),
     (Group::Camera, "Camera"),
-    (Group::Extensions, "Programming"),
+    (Group::Extensions, "Programming and ready-made shapes"),
     (Group::Options, "Settings"),
     (Group::Run, "Running"),
-    (Group::Tools, "Tools"),
+    (Group::Tools, "Pictures and films"),
 ];
+
+/// The commands of a group.
+fn group_list(group: Group) -> &'static [CommandSpec] {
+    GROUPS
+        .iter()
+        .find(|(name, _)| *name == group)
+        .map_or(&[], |(_, list)| *list)
+}
 
 /// The state of the reference.
 #[derive(Default)]
@@ -47,10 +56,10 @@ impl Reference {
         places::note(ui.ctx(), "search commands", field.rect);
         let wanted = self.wanted.take();
         let mut found = 0;
-        for (group, title) in GROUPS {
-            let hits: Vec<&CommandSpec> = COMMANDS
+        for (group, title) in ORDER {
+            let hits: Vec<&CommandSpec> = group_list(group)
                 .iter()
-                .filter(|spec| spec.group == group && matches(spec, &self.search))
+                .filter(|spec| matches(spec, &self.search))
                 .collect();
             if hits.is_empty() {
                 continue;
@@ -85,48 +94,90 @@ fn heading(spec: &CommandSpec, palette: &theme::Palette) -> LayoutJob {
     job
 }
 
-/// How a command is written and what its options mean.
-pub fn card(ui: &mut Ui, spec: &CommandSpec, _commands: &mut Vec<Command>) {
+/// How a command is written, what its operands and options mean, and an example to try.
+pub fn card(ui: &mut Ui, spec: &CommandSpec, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
-    let small = |text: &str| RichText::new(text).size(13.0).color(palette.text);
-    ui.label(
-        RichText::new(spec.synopsis())
-            .monospace()
-            .size(12.5)
-            .color(palette.command),
-    );
+    let small = |text: &str, colour| RichText::new(text).size(13.0).color(colour);
+    let code = |text: &str, colour| RichText::new(text).monospace().size(12.5).color(colour);
+    ui.add(Label::new(code(&spec.synopsis(), palette.command)).wrap());
+    if !spec.details.is_empty() {
+        ui.add(Label::new(small(spec.details, palette.text)).wrap());
+    }
     if !spec.default.is_empty() {
-        ui.label(small(&format!("Without it: {}.", spec.default)));
+        let text = format!("Without it: {}.", spec.default);
+        ui.add(Label::new(small(&text, palette.weak)).wrap());
     }
-    if spec.options.is_empty() {
-        return;
+    if let Some(reason) = spec.idle() {
+        let text = format!("Changes nothing here: {reason}.");
+        ui.add(Label::new(small(&text, palette.warning)).wrap());
     }
-    ui.add_space(4.0);
-    egui::Grid::new(("options", spec.name))
-        .num_columns(2)
-        .spacing([14.0, 4.0])
-        .show(ui, |ui| {
-            for option in spec.options {
-                let written = format!("{} {}", option.name, option.arguments);
-                ui.label(
-                    RichText::new(written.trim_end())
-                        .monospace()
-                        .size(12.0)
-                        .color(palette.option),
-                );
-                ui.add(egui::Label::new(small(&told(option))).wrap());
-                ui.end_row();
-            }
-        });
+    let rows = rows(spec);
+    if !rows.is_empty() {
+        ui.add_space(4.0);
+        let width = (0.36 * ui.available_width()).min(210.0);
+        for (written, meaning, is_option) in rows {
+            ui.horizontal_top(|ui| {
+                let colour = if is_option {
+                    palette.option
+                } else {
+                    palette.number
+                };
+                ui.vertical(|ui| {
+                    ui.set_width(width);
+                    ui.add(Label::new(code(&written, colour)).wrap());
+                });
+                ui.vertical(|ui| ui.add(Label::new(small(&meaning, palette.text)).wrap()));
+            });
+        }
+    }
+    if !spec.example.is_empty() {
+        ui.add_space(6.0);
+        egui::Frame::new()
+            .fill(palette.paper)
+            .corner_radius(theme::ROUND)
+            .inner_margin(8)
+            .show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                let mut job = crate::code::colour(spec.example.trim_end(), palette);
+                job.wrap.max_width = ui.available_width();
+                ui.add(Label::new(job));
+            });
+        let button = ui
+            .button("Try it")
+            .on_hover_text("Open this example; your own work is kept");
+        if button.clicked() {
+            commands.push(Command::OpenText {
+                name: spec.name.to_owned(),
+                text: spec.example.to_owned(),
+            });
+        }
+    }
+    ui.add_space(6.0);
 }
 
-/// What an option means, with its default.
-fn told(option: &OptionSpec) -> String {
-    if option.default.is_empty() {
-        option.meaning.to_owned()
-    } else {
-        format!("{} ({})", option.meaning, option.default)
+/// Operands and options: how each is written, what it means, and whether it is an option.
+fn rows(spec: &CommandSpec) -> Vec<(String, String, bool)> {
+    let with_default = |meaning: &str, default: &str| match default {
+        "" => meaning.to_owned(),
+        default => format!("{meaning} (by default {default})"),
+    };
+    let mut rows: Vec<(String, String, bool)> = spec
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let meaning = manual::parameter_line(parameter);
+            (parameter.synopsis(), meaning, false)
+        })
+        .collect();
+    for parameter in library::parameters(spec.name) {
+        let meaning = with_default(&parameter.meaning, &parameter.default);
+        rows.push((parameter.name.to_owned(), meaning, false));
     }
+    for option in spec.options {
+        let meaning = with_default(option.meaning, option.default);
+        rows.push((option.synopsis(), meaning, true));
+    }
+    rows
 }
 
 /// Whether all words of the search are found in the command's name, meaning or options.
@@ -141,28 +192,31 @@ fn matches(spec: &CommandSpec, search: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rats::commands;
 
     #[test]
-    fn every_command_is_in_one_group() {
-        for spec in COMMANDS {
-            let groups = GROUPS.iter().filter(|(group, _)| *group == spec.group);
-            assert_eq!(groups.count(), 1, "{}", spec.name);
-        }
+    fn every_group_is_shown_once() {
+        let shown: usize = ORDER
+            .iter()
+            .map(|(group, _)| group_list(*group).len())
+            .sum();
+        assert_eq!(shown, commands::all().count());
+        let groups: std::collections::HashSet<_> = ORDER.iter().map(|(group, _)| group).collect();
+        assert_eq!(groups.len(), ORDER.len());
     }
 
     #[test]
     fn names_meanings_and_options_are_searched() {
         let find = |search: &str| -> Vec<&str> {
-            COMMANDS
-                .iter()
+            commands::all()
                 .filter(|spec| matches(spec, search))
                 .map(|spec| spec.name)
                 .collect()
         };
-        assert_eq!(find("SPHERE").first(), Some(&"sphere"));
+        assert!(find("SPHERE").contains(&"sphere"));
         assert!(find("blobbiness").contains(&"surface"));
         assert!(find("colour").len() > 1);
         assert_eq!(find("sphere xyzzy"), Vec::<&str>::new());
-        assert_eq!(find(" ").len(), COMMANDS.len());
+        assert_eq!(find(" ").len(), commands::all().count());
     }
 }

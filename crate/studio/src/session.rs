@@ -115,6 +115,7 @@ pub struct Session {
     enabled: bool,
     stale: bool,
     compile_seconds: f64,
+    film_frame: u32,
 }
 
 impl Session {
@@ -126,11 +127,7 @@ impl Session {
             project: Project::default(),
             assets: Vec::new(),
             history: History::default(),
-            compiled: Compiled {
-                scene: Scene::default(),
-                diagnostics: Vec::new(),
-                hot: Vec::new(),
-            },
+            compiled: rats::compile(&Project::default()),
             good: None,
             camera: None,
             revision: 0,
@@ -138,6 +135,7 @@ impl Session {
             enabled: compile,
             stale: false,
             compile_seconds: 0.0,
+            film_frame: 0,
         };
         session.open(kept);
         session
@@ -155,6 +153,7 @@ impl Session {
         self.history = kept.history;
         self.assets = kept.assets;
         self.camera = kept.camera;
+        self.film_frame = 0;
         self.good = None;
         self.changed();
     }
@@ -456,6 +455,26 @@ impl Session {
         }
     }
 
+    /// Whether the text changes from frame to frame of a film.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        self.compiled.animated
+    }
+
+    /// The frame of the film on show, from 0.
+    #[must_use]
+    pub fn film_frame(&self) -> u32 {
+        self.film_frame
+    }
+
+    /// Shows a frame of the film, from the next [`Session::compile`] on.
+    pub fn set_film_frame(&mut self, frame: u32) {
+        if self.film_frame != frame {
+            self.film_frame = frame;
+            self.stale = true;
+        }
+    }
+
     /// How long compiling the present text took.
     #[must_use]
     pub fn compile_seconds(&self) -> f64 {
@@ -492,7 +511,7 @@ impl Session {
             return;
         }
         let start = crate::platform::stopwatch();
-        self.compiled = rats::compile(&self.project);
+        self.compiled = rats::compile_at(&self.project, &self.assets, self.film_frame);
         self.compile_seconds = crate::platform::stopwatch() - start;
         if self.errors() == 0 || self.good.is_none() {
             let scene = &self.compiled.scene;

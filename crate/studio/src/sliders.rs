@@ -181,8 +181,9 @@ pub fn height(ui: &Ui, hot: &[HotVariable]) -> f32 {
 }
 
 /// The range and the step that the text gives the variable.
-fn bounds(_variable: &HotVariable) -> (Option<(f64, f64)>, Option<f64>) {
-    (None, None)
+fn bounds(variable: &HotVariable) -> (Option<(f64, f64)>, Option<f64>) {
+    let range = variable.range.filter(|[low, high]| low < high);
+    (range.map(|[low, high]| (low, high)), variable.step)
 }
 
 fn name(ui: &mut Ui, name: &str, width: f32) {

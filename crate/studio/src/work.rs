@@ -311,6 +311,20 @@ impl Work {
     }
 }
 
+/// What a file of this work is called, without its ending.
+#[must_use]
+pub fn file_stem(name: &str) -> String {
+    let stem: String = name
+        .chars()
+        .map(|c| if c.is_alphanumeric() { c } else { '-' })
+        .collect();
+    if stem.is_empty() {
+        String::from("sinew")
+    } else {
+        stem
+    }
+}
+
 /// A name for a project: that of its first file without the extension.
 fn title(project: &Project) -> String {
     let name = project.files.first().map_or("", |file| file.name.as_str());
