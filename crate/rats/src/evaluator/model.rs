@@ -223,6 +223,12 @@ impl<'a> Model<'a> {
         Ok(())
     }
 
+    /// As how many shapes they count.
+    #[must_use]
+    pub fn weight(&self) -> usize {
+        self.weight
+    }
+
     /// Whether some of these shapes are round, so that only a uniform scale keeps their kind.
     #[must_use]
     pub fn has_round(&self, range: Range<usize>) -> bool {
