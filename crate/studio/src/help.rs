@@ -30,7 +30,7 @@ const LANGUAGE: [(&str, &str); 9] = [
         "a number with a name; hot makes it a slider",
     ),
     (
-        "for i = 1 to 10 { sphere flesh 0.2, i 0 0 }",
+        "for i = 1 to 10 { sphere flesh 0.2, i/4 0 0 }",
         "repeats; numbers can be computed: 2*r, sin(i), rand(i)",
     ),
     ("# words", "a remark"),

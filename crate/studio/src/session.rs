@@ -127,7 +127,7 @@ impl Session {
             project: Project::default(),
             assets: Vec::new(),
             history: History::default(),
-            compiled: rats::compile(&Project::default()),
+            compiled: Compiled::default(),
             good: None,
             camera: None,
             revision: 0,
@@ -448,6 +448,7 @@ impl Session {
                 && camera.target.is_finite()
                 && camera.up.is_finite()
                 && camera.fov.is_finite()
+                && camera.shift.iter().all(|shift| shift.is_finite())
         });
         if finite && self.camera != camera {
             self.camera = camera;

@@ -319,3 +319,35 @@ fn every_widget_has_a_name() {
         window.harness.run();
     }
 }
+
+#[test]
+fn a_problem_leads_to_the_manual_and_its_example_opens() {
+    let mut window = Window::with_text(&format!("{TEXT}sphere flesh\n"));
+    assert_eq!(window.errors(), 1);
+    window.harness.get_by_label("manual: sphere").click();
+    window.steps(20);
+    assert!(window.place("search commands").width() > 100.0);
+    window.harness.get_by_label("Try it").click();
+    window.steps(3);
+    assert_eq!(
+        window.text(),
+        rats::commands::find("sphere").unwrap().example
+    );
+    assert_eq!(window.errors(), 0);
+}
+
+#[test]
+fn a_related_place_is_a_way_there() {
+    let mut window = Window::with_text(&format!("{TEXT}for i = 1 to 3 {{\n"));
+    let related = window.parts.outbox.borrow().report.diagnostics[0]
+        .related
+        .first()
+        .cloned();
+    let related = related.expect("where the brace was opened");
+    let label = format!("{}:{} {}", related.line, related.column, related.message);
+    window.harness.get_by_label(&label).click();
+    window.steps(3);
+    window.write("#");
+    let at = related.span.start;
+    assert_eq!(&window.text()[at..=at], "#");
+}

@@ -162,7 +162,7 @@ impl Parameter {
                 let names: Vec<_> = words.iter().map(|word| word.name).collect();
                 names.join(" | ")
             }
-            Kind::Block => String::from("{ … }"),
+            Kind::Block if self.arity == Arity::One => String::from("{ … }"),
             _ => self.name.to_owned(),
         };
         match self.arity {
@@ -213,11 +213,7 @@ fn range(low: f64, high: f64) -> String {
     }
 }
 
-pub(super) const fn parameter(
-    name: &'static str,
-    kind: Kind,
-    meaning: &'static str,
-) -> Parameter {
+pub(super) const fn parameter(name: &'static str, kind: Kind, meaning: &'static str) -> Parameter {
     Parameter {
         name,
         kind,

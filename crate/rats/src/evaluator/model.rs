@@ -103,12 +103,7 @@ impl<'a> Model<'a> {
     ///
     /// # Errors
     /// If there are too many.
-    pub fn open(
-        &mut self,
-        file: usize,
-        name: &Name<'a>,
-        chain: Option<Name<'a>>,
-    ) -> Outcome<()> {
+    pub fn open(&mut self, file: usize, name: &Name<'a>, chain: Option<Name<'a>>) -> Outcome<()> {
         if self.open.len() >= MAX_NESTED_OBJECTS {
             return Err(Problem::new(
                 name.span.clone(),
@@ -226,6 +221,12 @@ impl<'a> Model<'a> {
         self.last = Some(range.clone());
         self.closed.insert(name.text, range);
         Ok(())
+    }
+
+    /// As how many shapes they count.
+    #[must_use]
+    pub fn weight(&self) -> usize {
+        self.weight
     }
 
     /// Whether some of these shapes are round, so that only a uniform scale keeps their kind.

@@ -185,8 +185,7 @@ fn target<'a>(
 
 /// Work on many shapes counts as many steps.
 fn charge(run: &mut Evaluator<'_>, command: &Command, range: &Range<usize>) -> Outcome<()> {
-    run.scope
-        .step(1 + range.len() as u64 / 4, &command.word_span)
+    run.scope.step(1 + range.len() as u64, &command.word_span)
 }
 
 impl Evaluator<'_> {
