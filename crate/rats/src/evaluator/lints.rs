@@ -122,7 +122,9 @@ impl Evaluator<'_> {
 fn bone(shape: &Shape) -> Vec<DVec3> {
     match shape {
         Shape::Sphere { center, .. } => vec![*center],
-        Shape::Cylinder { base, apex, .. } => (0..=8)
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Pipe { base, apex, .. }
+        | Shape::Cone { base, apex, .. } => (0..=8)
             .map(|i| base.lerp(*apex, f64::from(i) / 8.0))
             .collect(),
         Shape::Arc {
@@ -138,7 +140,9 @@ fn bone(shape: &Shape) -> Vec<DVec3> {
                 *center + (*u * libm::cos(t) + *v * libm::sin(t)) * *sweep
             })
             .collect(),
-        Shape::Triangle { corners, .. } => {
+        Shape::Box { center, .. } => vec![*center],
+        Shape::Quadric(quadric) => vec![quadric.center],
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
             let [a, b, c] = *corners;
             let middle = (a + b + c) / 3.0;
             vec![
@@ -174,10 +178,17 @@ fn ball(scene: &Scene, element: &Element) -> Option<(DVec3, f64)> {
     };
     let (centre, reach) = match &element.shape {
         Shape::Sphere { center, .. } => (*center, 0.0),
-        Shape::Triangle { corners, .. } => around(corners),
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => around(corners),
         Shape::Polygon { rings, .. } => around(&rings[0]),
         Shape::Curve { control, .. } => around(control),
-        Shape::Cylinder { base, apex, .. } => around(&[*base, *apex]),
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Pipe { base, apex, .. }
+        | Shape::Cone { base, apex, .. } => around(&[*base, *apex]),
+        Shape::Box { center, axes } => (*center, axes.iter().map(|a| a.length()).sum()),
+        Shape::Quadric(quadric) => {
+            let reach = quadric.axes.iter().map(|axis| axis.length()).sum();
+            (quadric.center, reach)
+        }
         shape => around(&bone(shape)),
     };
     let flesh = scene.radius(element) * if scene.is_soft(element) { 1.5 } else { 1.0 };
