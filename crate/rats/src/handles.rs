@@ -64,6 +64,15 @@ pub struct Handle {
     moves: Moves,
 }
 
+impl Handle {
+    /// Its numbers as the text might give them, short.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let numbers = self.numbers.iter().map(|number| write(number.value, 1e-4));
+        numbers.collect::<Vec<_>>().join(" ")
+    }
+}
+
 /// How a handle's place follows from its numbers.
 #[derive(Clone, Copy, Debug)]
 enum Moves {
@@ -147,14 +156,18 @@ pub fn handles(
     if siblings > parts(&seen) {
         return plain(&shape.shape, "is in a file that is read more than once");
     }
-    Maker {
+    let handles = Maker {
         scene,
         element: shape,
         placement,
         view,
         seen: &seen,
     }
-    .handles()
+    .handles();
+    if handles.is_empty() {
+        return plain(&shape.shape, "follows from numbers that have no place");
+    }
+    handles
 }
 
 /// Runs the project up to a command.
@@ -179,13 +192,19 @@ fn parts(seen: &Seen) -> usize {
 /// The places of a shape, none of which can be moved.
 fn plain(shape: &Shape, why: &str) -> Vec<Handle> {
     let places = match shape {
-        Shape::Sphere { center, .. } => vec![(*center, "the centre")],
-        Shape::Cylinder { base, apex, .. } => vec![(*base, "the base"), (*apex, "the apex")],
-        Shape::Arc { center, .. } => vec![(*center, "the centre")],
-        Shape::Triangle { corners, .. } => corners.map(|c| (c, "a corner")).to_vec(),
+        Shape::Sphere { center, .. } | Shape::Arc { center, .. } | Shape::Box { center, .. } => {
+            vec![(*center, "the centre")]
+        }
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Cone { base, apex, .. }
+        | Shape::Pipe { base, apex, .. } => vec![(*base, "the base"), (*apex, "the apex")],
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
+            corners.map(|c| (c, "a corner")).to_vec()
+        }
         Shape::Polygon { rings, .. } => rings.iter().flatten().map(|c| (*c, "a corner")).collect(),
         Shape::Curve { control, .. } => control.map(|c| (c, "a control point")).to_vec(),
         Shape::Plane { point, .. } => vec![(*point, "a point of the plane")],
+        Shape::Quadric(quadric) => vec![(quadric.center, "the centre")],
     };
     let handle = |(place, label): (DVec3, &str)| Handle {
         kind: Kind::Point,
@@ -287,6 +306,8 @@ impl Maker<'_> {
                 label = format!("{label} ({number})");
             }
             match operand.kind {
+                // A quadric's triples are factors and bounds.
+                Takes::Vector if matches!(self.element.shape, Shape::Quadric(_)) => {}
                 Takes::Vector => handles.push(self.point(operand, label)),
                 Takes::Direction => handles.extend(self.direction(operand, label)),
                 Takes::Number { .. } => handles.extend(self.number(operand, label)),
@@ -295,7 +316,7 @@ impl Maker<'_> {
         }
         if self.material_decides() {
             let label = format!("the radius of the material `{}`", self.seen.material);
-            let length = self.radius();
+            let length = self.radius(0.0);
             handles.push(handle(
                 Kind::Length,
                 label,
@@ -366,11 +387,15 @@ impl Maker<'_> {
             ("arc", "a1") => (Kind::Angle, circle(true)?),
             ("arc", "a2") => (Kind::Angle, circle(false)?),
             ("arc" | "torus", "a") => (Kind::Length, self.sweep()?),
-            ("sphere" | "cylinder" | "pipe", "r") | ("arc" | "torus" | "arch" | "curve", "b") => {
+            ("brick", side) => (Kind::Length, self.side(side)?),
+            ("sphere" | "cylinder" | "pipe", "r")
+            | ("arc" | "torus" | "arch" | "curve" | "cone", "b")
+            | ("cone", "a") => {
                 if self.material_decides() {
                     return None;
                 }
-                (Kind::Length, self.radius())
+                let at_apex = operand.name == "a";
+                (Kind::Length, self.radius(if at_apex { 1.0 } else { 0.0 }))
             }
             _ => return None,
         };
@@ -380,11 +405,11 @@ impl Maker<'_> {
     /// Whether the radius that counts is the material's.
     fn material_decides(&self) -> bool {
         let material = &self.scene.materials[self.element.material];
-        if !material.is_soft() || self.seen.radius.value == 0.0 && material.depth == 0.0 {
+        if !material.is_soft()
+            || !self.element.shape.has_skeleton()
+            || self.seen.radius.value == 0.0 && material.depth == 0.0
+        {
             return false;
-        }
-        if self.seen.spec.name == "pipe" && self.scene.settings.fragile.pipe {
-            return true;
         }
         let mut wider = self.element.clone();
         match &mut wider.shape {
@@ -394,21 +419,33 @@ impl Maker<'_> {
             | Shape::Triangle { radius, .. }
             | Shape::Polygon { radius, .. }
             | Shape::Curve { radius, .. }
+            | Shape::Pipe { radius, .. }
             | Shape::Plane { radius, .. } => *radius = 2.0 * *radius + 1.0,
+            Shape::Cone {
+                base_radius,
+                apex_radius,
+                ..
+            } => {
+                *base_radius = 2.0 * *base_radius + 1.0;
+                *apex_radius = 2.0 * *apex_radius + 1.0;
+            }
+            Shape::Box { .. } | Shape::Patch { .. } | Shape::Quadric(_) => {}
         }
         // A shape without a radius of its own (`dot`, `line`) has its material's.
         self.element.shape.radius() == 0.0
             || self.scene.radius(&wider) == self.scene.radius(self.element)
     }
 
-    /// Where the knob of the shape's radius is: on the rim, across the view.
-    fn radius(&self) -> Moves {
+    /// Where the knob of the shape's radius is: on the rim, across the view. `end` is the end of a cone
+    /// or limb that tapers, 0 or 1.
+    fn radius(&self, end: f64) -> Moves {
         let view = self.view;
         let (right, towards) = (view.x_axis, view.z_axis);
         let tapers = self.scene.materials[self.element.material]
             .end_radius
-            .is_some();
-        let share = if tapers { 0.0 } else { 0.5 };
+            .is_some()
+            || matches!(self.element.shape, Shape::Cone { .. });
+        let share = if tapers { end } else { 0.5 };
         let across = |axis: DVec3| {
             let across = axis.cross(towards).try_normalize().unwrap_or(right);
             if across.dot(right + view.y_axis * 0.5) < 0.0 {
@@ -419,9 +456,10 @@ impl Maker<'_> {
         };
         let (anchor, along) = match &self.element.shape {
             Shape::Sphere { center, .. } => (*center, right),
-            Shape::Cylinder { base, apex, .. } => {
+            Shape::Cylinder { base, apex, .. }
+            | Shape::Cone { base, apex, .. }
+            | Shape::Pipe { base, apex, .. } => {
                 let axis = (*apex - *base).normalize_or(right);
-                // Off the axis' exact middle there is room for more knobs, but none is needed.
                 (base.lerp(*apex, share), across(axis))
             }
             Shape::Arc {
@@ -437,7 +475,7 @@ impl Maker<'_> {
                 let tangent = *v * cos - *u * sin;
                 (*center + radial * *sweep, across(tangent))
             }
-            Shape::Triangle { corners, .. } => {
+            Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
                 let [a, b, c] = *corners;
                 let normal = (b - a).cross(c - a).normalize_or(towards);
                 ((a + b + c) / 3.0, normal)
@@ -463,12 +501,28 @@ impl Maker<'_> {
                 }
             }
             Shape::Plane { point, normal, .. } => (*point, *normal),
+            Shape::Box { center, .. } => (*center, right),
+            Shape::Quadric(quadric) => (quadric.center, right),
         };
         Moves::Along {
             anchor,
             along,
             growth: self.placement.growth,
         }
+    }
+
+    /// Where the knob of a brick's side is: in the middle of a face.
+    fn side(&self, name: &str) -> Option<Moves> {
+        let Shape::Box { center, axes } = self.element.shape else {
+            return None;
+        };
+        let k = ["x", "y", "z"].iter().position(|side| *side == name)?;
+        Some(Moves::Along {
+            anchor: center,
+            along: axes[k].try_normalize()?,
+            // The side is as long as both halves.
+            growth: 0.5 * self.placement.to_world.matrix3.col(k).length(),
+        })
     }
 
     /// Where the knob of an arc's sweep radius is: in the middle of the arc.

@@ -248,7 +248,7 @@ fn scene(u: &mut Unstructured<'_>) -> Result<String> {
     let (r, a) = (size(u)?, size(u)?);
     let p: Vec<String> = (0..4).map(|_| point(u)).collect::<Result<_>>()?;
     let n = direction(u)?;
-    text += &match u.int_in_range(0..=11)? {
+    text += &match u.int_in_range(0..=15)? {
         0 => format!("sphere {s} {r} {}", p[0]),
         1 => format!("cylinder {s} {r}, {} {}", p[0], p[1]),
         2 => format!("pipe {s} {r} {} {}", p[0], p[1]),
@@ -263,6 +263,10 @@ fn scene(u: &mut Unstructured<'_>) -> Result<String> {
         7 => format!("line {s} {} {}", p[0], p[1]),
         8 => format!("curve {s} {r} {} {} {} {}", p[0], p[1], p[2], p[3]),
         9 => format!("plane {s} {} {n}", p[0]),
+        11 => format!("box {s} {} {}", p[0], p[1]),
+        12 => format!("brick {s} {a} {r} {a}"),
+        13 => format!("cone {s} {a} {} {r} {}", p[0], p[1]),
+        14 => format!("patch {s} {} {n} {} {n} {} {n}", p[0], p[1], p[2]),
         10 => format!("arch {s} {r} {} {} {}", p[0], p[1], p[2]),
         _ => format!("gauss {s} {}", p[0]),
     };

@@ -4,7 +4,7 @@ use crate::code::Colouring;
 use crate::command::Command;
 use crate::indent::{self, Edited};
 use crate::keyboard::is_brace;
-use crate::marks::Marks;
+use crate::marks::{self, Marks};
 use crate::problems;
 use crate::session::Session;
 use crate::theme::{self, Palette};
@@ -32,6 +32,10 @@ pub struct Editor {
     before: Option<CCursorRange>,
     /// The line of the cursor, from 1.
     line: usize,
+    /// The file and byte of the cursor.
+    caret: Option<(usize, usize)>,
+    /// The bytes of a file behind which there is light: what is chosen in the picture.
+    pub lit: Option<(usize, Range<usize>)>,
 }
 
 /// The id of the text widget, the same at every frame and size.
@@ -67,10 +71,17 @@ impl Editor {
         self.place = Some(byte);
     }
 
+    /// The file and byte of the cursor, once the text had the focus.
+    #[must_use]
+    pub fn caret(&self) -> Option<(usize, usize)> {
+        self.caret
+    }
+
     /// Another piece of work is open: its first file, from the top.
     pub fn reset(&mut self, ctx: &egui::Context) {
         self.open(0);
         self.synced = None;
+        self.caret = None;
         self.jump = None;
         ctx.data_mut(|data| data.remove::<egui::text_edit::TextEditState>(id()));
     }
@@ -132,6 +143,7 @@ impl Editor {
             top: 10,
             bottom: 40,
         };
+        let behind = ui.painter().add(egui::Shape::Noop);
         let output = TextEdit::multiline(&mut self.buffer)
             .id(id())
             .code_editor()
@@ -161,7 +173,21 @@ impl Editor {
             ui.scroll_to_rect(place.translate(origin.to_vec2()), None);
         } else if let Some(range) = output.cursor_range {
             let byte = to_bytes(&self.buffer, range.primary.index.0);
+            self.caret = Some((self.file, byte));
             self.line = self.buffer[..byte].matches('\n').count() + 1;
+        }
+        if let Some((file, range)) = &self.lit
+            && *file == self.file
+        {
+            let chars = to_chars(&self.buffer, range.start)..to_chars(&self.buffer, range.end);
+            let light = palette.accent.gamma_multiply(0.22);
+            let rows = marks::rows(&galley, chars).into_iter().map(|row| {
+                let row = row
+                    .translate(origin.to_vec2())
+                    .expand2(egui::vec2(3.0, 0.0));
+                egui::Shape::rect_filled(row, 3.0, light)
+            });
+            ui.painter().set(behind, egui::Shape::Vec(rows.collect()));
         }
         self.marks.paint(ui.painter(), palette, &galley, origin);
         let focused = ui.memory(|memory| memory.has_focus(id()));
