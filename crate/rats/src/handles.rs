@@ -379,7 +379,7 @@ impl Maker<'_> {
                     turns: if width < 0.0 { -1.0 } else { 1.0 },
                     start,
                 };
-                (!start || angle < 6.283).then_some(moves)
+                (!start || angle < std::f64::consts::TAU - 1e-3).then_some(moves)
             }
             _ => None,
         };
@@ -708,7 +708,8 @@ fn values(handle: &Handle, to: DVec3, grain: f64) -> Option<Vec<(f64, f64)>> {
         } => {
             let grain = power(grain / growth);
             // A shape without a radius is none, and its handle would be lost.
-            vec![(((to - anchor).dot(along) / growth).max(grain), grain)]
+            let least = if first > 0.0 { grain.min(first) } else { grain };
+            vec![(((to - anchor).dot(along) / growth).max(least), grain)]
         }
         Moves::Around { anchor, linear, .. } => {
             let length = triple(numbers).length();

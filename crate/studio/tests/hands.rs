@@ -32,7 +32,7 @@ fn line(window: &Window) -> usize {
 fn seen(window: &Window, x: f32, y: f32) -> Pos2 {
     let rect = window.place("picture");
     // The eye is 10 away, and half of the width is seen at an angle of 45°/2.
-    let unit = 0.5 * rect.width() / (10.0 * (22.5_f32).to_radians().tan());
+    let unit = 0.5 * rect.width() / (10.0 * libm::tanf(22.5_f32.to_radians()));
     rect.center() + vec2(x, -y) * unit
 }
 

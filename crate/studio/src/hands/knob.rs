@@ -13,8 +13,6 @@ use rats::handles::{Editable, Handle};
 pub struct Answer {
     /// A drag begins.
     pub begins: bool,
-    /// A drag ends.
-    pub ends: bool,
     /// By how many points it is dragged.
     pub pulled: Vec2,
     /// By how many points keys move it.
@@ -83,7 +81,6 @@ pub fn show(
     let movable = fixed.is_none();
     Answer {
         begins: movable && response.drag_started(),
-        ends: movable && response.drag_stopped(),
         pulled: if movable && response.dragged() {
             response.drag_delta()
         } else {

@@ -150,12 +150,13 @@ impl Hands {
         let scene = &session.compiled().scene;
         let text = session.text(file);
         let there = line_of(text, byte);
-        let is_there = |origin: Origin| {
+        let is_at = |origin: Origin| {
             origin.file as usize == file
-                && (origin.start as usize) <= there.end.max(byte)
-                && (origin.end as usize) >= there.start.min(byte)
-                && ((origin.start as usize..=origin.end as usize).contains(&byte)
-                    || there.contains(&(origin.start as usize)))
+                && (origin.start as usize..=origin.end as usize).contains(&byte)
+        };
+        let is_there = |origin: Origin| {
+            is_at(origin)
+                || origin.file as usize == file && there.contains(&(origin.start as usize))
         };
         let stays = self
             .chosen
@@ -163,7 +164,13 @@ impl Hands {
             .is_some_and(|element| is_there(element.origin));
         if !stays {
             self.let_go();
-            self.chosen = scene.elements.iter().position(|e| is_there(e.origin));
+            let position = |test: &dyn Fn(Origin) -> bool| {
+                scene
+                    .elements
+                    .iter()
+                    .position(|element| test(element.origin))
+            };
+            self.chosen = position(&is_at).or_else(|| position(&is_there));
         }
     }
 
@@ -188,7 +195,8 @@ impl Hands {
         let met = |at| picker.pick(eye, sight.direction(at));
         // A finger, or a hand that is not quite still, may mean what is next to the point.
         let reach = if touch { 12.0 } else { 4.0 };
-        let around = (0..8).map(|i| at + reach * egui::Vec2::angled(i as f32 * 0.785_398));
+        let around =
+            (0..8).map(|i| at + reach * egui::Vec2::angled(i as f32 * std::f32::consts::FRAC_PI_4));
         let found = met(at).or_else(|| {
             around
                 .filter_map(met)
@@ -274,9 +282,6 @@ impl Hands {
                         with: edit.text,
                     });
                 }
-            }
-            if answer.ends && self.drag.take().is_some() {
-                commands.push(Command::Release);
             }
         }
     }
