@@ -192,8 +192,24 @@ fn parts(seen: &Seen) -> usize {
 /// The places of a shape, none of which can be moved.
 fn plain(shape: &Shape, why: &str) -> Vec<Handle> {
     let places = match shape {
-        Shape::Sphere { center, .. } | Shape::Arc { center, .. } | Shape::Box { center, .. } => {
-            vec![(*center, "the centre")]
+        Shape::Sphere { center, .. } | Shape::Box { center, .. } => vec![(*center, "the centre")],
+        Shape::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+            ..
+        } => {
+            let at = |share: f64| {
+                let (sin, cos) = libm::sincos(share * angle);
+                *center + (*u * cos + *v * sin) * *sweep
+            };
+            vec![
+                (at(0.0), "the start"),
+                (at(0.5), "the middle"),
+                (at(1.0), "the end"),
+            ]
         }
         Shape::Cylinder { base, apex, .. }
         | Shape::Cone { base, apex, .. }

@@ -170,7 +170,11 @@ impl Editor {
             state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
             state.store(ui.ctx(), id());
             let place = galley.pos_from_cursor(cursor);
-            ui.scroll_to_rect(place.translate(origin.to_vec2()), None);
+            // With a few rows around it, as what stands there may take several.
+            let around = place
+                .translate(origin.to_vec2())
+                .expand2(egui::vec2(0.0, 70.0));
+            ui.scroll_to_rect(around, None);
         } else if let Some(range) = output.cursor_range {
             let byte = to_bytes(&self.buffer, range.primary.index.0);
             self.caret = Some((self.file, byte));
