@@ -10,6 +10,7 @@
 //! commands there are stands in one table ([`commands`]), which also serves [`highlight`] and help.
 //! All bounds are in [`limits`].
 
+pub mod assist;
 pub mod colours;
 pub mod commands;
 pub mod compile;

@@ -1,0 +1,12 @@
+//! What an editor asks of the language: every answer is a pure function of texts and a place in them.
+//!
+//! Nothing here runs a text: the answers come from the parsed text and the table of commands alone, so
+//! they are there while a text is still wrong or unfinished. Places are byte offsets; any offset is
+//! allowed, one that is outside of the text or inside a character finds nothing.
+
+pub mod fold;
+pub mod format;
+mod walk;
+
+pub use fold::folds;
+pub use format::format;
