@@ -4,9 +4,17 @@
 //! they are there while a text is still wrong or unfinished. Places are byte offsets; any offset is
 //! allowed, one that is outside of the text or inside a character finds nothing.
 
+pub mod definition;
 pub mod fold;
 pub mod format;
+mod grammar;
+pub mod rename;
+mod slots;
+pub mod symbols;
 mod walk;
 
+pub use definition::{definition, references};
 pub use fold::folds;
 pub use format::format;
+pub use rename::{Edit, rename, rename_file};
+pub use symbols::{Index, Place, Symbol, SymbolKind};
