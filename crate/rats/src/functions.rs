@@ -205,7 +205,9 @@ fn scalar(name: &str, value: &Value) -> Result<f64, String> {
 fn vector(name: &str, value: &Value) -> Result<DVec3, String> {
     match value {
         Value::Vector(v) | Value::Colour(v) => Ok(*v),
-        Value::Scalar(_) => Err(format!("`{name}` takes vectors, not {}", value.kind())),
+        Value::Scalar(_) | Value::Name(_) => {
+            Err(format!("`{name}` takes vectors, not {}", value.kind()))
+        }
     }
 }
 

@@ -120,7 +120,7 @@ impl<'a> Reader<'_, 'a> {
     pub fn vector(&mut self, what: &str) -> Outcome<DVec3> {
         match self.triple(what)? {
             Value::Vector(vector) | Value::Colour(vector) => Ok(vector),
-            Value::Scalar(_) => Err(self.expected(what)),
+            Value::Scalar(_) | Value::Name(_) => Err(self.expected(what)),
         }
     }
 
@@ -134,6 +134,13 @@ impl<'a> Reader<'_, 'a> {
             Value::Scalar(x) => {
                 let y = self.number_after(what)?;
                 Value::Vector(DVec3::new(x, y, self.number_after(what)?))
+            }
+            Value::Name(_) => {
+                return Err(Problem::new(
+                    self.since(start),
+                    format!("{what} takes three numbers, this is a name"),
+                )
+                .maybe_hint(self.usage()));
             }
             triple => triple,
         };
@@ -234,6 +241,10 @@ impl<'a> Reader<'_, 'a> {
             Value::Vector(v) | Value::Colour(v) => {
                 Ok(Share::Colour(self.to_colour(v, start, what)?))
             }
+            Value::Name(_) => Err(Problem::new(
+                self.since(start),
+                format!("{what} is a colour or a share, this is a name"),
+            )),
         }
     }
 
