@@ -27,9 +27,9 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
 use crate::report::Report;
 use crate::scope::Scope;
-use crate::symbol::Symbol;
 use crate::sources::Sources;
-use crate::syntax::{Command, Datum, Define, Formal, For, If, Node, Takes};
+use crate::symbol::Symbol;
+use crate::syntax::{Command, Datum, Define, For, Formal, If, Node, Takes};
 use crate::value::Value;
 use crate::{Asset, Project, Severity, Tool};
 use model::Model;
@@ -188,7 +188,11 @@ impl<'a> Evaluator<'a> {
                 let fatal = problem.fatal;
                 let span = problem.span.clone();
                 // What follows from an error that was reported is found and dropped soon.
-                let cost = if problem.quiet { 20 } else { limits::STEPS_PER_ERROR };
+                let cost = if problem.quiet {
+                    20
+                } else {
+                    limits::STEPS_PER_ERROR
+                };
                 if let Node::Command(command) = node
                     && let Some(spec) = command.spec
                 {
@@ -424,7 +428,10 @@ impl<'a> Evaluator<'a> {
                     named = true;
                     let index = define.parameters.iter().position(|p| p.name == symbol);
                     let Some(index) = index else {
-                        let names = define.parameters.iter().map(|p| read.scope.symbols.word(p.name));
+                        let names = define
+                            .parameters
+                            .iter()
+                            .map(|p| read.scope.symbols.word(p.name));
                         let hint = crate::suggest::hint(word, names).unwrap_or(usage.clone());
                         let name = read.scope.symbols.word(define.name);
                         return Err(Problem::new(
@@ -460,11 +467,10 @@ impl<'a> Evaluator<'a> {
                 }
             };
             let value = argument(&mut read, &define.parameters[index]);
-            values[index].1 =
-                Some(value.map_err(|problem| match problem.hint {
-                    None => problem.hint(usage.clone()),
-                    Some(_) => problem,
-                })?);
+            values[index].1 = Some(value.map_err(|problem| match problem.hint {
+                None => problem.hint(usage.clone()),
+                Some(_) => problem,
+            })?);
         }
         for (parameter, (name, value)) in define.parameters.iter().zip(&values) {
             if value.is_none() && parameter.default.is_empty() {
@@ -476,11 +482,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Sets the parameters that a call left out, in the call's own scope.
-    fn defaults(
-        &mut self,
-        define: &'a Define,
-        values: &[(Symbol, Option<Value>)],
-    ) -> Outcome<()> {
+    fn defaults(&mut self, define: &'a Define, values: &[(Symbol, Option<Value>)]) -> Outcome<()> {
         for (parameter, (name, value)) in define.parameters.iter().zip(values) {
             if value.is_some() {
                 continue;

@@ -285,9 +285,7 @@ impl<'a> Reader<'_, 'a> {
             }
             Kind::Word(words) => self.is_option_next(words),
             Kind::Copy(_) => self.datum() == Some(Datum::Sign(b'=')),
-            Kind::Known(crate::commands::Names::Texture) => {
-                self.datum() == Some(Datum::Sign(b'+'))
-            }
+            Kind::Known(crate::commands::Names::Texture) => self.datum() == Some(Datum::Sign(b'+')),
             Kind::Block => false,
             _ => !self.is_option_next(options),
         }
@@ -344,10 +342,7 @@ impl<'a> Reader<'_, 'a> {
             }
             // The commands that take these read them themselves.
             Kind::Value | Kind::Condition | Kind::Method | Kind::Block => {
-                return Err(Problem::new(
-                    self.here(),
-                    format!("expected {what}"),
-                ));
+                return Err(Problem::new(self.here(), format!("expected {what}")));
             }
         })
     }

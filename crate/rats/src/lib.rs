@@ -43,9 +43,7 @@ mod syntax;
 pub mod tool;
 mod value;
 
-pub use compile::{
-    Compiled, HotValue, HotVariable, Output, Placement, compile, compile_at,
-};
+pub use compile::{Compiled, HotValue, HotVariable, Output, Placement, compile, compile_at};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
 pub use reads::reads;

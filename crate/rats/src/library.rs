@@ -12,7 +12,10 @@ pub const FILES: &[(&str, &str)] = &[
     ("horn.rat", include_str!("../library/horn.rat")),
     ("tree.rat", include_str!("../library/tree.rat")),
     ("spikes.rat", include_str!("../library/spikes.rat")),
-    ("sphereflake.rat", include_str!("../library/sphereflake.rat")),
+    (
+        "sphereflake.rat",
+        include_str!("../library/sphereflake.rat"),
+    ),
     ("spiral.rat", include_str!("../library/spiral.rat")),
 ];
 

@@ -35,7 +35,12 @@ pub fn page(spec: &CommandSpec) -> String {
         let _ = write!(page, "\n{}", spec.details);
     }
     for parameter in spec.parameters {
-        let _ = write!(page, "\n  {}: {}", parameter.synopsis(), parameter_line(parameter));
+        let _ = write!(
+            page,
+            "\n  {}: {}",
+            parameter.synopsis(),
+            parameter_line(parameter)
+        );
     }
     for parameter in library::parameters(spec.name) {
         let _ = write!(page, "\n  {}: {}", parameter.name, parameter.meaning);

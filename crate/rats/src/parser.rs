@@ -6,9 +6,7 @@ use crate::lexer::{Token, TokenKind, lex};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::symbol::{Symbol, Symbols};
-use crate::syntax::{
-    Block, Command, Datum, Define, For, Formal, If, Item, Node, Syntax, Takes,
-};
+use crate::syntax::{Block, Command, Datum, Define, For, Formal, If, Item, Node, Syntax, Takes};
 use std::ops::Range;
 
 /// Reads a file.

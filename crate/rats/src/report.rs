@@ -1,8 +1,8 @@
 //! Collects what is to be said about a text: each thing once, the worst kept when there is too much.
 
+use crate::diagnostic::Related;
 use crate::limits::MAX_DIAGNOSTICS;
 use crate::problem::Problem;
-use crate::diagnostic::Related;
 use crate::{Diagnostic, Project, Severity};
 use std::collections::HashSet;
 use std::ops::Range;

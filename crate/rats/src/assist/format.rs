@@ -94,7 +94,7 @@ impl Marks {
         match walk::name(command) {
             Some("object" | "chain") => self.at(tokens, command.word_span.start).opens = true,
             Some("close") => self.at(tokens, command.word_span.start).closes = true,
-            Some("var") => self.assignments(tokens, items),
+            Some("var" | "define") => self.assignments(tokens, items),
             Some("for") => {
                 if let Some(sign) = items.iter().position(|item| item.datum == EQUAL) {
                     self.assignment(tokens, items, sign);

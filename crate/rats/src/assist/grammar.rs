@@ -121,12 +121,7 @@ impl Grammar<'static> {
             } else {
                 Takes::Number
             };
-            defined(
-                parameter.name,
-                takes,
-                parameter.default,
-                &parameter.meaning,
-            )
+            defined(parameter.name, takes, parameter.default, &parameter.meaning)
         };
         Self {
             parameters: parameters.iter().map(param).collect(),

@@ -74,12 +74,7 @@ pub fn rename_file(project: &Project, file: usize, new_name: &str) -> Result<Vec
         return Err(String::from("a file needs a name of letters"));
     }
     let separates = |c: char| c.is_whitespace() || ",<>{}#@%!()=".contains(c);
-    let known = |kind| {
-        matches!(
-            kind,
-            TokenKind::Word | TokenKind::Number | TokenKind::Sign
-        )
-    };
+    let known = |kind| matches!(kind, TokenKind::Word | TokenKind::Number | TokenKind::Sign);
     if let Some(odd) = new_name.chars().find(|c| separates(*c)) {
         return Err(format!("a file's name cannot hold `{odd}`"));
     }
@@ -149,9 +144,7 @@ fn check_name(kind: SymbolKind, name: &str, new_name: &str) -> Result<(), String
         ));
     }
     if kind == SymbolKind::Command && commands::find(new_name).is_some() {
-        return Err(format!(
-            "`{new_name}` is already a command of the language"
-        ));
+        return Err(format!("`{new_name}` is already a command of the language"));
     }
     Ok(())
 }

@@ -615,7 +615,9 @@ impl<'i, 'p> Slots<'i, 'p> {
             let end = self.at;
             if self.more()
                 && let Some(how) = self.word()
-                && ["plain", "region"].iter().any(|w| w.eq_ignore_ascii_case(how))
+                && ["plain", "region"]
+                    .iter()
+                    .any(|w| w.eq_ignore_ascii_case(how))
             {
                 let how_at = self.at;
                 self.at = end;
@@ -751,9 +753,10 @@ impl<'i, 'p> Slots<'i, 'p> {
 
     fn word_value(&mut self) -> Type {
         let word = self.word().unwrap_or("");
-        let is_called = self.items.get(self.at + 1).is_some_and(|next| {
-            next.datum == Datum::Sign(b'(') && !next.spaced
-        });
+        let is_called = self
+            .items
+            .get(self.at + 1)
+            .is_some_and(|next| next.datum == Datum::Sign(b'(') && !next.spaced);
         let known = (self.types)(word);
         if (known.is_none() || is_called)
             && let Some(function) = functions::find(word)

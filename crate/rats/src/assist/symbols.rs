@@ -63,7 +63,7 @@ impl SymbolKind {
 }
 
 /// A place in a project.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
     /// The index of the file.
     pub file: usize,
@@ -224,8 +224,11 @@ impl<'p> Index<'p> {
     pub fn symbols(&self) -> Vec<Symbol> {
         let mut first: Vec<&Occurrence> = Vec::new();
         let mut seen = vec![false; self.entities.len()];
-        let mut in_order: Vec<&Occurrence> =
-            self.occurrences.iter().filter(|o| o.is_definition).collect();
+        let mut in_order: Vec<&Occurrence> = self
+            .occurrences
+            .iter()
+            .filter(|o| o.is_definition)
+            .collect();
         in_order.sort_by_key(|o| o.order);
         for occurrence in in_order {
             let root = self.root(occurrence.entity);
@@ -354,7 +357,9 @@ struct Walker<'p, 's> {
     /// Things that are the same if the project has a variable of this name.
     same_as_global: Vec<(usize, &'p str)>,
     /// The variables that a file's text uses, for when it is read again.
-    used_by_file: Vec<HashMap<&'p str, usize>>,
+    used_by_file: Vec<HashSet<(&'p str, usize)>>,
+    /// The number of frames where the present file begins.
+    base: usize,
     read: Vec<bool>,
     here: Option<Here<'p>>,
     loops: usize,
@@ -392,7 +397,8 @@ impl<'p, 's> Walker<'p, 's> {
             free_in_defines: HashSet::new(),
             leaky: Vec::new(),
             same_as_global: Vec::new(),
-            used_by_file: vec![HashMap::new(); syntaxes.len()],
+            used_by_file: vec![HashSet::new(); syntaxes.len()],
+            base: 1,
             read: vec![false; syntaxes.len()],
             here: None,
             loops: 0,
@@ -490,8 +496,9 @@ impl<'p, 's> Walker<'p, 's> {
                 continue;
             }
             self.read[first] = true;
-            let mut files = vec![(first, walk::events(&syntaxes[first].block), 0)];
-            while let Some((file, events, at)) = files.last_mut() {
+            let mut files = vec![(first, walk::events(&syntaxes[first].block), 0, 1)];
+            while let Some((file, events, at, base)) = files.last_mut() {
+                self.base = *base;
                 let (file, Some(event)) = (*file, events.get(*at).copied()) else {
                     files.pop();
                     continue;
@@ -499,7 +506,12 @@ impl<'p, 's> Walker<'p, 's> {
                 *at += 1;
                 for wanted in self.event(file, event) {
                     if !std::mem::replace(&mut self.read[wanted], true) {
-                        files.push((wanted, walk::events(&syntaxes[wanted].block), 0));
+                        files.push((
+                            wanted,
+                            walk::events(&syntaxes[wanted].block),
+                            0,
+                            self.frames.len(),
+                        ));
                     } else {
                         self.read_again(wanted);
                     }
@@ -609,7 +621,9 @@ impl<'p, 's> Walker<'p, 's> {
             span: name_span,
         };
         if self.is_here(file, head) {
-            let grammar = head.spec.map_or_else(Rc::default, |spec| self.table(spec, false));
+            let grammar = head
+                .spec
+                .map_or_else(Rc::default, |spec| self.table(spec, false));
             self.look(file, head, &grammar);
         }
         let grammar = Grammar::own(node, &syntaxes[file], text, self.symbols);
@@ -676,7 +690,13 @@ impl<'p, 's> Walker<'p, 's> {
         };
         if command.spec.is_none() || own.is_some() {
             let entity = self.named(SymbolKind::Command, word);
-            self.note(entity, file, command.word_span.clone(), command.span.clone(), false);
+            self.note(
+                entity,
+                file,
+                command.word_span.clone(),
+                command.span.clone(),
+                false,
+            );
         }
         if grammar.takes_material() && self.leaves_material_out(items, text) {
             grammar = match (&own, command.spec) {
@@ -704,7 +724,9 @@ impl<'p, 's> Walker<'p, 's> {
                 What::Name { of, is_new: true } => made.push((span, of)),
                 What::Name { of, is_new: false } => self.known(file, span, of, command),
                 What::File => {
-                    let bare = text[span.clone()].strip_prefix("./").unwrap_or(&text[span.clone()]);
+                    let bare = text[span.clone()]
+                        .strip_prefix("./")
+                        .unwrap_or(&text[span.clone()]);
                     if let Some(read) = self.project.files.iter().position(|f| f.name == bare) {
                         let start = span.end - bare.len();
                         let entity = self.named(SymbolKind::File, &self.project.files[read].name);
@@ -724,7 +746,13 @@ impl<'p, 's> Walker<'p, 's> {
                     }
                 }
                 What::Triple => value = Type::Triple,
-                What::Number(part) => value = if part == 2 { Type::Triple } else { Type::Number },
+                What::Number(part) => {
+                    value = if part == 2 {
+                        Type::Triple
+                    } else {
+                        Type::Number
+                    }
+                }
                 _ => {}
             }
         }
@@ -734,7 +762,14 @@ impl<'p, 's> Walker<'p, 's> {
         // What is made is there only after the operands have been read.
         for (span, of) in made {
             match kind_of(of) {
-                SymbolKind::Variable => self.set_variable(file, span, value, command),
+                SymbolKind::Variable => {
+                    // `var a += 1` reads the one and may set the other.
+                    let is_set = slots.iter().any(|slot| matches!(slot.what, What::Lead));
+                    if !is_set && walk::name(command) == Some("var") {
+                        self.changed(&text[span.clone()]);
+                    }
+                    self.set_variable(file, span, value, command);
+                }
                 SymbolKind::Command => {}
                 kind => {
                     let entity = self.named(kind, &text[span.clone()]);
@@ -755,7 +790,7 @@ impl<'p, 's> Walker<'p, 's> {
     }
 
     /// Whether a shape leaves out its material: in a chain, and in a define that is called in one.
-    fn leaves_material_out(&self, items: &[crate::syntax::Item], text: &str) -> bool {
+    fn leaves_material_out(&self, items: &[Item], text: &str) -> bool {
         let Some(frame) = self.frames.last() else {
             return false;
         };
@@ -771,8 +806,7 @@ impl<'p, 's> Walker<'p, 's> {
                 Datum::Word(_) => {
                     let word = &text[item.span()];
                     let is_material = self.by_name.contains_key(&(SymbolKind::Material, word));
-                    !is_material
-                        && matches!(self.type_of(word), Some(Type::Number | Type::Triple))
+                    !is_material && matches!(self.type_of(word), Some(Type::Number | Type::Triple))
                 }
                 Datum::Unknown => false,
             },
@@ -795,14 +829,32 @@ impl<'p, 's> Walker<'p, 's> {
         self.note(entity, file, span, command.span.clone(), false);
     }
 
+    /// A variable is changed without being set: if it is not the call's own, it becomes so now.
+    fn changed(&mut self, name: &'p str) {
+        let depth = self.frame().depth;
+        let owner = self.frame().owner;
+        if owner.is_none() {
+            return;
+        }
+        match self.bound(name) {
+            Some(entity) => self.same_as_global.push((entity, name)),
+            None => {
+                let entity = self.entity(SymbolKind::Variable, name);
+                self.entities[entity].owner = owner;
+                let global = self.named(SymbolKind::Variable, name);
+                self.unite(entity, global);
+                let local = Local {
+                    entity,
+                    sure: true,
+                    depth,
+                };
+                self.frame().locals.insert(name, local);
+            }
+        }
+    }
+
     /// Sets a variable or begins a loop over it.
-    fn set_variable(
-        &mut self,
-        file: usize,
-        span: Range<usize>,
-        value: Type,
-        command: &Command,
-    ) {
+    fn set_variable(&mut self, file: usize, span: Range<usize>, value: Type, command: &Command) {
         let name = &self.text(file)[span.clone()];
         let owner = self.frame().owner;
         if walk::name(command) == Some("for") {
@@ -835,7 +887,11 @@ impl<'p, 's> Walker<'p, 's> {
         };
         if owner.is_some() {
             let depth = self.frame().depth;
-            let is_loop = self.frame().loops.iter().any(|(bound, _, _)| *bound == name);
+            let is_loop = self
+                .frame()
+                .loops
+                .iter()
+                .any(|(bound, _, _)| *bound == name);
             if !is_loop {
                 let local = self.frame().locals.entry(name).or_insert(Local {
                     entity,
@@ -853,8 +909,8 @@ impl<'p, 's> Walker<'p, 's> {
         } else {
             self.frame().types.entry(name).or_insert(Type::Any);
         }
-        if !self.used_by_file[file].contains_key(name) {
-            self.used_by_file[file].insert(name, entity);
+        if self.frames.len() == self.base {
+            self.used_by_file[file].insert((name, entity));
         }
         self.note(entity, file, span, command.span.clone(), true);
     }
@@ -862,7 +918,11 @@ impl<'p, 's> Walker<'p, 's> {
     /// The loop or local variable of a name that can be seen here.
     fn bound(&self, name: &str) -> Option<usize> {
         let frame = self.frames.last()?;
-        let in_loop = frame.loops.iter().rev().find(|(bound, _, _)| *bound == name);
+        let in_loop = frame
+            .loops
+            .iter()
+            .rev()
+            .find(|(bound, _, _)| *bound == name);
         in_loop
             .map(|(_, entity, _)| *entity)
             .or_else(|| frame.locals.get(name).map(|local| local.entity))
@@ -900,26 +960,21 @@ impl<'p, 's> Walker<'p, 's> {
                 self.named(SymbolKind::Variable, name)
             }
         };
-        if !self.used_by_file[file].contains_key(name) {
-            self.used_by_file[file].insert(name, entity);
+        if self.frames.len() == self.base {
+            self.used_by_file[file].insert((name, entity));
         }
         self.note(entity, file, span, command, false);
     }
 
     /// A file that was read before is read again, perhaps where other variables can be seen.
     fn read_again(&mut self, file: usize) {
-        let names: Vec<(&'p str, usize)> = self.used_by_file[file]
-            .iter()
-            .map(|(name, entity)| (*name, *entity))
-            .collect();
+        let names: Vec<(&'p str, usize)> = self.used_by_file[file].iter().copied().collect();
         for (name, entity) in names {
-            let other = self.bound(name);
-            let is_local = self.frame().owner.is_some();
-            match other {
-                Some(other) => self.unite(entity, other),
-                None if is_local => self.same_as_global.push((entity, name)),
-                None => {}
-            }
+            let other = match self.bound(name) {
+                Some(other) => other,
+                None => self.named(SymbolKind::Variable, name),
+            };
+            self.unite(entity, other);
         }
     }
 
@@ -972,7 +1027,11 @@ impl<'p, 's> Walker<'p, 's> {
             frames.push(self.frames.first());
         }
         for frame in frames.into_iter().flatten() {
-            let mut names: Vec<_> = frame.types.iter().map(|(name, kind)| (*name, *kind)).collect();
+            let mut names: Vec<_> = frame
+                .types
+                .iter()
+                .map(|(name, kind)| (*name, *kind))
+                .collect();
             names.sort_unstable_by_key(|(name, _)| *name);
             for (name, value) in names {
                 let is_loop = frame.loops.iter().any(|(bound, _, _)| *bound == name);
@@ -982,7 +1041,9 @@ impl<'p, 's> Walker<'p, 's> {
                     frame
                         .locals
                         .get(name)
-                        .map_or(SymbolKind::Variable, |local| self.entities[local.entity].kind)
+                        .map_or(SymbolKind::Variable, |local| {
+                            self.entities[local.entity].kind
+                        })
                 };
                 seen.push((name, value, kind));
             }

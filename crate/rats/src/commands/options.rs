@@ -40,16 +40,36 @@ pub static SURFACE: &[OptionSpec] = &[
         "as diffuse",
         "main colour, of which `N%` are taken",
     ),
-    option("ambient", &[share("the ambient colour")], "15% of diffuse", "light given off"),
-    option("diffuse", &[share("the diffuse colour")], "as body", "light scattered evenly"),
-    option("specular", &[share("the specular colour")], "0 0 0", "colour of the highlight"),
+    option(
+        "ambient",
+        &[share("the ambient colour")],
+        "15% of diffuse",
+        "light given off",
+    ),
+    option(
+        "diffuse",
+        &[share("the diffuse colour")],
+        "as body",
+        "light scattered evenly",
+    ),
+    option(
+        "specular",
+        &[share("the specular colour")],
+        "0 0 0",
+        "colour of the highlight",
+    ),
     option(
         "reflective",
         &[share("the share of light mirrored")],
         "0 0 0",
         "light reflected as by a mirror",
     ),
-    option("transparent", &[share("the share of light let through")], "0 0 0", "light let through"),
+    option(
+        "transparent",
+        &[share("the share of light let through")],
+        "0 0 0",
+        "light let through",
+    ),
     option(
         "index",
         &[number("k", "the index of refraction").from(0.01, 100.0)],
@@ -72,7 +92,9 @@ pub static SURFACE: &[OptionSpec] = &[
         "radius",
         &[
             length("r", "the radius").at_least(0.0),
-            length("end", "the radius at the other end").at_least(0.0).optional(""),
+            length("end", "the radius at the other end")
+                .at_least(0.0)
+                .optional(""),
         ],
         "0",
         "radius in isolation of soft shapes; a second one at the other end of lines, arcs, curves (ours)",
@@ -106,7 +128,12 @@ pub static SURFACE: &[OptionSpec] = &[
     ),
     option(
         "skip",
-        &[word("RAYTYPE", RAYS, "`pixel`, `shadow`, `reflected` or `transmitted`").many()],
+        &[word(
+            "RAYTYPE",
+            RAYS,
+            "`pixel`, `shadow`, `reflected` or `transmitted`",
+        )
+        .many()],
         "",
         "rays that do not see it",
     ),
@@ -129,12 +156,18 @@ pub static RAYS: &[OptionSpec] = &[
 
 /// The kernels: how a skeleton's flesh fades with distance (fields.md §1).
 pub static KERNELS: &[OptionSpec] = &[
-    plain("cauchy", "1/(1+s²r²)²: wide and smooth, closed forms for every primitive"),
+    plain(
+        "cauchy",
+        "1/(1+s²r²)²: wide and smooth, closed forms for every primitive",
+    ),
     plain("gauss", "exp(−a²r²): falls fast"),
     plain("inverse", "1/r: the Newtonian potential, very wide"),
     plain("squared", "1/r²"),
     plain("metaballs", "piecewise quadratic, nothing beyond r = 1"),
-    plain("soft", "the soft objects' polynomial of degree 6, nothing beyond r = 1"),
+    plain(
+        "soft",
+        "the soft objects' polynomial of degree 6, nothing beyond r = 1",
+    ),
     plain("quartic", "(1−r²)², nothing beyond r = 1"),
     plain("compact6", "(1−r²)³, nothing beyond r = 1"),
 ];
@@ -183,9 +216,24 @@ pub static WAVES: &[OptionSpec] = &[
 
 /// `texture`.
 pub static TEXTURE: &[OptionSpec] = &[
-    option("translate", &[vector("XYZ", "the shift")], "0 0 0", "moves the texture"),
-    option("scale", &[parameter("XYZ", Kind::Vector, "the scale")], "1 1 1", "scales the texture"),
-    option("times", &[parameter("RGB", Kind::Vector, "the factor")], "1 1 1", "scales its values"),
+    option(
+        "translate",
+        &[vector("XYZ", "the shift")],
+        "0 0 0",
+        "moves the texture",
+    ),
+    option(
+        "scale",
+        &[parameter("XYZ", Kind::Vector, "the scale")],
+        "1 1 1",
+        "scales the texture",
+    ),
+    option(
+        "times",
+        &[parameter("RGB", Kind::Vector, "the factor")],
+        "1 1 1",
+        "scales its values",
+    ),
     option(
         "bounds",
         &[
@@ -196,15 +244,28 @@ pub static TEXTURE: &[OptionSpec] = &[
         "its lowest and highest value",
     ),
     option("turbulence", &[number("t", "the turbulence")], "1", "noise"),
-    option("octaves", &[number("r", "the octaves")], "5", "detail of the noise"),
-    option("mask", &[number("1 0", "the mask, of 1 and 0").many()], "", "tiles shown and left out"),
+    option(
+        "octaves",
+        &[number("r", "the octaves")],
+        "5",
+        "detail of the noise",
+    ),
+    option(
+        "mask",
+        &[number("1 0", "the mask, of 1 and 0").many()],
+        "",
+        "tiles shown and left out",
+    ),
     plain("replace", "values replace the target instead of scaling it"),
     option("texture", LAYERS, "", "layers of other textures"),
 ];
 
 /// `light`.
 pub static LIGHT: &[OptionSpec] = &[
-    plain("point", "shines from a point; the kind of a light that names none"),
+    plain(
+        "point",
+        "shines from a point; the kind of a light that names none",
+    ),
     plain("distant", "shines from infinity"),
     plain("spot", "shines in a cone"),
     plain("extended", "shines from a ball"),
@@ -339,8 +400,18 @@ pub static VAR: &[OptionSpec] = &[
         "",
         "a slider in the page; its range and step are ours",
     ),
-    option("+=", &[number("step", "the change with every frame")], "", "grows with every frame of an animation"),
-    option("*=", &[number("factor", "the change with every frame")], "", "is multiplied with every frame of an animation"),
+    option(
+        "+=",
+        &[number("step", "the change with every frame")],
+        "",
+        "grows with every frame of an animation",
+    ),
+    option(
+        "*=",
+        &[number("factor", "the change with every frame")],
+        "",
+        "is multiplied with every frame of an animation",
+    ),
 ];
 
 /// `animate`, `play`.
@@ -352,7 +423,17 @@ pub static ANIMATE: &[OptionSpec] = &[
 
 /// `fli`.
 pub static FLI: &[OptionSpec] = &[
-    option("speed", &[super::parameter::whole("N", 1, 100, "the pictures in a second")], "10", "pictures in a second"),
+    option(
+        "speed",
+        &[super::parameter::whole(
+            "N",
+            1,
+            100,
+            "the pictures in a second",
+        )],
+        "10",
+        "pictures in a second",
+    ),
     option(
         "size",
         &[
@@ -366,8 +447,23 @@ pub static FLI: &[OptionSpec] = &[
 
 /// `collage`.
 pub static COLLAGE: &[OptionSpec] = &[
-    option("columns", &[super::parameter::whole("n", 1, 256, "the number of columns")], "as many as make it square", "pictures side by side"),
-    option("gap", &[super::parameter::whole("p", 0, 256, "the gap").unit(Unit::Pixels)], "0", "room between pictures"),
+    option(
+        "columns",
+        &[super::parameter::whole(
+            "n",
+            1,
+            256,
+            "the number of columns",
+        )],
+        "as many as make it square",
+        "pictures side by side",
+    ),
+    option(
+        "gap",
+        &[super::parameter::whole("p", 0, 256, "the gap").unit(Unit::Pixels)],
+        "0",
+        "room between pictures",
+    ),
 ];
 
 /// `diff`, `and`, `xor`.
@@ -380,16 +476,39 @@ pub static SAVE: &[OptionSpec] = &[option(
 
 /// `show`.
 pub static SHOW: &[OptionSpec] = &[
-    option("file", &[parameter("fn", Kind::File, "a picture's name")], "", "a picture"),
+    option(
+        "file",
+        &[parameter("fn", Kind::File, "a picture's name")],
+        "",
+        "a picture",
+    ),
     option("color", &[colour("Color", "a colour")], "", "a colour"),
     plain("palette", "all colours with a name"),
 ];
 
 /// `quadric`.
 pub static QUADRIC: &[OptionSpec] = &[
-    option("translate", &[vector("XYZ", "the shift")], "0 0 0", "moves it"),
-    option("scale", &[parameter("XYZ", Kind::Vector, "the scale")], "1 1 1", "scales it"),
-    option("bounds", &[vector("MIN", "the lowest corner"), vector("MAX", "the highest corner")], "-1 -1 -1 1 1 1", "the box it is cut off at"),
+    option(
+        "translate",
+        &[vector("XYZ", "the shift")],
+        "0 0 0",
+        "moves it",
+    ),
+    option(
+        "scale",
+        &[parameter("XYZ", Kind::Vector, "the scale")],
+        "1 1 1",
+        "scales it",
+    ),
+    option(
+        "bounds",
+        &[
+            vector("MIN", "the lowest corner"),
+            vector("MAX", "the highest corner"),
+        ],
+        "-1 -1 -1 1 1 1",
+        "the box it is cut off at",
+    ),
 ];
 
 /// `polygon`.

@@ -213,11 +213,7 @@ fn range(low: f64, high: f64) -> String {
     }
 }
 
-pub(super) const fn parameter(
-    name: &'static str,
-    kind: Kind,
-    meaning: &'static str,
-) -> Parameter {
+pub(super) const fn parameter(name: &'static str, kind: Kind, meaning: &'static str) -> Parameter {
     Parameter {
         name,
         kind,

@@ -149,13 +149,17 @@ impl Evaluator<'_> {
             .try_normalize()
             .unwrap_or_else(|| normal.any_orthonormal_vector());
         let up = normal.cross(right);
-        let cp = plane.cp.unwrap_or(DVec3::new(0.0, 0.0, toward.length().max(1e-9)));
+        let cp = plane
+            .cp
+            .unwrap_or(DVec3::new(0.0, 0.0, toward.length().max(1e-9)));
         let reference = camera.target;
         camera.eye = reference + right * cp.x + up * cp.y + normal * cp.z;
         camera.target = camera.eye - normal * cp.z;
         if let Some([left, rightmost, low, high]) = plane.window {
             let half = 0.5 * (rightmost - left);
-            camera.fov = (2.0 * libm::atan(half / cp.z)).to_degrees().clamp(0.01, 179.0);
+            camera.fov = (2.0 * libm::atan(half / cp.z))
+                .to_degrees()
+                .clamp(0.01, 179.0);
             camera.shift = [
                 (0.5 * (left + rightmost) - cp.x) / half,
                 (0.5 * (low + high) - cp.y) / half,

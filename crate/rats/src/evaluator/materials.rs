@@ -65,11 +65,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     run.palette.insert(&name, surface)
 }
 
-fn field<'a>(
-    chosen: Chosen<'a>,
-    surface: &mut Surface,
-    fields: &mut Fields<'a>,
-) -> Outcome<()> {
+fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>) -> Outcome<()> {
     let Chosen { name, span, given } = chosen;
     let material = &mut surface.material;
     match name {

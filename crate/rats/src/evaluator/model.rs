@@ -103,12 +103,7 @@ impl<'a> Model<'a> {
     ///
     /// # Errors
     /// If there are too many.
-    pub fn open(
-        &mut self,
-        file: usize,
-        name: &Name<'a>,
-        chain: Option<Name<'a>>,
-    ) -> Outcome<()> {
+    pub fn open(&mut self, file: usize, name: &Name<'a>, chain: Option<Name<'a>>) -> Outcome<()> {
         if self.open.len() >= MAX_NESTED_OBJECTS {
             return Err(Problem::new(
                 name.span.clone(),

@@ -49,7 +49,9 @@ pub fn filename<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
     let given = run.given(command)?;
     let name = given.name("name").text;
     let format = name.rsplit_once('.').and_then(|(stem, ending)| {
-        let known = FORMATS.iter().find(|f| f.name.eq_ignore_ascii_case(ending))?;
+        let known = FORMATS
+            .iter()
+            .find(|f| f.name.eq_ignore_ascii_case(ending))?;
         Some((stem, known.name))
     });
     match format {

@@ -4,9 +4,9 @@ use super::model::Part;
 use super::{Evaluator, Flow};
 use crate::Severity;
 use crate::geometry::{self, ThreePoints};
+use crate::given::Given;
 use crate::limits::MAX_CORNERS;
 use crate::problem::{Outcome, Problem};
-use crate::given::Given;
 use crate::reader::Name;
 use crate::syntax::Command;
 use field::Kernel;
@@ -14,10 +14,7 @@ use glam::DAffine3;
 use scene::{Element, Shape};
 
 /// The operands, and the material's name: the chain's inside a chain, where shapes leave it out.
-fn operands<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-) -> Outcome<(Name<'a>, Given<'a>)> {
+fn operands<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<(Name<'a>, Given<'a>)> {
     let given = run.given(command)?;
     let name = match run.model.chain.clone() {
         Some(name) => name,

@@ -55,7 +55,9 @@ fn find_file(run: &Evaluator<'_>, name: &Name<'_>) -> Outcome<usize> {
         let own = run.sources.all[..run.sources.own]
             .iter()
             .map(|source| source.name.as_str());
-        let known: Vec<&str> = own.chain(library::FILES.iter().map(|file| file.0)).collect();
+        let known: Vec<&str> = own
+            .chain(library::FILES.iter().map(|file| file.0))
+            .collect();
         let hint = suggest::hint(bare, known.iter().copied())
             .unwrap_or_else(|| format!("the files are {}", known.join(", ")));
         Problem::new(

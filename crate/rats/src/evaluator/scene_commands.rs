@@ -81,7 +81,10 @@ pub fn report<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     let given = run.given(command)?;
     let words = given.words("what");
     let is = |names: &[&str]| {
-        words.is_empty() || words.iter().any(|(word, _)| names.contains(word) || *word == "all")
+        words.is_empty()
+            || words
+                .iter()
+                .any(|(word, _)| names.contains(word) || *word == "all")
     };
     run.scope
         .step(1 + run.model.parts.len() as u64 / 16, &command.word_span)?;
@@ -106,7 +109,10 @@ pub fn report<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     }
     if is(&["cameras"]) {
         let [eye, target] = [camera.eye, camera.target].map(|p| format!("{} {} {}", p.x, p.y, p.z));
-        lines.push(format!("the eye at {eye}, seeing {target} at {} degrees", camera.fov));
+        lines.push(format!(
+            "the eye at {eye}, seeing {target} at {} degrees",
+            camera.fov
+        ));
     }
     if is(&["options"]) {
         let [width, height] = settings.frame;

@@ -16,7 +16,10 @@ use std::ops::Range;
 
 /// A wave of the table.
 fn wave(word: &str) -> Option<Wave> {
-    let name = WAVES.iter().find(|wave| wave.name.eq_ignore_ascii_case(word))?.name;
+    let name = WAVES
+        .iter()
+        .find(|wave| wave.name.eq_ignore_ascii_case(word))?
+        .name;
     Some(match name {
         "one" => Wave::One,
         "x" => Wave::X,

@@ -161,8 +161,10 @@ pub fn show<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
     let source = &run.sources.all[run.file];
     job(run, command, |given| {
         let Some(chosen) = given.options.first() else {
-            return Err(Problem::new(command.span.clone(), "`show` needs something to show")
-                .hint("`file`, `color` or `palette`"));
+            return Err(
+                Problem::new(command.span.clone(), "`show` needs something to show")
+                    .hint("`file`, `color` or `palette`"),
+            );
         };
         let what = match chosen.name {
             "file" => Shown::File(file(&chosen.given, "fn")),

@@ -177,7 +177,11 @@ fn per_frame(read: &mut Reader<'_, '_>) -> Outcome<Option<(Change, Range<usize>)
         match value {
             Value::Scalar(x) if is_number_next(read) => {
                 let y = read.number("the second number")?;
-                Change::Add(Value::Vector(DVec3::new(x, y, read.number("the third number")?)))
+                Change::Add(Value::Vector(DVec3::new(
+                    x,
+                    y,
+                    read.number("the third number")?,
+                )))
             }
             value => Change::Add(value),
         }

@@ -53,6 +53,10 @@ fn spaces() {
         "texture t pigment a=b.png plain\n",
     );
     check("if a<=b and c!=d{quit}", "if a <= b and c != d { quit }\n");
+    check(
+        "define f(a ,b=-1) {\n}\nf 1,b=2",
+        "define f(a, b = -1) {\n}\nf 1, b=2\n",
+    );
     check("read a=b.rat ,c.rat", "read a=b.rat, c.rat\n");
     check(
         "pause  two  words,, {\n  a }  # x",
@@ -155,8 +159,26 @@ fn said(project: &Project, compiled: &Compiled) -> Vec<String> {
         let hint = d.hint.as_deref().unwrap_or_default();
         // Another number of a line is another place.
         let hint = hint.split(", in line ").next();
+        let related: Vec<_> = d
+            .related
+            .iter()
+            .map(|r| {
+                let text = &project
+                    .files
+                    .iter()
+                    .find(|f| f.name == r.file)
+                    .expect("a file")
+                    .text;
+                (
+                    &r.file,
+                    letters(&text[..r.span.start]),
+                    letters(&text[..r.span.end]),
+                    &r.message,
+                )
+            })
+            .collect();
         said.push(format!(
-            "{} {}..{} {:?} {} {hint:?}",
+            "{} {}..{} {:?} {} {hint:?} {related:?}",
             d.file,
             letters(&text[..d.span.start]),
             letters(&text[..d.span.end]),

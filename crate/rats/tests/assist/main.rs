@@ -2,4 +2,5 @@
 
 mod fold;
 mod format;
+mod names;
 mod texts;

@@ -146,6 +146,9 @@ pub fn soup(u: &mut Unstructured<'_>) -> Result<String> {
         "else {",
         "} else {",
         "define b(P r) {",
+        "define c(surface s, r=1) {",
+        "c s1, r=2",
+        "shell s1",
         "b 1 2 3 4\n",
         "read other.rat\n",
         "object A\n",
@@ -160,12 +163,13 @@ pub fn soup(u: &mut Unstructured<'_>) -> Result<String> {
         "\n",
         "\n\n\n",
     ];
+    let all: Vec<_> = commands::all().collect();
     let mut text = String::new();
     for _ in 0..u.int_in_range(0..=100)? {
         match u.int_in_range(0..=5)? {
-            0 => text += commands::COMMANDS[u.choose_index(commands::COMMANDS.len())?].name,
+            0 => text += u.choose(&all)?.name,
             1 => {
-                let spec = &commands::COMMANDS[u.choose_index(commands::COMMANDS.len())?];
+                let spec = u.choose(&all)?;
                 if !spec.options.is_empty() {
                     text += spec.options[u.choose_index(spec.options.len())?].name;
                 }
@@ -186,5 +190,96 @@ pub fn soup(u: &mut Unstructured<'_>) -> Result<String> {
             .saturating_sub(text.matches('}').count());
         text += &"\n}".repeat(open);
     }
+    Ok(text)
+}
+
+/// The place in a project that `|` marks; the mark is taken out. `#file name` begins another file.
+pub fn marked(text: &str) -> (Project, usize, usize) {
+    let mut files = vec![file("main.rat", "")];
+    for line in text.split_inclusive('\n') {
+        match line.strip_prefix("#file ") {
+            Some(name) => files.push(file(name.trim(), "")),
+            None => files.last_mut().expect("a file").text += line,
+        }
+    }
+    let index = files
+        .iter()
+        .position(|f| f.text.contains('|'))
+        .expect("a mark");
+    let byte = files[index].text.find('|').expect("a mark");
+    files[index].text.remove(byte);
+    (Project { files }, index, byte)
+}
+
+/// A text of definitions and uses of a few names in any order.
+pub fn names_soup(u: &mut Unstructured<'_>) -> Result<String> {
+    const LINES: &[&str] = &[
+        "var a = 1",
+        "var a = b + 1",
+        "var b = a",
+        "var P = a b 0",
+        "var P = P*2",
+        "var a = P.x",
+        "var a += 1",
+        "surface s diff Red",
+        "surface s = t, rad a*a",
+        "surface t diff Red, rad 1",
+        "surface t = s",
+        "texture m strength sin one, scale P",
+        "surface s text m",
+        "object O\nsphere s a P\nclose O",
+        "chain s, O\nsphere a P\nclose",
+        "sphere s a P",
+        "sphere t b 0 0 a",
+        "for a = 0 to 2 {",
+        "for b = a to 3 step 2 {",
+        "for i = 1 to 2 {",
+        "if a < b {",
+        "if a {",
+        "if i < b {",
+        "} else {",
+        "define f(a, P) {",
+        "define f(a) {",
+        "define g(surface s, r = 2) {",
+        "define g(surface s, b = 1) {",
+        "f a, P",
+        "f b",
+        "f a",
+        "g s",
+        "g s, b",
+        "g s, b=a",
+        "g s, r=a",
+        "}",
+        "}",
+        "}",
+        "}",
+        "read other.rat",
+        "sphere s i 0 0 0",
+        "sphere s r P",
+        "surface s shine i*i",
+        "var i = i + 1",
+        "var r = a",
+    ];
+    let mut text = String::new();
+    if u.ratio(3, 4)? {
+        text += "var a = 1\nvar b = 2\nvar i = 3\nvar r = 4\nvar P = 1 2 3\nsurface s rad 1\nsurface t rad 2\n";
+        text += "texture m strength sin one\ndefine f(a, P = 1 2 3) { sphere s a P }\ndefine g(surface s, b = 2, r = 1) { sphere s b P }\n";
+    }
+    let mut open = 0;
+    for _ in 0..u.int_in_range(0..=30)? {
+        let line = *u.choose(LINES)?;
+        if line.starts_with('}') && open == 0 {
+            continue;
+        }
+        // Deeply nested loops would take long.
+        if line.ends_with('{') && open > 3 {
+            continue;
+        }
+        open -= usize::from(line.starts_with('}'));
+        open += usize::from(line.ends_with('{'));
+        text += line;
+        text.push('\n');
+    }
+    text += &"}\n".repeat(open);
     Ok(text)
 }

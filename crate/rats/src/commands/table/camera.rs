@@ -2,7 +2,7 @@
 
 use super::{clay, row, run};
 use crate::commands::CommandSpec;
-use crate::commands::parameter::{direction, length, number, degrees, vector};
+use crate::commands::parameter::{degrees, direction, length, number, vector};
 use crate::evaluator::camera;
 
 /// The commands.

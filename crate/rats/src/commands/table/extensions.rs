@@ -3,7 +3,9 @@
 use super::{clay, flesh, library, row, run, structure};
 use crate::commands::CommandSpec;
 use crate::commands::options as o;
-use crate::commands::parameter::{Arity, Kind, Names, Parameter, length, number, parameter, vector, word};
+use crate::commands::parameter::{
+    Arity, Kind, Names, Parameter, length, number, parameter, vector, word,
+};
 use crate::evaluator::{materials, options, primitives, variables};
 
 const BLOCK: Parameter = parameter("block", Kind::Block, "commands in `{ … }`");

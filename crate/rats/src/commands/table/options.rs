@@ -4,7 +4,7 @@ use super::{Action, clay, flesh, idle, later, row, run};
 use crate::commands::CommandSpec;
 use crate::commands::options as o;
 use crate::commands::parameter::{
-    Kind, Names, Parameter, ON_OFF, SWITCH, Unit, colour, number, parameter, whole, word,
+    Kind, Names, ON_OFF, Parameter, SWITCH, Unit, colour, number, parameter, whole, word,
 };
 use crate::evaluator::options;
 use scene::Settings;
@@ -14,11 +14,21 @@ const PACKING: &str = "shapes are sorted as suits them best";
 const REPORTS: &str = "the page and the program report what they do";
 const WINDOWS: &str = "there are no windows here";
 
-const fn switch(name: &'static str, meaning: &'static str, action: Action, default: &'static str) -> CommandSpec {
+const fn switch(
+    name: &'static str,
+    meaning: &'static str,
+    action: Action,
+    default: &'static str,
+) -> CommandSpec {
     row(name, meaning, action).takes(SWITCH).default(default)
 }
 
-const FRAGILE: Parameter = word("what", o::FRAGILE, "`all`, `none` or the names of primitives").many();
+const FRAGILE: Parameter = word(
+    "what",
+    o::FRAGILE,
+    "`all`, `none` or the names of primitives",
+)
+.many();
 
 /// The commands.
 #[rustfmt::skip]
