@@ -120,7 +120,11 @@ impl CommandSpec {
             return library::synopsis(self.name);
         }
         let mut synopsis = join(self.name, self.parameters);
-        if !self.options.is_empty() {
+        if self.options.len() <= 3 {
+            for option in self.options {
+                synopsis += &format!(" [{}]", option.synopsis());
+            }
+        } else {
             synopsis += " [option …]";
         }
         synopsis

@@ -10,7 +10,7 @@ use glam::DAffine3;
 use scene::Scene;
 
 /// What a text means.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compiled {
     /// The scene, as far as the text could be understood.
     pub scene: Scene,
@@ -101,13 +101,8 @@ pub fn compile(project: &Project) -> Compiled {
 pub fn compile_at(project: &Project, assets: &[Asset], frame: u32) -> Compiled {
     if let Some(diagnostic) = too_large(project) {
         return Compiled {
-            scene: Scene::default(),
-            placements: Vec::new(),
             diagnostics: vec![diagnostic],
-            hot: Vec::new(),
-            tools: Vec::new(),
-            output: Output::default(),
-            animated: false,
+            ..Compiled::default()
         };
     }
     let mut symbols = Symbols::default();

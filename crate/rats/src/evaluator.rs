@@ -420,6 +420,12 @@ impl<'a> Evaluator<'a> {
             next = 1;
         }
         let mut read = self.reader(command);
+        if next == 1
+            && let Some((symbol, _)) = read.peek_word()
+            && matches!(read.scope.get(symbol), Some(Value::Name(_)))
+        {
+            read.at += 1;
+        }
         let mut named = false;
         while read.more() {
             let start = read.start();

@@ -5,10 +5,10 @@
 //! the method of a `texture`) read their own part with the functions of [`crate::reader`].
 
 use crate::commands::{Arity, Kind, OptionSpec, Parameter};
-use crate::limits::MAX_MAGNITUDE;
 use crate::operands::Share;
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
+use crate::suggest;
 use crate::syntax::Datum;
 use glam::DVec3;
 use std::ops::Range;
@@ -303,13 +303,26 @@ impl<'a> Reader<'_, 'a> {
         })
     }
 
+    /// The problem that none of these words stands here.
+    fn no_such_word(&mut self, words: &'static [OptionSpec], what: &str) -> Box<Problem> {
+        let problem = self.expected(what);
+        let names = words.iter().map(|word| word.name);
+        let Some((_, found)) = self.peek_word() else {
+            return problem;
+        };
+        let hint = suggest::hint(found, names.clone()).unwrap_or_else(|| {
+            let names: Vec<_> = names.collect();
+            format!("the choices are {}", names.join(", "))
+        });
+        problem.hint(hint)
+    }
+
     fn operand_of(&mut self, parameter: &Parameter) -> Outcome<Operand<'a>> {
         let what = parameter.meaning;
         Ok(match parameter.kind {
-            Kind::Number { low, high } if low <= -MAX_MAGNITUDE && high >= MAX_MAGNITUDE => {
-                Operand::Number(self.number(what)?)
+            Kind::Number { low, high } => {
+                Operand::Number(self.number_in(what, low, high, parameter.unit.word())?)
             }
-            Kind::Number { low, high } => Operand::Number(self.number_in(what, low, high)?),
             Kind::Whole { low, high } => Operand::Number(f64::from(self.whole(what, low, high)?)),
             Kind::Vector => Operand::Triple(self.vector(what)?),
             Kind::Direction => Operand::Triple(self.direction(what)?),
@@ -317,6 +330,9 @@ impl<'a> Reader<'_, 'a> {
             Kind::Share => Operand::Share(self.share(what)?),
             Kind::Switch => Operand::Switch(self.on_off()?),
             Kind::Word(words) => {
+                if !self.is_option_next(words) {
+                    return Err(self.no_such_word(words, what));
+                }
                 let Some((word, _)) = self.option(words)? else {
                     return Err(self.expected(what));
                 };

@@ -162,7 +162,7 @@ impl Parameter {
                 let names: Vec<_> = words.iter().map(|word| word.name).collect();
                 names.join(" | ")
             }
-            Kind::Block => String::from("{ … }"),
+            Kind::Block if self.arity == Arity::One => String::from("{ … }"),
             _ => self.name.to_owned(),
         };
         match self.arity {

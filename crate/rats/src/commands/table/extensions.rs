@@ -55,7 +55,11 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         ])
         .example(clay!("for i = 0 to 11 { sphere Clay 0.4, 3*cos(rad(30*i)), 3*sin(rad(30*i)), 0 }")),
     structure("if", "run commands if a condition holds")
-        .takes(&[parameter("condition", Kind::Condition, "a condition, such as `i < 3`"), BLOCK])
+        .takes(&[
+            parameter("condition", Kind::Condition, "a condition, such as `i < 3`"),
+            BLOCK,
+            parameter("else { … }", Kind::Block, "what is run if it does not hold").optional(""),
+        ])
         .example(clay!("for i = -3 to 3 { if i < 0 or i > 1 { sphere Clay 0.4, i 0 0 } else { sphere Clay 0.4, i 1 0 } }")),
     structure("else", "the other branch of if")
         .takes(&[BLOCK])
