@@ -38,6 +38,23 @@ impl From<&Parameter> for Param<'static> {
 }
 
 impl Param<'_> {
+    fn parameter(&self) -> Parameter {
+        // Only what does not borrow from the text.
+        Parameter {
+            name: "",
+            kind: self.kind,
+            meaning: "",
+            unit: self.unit,
+            default: "",
+            arity: self.arity,
+        }
+    }
+
+    /// Its range as a sentence's end; empty if any value will do.
+    pub fn range(&self) -> String {
+        self.parameter().range()
+    }
+
     /// As a synopsis shows it.
     pub fn synopsis(&self) -> String {
         let name = match self.kind {

@@ -444,7 +444,7 @@ impl<'i, 'p> Slots<'i, 'p> {
                 if self.more() {
                     self.name_of(of, false);
                 } else {
-                    self.want(0);
+                    self.want(1);
                     self.stopped = true;
                 }
             }

@@ -114,6 +114,7 @@ pub struct Symbol {
 /// The command at a place, read.
 #[derive(Clone, Debug)]
 pub(super) struct Here<'p> {
+    pub file: usize,
     /// The command's word as written, and where.
     pub word: &'p str,
     pub word_span: Range<usize>,
@@ -246,12 +247,17 @@ impl<'p> Index<'p> {
             .collect()
     }
 
-    /// The names of a kind, each once, for completions.
+    /// The names of a kind, each once, for completions; without those that the command at the place that
+    /// is asked for makes itself.
     pub(super) fn names(&self, kind: SymbolKind) -> Vec<&'p str> {
+        let is_here = |o: &Occurrence| {
+            let here = self.here.as_ref();
+            here.is_some_and(|h| h.file == o.place.file && h.word_span.start == o.command.start)
+        };
         let mut names: Vec<&'p str> = self
             .entities
             .iter()
-            .filter(|e| e.kind == kind && e.is_defined)
+            .filter(|e| e.kind == kind && e.first.as_ref().is_some_and(|o| !is_here(o)))
             .map(|e| e.name)
             .collect();
         names.sort_unstable();
@@ -1008,6 +1014,7 @@ impl<'p, 's> Walker<'p, 's> {
             _ => self.defines.get(word).map(|own| own.place.clone()),
         };
         self.here = Some(Here {
+            file,
             word,
             word_span: command.word_span.clone(),
             spec: command.spec,

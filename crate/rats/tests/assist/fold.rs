@@ -4,8 +4,16 @@ use crate::texts::{corpus, examples, soup};
 use arbtest::arbtest;
 use rats::assist::folds;
 
+/// The first line of each and the line after its last.
+fn lines(text: &str) -> Vec<(usize, usize)> {
+    folds(text)
+        .into_iter()
+        .map(|fold| (fold.start, fold.end))
+        .collect()
+}
+
 #[test]
-fn what_folds() {
+fn what_lines() {
     let text = "\
 # a
 # b
@@ -27,17 +35,25 @@ if b {
 }
 ";
     assert_eq!(
-        folds(text),
-        [0..2, 2..10, 3..8, 4..7, 11..13, 13..15, 15..18]
+        lines(text),
+        [
+            (0, 2),
+            (2, 10),
+            (3, 8),
+            (4, 7),
+            (11, 13),
+            (13, 15),
+            (15, 18)
+        ]
     );
 }
 
 #[test]
 fn what_is_open_does_not() {
-    assert_eq!(folds("object A\n  sphere\nfor {\n}\n"), [2..4]);
-    assert_eq!(folds("for {\n { \n }\n"), [1..3]);
-    assert_eq!(folds("}\n}\nclose\nclose"), []);
-    assert_eq!(folds(""), []);
+    assert_eq!(lines("object A\n  sphere\nfor {\n}\n"), [(2, 4)]);
+    assert_eq!(lines("for {\n { \n }\n"), [(1, 3)]);
+    assert_eq!(lines("}\n}\nclose\nclose"), []);
+    assert_eq!(lines(""), []);
 }
 
 fn check(text: &str) {
