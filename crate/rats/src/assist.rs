@@ -10,6 +10,7 @@ pub mod fold;
 pub mod format;
 mod grammar;
 pub mod hover;
+pub mod manual;
 mod mend;
 mod place;
 pub mod rename;

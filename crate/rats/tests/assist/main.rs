@@ -4,6 +4,7 @@ mod complete;
 mod fold;
 mod format;
 mod hover;
+mod manual;
 mod names;
 mod signature;
 mod speed;
