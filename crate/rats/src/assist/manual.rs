@@ -147,6 +147,13 @@ fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
     }
     if !spec.options.is_empty() {
         options(page, spec.options, "options");
+        for option in spec.options {
+            for parameter in option.parameters {
+                if let Kind::Word(words) = parameter.kind {
+                    options(page, words, &format!("after `{}`", option.name));
+                }
+            }
+        }
     }
     if !spec.example.is_empty() {
         let _ = writeln!(page, "<pre>{}</pre>", escape(spec.example));
