@@ -247,6 +247,14 @@ impl<'p> Index<'p> {
             .collect()
     }
 
+    /// Every place of a name: what it stands for, the name, where, and whether it is made there. In the
+    /// order of files and places.
+    pub fn places(&self) -> impl Iterator<Item = (SymbolKind, &'p str, &Place, bool)> {
+        self.occurrences
+            .iter()
+            .map(|o| (self.kind(o), self.name(o), &o.place, o.is_definition))
+    }
+
     /// The names of a kind, each once, for completions; without those that the command at the place that
     /// is asked for makes itself.
     pub(super) fn names(&self, kind: SymbolKind) -> Vec<&'p str> {
