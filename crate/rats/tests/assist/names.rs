@@ -83,7 +83,7 @@ fn all_names() {
             name("command", "f", 1, 7),
             name("parameter", "P", 1, 9),
             name("object", "O", 1, 21),
-            name("texture", "t", 1, 38),
+            name("texture", "t", 1, 39),
         ]
     );
     assert_eq!(index.places().count(), 17);
