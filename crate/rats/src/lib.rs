@@ -35,9 +35,11 @@ mod scope;
 mod suggest;
 mod symbol;
 mod syntax;
+pub mod tool;
 mod value;
 
 pub use compile::{Compiled, HotValue, HotVariable, compile};
 pub use diagnostic::{Diagnostic, Severity};
 pub use project::{File, Project};
 pub use reads::reads;
+pub use tool::Tool;
