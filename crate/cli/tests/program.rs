@@ -100,7 +100,7 @@ fn render_refuses_what_it_cannot_do() {
     let folder = Folder::new("refuse");
     let file = folder.write("ball.rat", BALL);
     for arguments in [
-        ["-o", "x.gif", "-r", "4", "4"],
+        ["-o", "x.jpeg", "-r", "4", "4"],
         ["-o", "x.png", "-r", "0", "4"],
         ["-o", "x.png", "-r", "4", "100000"],
     ] {
@@ -218,4 +218,58 @@ fn links_carry_all_texts_there_and_back() {
             .code(),
         Some(2)
     );
+}
+
+#[test]
+fn the_options_of_rats() {
+    let folder = Folder::new("classic");
+    let file = folder.write("ball.rat", &format!("wibble\n{BALL}"));
+    let picture = folder.path("ball.tga");
+    let log = folder.path("said.txt");
+    let output = sinew(
+        &[
+            "-r", "20", "10", "-s", "1", "+e", "-a", "-q", "-o", &picture, "-l", &log, &file,
+        ],
+        "",
+    );
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "wibble is an error: {said}");
+    for part in ["-a changes nothing", "> sphere flesh", "wibble", "20×10"] {
+        assert!(said.contains(part), "{said}");
+    }
+    assert_eq!(said, std::fs::read_to_string(&log).expect("the log"));
+    let tga = std::fs::read(&picture).expect("written");
+    assert_eq!(
+        tga[12..16],
+        [20, 0, 10, 0],
+        "width and height of a TGA file"
+    );
+
+    let file = folder.write("good.rat", BALL);
+    assert_eq!(sinew(&["-v", &file], "").status.code(), Some(0));
+    assert!(folder.0.join("scene.png").exists());
+
+    for arguments in [
+        &["-l", "good.rat"][..],
+        &["-q"],
+        &["-x", "a.rat"],
+        &["-o", "a.rat", "b.rat"],
+    ] {
+        assert_eq!(sinew(arguments, "").status.code(), Some(2), "{arguments:?}");
+    }
+    assert!(printed(&sinew(&["-?"], "")).contains("-r W H"));
+}
+
+#[test]
+fn every_format_shows_the_same_picture() {
+    let folder = Folder::new("formats");
+    let file = folder.write("ball.rat", BALL);
+    let pictures = ["png", "tga", "tif", "mtv"].map(|ending| {
+        let path = folder.path(&format!("ball.{ending}"));
+        assert!(sinew(&["render", &file, "-o", &path], "").status.success());
+        let bytes = std::fs::read(&path).expect("written");
+        let format = picture::Format::of(path.as_ref()).expect("a format");
+        picture::file::decode(&bytes, format).expect("a picture")
+    });
+    assert!(pictures.iter().all(|other| *other == pictures[0]));
 }
