@@ -107,11 +107,7 @@ impl Session {
         let mut session = Self {
             project: Project::default(),
             history: History::default(),
-            compiled: Compiled {
-                scene: Scene::default(),
-                diagnostics: Vec::new(),
-                hot: Vec::new(),
-            },
+            compiled: Compiled::default(),
             good: None,
             camera: None,
             revision: 0,
@@ -367,6 +363,7 @@ impl Session {
                 && camera.target.is_finite()
                 && camera.up.is_finite()
                 && camera.fov.is_finite()
+                && camera.shift.iter().all(|shift| shift.is_finite())
         });
         if finite && self.camera != camera {
             self.camera = camera;
