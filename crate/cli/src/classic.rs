@@ -178,24 +178,40 @@ impl Request {
             (false, false) => Severity::Note,
         };
         said.say(report::text(&loaded, least).trim_end());
-        let clean = report::is_clean(&loaded);
+        let mut clean = report::is_clean(&loaded);
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let compiled = &mut loaded.compiled;
+        // A text that only works on pictures has none of its own.
+        if !compiled.scene.elements.is_empty() || compiled.tools.is_empty() {
+            let traced = self.wishes.trace(&mut compiled.scene, &self.progress())?;
+            let [width, height] = traced.picture.size();
+            let wrote = match &self.output {
+                Some(path) => trace::write(path, &traced.picture)
+                    .map(|()| format!("wrote {}, {width}×{height}", path.display()))?,
+                None => {
+                    let format = compiled.output.format.unwrap_or("png");
+                    let name = format!("{}.{format}", compiled.output.name);
+                    tools::save(folder, &name, &traced.picture)?
+                }
+            };
+            said.say(&format!("{wrote}, in {:.2} s", traced.seconds));
+        }
+        for done in tools::carry_out(&compiled.tools, folder) {
+            clean &= done.is_ok();
+            said.say(&done.unwrap_or_else(|sentence| format!("sinew: {sentence}")));
+        }
+        Ok(clean)
+    }
+
+    /// Tells every tenth of the picture, if that was asked for.
+    fn progress(&self) -> impl Fn(f64) + Sync {
         let told = AtomicU32::new(0);
-        let progress = |share: f64| {
+        move |share| {
             let tenths = (share * 10.0) as u32;
             if self.progress && told.fetch_max(tenths, Ordering::Relaxed) < tenths {
-                eprintln!("{}0 %", tenths);
+                eprintln!("{tenths}0 %");
             }
-        };
-        let traced = self.wishes.trace(&mut loaded.compiled.scene, &progress)?;
-        let folder = file.parent().unwrap_or(Path::new(""));
-        let [width, height] = traced.picture.size();
-        let wrote = match &self.output {
-            Some(path) => trace::write(path, &traced.picture)
-                .map(|()| format!("wrote {}, {width}×{height}", path.display()))?,
-            None => tools::save(folder, "scene.png", &traced.picture)?,
-        };
-        said.say(&format!("{wrote}, in {:.2} s", traced.seconds));
-        Ok(clean)
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! a person goes to the standard error, and the exit status is 0 when all went well, 1 when the
 //! dataset has errors, and 2 when the command could not be carried out at all.
 
+mod animate;
 mod check;
 mod classic;
 mod files;
@@ -35,6 +36,8 @@ enum Command {
     Check(check::Check),
     /// Trace a dataset's picture
     Render(render::Render),
+    /// Trace a dataset whose variables change with the frames to an animation
+    Animate(animate::Animate),
     /// Evaluate the field at points, or intersect rays with the surface
     Probe(probe::Probe),
     /// Print the evaluated scene as JSON
@@ -77,6 +80,7 @@ fn run() -> Outcome {
     match Arguments::parse().command {
         Command::Check(command) => command.run(),
         Command::Render(command) => command.run(),
+        Command::Animate(command) => command.run(),
         Command::Probe(command) => command.run(),
         Command::Scene(command) => command.run(),
         Command::Share(command) => command.run(),

@@ -4,14 +4,14 @@
 //! dataset, not even through a link that lies in it, and never writes over a dataset. It does write
 //! over pictures of the name that the text gives, as a second run of the same text must.
 
-use crate::files;
+use crate::{files, trace};
 use picture::animation::{self, Timing, Writer};
 use picture::combine::{self, remains};
 use picture::{Format, Picture, collage, file, plot, resize, swatches};
 use rats::tool::{Playback, Shown, Tool};
 use std::collections::HashSet;
 use std::ffi::OsStr;
-use std::io::BufWriter;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Largest file of a picture that is read, bytes.
@@ -207,7 +207,9 @@ impl Bench {
     fn write(&self, name: &str, picture: &Picture) -> Result<String, String> {
         let (path, format) = self.target(name)?;
         let bytes = file::encode(picture, format).map_err(|problem| problem.to_string())?;
-        std::fs::write(path, bytes).map_err(|error| format!("cannot write {name}: {error}"))?;
+        trace::whole(&path, |file| {
+            file.write_all(&bytes).map_err(|error| error.to_string())
+        })?;
         let [width, height] = picture.size();
         Ok(format!("wrote {name}, {width}×{height}"))
     }
@@ -264,19 +266,18 @@ impl Bench {
         };
         let first = frame(first)?;
         let (path, format) = self.target(to)?;
-        let say = |problem: picture::Problem| format!("{to}: {problem}");
-        let target =
-            std::fs::File::create(path).map_err(|error| format!("cannot write {to}: {error}"))?;
         let count = u32::try_from(order.len()).unwrap_or(u32::MAX);
-        let target = BufWriter::new(target);
-        let mut writer =
-            Writer::begin(target, format, &first, count, timing, dither).map_err(say)?;
-        for index in others {
-            writer
-                .add(&frame(index)?)
-                .map_err(|problem| format!("{}: {problem}", files[*index]))?;
-        }
-        writer.finish().map_err(say)?;
+        let say = |problem: picture::Problem| problem.to_string();
+        trace::whole(&path, |file| {
+            let mut writer =
+                Writer::begin(file, format, &first, count, timing, dither).map_err(say)?;
+            for index in others {
+                writer
+                    .add(&frame(index)?)
+                    .map_err(|problem| format!("{}: {problem}", files[*index]))?;
+            }
+            writer.finish().map_err(say)
+        })?;
         let [width, height] = first.size();
         Ok(format!("wrote {to}, {count} frames of {width}×{height}"))
     }
