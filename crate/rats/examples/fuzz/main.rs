@@ -22,6 +22,10 @@ use std::time::{Duration, Instant};
 
 /// Longest time for one compile, of the processor, on the machine we develop on.
 const SLOW: Duration = Duration::from_millis(100);
+/// What a finding is called whose compile took longer than [`SLOW`].
+const SLOWNESS: &str = "slow";
+/// How many slow texts are made smaller.
+const MAX_SLOW: usize = 12;
 /// Most memory for one compile, kilobytes, over what the program needs anyway.
 const MEMORY: u64 = 256 * 1024;
 /// The stack that a browser gives to a worker.
@@ -74,6 +78,7 @@ struct Fuzzer {
     case: PathBuf,
     /// Findings by what was found, without its numbers.
     found: BTreeMap<String, String>,
+    slow: usize,
     longest: (Duration, String),
     largest: (u64, String),
     counts: BTreeMap<&'static str, u64>,
@@ -94,6 +99,7 @@ impl Fuzzer {
             examples: paths.iter().map(read).collect(),
             case: std::env::temp_dir().join("sinew-fuzz-case.rat"),
             found: BTreeMap::new(),
+            slow: 0,
             longest: (Duration::ZERO, String::new()),
             largest: (0, String::new()),
             counts: BTreeMap::new(),
@@ -227,19 +233,34 @@ impl Fuzzer {
         let Some(what) = what else {
             return;
         };
-        let key: String = what
-            .chars()
-            .filter(|c| !c.is_ascii_digit())
-            .take(90)
-            .collect();
-        if !self.found.contains_key(&key) {
-            let small = smaller(text, &key);
-            let name = format!("sinew-fuzz-{}.rat", self.found.len());
-            let _ = std::fs::write(self.case.with_file_name(name), &small);
-            println!("found: {what}\n{}", head(&small));
-            self.found.insert(key, small);
+        let key = kind_of(&what);
+        // There are many ways to be slow, so each is looked at until there are some.
+        let is_slow = key == SLOWNESS;
+        if is_slow && self.slow >= MAX_SLOW || !is_slow && self.found.contains_key(&key) {
+            return;
         }
+        self.slow += usize::from(is_slow);
+        let small = smaller(text, &key);
+        let name = format!("sinew-fuzz-{}.rat", self.found.len());
+        let key = if is_slow { kind_of(&small) } else { key };
+        if self.found.contains_key(&key) {
+            return;
+        }
+        let _ = std::fs::write(self.case.with_file_name(name), &small);
+        println!("found: {what}\n{}", head(&small));
+        self.found.insert(key, small);
     }
+}
+
+/// What a finding is called so that it is told once: its first words without numbers.
+fn kind_of(what: &str) -> String {
+    if what.starts_with(SLOWNESS) {
+        return SLOWNESS.to_owned();
+    }
+    what.chars()
+        .filter(|c| !c.is_ascii_digit())
+        .take(90)
+        .collect()
 }
 
 /// Runs all checks on a text; gives what does not hold, and how long the compile took.
@@ -260,7 +281,7 @@ fn try_text(text: &str, thorough: bool) -> (Result<(), String>, Duration) {
     }));
     match failure(outcome) {
         Some(what) => (Err(what), took),
-        None if took > SLOW => (Err(format!("slow: {took:?}")), took),
+        None if took > SLOW => (Err(format!("{SLOWNESS}: {took:?}")), took),
         None => (Ok(()), took),
     }
 }
@@ -281,14 +302,8 @@ fn failure(outcome: Caught) -> Option<String> {
 /// Leaves out lines, then words, as long as the same is found.
 fn smaller(text: &str, key: &str) -> String {
     let same = |text: &str| {
-        let what = try_text(text, true).0.err().unwrap_or_default();
-        let found: String = what
-            .chars()
-            .filter(|c| !c.is_ascii_digit())
-            .take(90)
-            .collect();
-        // How slow it is differs from run to run.
-        found == key || found.starts_with("slow") && key.starts_with("slow")
+        let what = try_text(text, true).0.err();
+        what.is_some_and(|what| kind_of(&what) == key)
     };
     let begun = Instant::now();
     let mut text = text.to_owned();
