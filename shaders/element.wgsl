@@ -22,7 +22,8 @@ struct View {
     up: vec4f,
     // Unit vector into the picture; w: distance of the nearest depth that can be told apart.
     forward: vec4f,
-    // The eye as a sum of two numbers: its f32 value, and what that leaves out.
+    // The eye as a sum of two numbers: its f32 value, and what that leaves out; their w: where the
+    // middle of the picture lies, as tangents to the right and up.
     eye_high: vec4f,
     eye_low: vec4f,
     // x, y: one over the number of samples across and down; z: gamma; w: how many lights count.
@@ -147,8 +148,8 @@ fn cover_box(@builtin(vertex_index) index: u32, instance: Instance) -> Varying {
     let distance = dot(seen, view.forward.xyz);
     // The depth is written per fragment; half of w is never clipped, near or far.
     let position = vec4f(
-        dot(seen, view.right.xyz) / view.right.w,
-        dot(seen, view.up.xyz) / view.up.w,
+        (dot(seen, view.right.xyz) - view.eye_high.w * distance) / view.right.w,
+        (dot(seen, view.up.xyz) - view.eye_low.w * distance) / view.up.w,
         0.5 * distance,
         distance,
     );
@@ -204,8 +205,8 @@ fn draw(solid: Varying) -> Fragment {
     let across = vec2f(2.0, -2.0) * (solid.position.xy * view.picture.xy) + vec2f(-1.0, 1.0);
     let gaze = normalize(
         view.forward.xyz
-            + across.x * view.right.w * view.right.xyz
-            + across.y * view.up.w * view.up.xyz,
+            + (across.x * view.right.w + view.eye_high.w) * view.right.xyz
+            + (across.y * view.up.w + view.eye_low.w) * view.up.xyz,
     );
     var ray: Ray;
     ray.direction = unrotate(solid.rotation, gaze);

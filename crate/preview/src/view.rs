@@ -80,8 +80,8 @@ impl View {
             right: pack(axes.x_axis, projection.half_width as f32),
             up: pack(axes.y_axis, projection.half_height as f32),
             forward: pack(-axes.z_axis, NEAREST),
-            eye_high: [high[0], high[1], high[2], 0.0],
-            eye_low: [low[0], low[1], low[2], 0.0],
+            eye_high: [high[0], high[1], high[2], projection.shift[0] as f32],
+            eye_low: [low[0], low[1], low[2], projection.shift[1] as f32],
             picture: [
                 1.0 / samples[0] as f32,
                 1.0 / samples[1] as f32,

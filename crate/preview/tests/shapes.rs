@@ -122,6 +122,8 @@ fn compare_around(what: &str, shape: Shape, center: DVec3, size: f64) {
                 target: center,
                 up: DVec3::new(0.1, 1.0, 0.2),
                 fov,
+                // Any camera may be shifted.
+                shift: [0.3, -0.2],
             };
             compare(
                 gpu,

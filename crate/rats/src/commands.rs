@@ -4,14 +4,16 @@
 //! that is in it is known everywhere.
 
 pub mod options;
+pub mod parameter;
 mod table;
 
-pub use table::COMMANDS;
+pub use parameter::{Arity, Kind, Names, Parameter, Unit};
+pub use table::GROUPS;
 
 use crate::evaluator::{Evaluator, Flow};
 use crate::problem::Outcome;
-use crate::suggest;
 use crate::syntax::Command;
+use crate::{library, suggest};
 
 /// The groups of appendix C of the thesis, and ours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,12 +43,20 @@ pub enum Group {
 pub struct OptionSpec {
     /// The whole word.
     pub name: &'static str,
-    /// What follows it; UPPERCASE is a triple.
-    pub arguments: &'static str,
+    /// What follows it.
+    pub parameters: &'static [Parameter],
     /// What it means.
     pub meaning: &'static str,
     /// Its value if it is left out.
     pub default: &'static str,
+}
+
+impl OptionSpec {
+    /// The word and what follows it.
+    #[must_use]
+    pub fn synopsis(&self) -> String {
+        join(self.name, self.parameters)
+    }
 }
 
 /// What runs a command.
@@ -59,6 +69,8 @@ pub(crate) enum Action {
     Run(Run),
     /// The parser makes it part of the tree.
     Structure,
+    /// A file of the library defines it.
+    Library,
     /// It never changes the picture, for the reason given.
     NoEffect(&'static str),
     /// Not in this version.
@@ -69,16 +81,19 @@ pub(crate) enum Action {
 pub struct CommandSpec {
     /// Its opcode.
     pub name: &'static str,
-    /// Its group.
-    pub group: Group,
-    /// What it takes; UPPERCASE is a triple, `sn` a material's name.
-    pub arguments: &'static str,
+    /// Its operands, in order. Those of a command of the library stand in its file (see
+    /// [`crate::library`]).
+    pub parameters: &'static [Parameter],
+    /// Its option words, which follow the operands in any order.
+    pub options: &'static [OptionSpec],
     /// What it means, one line.
     pub meaning: &'static str,
+    /// What else there is to know; empty if nothing.
+    pub details: &'static str,
     /// The value without the command; empty if there is none.
     pub default: &'static str,
-    /// Its option words.
-    pub options: &'static [OptionSpec],
+    /// A small text that uses it, complete and without mistakes.
+    pub example: &'static str,
     /// What runs it.
     pub(crate) action: Action,
 }
@@ -98,27 +113,74 @@ impl CommandSpec {
         format!("it is written `{}`", self.synopsis())
     }
 
-    /// Its opcode and arguments.
+    /// Its opcode and operands.
     #[must_use]
     pub fn synopsis(&self) -> String {
-        format!("{} {}", self.name, self.arguments)
-            .trim_end()
-            .to_owned()
+        if matches!(self.action, Action::Library) {
+            return library::synopsis(self.name);
+        }
+        let mut synopsis = join(self.name, self.parameters);
+        if self.options.len() <= 3 {
+            for option in self.options {
+                synopsis += &format!(" [{}]", option.synopsis());
+            }
+        } else {
+            synopsis += " [option …]";
+        }
+        synopsis
     }
+
+    /// Its group.
+    #[must_use]
+    pub fn group(&self) -> Group {
+        let mine = |list: &[Self]| list.iter().any(|spec| std::ptr::eq(spec, self));
+        GROUPS
+            .iter()
+            .find(|(_, list)| mine(list))
+            .map_or(Group::Extensions, |(group, _)| *group)
+    }
+
+    /// Whether it is carried out: `None` if it is, else the reason why it changes nothing.
+    #[must_use]
+    pub fn idle(&self) -> Option<&'static str> {
+        match self.action {
+            Action::Run(_) | Action::Structure | Action::Library => None,
+            Action::NoEffect(reason) => Some(reason),
+            Action::Later => Some("it is not carried out in this version"),
+        }
+    }
+
+    /// Whether a file of the library defines it.
+    #[must_use]
+    pub fn is_library(&self) -> bool {
+        matches!(self.action, Action::Library)
+    }
+}
+
+fn join(name: &str, parameters: &[Parameter]) -> String {
+    let mut text = name.to_owned();
+    for parameter in parameters {
+        text += " ";
+        text += &parameter.synopsis();
+    }
+    text
+}
+
+/// All commands, in the order of the table.
+pub fn all() -> impl Iterator<Item = &'static CommandSpec> {
+    GROUPS.iter().flat_map(|(_, list)| *list)
 }
 
 /// Finds a command by its opcode, in any case.
 #[must_use]
 pub fn find(word: &str) -> Option<&'static CommandSpec> {
-    COMMANDS
-        .iter()
-        .find(|spec| spec.name.eq_ignore_ascii_case(word))
+    all().find(|spec| spec.name.eq_ignore_ascii_case(word))
 }
 
 /// The command that was probably meant by a mistyped opcode; `own` are those that the text defines.
 #[must_use]
 pub fn suggestion<'a>(word: &str, own: impl Iterator<Item = &'a str>) -> Option<String> {
-    suggest::hint(word, COMMANDS.iter().map(|spec| spec.name).chain(own))
+    suggest::hint(word, all().map(|spec| spec.name).chain(own))
 }
 
 #[cfg(test)]
@@ -129,7 +191,7 @@ mod tests {
     #[test]
     fn names_are_unique_and_lower_case() {
         let mut names = HashSet::new();
-        for spec in COMMANDS {
+        for spec in all() {
             assert!(names.insert(spec.name.to_lowercase()), "{}", spec.name);
             assert!(!spec.meaning.is_empty(), "{}", spec.name);
             let options: HashSet<_> = spec.options.iter().map(|o| o.name).collect();
@@ -140,7 +202,7 @@ mod tests {
     /// Every opcode of appendix C, group by group.
     #[test]
     fn the_whole_language_is_known() {
-        let all = "read pause return info help man test log var stopwatch quit \
+        let names = "read pause return info help man test log var stopwatch quit \
             aperture focus shutter vrp vup cp vpn window eyep fov \
             surface texture \
             arc arch box brick cone cylinder pipe dot gauss line sphere triangle triad plane polygon \
@@ -152,11 +214,12 @@ mod tests {
             light fog background cloud remove report reset preview shoot \
             animate play split collage fli convert resize diff and xor show kill refresh tile colors \
             rats table shell horn \
-            material blobscale curve seed for if else define influence";
-        for name in all.split_whitespace() {
+            material blobscale curve seed for if else define influence \
+            tree spikes sphereflake spiral";
+        for name in names.split_whitespace() {
             assert!(find(name).is_some(), "{name}");
             assert!(find(&name.to_uppercase()).is_some(), "{name}");
         }
-        assert_eq!(all.split_whitespace().count(), COMMANDS.len());
+        assert_eq!(names.split_whitespace().count(), all().count());
     }
 }

@@ -2,21 +2,60 @@
 
 use crate::evaluator::Evaluator;
 use crate::limits::{MAX_FILES, MAX_TEXT};
-use crate::parser;
 use crate::scope::Scope;
+use crate::sources::Sources;
 use crate::symbol::Symbols;
-use crate::{Diagnostic, Project, Severity};
+use crate::{Asset, Diagnostic, Project, Severity, Tool};
+use glam::DAffine3;
 use scene::Scene;
 
 /// What a text means.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compiled {
     /// The scene, as far as the text could be understood.
     pub scene: Scene,
+    /// How each element of the scene came from its command, for those who move it by hand.
+    pub placements: Vec<Placement>,
     /// All that is to be said about the text, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
     /// The variables that are marked `hot`.
     pub hot: Vec<HotVariable>,
+    /// The work on files that the text asks for, in order.
+    pub tools: Vec<Tool>,
+    /// Under what name the picture is to be saved.
+    pub output: Output,
+    /// Whether a variable changes with every frame.
+    pub animated: bool,
+}
+
+/// How an element came from its command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// From the coordinates that the command names to those of the world.
+    pub to_world: DAffine3,
+    /// By how much lengths grew on the way.
+    pub growth: f64,
+    /// Whether its command was run in a loop, a defined command or by `instance`, so that it may have
+    /// made more elements than this one.
+    pub repeated: bool,
+}
+
+/// The name and format of the picture's file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// `filename`, without an ending.
+    pub name: String,
+    /// `format`; `None` if the text does not say.
+    pub format: Option<&'static str>,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self {
+            name: String::from("scene"),
+            format: None,
+        }
+    }
 }
 
 /// A variable that the page shows as a slider.
@@ -32,6 +71,10 @@ pub struct HotVariable {
     /// `rgb(…)`, so that a slider can replace it (see [`crate::hot::set`]); `None` if it comes from an
     /// expression.
     pub literal: Option<std::ops::Range<usize>>,
+    /// The slider's range, if the text says it.
+    pub range: Option<[f64; 2]>,
+    /// The slider's step, if the text says it.
+    pub step: Option<f64>,
 }
 
 /// A value that can be adjusted.
@@ -49,25 +92,22 @@ pub enum HotValue {
 /// [`crate::limits`].
 #[must_use]
 pub fn compile(project: &Project) -> Compiled {
+    compile_at(project, &[], 0)
+}
+
+/// As [`compile`], with images and meshes that the texts may use, at a frame of the animation.
+/// Variables that change with every frame have changed `frame` times.
+#[must_use]
+pub fn compile_at(project: &Project, assets: &[Asset], frame: u32) -> Compiled {
     if let Some(diagnostic) = too_large(project) {
         return Compiled {
-            scene: Scene::default(),
             diagnostics: vec![diagnostic],
-            hot: Vec::new(),
+            ..Compiled::default()
         };
     }
     let mut symbols = Symbols::default();
-    let syntaxes: Vec<_> = project
-        .files
-        .iter()
-        .map(|file| parser::parse(&file.text, &mut symbols))
-        .collect();
-    let (scene, diagnostics, hot) = Evaluator::new(project, &syntaxes, Scope::new(symbols)).run();
-    Compiled {
-        scene,
-        diagnostics,
-        hot,
-    }
+    let sources = Sources::of(project, &mut symbols);
+    Evaluator::new(&sources, assets, frame, Scope::new(symbols)).run(project)
 }
 
 fn too_large(project: &Project) -> Option<Diagnostic> {
@@ -90,5 +130,7 @@ fn too_large(project: &Project) -> Option<Diagnostic> {
         line: 1,
         column: 1,
         hint: Some(String::from("use loops instead of long lists of shapes")),
+        related: Vec::new(),
+        command: None,
     })
 }

@@ -30,4 +30,25 @@ pub struct Diagnostic {
     pub column: usize,
     /// What to do about it, e.g. "did you mean `sphere`?".
     pub hint: Option<String>,
+    /// Other places that explain it, such as "it begins here".
+    #[serde(default)]
+    pub related: Vec<Related>,
+    /// The command it is about, whose manual explains more.
+    #[serde(default)]
+    pub command: Option<String>,
+}
+
+/// A place that explains a message.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Related {
+    /// Name of the file.
+    pub file: String,
+    /// Byte range in that file.
+    pub span: std::ops::Range<usize>,
+    /// Line of the start of the span, from 1.
+    pub line: usize,
+    /// Column of the start of the span in characters, from 1.
+    pub column: usize,
+    /// What is there.
+    pub message: String,
 }

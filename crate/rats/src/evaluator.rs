@@ -5,6 +5,7 @@
 
 pub mod camera;
 mod later;
+mod lints;
 pub mod materials;
 pub mod model;
 pub mod objects;
@@ -15,19 +16,22 @@ pub mod primitives;
 pub mod run;
 pub mod scene_commands;
 pub mod textures;
+pub mod tools;
 pub mod variables;
 
 use crate::commands::{self, Action};
-use crate::compile::HotVariable;
+use crate::compile::{Compiled, HotVariable, Output, Placement};
+use crate::given::Given;
 use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
 use crate::report::Report;
 use crate::scope::Scope;
+use crate::sources::Sources;
 use crate::symbol::Symbol;
-use crate::syntax::{Command, Define, For, If, Node, Syntax};
+use crate::syntax::{Command, Datum, Define, For, Formal, If, Node, Takes};
 use crate::value::Value;
-use crate::{Project, Severity};
+use crate::{Asset, Project, Severity, Tool};
 use model::Model;
 use palette::Palette;
 use scene::{Camera, Light, Origin, Scene, Settings};
@@ -48,8 +52,10 @@ pub enum Flow {
 /// A running text.
 #[derive(Debug)]
 pub struct Evaluator<'a> {
-    project: &'a Project,
-    syntaxes: &'a [Syntax],
+    sources: &'a Sources<'a>,
+    assets: &'a [Asset],
+    /// The frame of the animation.
+    frame: u32,
     /// Variables, random numbers, steps.
     pub(crate) scope: Scope<'a>,
     report: Report,
@@ -60,15 +66,24 @@ pub struct Evaluator<'a> {
     camera: Camera,
     /// The file and place of the last `eyep` or `vrp`.
     aimed_at: (usize, Range<usize>),
+    /// The other way to place the camera.
+    view_plane: camera::ViewPlane,
     /// A vertical angle of view that differs from the horizontal one, and where it was given.
     vertical: Option<(f64, usize, Range<usize>)>,
     settings: Settings,
     definitions: HashMap<Symbol, (usize, &'a Define)>,
     hot: Vec<HotVariable>,
+    tools: Vec<Tool>,
+    output: Output,
+    /// Whether a variable changes with every frame.
+    animated: bool,
     /// The file that is being run.
     file: usize,
     /// The files that are being read, the innermost last.
     reading: Vec<usize>,
+    /// Where the texts of the project use the library, the innermost last: what is to be said about a
+    /// text of the library is said there.
+    uses: Vec<(usize, Range<usize>)>,
     /// Files whose mistakes of form have been reported.
     reported: Vec<bool>,
     /// Blocks, calls and files inside each other.
@@ -76,17 +91,23 @@ pub struct Evaluator<'a> {
     /// Loops and calls inside each other.
     repeating: usize,
     /// The picture that `shoot` took.
-    shot: Option<Scene>,
+    shot: Option<(Scene, Vec<Placement>)>,
     told_after_shot: bool,
 }
 
 impl<'a> Evaluator<'a> {
-    /// A machine that has run nothing yet; `syntaxes` are the parsed files of `project`.
+    /// A machine that has run nothing yet.
     #[must_use]
-    pub fn new(project: &'a Project, syntaxes: &'a [Syntax], scope: Scope<'a>) -> Self {
+    pub fn new(
+        sources: &'a Sources<'a>,
+        assets: &'a [Asset],
+        frame: u32,
+        scope: Scope<'a>,
+    ) -> Self {
         Self {
-            project,
-            syntaxes,
+            sources,
+            assets,
+            frame,
             scope,
             report: Report::default(),
             model: Model::default(),
@@ -95,13 +116,18 @@ impl<'a> Evaluator<'a> {
             background: scene::DEFAULT_BACKGROUND,
             camera: Camera::default(),
             aimed_at: (0, 0..0),
+            view_plane: camera::ViewPlane::default(),
             vertical: None,
             settings: Settings::default(),
             definitions: HashMap::new(),
             hot: Vec::new(),
+            tools: Vec::new(),
+            output: Output::default(),
+            animated: false,
             file: 0,
             reading: Vec::new(),
-            reported: vec![false; syntaxes.len()],
+            uses: Vec::new(),
+            reported: vec![false; sources.all.len()],
             depth: 0,
             repeating: 0,
             shot: None,
@@ -109,31 +135,40 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Runs the first file to the end and gives the scene, the messages and the hot variables.
+    /// Runs the first file of the project to the end.
     #[must_use]
-    pub fn run(mut self) -> (Scene, Vec<crate::Diagnostic>, Vec<HotVariable>) {
-        if !self.syntaxes.is_empty() {
+    pub fn run(mut self, project: &Project) -> Compiled {
+        if !self.sources.all.is_empty() {
             self.run_file(0);
         }
+        self.check_open_objects();
         self.check_camera();
-        let scene = match self.shot.take() {
-            Some(scene) => scene,
+        let (scene, placements) = match self.shot.take() {
+            Some(shot) => shot,
             None => self.picture(),
         };
         self.note_unused_materials();
-        (scene, self.report.finish(self.project), self.hot)
+        self.lint(&scene);
+        Compiled {
+            scene,
+            placements,
+            diagnostics: self.report.finish(project),
+            hot: self.hot,
+            tools: self.tools,
+            output: self.output,
+            animated: self.animated,
+        }
     }
 
     /// Runs a file from its beginning.
     fn run_file(&mut self, file: usize) -> Flow {
         let outer = std::mem::replace(&mut self.file, file);
         self.reading.push(file);
-        let syntaxes: &'a [Syntax] = self.syntaxes;
-        let syntax = &syntaxes[file];
+        let sources: &'a Sources<'a> = self.sources;
+        let syntax = &sources.all[file].syntax;
         if !std::mem::replace(&mut self.reported[file], true) {
             for problem in &syntax.problems {
-                self.report
-                    .add(file, Severity::Error, Box::new(problem.clone()));
+                self.tell(Severity::Error, Box::new(problem.clone()));
             }
         }
         let flow = self.block(&syntax.block);
@@ -149,14 +184,25 @@ impl<'a> Evaluator<'a> {
     /// Runs commands one after the other. A command that fails is reported and left out.
     fn block(&mut self, block: &'a [Node]) -> Flow {
         for node in block {
-            let flow = self.node(node).or_else(|problem| {
+            let flow = self.node(node).or_else(|mut problem| {
                 let fatal = problem.fatal;
                 let span = problem.span.clone();
-                self.report.add(self.file, Severity::Error, problem);
+                // What follows from an error that was reported is found and dropped soon.
+                let cost = if problem.quiet {
+                    20
+                } else {
+                    limits::STEPS_PER_ERROR
+                };
+                if let Node::Command(command) = node
+                    && let Some(spec) = command.spec
+                {
+                    problem.command.get_or_insert(spec.name);
+                }
+                self.tell(Severity::Error, problem);
                 if fatal {
                     return Ok(Flow::Quit);
                 }
-                self.scope.step(limits::STEPS_PER_ERROR, &span)?;
+                self.scope.step(cost, &span)?;
                 Ok(Flow::Next)
             });
             match flow {
@@ -164,7 +210,7 @@ impl<'a> Evaluator<'a> {
                 Ok(flow) => return flow,
                 Err(problem) => {
                     let problem: Box<Problem> = problem;
-                    self.report.add(self.file, Severity::Error, problem);
+                    self.tell(Severity::Error, problem);
                     return Flow::Quit;
                 }
             }
@@ -188,14 +234,16 @@ impl<'a> Evaluator<'a> {
     fn command(&mut self, command: &'a Command) -> Outcome<Flow> {
         self.scope.step(1, &command.word_span)?;
         let Some(spec) = command.spec else {
-            return self.call(command);
+            return self.call(command, command.word);
         };
         self.tell_after_shot(command);
         match spec.action {
             Action::Run(run) => run(self, command),
             // The parser gives these no plain command.
             Action::Structure => Ok(Flow::Next),
+            Action::Library => self.call_library(command, spec.name),
             Action::NoEffect(reason) => {
+                self.given(command)?;
                 self.say(Severity::Note, command.word_span.clone(), || {
                     (
                         format!("`{}` changes nothing here: {reason}", spec.name),
@@ -205,6 +253,7 @@ impl<'a> Evaluator<'a> {
                 Ok(Flow::Next)
             }
             Action::Later => {
+                self.given(command)?;
                 self.not_carried_out(command.word_span.clone(), &format!("`{}`", spec.name));
                 Ok(Flow::Next)
             }
@@ -271,23 +320,35 @@ impl<'a> Evaluator<'a> {
         Ok(flow)
     }
 
-    /// Runs a command that the text defines.
-    fn call(&mut self, command: &'a Command) -> Outcome<Flow> {
-        let Some(&(file, define)) = self.definitions.get(&command.word) else {
+    /// Runs a command of the library, which is read when it is used for the first time. A command of the
+    /// same name that the text defines hides it.
+    fn call_library(&mut self, command: &'a Command, name: &'static str) -> Outcome<Flow> {
+        if self.definitions.contains_key(&command.word) {
+            return self.call(command, command.word);
+        }
+        let symbol = self.scope.symbols.find(name);
+        let is_known = |run: &Self| symbol.is_some_and(|s| run.definitions.contains_key(&s));
+        if !is_known(self)
+            && let Some(file) = self.sources.find(&format!("{name}.rat"))
+        {
+            self.enter(&command.word_span)?;
+            self.uses.push((self.file, command.span.clone()));
+            self.run_file(file);
+            self.uses.pop();
+            self.depth -= 1;
+        }
+        match symbol.filter(|_| is_known(self)) {
+            Some(symbol) => self.call(command, symbol),
+            None => Err(self.unknown(command)),
+        }
+    }
+
+    /// Runs a command that a text defines, under the name `symbol`.
+    fn call(&mut self, command: &'a Command, symbol: Symbol) -> Outcome<Flow> {
+        let Some(&(file, define)) = self.definitions.get(&symbol) else {
             return Err(self.unknown(command));
         };
-        let mut values = Vec::with_capacity(define.parameters.len());
-        let mut read = self.reader(command);
-        for (name, triple) in &define.parameters {
-            let what = format!("`{}`", read.scope.symbols.word(*name));
-            let value = if *triple {
-                read.triple(&what)?
-            } else {
-                Value::Scalar(read.number(&what)?)
-            };
-            values.push((*name, value));
-        }
-        read.end()?;
+        let values = self.arguments(command, define)?;
         if self.scope.calls() >= limits::MAX_NESTED_CALLS {
             return Err(Problem::new(
                 command.word_span.clone(),
@@ -301,18 +362,145 @@ impl<'a> Evaluator<'a> {
         }
         self.enter(&command.word_span)?;
         self.repeating += 1;
-        let frame = self.scope.enter(values.into_iter());
+        let from_own = self.file < self.sources.own;
+        if from_own {
+            self.uses.push((self.file, command.span.clone()));
+        }
+        let frame = self.scope.enter(
+            values
+                .iter()
+                .filter_map(|(name, value)| Some((*name, (*value)?))),
+        );
         let outer = std::mem::replace(&mut self.file, file);
-        let flow = self.block(&define.body);
+        let flow = self
+            .defaults(define, &values)
+            .map(|()| self.block(&define.body));
         self.file = outer;
         self.scope.leave(frame);
+        if from_own {
+            self.uses.pop();
+        }
         self.repeating -= 1;
         self.depth -= 1;
-        Ok(if flow == Flow::Quit {
+        Ok(if flow? == Flow::Quit {
             Flow::Quit
         } else {
             Flow::Next
         })
+    }
+
+    /// What a call gives for each parameter; `None` where the default is to be taken.
+    fn arguments(
+        &mut self,
+        command: &'a Command,
+        define: &'a Define,
+    ) -> Outcome<Vec<(Symbol, Option<Value>)>> {
+        let mut values: Vec<(Symbol, Option<Value>)> =
+            define.parameters.iter().map(|p| (p.name, None)).collect();
+        let chain = self.model.chain.clone();
+        let mut usage = self.scope.symbols.word(define.name).to_owned();
+        for parameter in &define.parameters {
+            usage.push(' ');
+            let word = self.scope.symbols.word(parameter.name);
+            if parameter.default.is_empty() {
+                usage += word;
+            } else {
+                usage += &format!("[{word}]");
+            }
+        }
+        let usage = format!("it is written `{usage}`");
+        let mut next = 0;
+        // In a chain its material is known already.
+        if let Some(chain) = chain
+            && let Some(first) = define.parameters.first()
+            && first.takes == Takes::Surface
+            && let Some(symbol) = self.scope.symbols.find(chain.text)
+        {
+            values[0].1 = Some(Value::Name(symbol));
+            next = 1;
+        }
+        let mut read = self.reader(command);
+        if next == 1
+            && let Some((symbol, _)) = read.peek_word()
+            && matches!(read.scope.get(symbol), Some(Value::Name(_)))
+        {
+            read.at += 1;
+        }
+        let mut named = false;
+        while read.more() {
+            let start = read.start();
+            let index = match read.named_argument() {
+                Some((symbol, word)) => {
+                    named = true;
+                    let index = define.parameters.iter().position(|p| p.name == symbol);
+                    let Some(index) = index else {
+                        let names = define
+                            .parameters
+                            .iter()
+                            .map(|p| read.scope.symbols.word(p.name));
+                        let hint = crate::suggest::hint(word, names).unwrap_or(usage.clone());
+                        let name = read.scope.symbols.word(define.name);
+                        return Err(Problem::new(
+                            start..start + word.len(),
+                            format!("`{name}` has no parameter `{word}`"),
+                        )
+                        .hint(hint));
+                    };
+                    if values[index].1.is_some() {
+                        return Err(Problem::new(
+                            start..start + word.len(),
+                            format!("`{word}` is given twice"),
+                        ));
+                    }
+                    read.at += 2;
+                    index
+                }
+                None if named => {
+                    return Err(Problem::new(
+                        read.here(),
+                        "what follows a named parameter must be named too",
+                    )
+                    .hint(usage.clone()));
+                }
+                None => {
+                    let Some(_) = define.parameters.get(next) else {
+                        read.end()
+                            .map_err(|problem| problem.maybe_hint(Some(usage.clone())))?;
+                        break;
+                    };
+                    next += 1;
+                    next - 1
+                }
+            };
+            let value = argument(&mut read, &define.parameters[index]);
+            values[index].1 = Some(value.map_err(|problem| match problem.hint {
+                None => problem.hint(usage.clone()),
+                Some(_) => problem,
+            })?);
+        }
+        for (parameter, (name, value)) in define.parameters.iter().zip(&values) {
+            if value.is_none() && parameter.default.is_empty() {
+                let word = read.scope.symbols.word(*name);
+                return Err(read.expected(&format!("`{word}`")).maybe_hint(Some(usage)));
+            }
+        }
+        Ok(values)
+    }
+
+    /// Sets the parameters that a call left out, in the call's own scope.
+    fn defaults(&mut self, define: &'a Define, values: &[(Symbol, Option<Value>)]) -> Outcome<()> {
+        for (parameter, (name, value)) in define.parameters.iter().zip(values) {
+            if value.is_some() {
+                continue;
+            }
+            let mut command = define.head.clone();
+            command.items = parameter.default.clone();
+            command.span = parameter.span.clone();
+            let mut read = self.reader(&command).unlisted();
+            let value = argument(&mut read, parameter)?;
+            self.scope.set(*name, value);
+        }
+        Ok(())
     }
 
     fn unknown(&self, command: &Command) -> Box<Problem> {
@@ -331,13 +519,63 @@ impl<'a> Evaluator<'a> {
             if problem.quiet {
                 return problem;
             }
-            match later::line_of_material(self.syntaxes, self.project, self.file, name) {
-                Some(line) => problem.hint(format!(
-                    "it is made further down, in line {line}: move that up"
-                )),
+            let source = &self.sources.all[self.file];
+            match later::place_of_material(source, name) {
+                Some(span) => {
+                    let line = source.text[..span.start].matches('\n').count() + 1;
+                    problem
+                        .hint(format!(
+                            "it is made further down, in line {line}: move that up"
+                        ))
+                        .related(None, span, format!("`{}` is made here", name.text))
+                }
                 None => problem,
             }
         })
+    }
+
+    /// All operands and options of a command, read as the table says. Within a chain its shapes leave
+    /// out the material's name.
+    fn given(&mut self, command: &'a Command) -> Outcome<Given<'a>> {
+        let Some(spec) = command.spec else {
+            return Ok(Given::default());
+        };
+        let mut parameters = spec.parameters;
+        let mut skipped = 0;
+        if let Some(first) = parameters.first()
+            && first.name == "sn"
+        {
+            let in_chain = self.model.chain.is_some();
+            let mut read = self.reader(command);
+            read.more();
+            let at = read.at;
+            match read.datum() {
+                // A parameter of a defined command that stands for the material.
+                Some(Datum::Word(symbol))
+                    if in_chain && matches!(read.scope.get(symbol), Some(Value::Name(_))) =>
+                {
+                    skipped = at + 1;
+                }
+                // `sphere 1 0 0 0`: better say this than that a coordinate is missing at the end.
+                Some(Datum::Number(_)) if !in_chain => {
+                    let (here, found) = (read.here(), read.found().unwrap_or_default());
+                    if !self.palette.has(found) {
+                        return Err(Problem::new(
+                            here,
+                            format!("expected the material's name, found `{found}`"),
+                        )
+                        .hint(spec.usage()));
+                    }
+                }
+                _ => {}
+            }
+            if in_chain {
+                parameters = &parameters[1..];
+            }
+        }
+        let mut read = self.reader(command);
+        read.at = skipped;
+        read.given(parameters, spec.options)
     }
 
     /// One level deeper.
@@ -358,9 +596,33 @@ impl<'a> Evaluator<'a> {
 
     /// Reads the operands of a command of the present file.
     fn reader(&mut self, command: &Command) -> Reader<'_, 'a> {
-        let items = &self.syntaxes[self.file].items;
-        let text = &self.project.files[self.file].text;
-        Reader::new(command, items, text, &mut self.scope)
+        let source = &self.sources.all[self.file];
+        Reader::new(command, &source.syntax.items, source.text, &mut self.scope)
+    }
+
+    /// Whether the text that is being run is one of the user's.
+    fn is_own(&self) -> bool {
+        self.file < self.sources.own
+    }
+
+    /// Adds a message about the present file. One about the library goes to where it was used.
+    fn tell(&mut self, severity: Severity, mut problem: Box<Problem>) {
+        if self.is_own() {
+            // An error in a defined command: say also who called it.
+            if severity == Severity::Error
+                && let Some((file, span)) = self.uses.last()
+                && self.scope.calls() > 0
+            {
+                problem = problem.related(Some(*file), span.clone(), "called here");
+            }
+            self.report.add(self.file, severity, problem);
+        } else if let Some((file, span)) = self.uses.last() {
+            let name = &self.sources.all[self.file].name;
+            problem.message = format!("in {name}: {}", problem.message);
+            problem.span = span.clone();
+            problem.related.clear();
+            self.report.add(*file, severity, problem);
+        }
     }
 
     /// Adds a message that is no error; it is made only if it is the first about its place.
@@ -370,11 +632,28 @@ impl<'a> Evaluator<'a> {
         span: Range<usize>,
         message: impl FnOnce() -> (String, Option<String>),
     ) {
-        if self.report.is_new(self.file, severity, &span) {
+        let (file, place) = match self.uses.last() {
+            Some((file, place)) if !self.is_own() => (*file, place),
+            _ => (self.file, &span),
+        };
+        if self.report.is_new(file, severity, place) {
             let (message, hint) = message();
             let problem = Problem::new(span, message).maybe_hint(hint);
-            self.report.add(self.file, severity, problem);
+            self.tell(severity, problem);
         }
+    }
+
+    /// As [`Self::say`], about another file.
+    fn say_at(
+        &mut self,
+        file: usize,
+        severity: Severity,
+        span: Range<usize>,
+        message: impl FnOnce() -> (String, Option<String>),
+    ) {
+        let before = std::mem::replace(&mut self.file, file);
+        self.say(severity, span, message);
+        self.file = before;
     }
 
     /// Warns that something is known but not done.
@@ -394,7 +673,7 @@ impl<'a> Evaluator<'a> {
         }
         let Some(spec) = command.spec else { return };
         let changes = matches!(
-            spec.group,
+            spec.group(),
             Group::Camera | Group::Materials | Group::Primitives | Group::Objects
         ) || matches!(spec.name, "light" | "background" | "shoot");
         if changes {
@@ -410,13 +689,38 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Where an element of this command comes from.
+    /// Where an element of this command comes from: in the user's text, even if the library makes it.
     fn origin(&self, command: &Command) -> Origin {
         let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let (file, span) = match self.uses.last() {
+            Some((file, span)) if !self.is_own() => (*file, span),
+            _ => (self.file, &command.span),
+        };
         Origin {
-            file: small(self.file),
-            start: small(command.span.start),
-            end: small(command.span.end),
+            file: small(file),
+            start: small(span.start),
+            end: small(span.end),
+        }
+    }
+}
+
+/// One argument of a call.
+fn argument(read: &mut Reader<'_, '_>, parameter: &Formal) -> Outcome<Value> {
+    let what = format!("`{}`", read.scope.symbols.word(parameter.name));
+    match parameter.takes {
+        Takes::Number => Ok(Value::Scalar(read.number(&what)?)),
+        Takes::Triple => read.triple(&what),
+        Takes::Surface => {
+            let what = format!("{what}, a material's name");
+            let name = read.known_name(&what)?;
+            match read.scope.symbols.find(name.text) {
+                Some(symbol) => Ok(Value::Name(symbol)),
+                None => Err(Problem::new(
+                    name.span,
+                    format!("`{}` cannot be a material's name here", name.text),
+                )
+                .hint("a name with `^` cannot be handed on")),
+            }
         }
     }
 }

@@ -38,6 +38,8 @@ pub enum Run {
     Unit,
     /// Any numbers to a random number.
     Random,
+    /// One to three numbers, or a vector, to smooth noise.
+    Noise,
 }
 
 const fn function(name: &'static str, meaning: &'static str, run: Run) -> Function {
@@ -96,6 +98,11 @@ pub static FUNCTIONS: &[Function] = &[
         "rand",
         "rand: next random number in [0, 1) of the stream started by `seed`; rand(a, …): a random number that depends on a, … alone",
         Run::Random,
+    ),
+    function(
+        "noise",
+        "noise(x, y, z) or noise(P): smooth noise from −1 to 1, 0 at whole numbers; y and z may be left out",
+        Run::Noise,
     ),
 ];
 
@@ -185,6 +192,28 @@ pub fn apply(function: &Function, arguments: &[Value]) -> Result<Value, String> 
                 .map(Value::Vector)
                 .ok_or_else(|| String::from("a vector of length 0 has no direction"))
         }
+        Run::Noise => {
+            let mut point = [0.0; 3];
+            match arguments {
+                [Value::Vector(v) | Value::Colour(v)] => point = v.to_array(),
+                [_] | [_, _] | [_, _, _] => {
+                    for (slot, argument) in point.iter_mut().zip(arguments) {
+                        *slot = scalar(name, argument)?;
+                    }
+                }
+                _ => {
+                    return Err(format!(
+                        "`{name}` takes 1 to 3 numbers or a vector, not {} arguments",
+                        arguments.len()
+                    ));
+                }
+            }
+            // Beyond this, neighbouring numbers are whole.
+            if point.iter().any(|x| x.abs() > 1e15) {
+                return Ok(Value::Scalar(0.0));
+            }
+            Ok(Value::Scalar(random::noise(point)))
+        }
         Run::Random => {
             let mut numbers = Vec::with_capacity(arguments.len());
             for argument in arguments {
@@ -205,7 +234,9 @@ fn scalar(name: &str, value: &Value) -> Result<f64, String> {
 fn vector(name: &str, value: &Value) -> Result<DVec3, String> {
     match value {
         Value::Vector(v) | Value::Colour(v) => Ok(*v),
-        Value::Scalar(_) => Err(format!("`{name}` takes vectors, not {}", value.kind())),
+        Value::Scalar(_) | Value::Name(_) => {
+            Err(format!("`{name}` takes vectors, not {}", value.kind()))
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The geometry behind the primitives: an arc's axes, the circle through three points, transforms.
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 use scene::Shape;
 
 /// The local axes u, v of an arc with unit normal `n`: u is the world's x axis made perpendicular to n
@@ -239,6 +239,12 @@ impl Transform {
             },
             uniform: size.x == size.y && size.y == size.z,
         }
+    }
+
+    /// The map without what it does to radii.
+    #[must_use]
+    pub fn affine(&self) -> DAffine3 {
+        DAffine3::from_mat3_translation(self.linear, self.shift)
     }
 
     fn point(&self, point: DVec3) -> DVec3 {

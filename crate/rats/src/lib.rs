@@ -6,7 +6,7 @@
 //!
 //! A text goes through these rooms: [`lexer`] cuts it into tokens, `parser` makes a tree of commands
 //! (`syntax`), `evaluator` runs the tree. Each command's operands are read while it runs
-//! (`reader`, `operands`, `expression`), because what a word means depends on the variables at that time. What
+//! (`given`, `reader`, `operands`, `expression`), because what a word means depends on the variables at that time. What
 //! commands there are stands in one table ([`commands`]), which also serves [`highlight`] and help.
 //! All bounds are in [`limits`].
 
@@ -18,11 +18,14 @@ mod evaluator;
 mod expression;
 mod functions;
 mod geometry;
+mod given;
 pub mod highlight;
 pub mod hot;
 pub mod lexer;
+pub mod library;
 pub mod limits;
 pub mod link;
+pub mod manual;
 mod operands;
 mod parser;
 mod problem;
@@ -32,12 +35,15 @@ mod reader;
 pub mod reads;
 mod report;
 mod scope;
+mod sources;
 mod suggest;
 mod symbol;
 mod syntax;
+pub mod tool;
 mod value;
 
-pub use compile::{Compiled, HotValue, HotVariable, compile};
-pub use diagnostic::{Diagnostic, Severity};
-pub use project::{File, Project};
+pub use compile::{Compiled, HotValue, HotVariable, Output, Placement, compile, compile_at};
+pub use diagnostic::{Diagnostic, Related, Severity};
+pub use project::{Asset, File, Project};
 pub use reads::reads;
+pub use tool::Tool;

@@ -45,3 +45,5 @@ pub const MAX_LIGHTS: usize = 256;
 pub const MAX_MAGNITUDE: f64 = 1e12;
 /// Messages about one project.
 pub const MAX_DIAGNOSTICS: usize = 200;
+/// Jobs on files that one text may ask for.
+pub const MAX_TOOLS: usize = 1000;

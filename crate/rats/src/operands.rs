@@ -61,11 +61,11 @@ impl<'a> Reader<'_, 'a> {
         }
     }
 
-    /// A number within bounds.
+    /// A number within bounds, measured in `unit`.
     ///
     /// # Errors
     /// As [`Self::number`], and if it is out of bounds.
-    pub fn number_in(&mut self, what: &str, low: f64, high: f64) -> Outcome<f64> {
+    pub fn number_in(&mut self, what: &str, low: f64, high: f64, unit: &str) -> Outcome<f64> {
         let start = self.start();
         let number = self.number(what)?;
         if (low..=high).contains(&number) {
@@ -74,8 +74,9 @@ impl<'a> Reader<'_, 'a> {
         let bounds = if high >= MAX_MAGNITUDE {
             format!("at least {low}")
         } else {
-            format!("from {low} to {high}")
+            format!("from {low} to {high} {unit}")
         };
+        let bounds = bounds.trim_end();
         Err(Problem::new(
             self.since(start),
             format!("{what} must be {bounds}, not {number}"),
@@ -88,7 +89,7 @@ impl<'a> Reader<'_, 'a> {
     /// As [`Self::number`], and if it is not whole or out of bounds.
     pub fn whole(&mut self, what: &str, low: u32, high: u32) -> Outcome<u32> {
         let start = self.start();
-        let number = self.number_in(what, f64::from(low), f64::from(high))?;
+        let number = self.number_in(what, f64::from(low), f64::from(high), "")?;
         if number.fract() == 0.0 {
             return Ok(number as u32);
         }
@@ -120,7 +121,7 @@ impl<'a> Reader<'_, 'a> {
     pub fn vector(&mut self, what: &str) -> Outcome<DVec3> {
         match self.triple(what)? {
             Value::Vector(vector) | Value::Colour(vector) => Ok(vector),
-            Value::Scalar(_) => Err(self.expected(what)),
+            Value::Scalar(_) | Value::Name(_) => Err(self.expected(what)),
         }
     }
 
@@ -134,6 +135,13 @@ impl<'a> Reader<'_, 'a> {
             Value::Scalar(x) => {
                 let y = self.number_after(what)?;
                 Value::Vector(DVec3::new(x, y, self.number_after(what)?))
+            }
+            Value::Name(_) => {
+                return Err(Problem::new(
+                    self.since(start),
+                    format!("{what} takes three numbers, this is a name"),
+                )
+                .maybe_hint(self.usage()));
             }
             triple => triple,
         };
@@ -234,6 +242,10 @@ impl<'a> Reader<'_, 'a> {
             Value::Vector(v) | Value::Colour(v) => {
                 Ok(Share::Colour(self.to_colour(v, start, what)?))
             }
+            Value::Name(_) => Err(Problem::new(
+                self.since(start),
+                format!("{what} is a colour or a share, this is a name"),
+            )),
         }
     }
 

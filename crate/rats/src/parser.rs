@@ -5,8 +5,8 @@ use crate::commands;
 use crate::lexer::{Token, TokenKind, lex};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
-use crate::symbol::Symbols;
-use crate::syntax::{Block, Command, Datum, Define, For, If, Item, Node, Syntax};
+use crate::symbol::{Symbol, Symbols};
+use crate::syntax::{Block, Command, Datum, Define, For, Formal, If, Item, Node, Syntax, Takes};
 use std::ops::Range;
 
 /// Reads a file.
@@ -222,13 +222,9 @@ impl<'a> Parser<'a, '_, '_> {
         }))
     }
 
-    /// `name(a, b, …)`.
-    fn signature(
-        &self,
-        head: &Command,
-    ) -> Outcome<(crate::symbol::Symbol, Vec<(crate::symbol::Symbol, bool)>)> {
-        const HINT: &str =
-            "write `define name(a, b) { … }`; a parameter in CAPITALS takes a triple";
+    /// `name(a, B, surface s, c = 1, …)`.
+    fn signature(&self, head: &Command) -> Outcome<(Symbol, Vec<Formal>)> {
+        const HINT: &str = "write `define name(a, b) { … }`; a parameter in CAPITALS takes a triple, `surface s` a material, `c = 1` may be left out";
         let items = &self.items[head.items.clone()];
         let Some(Item {
             datum: Datum::Word(name),
@@ -238,21 +234,41 @@ impl<'a> Parser<'a, '_, '_> {
             return Err(Problem::new(head.span.clone(), "`define` needs a name").hint(HINT));
         };
         let word = self.symbols.word(*name);
-        if commands::find(word).is_some() {
+        // A text's own command hides one of the library, so that texts from before it still run.
+        if commands::find(word).is_some_and(|spec| !spec.is_library()) {
             return Err(Problem::new(
                 items[0].span(),
                 format!("`{word}` is already a command of the language"),
             )
             .hint("choose another name"));
         }
-        let mut parameters = Vec::new();
-        for item in &items[1..] {
+        let mut parameters: Vec<Formal> = Vec::new();
+        let mut at = 1;
+        while let Some(item) = items.get(at) {
+            at += 1;
             match item.datum {
                 Datum::Word(parameter) => {
-                    let word = self.symbols.word(parameter);
-                    let triple = word.chars().any(char::is_alphabetic)
-                        && !word.chars().any(char::is_lowercase);
-                    parameters.push((parameter, triple));
+                    let formal = self.formal(head, &mut at, parameter, item.span());
+                    if let Some(first) = parameters.iter().find(|p| p.name == formal.name) {
+                        let word = self.symbols.word(formal.name);
+                        return Err(Problem::new(
+                            formal.span,
+                            format!("there are two parameters `{word}`"),
+                        )
+                        .hint("give one of them another name")
+                        .related(None, first.span.clone(), "the first one"));
+                    }
+                    if formal.default.is_empty()
+                        && parameters.last().is_some_and(|p| !p.default.is_empty())
+                    {
+                        let word = self.symbols.word(formal.name);
+                        return Err(Problem::new(
+                            formal.span,
+                            format!("`{word}` needs a default, as the parameter before it has one"),
+                        )
+                        .hint(format!("write `{word} = …`, or put it first")));
+                    }
+                    parameters.push(formal);
                 }
                 Datum::Sign(b'(' | b')' | b',') => {}
                 _ => {
@@ -265,6 +281,55 @@ impl<'a> Parser<'a, '_, '_> {
             }
         }
         Ok((*name, parameters))
+    }
+
+    /// A parameter whose first word was read; `at` is the index of what follows among the head's items.
+    fn formal(&self, head: &Command, at: &mut usize, word: Symbol, span: Range<usize>) -> Formal {
+        let items = &self.items[head.items.clone()];
+        let text = self.symbols.word(word);
+        let mut formal = Formal {
+            name: word,
+            takes: Takes::Number,
+            default: 0..0,
+            span,
+        };
+        let is_triple = |text: &str| {
+            text.chars().any(char::is_alphabetic) && !text.chars().any(char::is_lowercase)
+        };
+        if is_triple(text) {
+            formal.takes = Takes::Triple;
+        }
+        if ["surface", "material"].contains(&text)
+            && let Some(Item {
+                datum: Datum::Word(name),
+                start,
+                end,
+                ..
+            }) = items.get(*at)
+        {
+            formal.name = *name;
+            formal.takes = Takes::Surface;
+            formal.span = *start as usize..*end as usize;
+            *at += 1;
+        }
+        if items.get(*at).map(|item| item.datum) == Some(Datum::Sign(b'=')) {
+            let first = *at + 1;
+            let mut depth = 0;
+            let mut end = first;
+            while let Some(item) = items.get(end) {
+                match item.datum {
+                    Datum::Sign(b'(' | b'<') => depth += 1,
+                    Datum::Sign(b')' | b'>') if depth == 0 => break,
+                    Datum::Sign(b')' | b'>') => depth -= 1,
+                    Datum::Sign(b',') if depth == 0 => break,
+                    _ => {}
+                }
+                end += 1;
+            }
+            formal.default = head.items.start + first..head.items.start + end;
+            *at = end;
+        }
+        formal
     }
 
     /// The head of a block structure, up to its `{`.

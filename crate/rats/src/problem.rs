@@ -11,6 +11,10 @@ pub struct Problem {
     pub message: String,
     /// What to do about it.
     pub hint: Option<String>,
+    /// Other places that explain it: the file (`None` for the same), the place, what it is.
+    pub related: Vec<(Option<usize>, Range<usize>, String)>,
+    /// The command it is about.
+    pub command: Option<&'static str>,
     /// Whether the run ends here (a limit was met).
     pub fatal: bool,
     /// Whether nothing is said, because an error that was already reported caused this one.
@@ -27,6 +31,8 @@ impl Problem {
             span,
             message: message.into(),
             hint: None,
+            related: Vec::new(),
+            command: None,
             fatal: false,
             quiet: false,
         })
@@ -50,6 +56,18 @@ impl Problem {
     #[must_use]
     pub fn maybe_hint(mut self: Box<Self>, hint: Option<String>) -> Box<Self> {
         self.hint = hint;
+        self
+    }
+
+    /// With another place that explains it.
+    #[must_use]
+    pub fn related(
+        mut self: Box<Self>,
+        file: Option<usize>,
+        span: Range<usize>,
+        message: impl Into<String>,
+    ) -> Box<Self> {
+        self.related.push((file, span, message.into()));
         self
     }
 

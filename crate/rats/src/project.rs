@@ -1,5 +1,7 @@
-//! The texts that make one model.
+//! The texts that make one model, and the other files that they use.
+
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// One named text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -15,4 +17,13 @@ pub struct File {
 pub struct Project {
     /// The texts. The first is run; the others can be `read` from it. Names are unique.
     pub files: Vec<File>,
+}
+
+/// A file that is no text: an image or a mesh. Links do not carry it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Asset {
+    /// What commands call it.
+    pub name: String,
+    /// Its content.
+    pub bytes: Arc<[u8]>,
 }

@@ -9,6 +9,7 @@ use crate::scope::Scope;
 use crate::suggest;
 use crate::symbol::Symbol;
 use crate::syntax::{Command, Datum, Item};
+use crate::value::Value;
 use std::ops::Range;
 
 /// A user's name: of a material, an object, a file.
@@ -139,6 +140,13 @@ impl<'e, 'a> Reader<'e, 'a> {
         }
     }
 
+    /// The name of a parameter if `name =` comes next (and not `==`); nothing is taken.
+    pub fn named_argument(&mut self) -> Option<(Symbol, &'a str)> {
+        let found = self.peek_word()?;
+        let sign = |at: usize| self.items.get(at).map(|item| item.datum) == Some(Datum::Sign(b'='));
+        (sign(self.at + 1) && !sign(self.at + 2)).then_some(found)
+    }
+
     /// Takes the next word if it is `keyword`, in any case.
     pub fn keyword(&mut self, keyword: &str) -> bool {
         let found = self
@@ -161,6 +169,23 @@ impl<'e, 'a> Reader<'e, 'a> {
     /// If there is none.
     pub fn name(&mut self, what: &str) -> Outcome<Name<'a>> {
         self.glued(what, |datum| matches!(datum, Datum::Sign(b'^')))
+    }
+
+    /// A name that was made before. A parameter of the running call that stands for a name gives that
+    /// name.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn known_name(&mut self, what: &str) -> Outcome<Name<'a>> {
+        let symbol = self.peek_word().map(|(symbol, _)| symbol);
+        let mut name = self.name(what)?;
+        if let Some(symbol) = symbol
+            && self.scope.symbols.word(symbol) == name.text
+            && let Some(Value::Name(meant)) = self.scope.get(symbol)
+        {
+            name.text = self.scope.symbols.word(meant);
+        }
+        Ok(name)
     }
 
     /// A file's name: all up to the next separator.

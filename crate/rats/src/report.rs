@@ -1,5 +1,6 @@
 //! Collects what is to be said about a text: each thing once, the worst kept when there is too much.
 
+use crate::diagnostic::Related;
 use crate::limits::MAX_DIAGNOSTICS;
 use crate::problem::Problem;
 use crate::{Diagnostic, Project, Severity};
@@ -145,11 +146,7 @@ impl<'p> Places<'p> {
             severity,
             problem,
         } = message;
-        let (name, text) = self
-            .project
-            .files
-            .get(file)
-            .map_or(("", ""), |f| (f.name.as_str(), f.text.as_str()));
+        let (name, text) = self.file(file);
         let span = clip(text, &problem.span);
         if file != self.file || span.start < self.byte {
             self.file = file;
@@ -162,8 +159,27 @@ impl<'p> Places<'p> {
             self.line_start = self.byte + index + 1;
         }
         self.byte = span.start;
+        let related = problem.related.iter().filter_map(|(other, span, message)| {
+            let other = other.unwrap_or(file);
+            if other >= self.project.files.len() {
+                return None;
+            }
+            let (name, text) = self.file(other);
+            let span = clip(text, span);
+            let before = &text[..span.start];
+            let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+            Some(Related {
+                file: name.to_owned(),
+                line: before.matches('\n').count() + 1,
+                column: before[line_start..].chars().count() + 1,
+                span,
+                message: message.clone(),
+            })
+        });
         Diagnostic {
             severity,
+            related: related.collect(),
+            command: problem.command.map(str::to_owned),
             message: problem.message,
             file: name.to_owned(),
             column: text[self.line_start..span.start].chars().count() + 1,
@@ -171,6 +187,13 @@ impl<'p> Places<'p> {
             span,
             hint: problem.hint,
         }
+    }
+
+    fn file(&self, file: usize) -> (&'p str, &'p str) {
+        self.project
+            .files
+            .get(file)
+            .map_or(("", ""), |f| (f.name.as_str(), f.text.as_str()))
     }
 }
 

@@ -108,8 +108,32 @@ pub struct Define {
     pub head: Command,
     /// The new command's name.
     pub name: Symbol,
-    /// The names of its parameters. One written in capitals takes a triple, any other a number.
-    pub parameters: Vec<(Symbol, bool)>,
+    /// Its parameters.
+    pub parameters: Vec<Formal>,
     /// What it does.
     pub body: Block,
+}
+
+/// A parameter of a command that the text defines.
+#[derive(Clone, Debug)]
+pub struct Formal {
+    /// Its name.
+    pub name: Symbol,
+    /// What it takes.
+    pub takes: Takes,
+    /// The operands that make its default, a range of [`Syntax::items`]; empty if it must be given.
+    pub default: Range<usize>,
+    /// Where its name stands.
+    pub span: Range<usize>,
+}
+
+/// What a parameter of a defined command takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// A number.
+    Number,
+    /// A vector or colour: its name is written in capitals.
+    Triple,
+    /// A material's name: it is written `surface s`.
+    Surface,
 }

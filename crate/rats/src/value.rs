@@ -1,5 +1,6 @@
 //! The values that variables hold and expressions give: numbers, vectors and colours.
 
+use crate::symbol::Symbol;
 use glam::DVec3;
 
 /// A value.
@@ -11,6 +12,8 @@ pub enum Value {
     Vector(DVec3),
     /// A colour: red, green, blue, 1 being full.
     Colour(DVec3),
+    /// The name that a parameter of a call stands for.
+    Name(Symbol),
 }
 
 impl Value {
@@ -21,6 +24,7 @@ impl Value {
             Self::Scalar(_) => "a number",
             Self::Vector(_) => "a vector",
             Self::Colour(_) => "a colour",
+            Self::Name(_) => "a name",
         }
     }
 
@@ -32,6 +36,7 @@ impl Value {
             Self::Scalar(x) => Self::Scalar(f(x)),
             Self::Vector(v) => Self::Vector(each(v)),
             Self::Colour(c) => Self::Colour(each(c)),
+            Self::Name(name) => Self::Name(name),
         }
     }
 
@@ -41,6 +46,7 @@ impl Value {
         match self {
             Self::Scalar(x) => property(*x),
             Self::Vector(v) | Self::Colour(v) => v.to_array().into_iter().all(property),
+            Self::Name(_) => true,
         }
     }
 

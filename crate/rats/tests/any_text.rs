@@ -157,12 +157,13 @@ fn soup(u: &mut Unstructured<'_>) -> Result<String> {
         "−",
         "\t",
     ];
+    let specs: Vec<_> = commands::all().collect();
     let mut text = String::new();
     for _ in 0..u.int_in_range(0..=120)? {
         match u.int_in_range(0..=3)? {
-            0 => text += commands::COMMANDS[u.choose_index(commands::COMMANDS.len())?].name,
+            0 => text += specs[u.choose_index(specs.len())?].name,
             1 => {
-                let spec = &commands::COMMANDS[u.choose_index(commands::COMMANDS.len())?];
+                let spec = specs[u.choose_index(specs.len())?];
                 text += spec.options.first().map_or("1", |option| option.name);
             }
             _ => text += u.choose(WORDS)?,
@@ -259,6 +260,7 @@ fn any_project_comes_back() {
                 target,
                 up,
                 fov: 45.5,
+                shift: [0.0; 2],
             }),
         };
         let fragment = link::encode(&shared).expect("a small project");

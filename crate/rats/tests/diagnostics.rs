@@ -2,7 +2,7 @@
 //!
 //! Each file of `tests/diagnostics` holds sections. A section begins with `### name`; `#file name` begins
 //! another file of the same project. What is expected stands under the line that it is about, as comments:
-//! `#! severity first..end: message → hint`, where `first` and `end` are columns from 1 and `end` is `…` if
+//! `#! severity first..end: message → hint ⤷ line:column what is there`, where `first` and `end` are columns from 1 and `end` is `…` if
 //! the place goes on in another line. A section without such lines must compile without any message.
 //!
 //! `UPDATE_EXPECT=1 cargo test -p rats --test diagnostics` writes what is said now into the files; read
@@ -125,6 +125,10 @@ fn write_expectation(out: &mut String, d: &Diagnostic, text: &str) {
     );
     if let Some(hint) = &d.hint {
         let _ = write!(out, " → {hint}");
+    }
+    for related in &d.related {
+        let message = &related.message;
+        let _ = write!(out, " ⤷ {}:{} {message}", related.line, related.column);
     }
     out.push('\n');
 }

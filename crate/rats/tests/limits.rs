@@ -96,7 +96,7 @@ fn steps() {
 
 #[test]
 fn a_large_scene_is_made_in_time() {
-    let compiled = run("surface s diff Red\nfor i = 1 to 100000 { sphere s 1 i 0 0 }");
+    let compiled = run("surface s diff Red\nfor i = 1 to 100000 { sphere s 1 i/1e5 0 0 }");
     assert!(compiled.diagnostics.is_empty());
     assert_eq!(compiled.scene.elements.len(), 100_000);
 }
@@ -268,7 +268,7 @@ fn magnitudes() {
 fn messages() {
     let mut text = String::new();
     for i in 0..500 {
-        let _ = writeln!(text, "focus {i}");
+        let _ = writeln!(text, "fog Gray # {i}");
     }
     for _ in 0..300 {
         text += "wibble\n";
@@ -284,7 +284,7 @@ fn messages() {
     let last = compiled.diagnostics.last().map(|d| d.message.as_str());
     assert_eq!(last, Some("… and 601 more messages"));
     // One error among many warnings is not lost.
-    let compiled = run("focus 1\n".repeat(1000) + "wibble");
+    let compiled = run("fog Gray\n".repeat(1000) + "wibble");
     assert!(
         compiled
             .diagnostics

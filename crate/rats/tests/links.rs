@@ -38,6 +38,7 @@ fn version_1_is_frozen() {
         target: glam::DVec3::ZERO,
         up: glam::DVec3::Z,
         fov: 50.0,
+        shift: [0.0; 2],
     });
     assert_eq!(
         link::decode(FROZEN),

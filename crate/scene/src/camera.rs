@@ -16,6 +16,10 @@ pub struct Camera {
     /// follows from the picture's proportions: the published seahorse asks for 13°×13° in a
     /// 160×256 frame and fits only when read so.
     pub fov: f64,
+    /// By how much the picture is shifted across the view, in halves of its width to the right and
+    /// up: 0 0 has the target in the middle (`window`, Foley's camera).
+    #[serde(default)]
+    pub shift: [f64; 2],
 }
 
 impl Default for Camera {
@@ -25,6 +29,7 @@ impl Default for Camera {
             target: DVec3::ZERO,
             up: DVec3::Y,
             fov: 45.0,
+            shift: [0.0; 2],
         }
     }
 }
@@ -52,6 +57,7 @@ impl Camera {
             world_from_view: DMat3::from_cols(right, up, -forward),
             half_width,
             half_height,
+            shift: self.shift.map(|s| s * half_width),
         }
     }
 }
@@ -67,6 +73,8 @@ pub struct Projection {
     pub half_width: f64,
     /// Tangent of half the vertical angle of view.
     pub half_height: f64,
+    /// Where the middle of the picture lies, as tangents to the right and up.
+    pub shift: [f64; 2],
 }
 
 impl Projection {
@@ -75,8 +83,8 @@ impl Projection {
     #[must_use]
     pub fn direction(&self, x: f64, y: f64) -> DVec3 {
         let view = DVec3::new(
-            (2.0 * x - 1.0) * self.half_width,
-            (1.0 - 2.0 * y) * self.half_height,
+            (2.0 * x - 1.0) * self.half_width + self.shift[0],
+            (1.0 - 2.0 * y) * self.half_height + self.shift[1],
             -1.0,
         );
         (self.world_from_view * view).normalize()

@@ -40,6 +40,7 @@ fn the_middle_of_the_picture_looks_at_the_target() {
         target: DVec3::ZERO,
         up: DVec3::Z,
         fov: 50.0,
+        shift: [0.0; 2],
     };
     let projection = camera.projection(640, 480);
     assert!(close(

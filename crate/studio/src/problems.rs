@@ -148,6 +148,8 @@ mod tests {
             line: 1,
             column: 1,
             hint: None,
+            related: Vec::new(),
+            command: None,
         };
         assert_eq!(summary(&[]), "");
         let list = [

@@ -107,11 +107,7 @@ impl Session {
         let mut session = Self {
             project: Project::default(),
             history: History::default(),
-            compiled: Compiled {
-                scene: Scene::default(),
-                diagnostics: Vec::new(),
-                hot: Vec::new(),
-            },
+            compiled: Compiled::default(),
             good: None,
             camera: None,
             revision: 0,

@@ -105,6 +105,7 @@ fn cowrie() -> Scene {
         target: DVec3::ZERO,
         up: DVec3::Z,
         fov: 50.0,
+        shift: [0.0; 2],
     };
     scene.lights.push(Light {
         kind: LightKind::Point {
@@ -187,6 +188,7 @@ fn benchmark(json: &serde_json::Value) -> Option<Scene> {
         target: vector(&cam["at"])?,
         up: vector(&cam["sky"])?,
         fov: cam["fov"].as_f64()?,
+        shift: [0.0; 2],
     };
     scene.lights.push(Light {
         kind: LightKind::Point {

@@ -1,87 +1,146 @@
 //! The option words of the commands that have them.
 
 use super::OptionSpec;
+use super::parameter::{
+    Kind, Names, Parameter, Unit, colour, degrees, direction, length, number, parameter, vector,
+    word,
+};
 
 const fn option(
     name: &'static str,
-    arguments: &'static str,
+    parameters: &'static [Parameter],
     default: &'static str,
     meaning: &'static str,
 ) -> OptionSpec {
     OptionSpec {
         name,
-        arguments,
+        parameters,
         meaning,
         default,
     }
 }
 
+/// A word that is all there is to it.
+const fn plain(name: &'static str, meaning: &'static str) -> OptionSpec {
+    option(name, &[], "", meaning)
+}
+
+const fn share(meaning: &'static str) -> Parameter {
+    parameter("RGB|N%", Kind::Share, meaning)
+}
+
+const LAYERS: &[Parameter] =
+    &[parameter("t1 +", Kind::Known(Names::Texture), "the texture's name").many()];
+
 /// `surface`, `material`.
 pub static SURFACE: &[OptionSpec] = &[
     option(
         "body",
-        "RGB",
-        "diffuse",
+        &[colour("RGB", "the body's colour")],
+        "as diffuse",
         "main colour, of which `N%` are taken",
     ),
-    option("ambient", "RGB | N%", "15% of diffuse", "light given off"),
-    option("diffuse", "RGB | N%", "body", "light scattered evenly"),
-    option("specular", "RGB | N%", "0 0 0", "colour of the highlight"),
+    option(
+        "ambient",
+        &[share("the ambient colour")],
+        "15% of diffuse",
+        "light given off",
+    ),
+    option(
+        "diffuse",
+        &[share("the diffuse colour")],
+        "as body",
+        "light scattered evenly",
+    ),
+    option(
+        "specular",
+        &[share("the specular colour")],
+        "0 0 0",
+        "colour of the highlight",
+    ),
     option(
         "reflective",
-        "RGB | N%",
+        &[share("the share of light mirrored")],
         "0 0 0",
         "light reflected as by a mirror",
     ),
-    option("transparent", "RGB | N%", "0 0 0", "light let through"),
-    option("index", "k", "1", "index of refraction"),
-    option("dispersion", "d", "0", "how the index varies with colour"),
+    option(
+        "transparent",
+        &[share("the share of light let through")],
+        "0 0 0",
+        "light let through",
+    ),
+    option(
+        "index",
+        &[number("k", "the index of refraction").from(0.01, 100.0)],
+        "1",
+        "index of refraction",
+    ),
+    option(
+        "dispersion",
+        &[number("d", "the dispersion").from(0.0, 100.0)],
+        "0",
+        "how the index varies with colour",
+    ),
     option(
         "shine",
-        "p",
+        &[number("p", "the shine").from(0.0, 1e6)],
         "0",
         "Phong's exponent: the larger, the smaller the highlight",
     ),
     option(
         "radius",
-        "r [end]",
+        &[
+            length("r", "the radius").at_least(0.0),
+            length("end", "the radius at the other end")
+                .at_least(0.0)
+                .optional(""),
+        ],
         "0",
         "radius in isolation of soft shapes; a second one at the other end of lines, arcs, curves (ours)",
     ),
     option(
         "blobbiness",
-        "b [end]",
+        &[
+            number("b", "the blobbiness"),
+            number("end", "the blobbiness at the other end").optional(""),
+        ],
         "0",
         "softness: negative; near 0 is blobby, far from 0 crisp; 0 is hard; a second one at the other end (ours)",
     ),
     option(
         "depth",
-        "d",
+        &[length("d", "the depth").at_least(0.0)],
         "0",
         "depth of influence, from which the radius follows (ours)",
     ),
     option(
         "strength",
-        "s",
+        &[number("s", "the strength")],
         "1",
         "multiplies the field; negative carves",
     ),
     option(
         "restriction",
-        "f",
+        &[number("f", "the restriction").from(0.0, 1.0)],
         "0",
         "share of a triangle's field taken away at its edges: 1 creases a mesh (ours)",
     ),
     option(
         "skip",
-        "pixel | shadow | reflected | transmitted …",
+        &[word(
+            "RAYTYPE",
+            RAYS,
+            "`pixel`, `shadow`, `reflected` or `transmitted`",
+        )
+        .many()],
         "",
         "rays that do not see it",
     ),
-    option("texture", "t1 [+ t2 …]", "", "layers of textures"),
+    option("texture", LAYERS, "", "layers of textures"),
     option(
         "kernel",
-        "cauchy | gauss | inverse | squared | metaballs | soft | quartic | compact6",
+        &[word("name", KERNELS, "the kernel's name")],
         "the command's own: cauchy, or as it says",
         "the kernel of soft shapes (ours)",
     ),
@@ -89,120 +148,373 @@ pub static SURFACE: &[OptionSpec] = &[
 
 /// What rays `skip` names.
 pub static RAYS: &[OptionSpec] = &[
-    option("pixel", "", "", "rays from the eye"),
-    option("shadow", "", "", "rays to the lights"),
-    option("reflected", "", "", "mirrored rays"),
-    option("transmitted", "", "", "rays let through"),
+    plain("pixel", "rays from the eye"),
+    plain("shadow", "rays to the lights"),
+    plain("reflected", "mirrored rays"),
+    plain("transmitted", "rays let through"),
+];
+
+/// The kernels: how a skeleton's flesh fades with distance (fields.md §1).
+pub static KERNELS: &[OptionSpec] = &[
+    plain(
+        "cauchy",
+        "1/(1+s²r²)²: wide and smooth, closed forms for every primitive",
+    ),
+    plain("gauss", "exp(−a²r²): falls fast"),
+    plain("inverse", "1/r: the Newtonian potential, very wide"),
+    plain("squared", "1/r²"),
+    plain("metaballs", "piecewise quadratic, nothing beyond r = 1"),
+    plain(
+        "soft",
+        "the soft objects' polynomial of degree 6, nothing beyond r = 1",
+    ),
+    plain("quartic", "(1−r²)², nothing beyond r = 1"),
+    plain("compact6", "(1−r²)³, nothing beyond r = 1"),
 ];
 
 /// What a texture changes.
 pub static TARGETS: &[OptionSpec] = &[
-    option("diffuse", "", "", "the diffuse colour"),
-    option("ambient", "", "", "the ambient colour"),
-    option("specular", "", "", "the highlight"),
-    option("reflective", "", "", "the mirror's colour"),
-    option("transparent", "", "", "the colour let through"),
-    option("index", "", "", "the index of refraction"),
-    option("shine", "", "", "the highlight's size"),
-    option("pigment", "", "", "diffuse and ambient"),
-    option("normal", "", "", "bumps"),
-    option("strength", "", "", "the field: a profile"),
-    option("texture", "t1 [+ t2 …]", "", "layers of other textures"),
+    plain("diffuse", "the diffuse colour"),
+    plain("ambient", "the ambient colour"),
+    plain("specular", "the highlight"),
+    plain("reflective", "the mirror's colour"),
+    plain("transparent", "the colour let through"),
+    plain("index", "the index of refraction"),
+    plain("shine", "the highlight's size"),
+    plain("pigment", "diffuse and ambient"),
+    plain("normal", "bumps"),
+    plain("strength", "the field: a profile"),
+    option("texture", LAYERS, "", "layers of other textures"),
 ];
 
 /// Solid textures.
 pub static SOLIDS: &[OptionSpec] = &[
-    option("marble", "", "", "marble"),
-    option("agate", "", "", "agate"),
-    option("granite", "", "", "granite"),
-    option("moon", "", "", "craters"),
-    option("onion", "", "", "shells"),
-    option("wood", "", "", "rings"),
-    option("ripples", "", "", "waves"),
-    option("sandal", "", "", "sandal wood"),
-    option("checker", "", "", "checkers"),
-    option("paint", "", "", "paint"),
+    plain("marble", "marble"),
+    plain("agate", "agate"),
+    plain("granite", "granite"),
+    plain("moon", "craters"),
+    plain("onion", "shells"),
+    plain("wood", "rings"),
+    plain("ripples", "waves"),
+    plain("sandal", "sandal wood"),
+    plain("checker", "checkers"),
+    plain("paint", "paint"),
+];
+
+/// The waves of the method `Fu Fv`, along a shape's u and v.
+pub static WAVES: &[OptionSpec] = &[
+    plain("one", "1 everywhere"),
+    plain("x", "from 0 to 1"),
+    plain("saw", "from 0 to 1 again and again"),
+    plain("hat", "up and down in straight lines"),
+    plain("step", "0, then 1"),
+    plain("sin", "a sine between 0 and 1"),
+    plain("cos", "a cosine between 0 and 1"),
+    plain("sin^2", "a squared sine"),
+    plain("cos^2", "a squared cosine"),
 ];
 
 /// `texture`.
 pub static TEXTURE: &[OptionSpec] = &[
-    option("translate", "XYZ", "0 0 0", "moves the texture"),
-    option("scale", "XYZ", "1 1 1", "scales the texture"),
-    option("times", "RGB", "1 1 1", "scales its values"),
+    option(
+        "translate",
+        &[vector("XYZ", "the shift")],
+        "0 0 0",
+        "moves the texture",
+    ),
+    option(
+        "scale",
+        &[parameter("XYZ", Kind::Vector, "the scale")],
+        "1 1 1",
+        "scales the texture",
+    ),
+    option(
+        "times",
+        &[parameter("RGB", Kind::Vector, "the factor")],
+        "1 1 1",
+        "scales its values",
+    ),
     option(
         "bounds",
-        "RGB RGB",
+        &[
+            parameter("RGB", Kind::Vector, "the lowest value"),
+            parameter("RGB", Kind::Vector, "the highest value"),
+        ],
         "0 0 0 1 1 1",
         "its lowest and highest value",
     ),
-    option("turbulence", "t", "1", "noise"),
-    option("octaves", "r", "5", "detail of the noise"),
-    option("mask", "1 0 …", "", "tiles shown and left out"),
+    option("turbulence", &[number("t", "the turbulence")], "1", "noise"),
     option(
-        "replace",
-        "",
-        "",
-        "values replace the target instead of scaling it",
+        "octaves",
+        &[number("r", "the octaves")],
+        "5",
+        "detail of the noise",
     ),
-    option("texture", "t1 [+ t2 …]", "", "layers of other textures"),
+    option(
+        "mask",
+        &[number("1 0", "the mask, of 1 and 0").many()],
+        "",
+        "tiles shown and left out",
+    ),
+    plain("replace", "values replace the target instead of scaling it"),
+    option("texture", LAYERS, "", "layers of other textures"),
 ];
 
 /// `light`.
 pub static LIGHT: &[OptionSpec] = &[
-    option("point", "", "yes", "shines from a point"),
-    option("distant", "", "", "shines from infinity"),
-    option("spot", "", "", "shines in a cone"),
-    option("extended", "", "", "shines from a ball"),
+    plain(
+        "point",
+        "shines from a point; the kind of a light that names none",
+    ),
+    plain("distant", "shines from infinity"),
+    plain("spot", "shines in a cone"),
+    plain("extended", "shines from a ball"),
     option(
         "position",
-        "XYZ",
+        &[vector("XYZ", "the light's position")],
         "",
         "where it is; a distant light shines from there to 0 0 0",
     ),
-    option("direction", "XYZ", "", "where a distant light shines to"),
-    option("intensity", "k", "1", "multiplies the colour"),
-    option("noshadow", "", "", "nothing stops it"),
-    option("angle", "a", "", "opening of a spot, degrees"),
-    option("radius", "r", "", "radius of an extended light"),
+    option(
+        "direction",
+        &[direction("XYZ", "the light's direction")],
+        "",
+        "where a distant light shines to",
+    ),
+    option(
+        "intensity",
+        &[number("k", "the intensity").from(0.0, 1e6)],
+        "1",
+        "multiplies the colour",
+    ),
+    plain("noshadow", "nothing stops it"),
+    option(
+        "angle",
+        &[degrees("a", "the opening").from(0.0, 180.0)],
+        "",
+        "opening of a spot",
+    ),
+    option(
+        "radius",
+        &[length("r", "the light's radius").from(0.0, 1e6)],
+        "",
+        "radius of an extended light",
+    ),
 ];
 
-/// `reset`.
+/// `reset`, `report`.
 pub static RESET: &[OptionSpec] = &[
-    option("all", "", "", "everything"),
-    option("data", "", "", "shapes and objects"),
-    option("model", "", "", "shapes and objects"),
-    option("surfaces", "", "", "materials"),
-    option("textures", "", "", "textures"),
-    option("lights", "", "", "lights"),
-    option("background", "", "", "the background"),
-    option("clouds", "", "", "clouds"),
-    option("fog", "", "", "fog"),
-    option("cameras", "", "", "the camera"),
-    option("options", "", "", "all settings"),
-    option("var", "", "", "variables"),
+    plain("all", "everything"),
+    plain("data", "shapes and objects"),
+    plain("model", "shapes and objects"),
+    plain("surfaces", "materials"),
+    plain("textures", "textures"),
+    plain("lights", "lights"),
+    plain("background", "the background"),
+    plain("clouds", "clouds"),
+    plain("fog", "fog"),
+    plain("cameras", "the camera"),
+    plain("options", "all settings"),
+    plain("var", "variables"),
 ];
 
 /// `fragile`.
 pub static FRAGILE: &[OptionSpec] = &[
-    option("all", "", "", "all of these"),
-    option("arc", "", "", "arcs and arches"),
-    option("pipe", "", "", "pipes"),
-    option("cylinder", "", "", "cylinders"),
-    option("sphere", "", "", "spheres"),
-    option("none", "", "", "none of these"),
+    plain("all", "all of these"),
+    plain("arc", "arcs and arches"),
+    plain("pipe", "pipes"),
+    plain("cylinder", "cylinders"),
+    plain("sphere", "spheres"),
+    plain("none", "none of these"),
 ];
 
 /// `blobscale`.
 pub static BLOBSCALE: &[OptionSpec] = &[
-    option("relative", "", "", "the width is |B|/R²"),
-    option("absolute", "", "", "the width is |B|"),
+    plain("relative", "the width is |B|/R²"),
+    plain("absolute", "the width is |B|"),
 ];
 
 /// `digger`.
 pub static DIGGER: &[OptionSpec] = &[
-    option("hermite", "", "", "Hermite interpolation"),
-    option("lagrange", "", "", "Lagrange interpolation"),
-    option("brent", "", "", "Brent's method"),
-    option("ridder", "", "", "Ridder's method"),
-    option("RF", "", "", "regula falsi"),
+    plain("hermite", "Hermite interpolation"),
+    plain("lagrange", "Lagrange interpolation"),
+    plain("brent", "Brent's method"),
+    plain("ridder", "Ridder's method"),
+    plain("RF", "regula falsi"),
 ];
+
+/// `pack`.
+pub static PACK: &[OptionSpec] = &[
+    plain("none", "a list"),
+    option(
+        "grid",
+        &[super::parameter::whole("X Y Z", 1, 1024, "the cells of the grid").any()],
+        "",
+        "a grid of cells",
+    ),
+];
+
+/// `indicator`.
+pub static INDICATOR: &[OptionSpec] = &[
+    plain("none", "nothing"),
+    plain("all", "all of these"),
+    plain("bar", "a bar"),
+    plain("text", "words"),
+    plain("pixel", "every pixel"),
+    plain("line", "every line"),
+    plain("ETA", "the time that is left"),
+];
+
+/// `format`.
+pub static FORMATS: &[OptionSpec] = &[
+    plain("tif", "TIFF"),
+    plain("tga", "Targa"),
+    plain("mtv", "MTV: width, height and bytes"),
+    plain("png", "PNG (ours)"),
+];
+
+/// `stopwatch`.
+pub static STOPWATCH: &[OptionSpec] = &[
+    plain("start", "begin"),
+    plain("stop", "end and tell the time"),
+];
+
+/// `mesh` as RATS has it.
+pub static MESH: &[OptionSpec] = &[
+    plain("robust", "faces are checked"),
+    plain("fast", "faces are taken as they are"),
+];
+
+/// `test`.
+pub static TEST: &[OptionSpec] = &[plain("print", "only show the text")];
+
+/// `var`.
+pub static VAR: &[OptionSpec] = &[
+    option(
+        "hot",
+        &[
+            number("low", "the slider's lowest value").optional(""),
+            number("high", "the slider's highest value").optional(""),
+            number("step", "the slider's step").optional(""),
+        ],
+        "",
+        "a slider in the page; its range and step are ours",
+    ),
+    option(
+        "+=",
+        &[number("step", "the change with every frame")],
+        "",
+        "grows with every frame of an animation",
+    ),
+    option(
+        "*=",
+        &[number("factor", "the change with every frame")],
+        "",
+        "is multiplied with every frame of an animation",
+    ),
+];
+
+/// `animate`, `play`.
+pub static ANIMATE: &[OptionSpec] = &[
+    plain("loop", "again and again"),
+    plain("mirror", "there and back"),
+    plain("dither", "fewer colours"),
+];
+
+/// `fli`.
+pub static FLI: &[OptionSpec] = &[
+    option(
+        "speed",
+        &[super::parameter::whole(
+            "N",
+            1,
+            100,
+            "the pictures in a second",
+        )],
+        "10",
+        "pictures in a second",
+    ),
+    option(
+        "size",
+        &[
+            super::parameter::whole("W", 1, 4096, "the width").unit(Unit::Pixels),
+            super::parameter::whole("H", 1, 4096, "the height").unit(Unit::Pixels),
+        ],
+        "of the first",
+        "size of the film",
+    ),
+];
+
+/// `collage`.
+pub static COLLAGE: &[OptionSpec] = &[
+    option(
+        "columns",
+        &[super::parameter::whole(
+            "n",
+            1,
+            256,
+            "the number of columns",
+        )],
+        "as many as make it square",
+        "pictures side by side",
+    ),
+    option(
+        "gap",
+        &[super::parameter::whole("p", 0, 256, "the gap").unit(Unit::Pixels)],
+        "0",
+        "room between pictures",
+    ),
+];
+
+/// `diff`, `and`, `xor`.
+pub static SAVE: &[OptionSpec] = &[option(
+    "save",
+    &[parameter("fn", Kind::NewFile, "the new file's name")],
+    "",
+    "writes the result",
+)];
+
+/// `show`.
+pub static SHOW: &[OptionSpec] = &[
+    option(
+        "file",
+        &[parameter("fn", Kind::File, "a picture's name")],
+        "",
+        "a picture",
+    ),
+    option("color", &[colour("Color", "a colour")], "", "a colour"),
+    plain("palette", "all colours with a name"),
+];
+
+/// `quadric`.
+pub static QUADRIC: &[OptionSpec] = &[
+    option(
+        "translate",
+        &[vector("XYZ", "the shift")],
+        "0 0 0",
+        "moves it",
+    ),
+    option(
+        "scale",
+        &[parameter("XYZ", Kind::Vector, "the scale")],
+        "1 1 1",
+        "scales it",
+    ),
+    option(
+        "bounds",
+        &[
+            vector("MIN", "the lowest corner"),
+            vector("MAX", "the highest corner"),
+        ],
+        "-1 -1 -1 1 1 1",
+        "the box it is cut off at",
+    ),
+];
+
+/// `polygon`.
+pub static POLYGON: &[OptionSpec] = &[option(
+    "hole",
+    &[vector("W1", "a corner of the hole").many()],
+    "",
+    "a hole in it (ours)",
+)];

@@ -4,56 +4,50 @@ use super::{Evaluator, Flow};
 use crate::Severity;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
+use glam::DVec3;
+use std::ops::Range;
+
+/// What `cp`, `vpn` and `window` have said, in view coordinates.
+#[derive(Clone, Debug, Default)]
+pub struct ViewPlane {
+    /// The centre of projection.
+    cp: Option<DVec3>,
+    /// The normal of the view plane.
+    normal: Option<DVec3>,
+    /// Left, right, lower and upper edge.
+    window: Option<[f64; 4]>,
+    /// Where the last of them stands.
+    place: (usize, Range<usize>),
+}
 
 /// `eyep XYZ`
 pub fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let eye = read.vector("the eye's position")?;
-    read.end()?;
-    run.camera.eye = eye;
+    run.camera.eye = run.given(command)?.vector("XYZ");
+    run.view_plane = ViewPlane::default();
     run.aimed_at = (run.file, command.span.clone());
     Ok(Flow::Next)
 }
 
 /// `vrp XYZ`
 pub fn vrp<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let target = read.vector("the view reference point")?;
-    read.end()?;
-    run.camera.target = target;
+    run.camera.target = run.given(command)?.vector("XYZ");
     run.aimed_at = (run.file, command.span.clone());
     Ok(Flow::Next)
 }
 
 /// `vup XYZ`
 pub fn vup<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let up = read.direction("the direction up")?;
-    read.end()?;
-    run.camera.up = up;
+    run.camera.up = run.given(command)?.vector("XYZ");
     Ok(Flow::Next)
 }
 
 /// `fov hor [vert]`
 pub fn fov<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let start = read.start();
-    let angle = read.number("the horizontal angle of view")?;
-    let vertical = if read.more() {
-        read.number("the vertical angle of view")?
-    } else {
-        angle
-    };
-    read.end()?;
-    for a in [angle, vertical] {
-        if !(0.01..=179.0).contains(&a) {
-            return Err(Problem::new(
-                read.since(start),
-                format!("an angle of view must be from 0.01 to 179 degrees, not {a}"),
-            ));
-        }
-    }
+    let given = run.given(command)?;
+    let angle = given.number("hor");
+    let vertical = given.maybe_number("vert").unwrap_or(angle);
     run.camera.fov = angle;
+    run.view_plane.window = None;
     // Equal angles are how the datasets write "no other proportions than the frame's".
     run.vertical = (vertical != angle).then(|| (vertical, run.file, command.span.clone()));
     Ok(Flow::Next)
@@ -61,26 +55,133 @@ pub fn fov<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
 
 /// `aperture radius`: 0, a pinhole, is all there is in this version.
 pub fn aperture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    zero_only(run, command, "the radius of the lens")
+    zero_only(run, command, "radius")
 }
 
 /// `shutter fraction`: 0, no blur, is all there is in this version.
 pub fn shutter<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    zero_only(run, command, "the fraction of time")
+    zero_only(run, command, "fraction")
 }
 
-fn zero_only<'a>(run: &mut Evaluator<'a>, command: &'a Command, what: &str) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let value = read.number_in(what, 0.0, crate::limits::MAX_MAGNITUDE)?;
-    read.end()?;
-    if value != 0.0 {
+fn zero_only<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    parameter: &'static str,
+) -> Outcome<Flow> {
+    if run.given(command)?.number(parameter) != 0.0 {
         let name = run.scope.symbols.word(command.word);
         run.not_carried_out(command.word_span.clone(), &format!("`{name}`"));
     }
     Ok(Flow::Next)
 }
 
+/// `focus distance`: with a pinhole, all there is in this version, everything is in focus.
+pub fn focus<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.given(command)?;
+    Ok(Flow::Next)
+}
+
+/// `cp x y z [w]`
+pub fn cp<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let given = run.given(command)?;
+    let weight = given.maybe_number("w").unwrap_or(1.0);
+    if weight == 0.0 {
+        return Err(Problem::new(
+            command.span.clone(),
+            "the weight of a centre of projection must not be 0: parallel projections are not drawn",
+        )
+        .hint("put the eye far away and make the window's angle small"));
+    }
+    let point = DVec3::new(given.number("x"), given.number("y"), given.number("z")) / weight;
+    if point.z <= 0.0 {
+        return Err(Problem::new(
+            command.span.clone(),
+            "the centre of projection must lie before the view plane: z / w above 0",
+        ));
+    }
+    run.view_plane.cp = Some(point);
+    run.view_plane.place = (run.file, command.span.clone());
+    Ok(Flow::Next)
+}
+
+/// `vpn XYZ`
+pub fn vpn<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.view_plane.normal = Some(run.given(command)?.vector("XYZ"));
+    run.view_plane.place = (run.file, command.span.clone());
+    Ok(Flow::Next)
+}
+
+/// `window x X y Y`
+pub fn window<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let given = run.given(command)?;
+    let edges = ["x", "X", "y", "Y"].map(|edge| given.number(edge));
+    if edges[0] >= edges[1] || edges[2] >= edges[3] {
+        return Err(Problem::new(
+            command.span.clone(),
+            "the window's first edge must be less than the second, its third less than the fourth",
+        )
+        .hint("it is written `window left right lower upper`"));
+    }
+    run.view_plane.window = Some(edges);
+    run.view_plane.place = (run.file, command.span.clone());
+    Ok(Flow::Next)
+}
+
 impl Evaluator<'_> {
+    /// The camera that `cp`, `vpn` and `window` describe, or the one of `eyep` and `fov`.
+    ///
+    /// In Foley's terms the view plane goes through the reference point; u points right, v up, n is
+    /// the normal, towards the eye.
+    pub(super) fn settled_camera(&mut self) -> scene::Camera {
+        let mut camera = self.camera;
+        let plane = self.view_plane.clone();
+        if plane.cp.is_none() && plane.normal.is_none() && plane.window.is_none() {
+            return camera;
+        }
+        let toward = camera.eye - camera.target;
+        let normal = plane
+            .normal
+            .or_else(|| toward.try_normalize())
+            .unwrap_or(DVec3::Z);
+        let right = camera
+            .up
+            .cross(normal)
+            .try_normalize()
+            .unwrap_or_else(|| normal.any_orthonormal_vector());
+        let up = normal.cross(right);
+        let cp = plane
+            .cp
+            .unwrap_or(DVec3::new(0.0, 0.0, toward.length().max(1e-9)));
+        let reference = camera.target;
+        camera.eye = reference + right * cp.x + up * cp.y + normal * cp.z;
+        camera.target = camera.eye - normal * cp.z;
+        if let Some([left, rightmost, low, high]) = plane.window {
+            let half = 0.5 * (rightmost - left);
+            camera.fov = (2.0 * libm::atan(half / cp.z))
+                .to_degrees()
+                .clamp(0.01, 179.0);
+            camera.shift = [
+                (0.5 * (left + rightmost) - cp.x) / half,
+                (0.5 * (low + high) - cp.y) / half,
+            ];
+            let [width, height] = self.settings.frame.map(f64::from);
+            let shown = (rightmost - left) * height / width;
+            if (shown / (high - low) - 1.0).abs() > 0.05 {
+                let (file, span) = plane.place;
+                self.say_at(file, Severity::Note, span, || {
+                    (
+                        format!(
+                            "pixels are square, so the picture shows a height of {shown:.4}, not {:.4}",
+                            high - low
+                        ),
+                        Some(String::from("choose a framesize of the window's proportions")),
+                    )
+                });
+            }
+        }
+        camera
+    }
+
     /// What is odd about the camera as a whole, once the text is at its end.
     pub(super) fn check_camera(&mut self) {
         if let Some((vertical, file, span)) = self.vertical.take() {
@@ -88,8 +189,7 @@ impl Evaluator<'_> {
             let half = libm::tan(self.camera.fov.to_radians() * 0.5) * height / width;
             let drawn = 2.0 * libm::atan(half).to_degrees();
             if (drawn / vertical - 1.0).abs() > 0.05 {
-                self.file = file;
-                self.say(Severity::Note, span, || {
+                self.say_at(file, Severity::Note, span, || {
                     (
                         format!(
                             "pixels are square, so the vertical angle of view is {drawn:.1} degrees, not {vertical}"

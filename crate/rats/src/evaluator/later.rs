@@ -1,29 +1,23 @@
 //! Finds what is made further down in a text, for hints about what is used too soon.
 
-use crate::Project;
 use crate::reader::Name;
-use crate::syntax::{Block, Command, Node, Syntax};
+use crate::sources::Source;
+use crate::syntax::{Block, Command, Node};
+use std::ops::Range;
 
-/// The line of the first command after `name` that makes a material of that name in the same file.
-pub fn line_of_material(
-    syntaxes: &[Syntax],
-    project: &Project,
-    file: usize,
-    name: &Name<'_>,
-) -> Option<usize> {
-    let syntax = syntaxes.get(file)?;
-    let text = &project.files.get(file)?.text;
+/// The place of the first command after `name` that makes a material of that name in the same file.
+pub fn place_of_material(source: &Source<'_>, name: &Name<'_>) -> Option<Range<usize>> {
     let makes = |command: &Command| {
-        let item = syntax.items.get(command.items.start);
+        let item = source.syntax.items.get(command.items.start);
         command.span.start > name.span.end
             && !command.items.is_empty()
             && command
                 .spec
                 .is_some_and(|spec| matches!(spec.name, "surface" | "material"))
-            && item.is_some_and(|item| &text[item.span()] == name.text)
+            && item.is_some_and(|item| &source.text[item.span()] == name.text)
     };
-    let command = find(&syntax.block, &makes)?;
-    Some(text[..command.span.start].matches('\n').count() + 1)
+    let command = find(&source.syntax.block, &makes)?;
+    Some(source.syntax.items[command.items.start].span())
 }
 
 /// The first command with a property.

@@ -3,12 +3,10 @@
 use super::palette::Surface;
 use super::{Evaluator, Flow};
 use crate::Severity;
-use crate::commands::options::{RAYS, SURFACE};
-use crate::limits::MAX_MAGNITUDE;
+use crate::given::Chosen;
 use crate::operands::Share;
 use crate::problem::{Outcome, Problem};
-use crate::reader::{Name, Reader};
-use crate::suggest;
+use crate::reader::Name;
 use crate::syntax::Command;
 use field::Kernel;
 use scene::{Material, Rgb};
@@ -36,13 +34,9 @@ struct Fields<'a> {
 }
 
 fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
-    let mut read = run.reader(command);
-    let name = read.name("the material's name")?;
-    let old = if read.sign(b'=') {
-        Some(read.name("the name of the old material")?)
-    } else {
-        None
-    };
+    let given = run.given(command)?;
+    let name = given.name("alias").clone();
+    let old = given.maybe_name("= old").cloned();
     let mut surface = match &old {
         Some(old) => run.palette.surfaces[run.material(old)?].clone(),
         None => Surface {
@@ -53,14 +47,9 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     };
     surface.used = false;
     surface.origin = (run.file, name.span.clone());
-    let mut read = run.reader(command);
-    read.name("the material's name")?;
-    if read.sign(b'=') {
-        read.name("the name of the old material")?;
-    }
     let mut fields = Fields::default();
-    while let Some((option, span)) = read.option(SURFACE)? {
-        field(&mut read, option.name, span, &mut surface, &mut fields)?;
+    for chosen in given.options {
+        field(chosen, &mut surface, &mut fields)?;
     }
     settle_colours(&mut surface.material, &fields, old.is_some());
     surface.material.name = name.text.to_owned();
@@ -76,100 +65,50 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     run.palette.insert(&name, surface)
 }
 
-fn field<'a>(
-    read: &mut Reader<'_, 'a>,
-    option: &'static str,
-    span: Range<usize>,
-    surface: &mut Surface,
-    fields: &mut Fields<'a>,
-) -> Outcome<()> {
+fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>) -> Outcome<()> {
+    let Chosen { name, span, given } = chosen;
     let material = &mut surface.material;
-    match option {
-        "body" => fields.body = Some(read.colour("the body's colour")?),
-        "ambient" => fields.ambient = Some(read.share("the ambient colour")?),
-        "diffuse" => fields.diffuse = Some(read.share("the diffuse colour")?),
-        "specular" => fields.specular = Some(read.share("the specular colour")?),
+    match name {
+        "body" => fields.body = Some(given.colour("RGB")),
+        "ambient" => fields.ambient = Some(given.share()),
+        "diffuse" => fields.diffuse = Some(given.share()),
+        "specular" => fields.specular = Some(given.share()),
         "reflective" | "transparent" => {
-            let share = read.share("the share of light")?;
-            if !matches!(share, Share::Percent(0.0) | Share::Colour([0.0, 0.0, 0.0])) {
-                fields.not_drawn.push((option, span));
+            if !matches!(
+                given.share(),
+                Share::Percent(0.0) | Share::Colour([0.0, 0.0, 0.0])
+            ) {
+                fields.not_drawn.push((name, span));
             }
         }
         // These say how light that is let through bends; `transparent` has warned already.
-        "index" => _ = read.number_in("the index of refraction", 0.01, 100.0)?,
-        "dispersion" => _ = read.number_in("the dispersion", 0.0, 100.0)?,
-        "shine" => material.shine = read.number_in("the shine", 0.0, 1e6)? as f32,
+        "index" | "dispersion" => {}
+        "shine" => material.shine = given.number("p") as f32,
         "radius" => {
-            material.radius = read.number_in("the radius", 0.0, MAX_MAGNITUDE)?;
-            material.end_radius = None;
-            if read.is_number_next(SURFACE) {
-                let what = "the radius at the other end";
-                material.end_radius = Some(read.number_in(what, 0.0, MAX_MAGNITUDE)?);
-            }
+            material.radius = given.number("r");
+            material.end_radius = given.maybe_number("end");
         }
         "blobbiness" => {
-            material.blobbiness = read.number("the blobbiness")?;
-            material.end_blobbiness = None;
-            if read.is_number_next(SURFACE) {
-                let start = read.start();
-                let end = read.number("the blobbiness at the other end")?;
-                if end == 0.0 || material.blobbiness == 0.0 {
-                    return Err(Problem::new(
-                        read.since(start),
-                        "a blobbiness that varies must not be 0 at an end",
-                    )
-                    .hint("0 makes a material hard; near 0 is blobby, far from 0 crisp"));
-                }
-                material.end_blobbiness = Some(end);
+            material.blobbiness = given.number("b");
+            material.end_blobbiness = given.maybe_number("end");
+            if material.end_blobbiness == Some(0.0)
+                || material.end_blobbiness.is_some() && material.blobbiness == 0.0
+            {
+                return Err(Problem::new(
+                    given.span("end").unwrap_or(span),
+                    "a blobbiness that varies must not be 0 at an end",
+                )
+                .hint("0 makes a material hard; near 0 is blobby, far from 0 crisp"));
             }
         }
-        "restriction" => {
-            material.restriction = read.number_in("the restriction", 0.0, 1.0)?;
-        }
-        "depth" => material.depth = read.number_in("the depth", 0.0, MAX_MAGNITUDE)?,
-        "strength" => material.strength = read.number("the strength")?,
-        "skip" => skip(read, span, fields)?,
-        "texture" => {
-            fields.textures.push(read.name("the texture's name")?);
-            while read.sign(b'+') {
-                fields.textures.push(read.name("the texture's name")?);
-            }
-        }
-        _ => material.kernel = Some(kernel(read)?),
+        "restriction" => material.restriction = given.number("f"),
+        "depth" => material.depth = given.number("d"),
+        "strength" => material.strength = given.number("s"),
+        "skip" => fields.not_drawn.push((name, span)),
+        "texture" => fields.textures.extend(given.names("t1 +")),
+        _ => material.kernel = given.word("name").and_then(Kernel::named),
     }
     Ok(())
-}
-
-/// `skip RAYTYPE …`
-fn skip<'a>(read: &mut Reader<'_, 'a>, span: Range<usize>, fields: &mut Fields<'a>) -> Outcome<()> {
-    let is_ray = |read: &mut Reader<'_, 'a>| {
-        read.peek_word().is_some_and(|(_, word)| {
-            RAYS.iter().any(|ray| {
-                ray.name
-                    .get(..word.len())
-                    .is_some_and(|start| start.eq_ignore_ascii_case(word))
-            })
-        })
-    };
-    if !is_ray(read) {
-        return Err(read.expected("`pixel`, `shadow`, `reflected` or `transmitted`"));
-    }
-    while is_ray(read) {
-        read.at += 1;
-    }
-    fields.not_drawn.push(("skip", span));
-    Ok(())
-}
-
-fn kernel(read: &mut Reader<'_, '_>) -> Outcome<Kernel> {
-    let name = read.name("the kernel's name")?;
-    let lower = name.text.to_ascii_lowercase();
-    Kernel::named(&lower).ok_or_else(|| {
-        let names = Kernel::ALL.map(Kernel::name);
-        let hint = suggest::hint(&lower, names)
-            .unwrap_or_else(|| format!("kernels are {}", names.join(", ")));
-        Problem::new(name.span, format!("there is no kernel `{}`", name.text)).hint(hint)
-    })
 }
 
 /// The colours that follow from the fields given. A copy keeps those that are not given.

@@ -8,6 +8,7 @@ use crate::limits::{CURVE_WEIGHT, MAX_ELEMENTS, MAX_NESTED_OBJECTS, MAX_OBJECTS}
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
+use glam::DAffine3;
 use scene::{Element, Shape};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -19,6 +20,10 @@ pub struct Part {
     pub element: Element,
     /// By how much it has been scaled, which its material's radius must follow.
     pub growth: f64,
+    /// From the coordinates of its command to those of the world.
+    pub to_world: DAffine3,
+    /// Whether its command may have made other shapes too.
+    pub repeated: bool,
     /// Whether it was written as a pipe.
     pub is_pipe: bool,
     /// Whether its width varies along it.
@@ -43,6 +48,8 @@ impl Part {
 #[derive(Debug)]
 struct Object<'a> {
     name: &'a str,
+    /// The file and place of its name.
+    place: (usize, Range<usize>),
     start: usize,
     is_chain: bool,
 }
@@ -96,7 +103,7 @@ impl<'a> Model<'a> {
     ///
     /// # Errors
     /// If there are too many.
-    pub fn open(&mut self, name: &Name<'a>, chain: Option<Name<'a>>) -> Outcome<()> {
+    pub fn open(&mut self, file: usize, name: &Name<'a>, chain: Option<Name<'a>>) -> Outcome<()> {
         if self.open.len() >= MAX_NESTED_OBJECTS {
             return Err(Problem::new(
                 name.span.clone(),
@@ -104,10 +111,13 @@ impl<'a> Model<'a> {
             ));
         }
         if self.chain.is_some() {
-            return Err(
+            let mut problem =
                 Problem::new(name.span.clone(), "a chain holds shapes only, no objects")
-                    .hint("`close` the chain first"),
-            );
+                    .hint("`close` the chain first");
+            if let Some((_, (file, span))) = self.innermost() {
+                problem = problem.related(Some(*file), span.clone(), "the chain begins here");
+            }
+            return Err(problem);
         }
         if self.count >= MAX_OBJECTS {
             return Err(Problem::new(
@@ -118,6 +128,7 @@ impl<'a> Model<'a> {
         self.count += 1;
         self.open.push(Object {
             name: name.text,
+            place: (file, name.span.clone()),
             start: self.parts.len(),
             is_chain: chain.is_some(),
         });
@@ -137,10 +148,10 @@ impl<'a> Model<'a> {
         Some(object.name)
     }
 
-    /// The name of the innermost object that is open.
+    /// The name of the innermost object that is open, and the file and place where it begins.
     #[must_use]
-    pub fn innermost(&self) -> Option<&'a str> {
-        self.open.last().map(|object| object.name)
+    pub fn innermost(&self) -> Option<(&'a str, &(usize, Range<usize>))> {
+        self.open.last().map(|object| (object.name, &object.place))
     }
 
     /// The shapes of an object.
@@ -151,12 +162,14 @@ impl<'a> Model<'a> {
         if let Some(range) = self.closed.get(name.text) {
             return Ok(range.clone());
         }
-        if self.open.iter().any(|object| object.name == name.text) {
+        if let Some(object) = self.open.iter().find(|object| object.name == name.text) {
+            let (file, span) = object.place.clone();
             return Err(Problem::new(
                 name.span.clone(),
                 format!("the object `{}` is not complete yet", name.text),
             )
-            .hint("put this after its `close`"));
+            .hint("put this after its `close`")
+            .related(Some(file), span, "it begins here"));
         }
         let suggestion = suggest::hint(name.text, self.closed.keys().copied());
         Err(Problem::new(
@@ -182,6 +195,7 @@ impl<'a> Model<'a> {
         for part in &mut self.parts[range] {
             part.element.shape = transform.apply(&part.element.shape);
             part.growth *= transform.growth;
+            part.to_world = transform.affine() * part.to_world;
         }
     }
 
@@ -199,6 +213,7 @@ impl<'a> Model<'a> {
     pub fn copy(&mut self, range: Range<usize>, name: &Name<'a>) -> Outcome<()> {
         let start = self.parts.len();
         for index in range {
+            self.parts[index].repeated = true;
             let part = self.parts[index].clone();
             self.push(part, &name.span)?;
         }

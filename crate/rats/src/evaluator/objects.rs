@@ -3,48 +3,45 @@
 use super::{Evaluator, Flow};
 use crate::Severity;
 use crate::geometry::Transform;
+use crate::given::Given;
 use crate::problem::{Outcome, Problem};
-use crate::reader::Reader;
 use crate::syntax::Command;
+use glam::DVec3;
+use scene::Shape;
 use std::ops::Range;
 
 /// `chain sn, name`
 pub fn chain<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let material = read.name("the material's name")?;
-    let name = read.name("the chain's name")?;
-    read.end()?;
-    run.material(&material)?;
-    run.model.open(&name, Some(material))?;
+    let given = run.given(command)?;
+    let material = given.name("material");
+    run.material(material)?;
+    let file = run.file;
+    run.model
+        .open(file, given.name("name"), Some(material.clone()))?;
     Ok(Flow::Next)
 }
 
 /// `object name`
 pub fn object<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let name = read.name("the object's name")?;
-    read.end()?;
-    run.model.open(&name, None)?;
+    let given = run.given(command)?;
+    let file = run.file;
+    run.model.open(file, given.name("name"), None)?;
     Ok(Flow::Next)
 }
 
 /// `close [name]`
 pub fn close<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let name = if read.more() {
-        Some(read.name("the object's name")?)
-    } else {
-        None
-    };
-    read.end()?;
-    if let (Some(name), Some(innermost)) = (&name, run.model.innermost())
+    let given = run.given(command)?;
+    if let (Some(name), Some((innermost, (file, span)))) =
+        (given.maybe_name("name"), run.model.innermost())
         && name.text != innermost
     {
         return Err(Problem::new(
             name.span.clone(),
             format!("the object that is open here is `{innermost}`"),
         )
-        .hint(format!("write `close` or `close {innermost}`")));
+        .hint(format!("write `close` or `close {innermost}`"))
+        .related(Some(*file), span.clone(), "it begins here"));
     }
     if run.model.close().is_none() {
         return Err(
@@ -57,62 +54,96 @@ pub fn close<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 
 /// `instance name [new name]`
 pub fn instance<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let old = read.name("the object's name")?;
-    let new = if read.more() {
-        read.name("the copy's name")?
-    } else {
-        old.clone()
-    };
-    read.end()?;
-    let range = run.model.find(&old)?;
+    let given = run.given(command)?;
+    let old = given.name("name");
+    let new = given.maybe_name("copy").unwrap_or(old);
+    let range = run.model.find(old)?;
     charge(run, command, &range)?;
-    run.model.copy(range, &new)?;
+    run.model.copy(range, new)?;
     Ok(Flow::Next)
 }
 
 /// `translate x y z [object]`
 pub fn translate<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    transform_by(run, command, |read| {
-        Ok(Transform::translation(read.vector("the shift")?))
-    })
+    let given = run.given(command)?;
+    let transform = Transform::translation(given.vector("x y z"));
+    transform_by(run, command, &given, &transform)
 }
 
 /// `rotate x y z angle [object]`
 pub fn rotate<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    transform_by(run, command, |read| {
-        let axis = read.direction("the axis")?;
-        Ok(Transform::rotation(axis, read.number("the angle")?))
-    })
+    let given = run.given(command)?;
+    let transform = Transform::rotation(given.vector("x y z"), given.number("angle"));
+    transform_by(run, command, &given, &transform)
 }
 
 /// `scale x y z [object]`
 pub fn scale<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    transform_by(run, command, |read| {
-        let start = read.start();
-        let factors = read.vector("the scale")?;
-        if factors.to_array().iter().any(|f| f.abs() < 1e-9) {
-            return Err(Problem::new(
-                read.since(start),
-                "a scale factor must not be 0",
-            ));
-        }
-        Ok(Transform::scaling(factors))
-    })
+    let given = run.given(command)?;
+    let factors = given.vector("x y z");
+    if factors.to_array().iter().any(|f| f.abs() < 1e-9) {
+        return Err(Problem::new(
+            given.span("x y z").unwrap_or_else(|| command.span.clone()),
+            "a scale factor must not be 0",
+        ));
+    }
+    transform_by(run, command, &given, &Transform::scaling(factors))
+}
+
+/// `explode x y z [object]`: each shape moves away from the middle of the object.
+pub fn explode<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let given = run.given(command)?;
+    let shares = given.vector("x y z");
+    let range = target(run, command, &given)?;
+    charge(run, command, &range)?;
+    let parts = &run.model.parts[range.clone()];
+    let centres: Vec<DVec3> = parts.iter().map(|p| middle(&p.element.shape)).collect();
+    let Some(centre) = (!centres.is_empty())
+        .then(|| centres.iter().sum::<DVec3>() / centres.len() as f64)
+        .filter(|centre| centre.is_finite())
+    else {
+        return Ok(Flow::Next);
+    };
+    for (index, place) in range.zip(centres) {
+        let shift = Transform::translation((place - centre) * shares);
+        run.model.transform(index..index + 1, &shift);
+    }
+    Ok(Flow::Next)
+}
+
+/// The middle of a shape's skeleton.
+fn middle(shape: &Shape) -> DVec3 {
+    match shape {
+        Shape::Sphere { center, .. } => *center,
+        Shape::Cylinder { base, apex, .. } => (*base + *apex) * 0.5,
+        Shape::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+            ..
+        } => *center + (*u * libm::cos(0.5 * angle) + *v * libm::sin(0.5 * angle)) * *sweep,
+        Shape::Triangle { corners, .. } => corners.iter().sum::<DVec3>() / 3.0,
+        Shape::Polygon { rings, .. } => rings.first().map_or(DVec3::ZERO, |ring| {
+            ring.iter().sum::<DVec3>() / ring.len().max(1) as f64
+        }),
+        Shape::Curve { control, .. } => control.iter().sum::<DVec3>() / 4.0,
+        Shape::Plane { point, .. } => *point,
+    }
 }
 
 /// `transform [object]`: transforms are always applied at once, so this checks the name only.
 pub fn transform<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    target(run, command, 0)?;
+    let given = run.given(command)?;
+    target(run, command, &given)?;
     Ok(Flow::Next)
 }
 
 /// `remove object`
 pub fn remove<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let name = read.name("the object's name")?;
-    read.end()?;
-    let range = run.model.find(&name)?;
+    let given = run.given(command)?;
+    let range = run.model.find(given.name("object"))?;
     charge(run, command, &range)?;
     run.model.remove(range);
     Ok(Flow::Next)
@@ -121,12 +152,10 @@ pub fn remove<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 fn transform_by<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
-    make: impl FnOnce(&mut Reader<'_, 'a>) -> Outcome<Transform>,
+    given: &Given<'a>,
+    transform: &Transform,
 ) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let transform = make(&mut read)?;
-    let at = read.at;
-    let range = target(run, command, at)?;
+    let range = target(run, command, given)?;
     charge(run, command, &range)?;
     if !transform.uniform && run.model.has_round(range.clone()) {
         run.say(Severity::Warning, command.span.clone(), || {
@@ -138,24 +167,40 @@ fn transform_by<'a>(
             )
         });
     }
-    run.model.transform(range, &transform);
+    run.model.transform(range, transform);
     Ok(Flow::Next)
 }
 
-/// The shapes that a transform is for: the object named from operand `at` on, else the last one.
-fn target<'a>(run: &mut Evaluator<'a>, command: &'a Command, at: usize) -> Outcome<Range<usize>> {
-    let mut read = run.reader(command);
-    read.at = at;
-    if !read.more() {
-        return run.model.last(&command.word_span);
+/// The shapes that a transform is for: the object it names, else the last one.
+fn target<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    given: &Given<'a>,
+) -> Outcome<Range<usize>> {
+    match given.maybe_name("object") {
+        Some(name) => run.model.find(name),
+        None => run.model.last(&command.word_span),
     }
-    let name = read.name("an object's name")?;
-    read.end()?;
-    run.model.find(&name)
 }
 
 /// Work on many shapes counts as many steps.
 fn charge(run: &mut Evaluator<'_>, command: &Command, range: &Range<usize>) -> Outcome<()> {
     run.scope
         .step(1 + range.len() as u64 / 4, &command.word_span)
+}
+
+impl Evaluator<'_> {
+    /// Warns of objects that no `close` ends.
+    pub(super) fn check_open_objects(&mut self) {
+        while let Some((name, (file, span))) = self.model.innermost() {
+            let (name, file, span) = (name.to_owned(), *file, span.clone());
+            self.model.close();
+            self.say_at(file, Severity::Warning, span, || {
+                (
+                    format!("the object `{name}` is never closed"),
+                    Some(String::from("end it with `close`")),
+                )
+            });
+        }
+    }
 }

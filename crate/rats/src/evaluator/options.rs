@@ -1,68 +1,80 @@
 //! OPTIONS: settings of the whole picture.
 
 use super::{Evaluator, Flow};
-use crate::problem::{Outcome, Problem};
+use crate::commands::options::FORMATS;
+use crate::problem::Outcome;
 use crate::syntax::Command;
 use field::BlobScale;
-use scene::{Fragile, Settings};
-
-fn switch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<bool> {
-    let mut read = run.reader(command);
-    let on = read.on_off()?;
-    read.end()?;
-    Ok(on)
-}
+use scene::Fragile;
 
 /// `echo on|off`: nothing is echoed anyway, and every published dataset says it, so nothing is said.
 pub fn silent_switch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    switch(run, command)?;
+    run.given(command)?;
     Ok(Flow::Next)
 }
 
 /// `warning on|off`
 pub fn warning<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.report.no_warnings = !switch(run, command)?;
+    run.report.no_warnings = !run.given(command)?.switch();
     Ok(Flow::Next)
 }
 
 /// `verbose on|off`
 pub fn verbose<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.report.no_notes = !switch(run, command)?;
+    run.report.no_notes = !run.given(command)?.switch();
     Ok(Flow::Next)
 }
 
 /// `soft on|off`
 pub fn soft<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.soft = switch(run, command)?;
+    run.settings.soft = run.given(command)?.switch();
     Ok(Flow::Next)
 }
 
 /// `gamma value`
 pub fn gamma<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let gamma = read.number_in("gamma", 0.1, 10.0)?;
-    read.end()?;
-    run.settings.gamma = gamma as f32;
+    run.settings.gamma = run.given(command)?.number("value") as f32;
     Ok(Flow::Next)
 }
 
 /// `framesize w h`
 pub fn framesize<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let width = read.whole("the width", 1, Settings::MAX_FRAME)?;
-    let height = read.whole("the height", 1, Settings::MAX_FRAME)?;
-    read.end()?;
-    run.settings.frame = [width, height];
+    let given = run.given(command)?;
+    run.settings.frame = ["w", "h"].map(|side| given.number(side) as u32);
+    Ok(Flow::Next)
+}
+
+/// `filename name`: an ending that is a format counts as `format` too.
+pub fn filename<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let given = run.given(command)?;
+    let name = given.name("name").text;
+    let format = name.rsplit_once('.').and_then(|(stem, ending)| {
+        let known = FORMATS
+            .iter()
+            .find(|f| f.name.eq_ignore_ascii_case(ending))?;
+        Some((stem, known.name))
+    });
+    match format {
+        Some((stem, format)) => {
+            run.output.name = stem.to_owned();
+            run.output.format = Some(format);
+        }
+        None => run.output.name = name.to_owned(),
+    }
+    Ok(Flow::Next)
+}
+
+/// `format tif|tga|mtv|png`
+pub fn format<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.output.format = run.given(command)?.word("format");
     Ok(Flow::Next)
 }
 
 /// `sample n`
 pub fn sample<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let samples = read.whole("the number of samples", 1, Settings::MAX_SAMPLES)?;
-    let method = read.more().then(|| read.here());
-    run.settings.samples = samples;
-    if let Some(span) = method {
+    let given = run.given(command)?;
+    run.settings.samples = given.number("n") as u32;
+    if let Some(span) = given.span("method") {
         run.not_carried_out(span, "the sampling method");
     }
     Ok(Flow::Next)
@@ -70,22 +82,15 @@ pub fn sample<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 
 /// `contrast r g b`
 pub fn contrast<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let contrast = read.colour("the contrast")?;
-    read.end()?;
-    run.settings.contrast = contrast;
+    run.settings.contrast = run.given(command)?.colour("r g b");
     Ok(Flow::Next)
 }
 
 /// `fragile all|none|arc|…`: what it names, and nothing else.
 pub fn fragile<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
     let mut fragile = Fragile::default();
-    if !read.more() {
-        return Err(read.expected("`all`, `none` or the names of primitives"));
-    }
-    while let Some((option, _)) = read.option(crate::commands::options::FRAGILE)? {
-        match option.name {
+    for (name, _) in run.given(command)?.words("what") {
+        match name {
             "all" => fragile = Fragile::ALL,
             "none" => fragile = Fragile::default(),
             "arc" => fragile.arc = true,
@@ -100,13 +105,8 @@ pub fn fragile<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
 
 /// `blobscale relative|absolute`
 pub fn blobscale<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let Some((option, _)) = read.option(crate::commands::options::BLOBSCALE)? else {
-        return Err(read.expected("`relative` or `absolute`"));
-    };
-    read.end()?;
-    run.settings.blob_scale = match option.name {
-        "absolute" => BlobScale::Absolute,
+    run.settings.blob_scale = match run.given(command)?.word("what") {
+        Some("absolute") => BlobScale::Absolute,
         _ => BlobScale::Relative,
     };
     Ok(Flow::Next)
@@ -114,23 +114,23 @@ pub fn blobscale<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<F
 
 /// `influence e`
 pub fn influence<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let influence = read.number_in("the share of the threshold", 1e-9, 0.5)?;
-    read.end()?;
-    run.settings.influence = influence;
+    run.settings.influence = run.given(command)?.number("e");
     Ok(Flow::Next)
 }
 
 /// `digger …`: Hermite interpolation is the one there is.
 pub fn digger<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let Some((option, span)) = read.option(crate::commands::options::DIGGER)? else {
-        return Err(Problem::new(command.span.clone(), "`digger` needs a name")
-            .hint("`hermite` is the one there is"));
-    };
-    read.end()?;
-    if option.name != "hermite" {
-        run.not_carried_out(span, &format!("`{}`", option.name));
+    for (name, span) in run.given(command)?.words("name") {
+        if name != "hermite" {
+            run.not_carried_out(span, &format!("`{name}`"));
+        }
     }
+    Ok(Flow::Next)
+}
+
+/// `mesh robust|fast`, `mesh sn fn`
+pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.given(command)?;
+    run.not_carried_out(command.word_span.clone(), "`mesh`");
     Ok(Flow::Next)
 }

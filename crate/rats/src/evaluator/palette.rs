@@ -162,6 +162,12 @@ impl<'a> Palette<'a> {
         self.by_name.clear();
     }
 
+    /// How many textures there are.
+    #[must_use]
+    pub fn textures(&self) -> usize {
+        self.textures.len()
+    }
+
     /// Forgets all textures; materials keep their profiles.
     pub fn forget_textures(&mut self) {
         self.textures.clear();

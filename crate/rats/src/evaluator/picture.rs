@@ -4,14 +4,15 @@
 use super::Evaluator;
 use super::model::Part;
 use crate::Severity;
+use crate::compile::Placement;
 use crate::limits::MAX_MAGNITUDE;
 use glam::DVec3;
 use scene::{Element, Material, Scene, Shape};
 use std::collections::HashMap;
 
 impl Evaluator<'_> {
-    /// The scene as it is now.
-    pub(super) fn picture(&mut self) -> Scene {
+    /// The scene as it is now, and how its elements came there.
+    pub(super) fn picture(&mut self) -> (Scene, Vec<Placement>) {
         let mut scene = Scene {
             elements: Vec::with_capacity(self.model.parts.len()),
             materials: self
@@ -22,9 +23,10 @@ impl Evaluator<'_> {
                 .collect(),
             lights: self.lights.clone(),
             background: self.background,
-            camera: self.camera,
+            camera: self.settled_camera(),
             settings: self.settings,
         };
+        let mut placements = Vec::with_capacity(self.model.parts.len());
         if scene.materials.is_empty() {
             scene.materials.push(Material::default());
         }
@@ -38,14 +40,13 @@ impl Evaluator<'_> {
             } else {
                 Err((too_far as fn() -> String, None))
             };
+            let origin = part.element.origin;
+            let span = origin.start as usize..origin.end as usize;
             match element {
                 Ok(element) => {
                     if !warned && ignores_profile(&scene, &element) {
                         warned = true;
-                        let origin = element.origin;
-                        let file = std::mem::replace(&mut self.file, origin.file as usize);
-                        let span = origin.start as usize..origin.end as usize;
-                        self.say(Severity::Warning, span, || {
+                        self.say_at(origin.file as usize, Severity::Warning, span, || {
                             (
                                 String::from(
                                     "a texture of the strength does nothing on polygons and curves \
@@ -54,32 +55,32 @@ impl Evaluator<'_> {
                                 None,
                             )
                         });
-                        self.file = file;
                     }
                     scene.elements.push(element);
+                    placements.push(Placement {
+                        to_world: part.to_world,
+                        growth: part.growth,
+                        repeated: part.repeated,
+                    });
                 }
                 Err((message, hint)) => {
-                    let origin = part.element.origin;
-                    let file = std::mem::replace(&mut self.file, origin.file as usize);
-                    let span = origin.start as usize..origin.end as usize;
-                    self.say(Severity::Warning, span, || (message(), hint));
-                    self.file = file;
+                    self.say_at(origin.file as usize, Severity::Warning, span, || {
+                        (message(), hint)
+                    });
                 }
             }
         }
         self.model.parts = parts;
         if scene.camera.eye == scene.camera.target {
             let (place, span) = self.aimed_at.clone();
-            let file = std::mem::replace(&mut self.file, place);
-            self.say(Severity::Warning, span, || {
+            self.say_at(place, Severity::Warning, span, || {
                 (
                     String::from("the eye is at the view reference point, so it looks nowhere"),
                     Some(String::from("set `eyep` and `vrp` to different points")),
                 )
             });
-            self.file = file;
         }
-        scene
+        (scene, placements)
     }
 }
 

@@ -3,42 +3,24 @@
 use super::model::Part;
 use super::{Evaluator, Flow};
 use crate::Severity;
-use crate::commands::CommandSpec;
 use crate::geometry::{self, ThreePoints};
+use crate::given::Given;
 use crate::limits::MAX_CORNERS;
 use crate::problem::{Outcome, Problem};
-use crate::reader::{Name, Reader};
+use crate::reader::Name;
 use crate::syntax::Command;
 use field::Kernel;
+use glam::DAffine3;
 use scene::{Element, Shape};
 
-/// Reads the material's name, which shapes of a chain leave out, then the rest.
-fn operands<'a, T>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    rest: impl FnOnce(&mut Reader<'_, 'a>) -> Outcome<T>,
-) -> Outcome<(Name<'a>, T)> {
-    let chain = run.model.chain.clone();
-    let in_chain = chain.is_some();
-    let name = match chain {
+/// The operands, and the material's name: the chain's inside a chain, where shapes leave it out.
+fn operands<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<(Name<'a>, Given<'a>)> {
+    let given = run.given(command)?;
+    let name = match run.model.chain.clone() {
         Some(name) => name,
-        None => run.reader(command).name("the material's name")?,
+        None => given.name("sn").clone(),
     };
-    // `sphere 1 0 0 0`: better say this than that a coordinate is missing at the end.
-    if name.text.parse::<f64>().is_ok() && !run.palette.has(name.text) {
-        return Err(Problem::new(
-            name.span,
-            format!("expected the material's name, found `{}`", name.text),
-        )
-        .maybe_hint(command.spec.map(CommandSpec::usage)));
-    }
-    let mut read = run.reader(command);
-    if !in_chain {
-        read.name("the material's name")?;
-    }
-    let rest = rest(&mut read)?;
-    read.end()?;
-    Ok((name, rest))
+    Ok((name, given))
 }
 
 impl<'a> Evaluator<'a> {
@@ -66,6 +48,8 @@ impl<'a> Evaluator<'a> {
                 origin: self.origin(command),
             },
             growth: 1.0,
+            to_world: DAffine3::IDENTITY,
+            repeated: self.repeating > 0 || !self.is_own(),
             is_pipe,
             removed: false,
         };
@@ -77,60 +61,51 @@ impl<'a> Evaluator<'a> {
 
 /// `sphere sn r POS`
 pub fn sphere<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, (radius, center)) = operands(run, command, |read| {
-        Ok((read.number("the radius")?, read.vector("the centre")?))
-    })?;
-    run.add(command, &name, Shape::Sphere { center, radius })
+    let (name, given) = operands(run, command)?;
+    let shape = Shape::Sphere {
+        center: given.vector("POS"),
+        radius: given.number("r"),
+    };
+    run.add(command, &name, shape)
 }
 
-fn cylinder_operands<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-) -> Outcome<(Name<'a>, Shape)> {
-    operands(run, command, |read| {
-        Ok(Shape::Cylinder {
-            radius: read.number("the radius")?,
-            base: read.vector("the base")?,
-            apex: read.vector("the apex")?,
-        })
-    })
+fn cylinder_of(given: &Given<'_>) -> Shape {
+    Shape::Cylinder {
+        radius: given.number("r"),
+        base: given.vector("BASE"),
+        apex: given.vector("APEX"),
+    }
 }
 
 /// `cylinder sn r BASE APEX`
 pub fn cylinder<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, shape) = cylinder_operands(run, command)?;
-    run.add(command, &name, shape)
+    let (name, given) = operands(run, command)?;
+    run.add(command, &name, cylinder_of(&given))
 }
 
 /// `pipe sn r BASE APEX`: drawn with lids, which soft ones do not show.
 pub fn pipe<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, shape) = cylinder_operands(run, command)?;
+    let (name, given) = operands(run, command)?;
+    let shape = cylinder_of(&given);
     let material = run.material(&name)?;
-    if !run.palette.surfaces[material].material.is_soft() {
-        run.say(Severity::Warning, command.word_span.clone(), || {
-            (
-                String::from("a hard pipe is drawn as a cylinder, with lids, in this version"),
-                None,
-            )
-        });
-    }
     run.add_of(command, material, shape, Kernel::Cauchy, true)
 }
 
 /// `arc sn a b P N a1 a2`
 pub fn arc<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, (shape, width)) = operands(run, command, |read| {
-        let sweep = read.number("the sweep radius")?;
-        let radius = read.number("the tube radius")?;
-        let center = read.vector("the centre")?;
-        let normal = read.direction("the normal")?;
-        let start = read.number("the start angle")?;
-        let width = read.number("the width, an angle")?;
-        let shape = geometry::arc(center, normal, sweep, radius, start, width);
-        Ok((shape, width))
-    })?;
+    let (name, given) = operands(run, command)?;
+    let width = given.number("a2");
+    let shape = geometry::arc(
+        given.vector("P"),
+        given.vector("N"),
+        given.number("a"),
+        given.number("b"),
+        given.number("a1"),
+        width,
+    );
     if width.abs() > 360.0 {
-        run.say(Severity::Warning, command.span.clone(), || {
+        let span = given.span("a2").unwrap_or_else(|| command.span.clone());
+        run.say(Severity::Warning, span, || {
             (
                 format!("an arc of {width} degrees is a full circle"),
                 Some(String::from(
@@ -144,16 +119,9 @@ pub fn arc<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
 
 /// `arch sn b P1 P2 P3`
 pub fn arch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, (radius, points)) = operands(run, command, |read| {
-        let radius = read.number("the tube radius")?;
-        let points = [
-            read.vector("the first point")?,
-            read.vector("the second point")?,
-            read.vector("the third point")?,
-        ];
-        Ok((radius, points))
-    })?;
-    let [a, b, c] = points;
+    let (name, given) = operands(run, command)?;
+    let radius = given.number("b");
+    let [a, b, c] = ["P1", "P2", "P3"].map(|point| given.vector(point));
     match geometry::through(a, b, c, radius) {
         ThreePoints::Arc(shape) => run.add(command, &name, shape),
         ThreePoints::Line(base, apex) => {
@@ -174,59 +142,47 @@ pub fn arch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 
 /// `torus sn a b POS NORM`
 pub fn torus<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, shape) = operands(run, command, |read| {
-        let sweep = read.number("the sweep radius")?;
-        let radius = read.number("the tube radius")?;
-        let center = read.vector("the centre")?;
-        let normal = read.direction("the normal")?;
-        Ok(geometry::arc(center, normal, sweep, radius, 0.0, 360.0))
-    })?;
+    let (name, given) = operands(run, command)?;
+    let shape = geometry::arc(
+        given.vector("POS"),
+        given.vector("NORM"),
+        given.number("a"),
+        given.number("b"),
+        0.0,
+        360.0,
+    );
     run.add(command, &name, shape)
 }
 
-fn corners(read: &mut Reader<'_, '_>) -> Outcome<Shape> {
-    Ok(Shape::Triangle {
-        corners: [
-            read.vector("the first corner")?,
-            read.vector("the second corner")?,
-            read.vector("the third corner")?,
-        ],
+fn corners(given: &Given<'_>) -> Shape {
+    Shape::Triangle {
+        corners: ["V1", "V2", "V3"].map(|corner| given.vector(corner)),
         radius: 0.0,
-    })
+    }
 }
 
 /// `triangle sn V1 V2 V3`
 pub fn triangle<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, shape) = operands(run, command, corners)?;
-    run.add(command, &name, shape)
+    let (name, given) = operands(run, command)?;
+    run.add(command, &name, corners(&given))
 }
 
 /// `plane sn POS NORM`
 pub fn plane<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, shape) = operands(run, command, |read| {
-        Ok(Shape::Plane {
-            point: read.vector("a point of the plane")?,
-            normal: read.direction("the normal")?,
-            radius: 0.0,
-        })
-    })?;
+    let (name, given) = operands(run, command)?;
+    let shape = Shape::Plane {
+        point: given.vector("POS"),
+        normal: given.vector("NORM"),
+        radius: 0.0,
+    };
     run.add(command, &name, shape)
 }
 
 /// `polygon sn V1 … Vn [hole W1 … Wm …]`
 pub fn polygon<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, mut rings) = operands(run, command, |read| {
-        let mut rings = vec![Vec::new()];
-        while read.more() {
-            if read.keyword("hole") {
-                rings.push(Vec::new());
-                continue;
-            }
-            let corner = read.vector("a corner")?;
-            rings.last_mut().expect("one at least").push(corner);
-        }
-        Ok(rings)
-    })?;
+    let (name, given) = operands(run, command)?;
+    let mut rings = vec![given.vectors("V1")];
+    rings.extend(given.options.iter().map(|hole| hole.given.vectors("W1")));
     let corners: usize = rings.iter().map(Vec::len).sum();
     if corners > MAX_CORNERS {
         return Err(Problem::new(
@@ -265,22 +221,23 @@ pub fn polygon<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
     run.add(command, &name, Shape::Polygon { rings, radius: 0.0 })
 }
 
-/// `curve sn b P1 P2 P3 P4 [P5 P6 P7 …]`: cubic Bézier curves, each beginning where the last one ends.
+/// `curve sn b P1 P2 P3 P4 [P …]`: cubic Bézier curves, each beginning where the last one ends.
 pub fn curve<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, (radius, points)) = operands(run, command, |read| {
-        let radius = read.number("the tube radius")?;
-        let mut points = vec![read.vector("the first control point")?];
-        while points.len() < 4 || read.more() {
-            for what in [
-                "the second control point",
-                "the third control point",
-                "the end point",
-            ] {
-                points.push(read.vector(what)?);
-            }
-        }
-        Ok((radius, points))
-    })?;
+    let (name, given) = operands(run, command)?;
+    let radius = given.number("b");
+    let mut points: Vec<_> = ["P1", "P2", "P3", "P4"]
+        .iter()
+        .map(|point| given.vector(point))
+        .collect();
+    points.extend(given.vectors("P"));
+    if points.len() % 3 != 1 {
+        let missing = 3 - (points.len() - 1) % 3;
+        return Err(Problem::new(
+            command.span.clone(),
+            format!("the last curve lacks {missing} of its three points"),
+        )
+        .hint("each curve after the first takes two control points and an end point"));
+    }
     for i in (0..points.len() - 1).step_by(3) {
         let control = [points[i], points[i + 1], points[i + 2], points[i + 3]];
         run.add(command, &name, Shape::Curve { control, radius })?;
@@ -293,9 +250,10 @@ fn of_kernel<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
     kernel: Kernel,
-    rest: fn(&mut Reader<'_, 'a>) -> Outcome<Shape>,
+    shape: fn(&Given<'a>) -> Shape,
 ) -> Outcome<Flow> {
-    let (name, mut shape) = operands(run, command, rest)?;
+    let (name, given) = operands(run, command)?;
+    let mut shape = shape(&given);
     let material = run.material(&name)?;
     let surface = &run.palette.surfaces[material].material;
     if !surface.is_soft() {
@@ -307,35 +265,58 @@ fn of_kernel<'a>(
     run.add_of(command, material, shape, kernel, false)
 }
 
-fn point(read: &mut Reader<'_, '_>) -> Outcome<Shape> {
-    Ok(Shape::Sphere {
-        center: read.vector("the position")?,
+fn point(given: &Given<'_>) -> Shape {
+    Shape::Sphere {
+        center: given.vector("POS"),
         radius: 0.0,
-    })
+    }
 }
 
 /// `dot sn POS`
 pub fn dot<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_kernel(run, command, Kernel::Quartic, point)
+    of_kernel(run, command, Kernel::Quartic, |given| point(given))
 }
 
 /// `gauss sn POS`
 pub fn gauss<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_kernel(run, command, Kernel::Gauss, point)
+    of_kernel(run, command, Kernel::Gauss, |given| point(given))
 }
 
 /// `line sn BASE APEX`
 pub fn line<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_kernel(run, command, Kernel::Gauss, |read| {
-        Ok(Shape::Cylinder {
-            base: read.vector("the base")?,
-            apex: read.vector("the apex")?,
-            radius: 0.0,
-        })
+    of_kernel(run, command, Kernel::Gauss, |given| Shape::Cylinder {
+        base: given.vector("BASE"),
+        apex: given.vector("APEX"),
+        radius: 0.0,
     })
 }
 
 /// `triad sn V1 V2 V3`
 pub fn triad<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_kernel(run, command, Kernel::Inverse, corners)
+    of_kernel(run, command, Kernel::Inverse, |given| corners(given))
+}
+
+pub fn box_<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    not_yet(run, command)
+}
+pub fn brick<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    not_yet(run, command)
+}
+pub fn cone<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    not_yet(run, command)
+}
+pub fn patch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    not_yet(run, command)
+}
+pub fn quadric<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    not_yet(run, command)
+}
+pub fn terra<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    not_yet(run, command)
+}
+fn not_yet<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    operands(run, command)?;
+    let name = run.scope.symbols.word(command.word);
+    run.not_carried_out(command.word_span.clone(), &format!("`{name}`"));
+    Ok(Flow::Next)
 }

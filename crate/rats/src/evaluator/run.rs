@@ -1,21 +1,16 @@
 //! RUN: other files, messages and help.
 
 use super::{Evaluator, Flow};
-use crate::commands::{self, Action, COMMANDS, CommandSpec, Group};
+use crate::commands::{self, CommandSpec};
 use crate::limits::MAX_NESTED_FILES;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
-use crate::{Severity, colours, suggest};
+use crate::{Severity, colours, library, manual, suggest};
 
 /// `read fn1 [fn2 …]`
 pub fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let mut names = vec![read.file_name("a file's name")?];
-    while read.more() {
-        names.push(read.file_name("a file's name")?);
-    }
-    for name in names {
+    for name in run.given(command)?.names("fn") {
         let file = find_file(run, &name)?;
         if run.reading.contains(&file) {
             return Err(Problem::new(
@@ -32,38 +27,74 @@ pub fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
                 format!("files can read each other {MAX_NESTED_FILES} deep at most"),
             ));
         }
-        run.enter(&command.word_span)?;
-        let flow = run.run_file(file);
-        run.depth -= 1;
-        if flow == Flow::Quit {
-            return Ok(flow);
+        if run_inner(run, command, file)? == Flow::Quit {
+            return Ok(Flow::Quit);
         }
     }
     Ok(Flow::Next)
 }
 
+/// Runs another text; what is said about one of the library or an example is said here.
+fn run_inner<'a>(run: &mut Evaluator<'a>, command: &'a Command, file: usize) -> Outcome<Flow> {
+    run.enter(&command.word_span)?;
+    let leaves_own = run.is_own() && file >= run.sources.own;
+    if leaves_own {
+        run.uses.push((run.file, command.span.clone()));
+    }
+    let flow = run.run_file(file);
+    if leaves_own {
+        run.uses.pop();
+    }
+    run.depth -= 1;
+    Ok(flow)
+}
+
 fn find_file(run: &Evaluator<'_>, name: &Name<'_>) -> Outcome<usize> {
     let bare = name.text.strip_prefix("./").unwrap_or(name.text);
-    let files = &run.project.files;
-    files
-        .iter()
-        .position(|file| file.name == bare)
-        .ok_or_else(|| {
-            let known: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
-            let hint = suggest::hint(bare, known.iter().copied())
-                .unwrap_or_else(|| format!("the files are {}", known.join(", ")));
-            Problem::new(
-                name.span.clone(),
-                format!("there is no file `{}` in the project", name.text),
-            )
-            .hint(hint)
-        })
+    run.sources.find(bare).ok_or_else(|| {
+        let own = run.sources.all[..run.sources.own]
+            .iter()
+            .map(|source| source.name.as_str());
+        let known: Vec<&str> = own
+            .chain(library::FILES.iter().map(|file| file.0))
+            .collect();
+        let hint = suggest::hint(bare, known.iter().copied())
+            .unwrap_or_else(|| format!("the files are {}", known.join(", ")));
+        Problem::new(
+            name.span.clone(),
+            format!("there is no file `{}` in the project", name.text),
+        )
+        .hint(hint)
+    })
+}
+
+/// `test command [print]`
+pub fn test<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let given = run.given(command)?;
+    let spec = find_command(given.name("command"))?;
+    if given.word("print").is_some() {
+        run.say(Severity::Note, command.span.clone(), || {
+            (spec.example.to_owned(), None)
+        });
+        return Ok(Flow::Next);
+    }
+    let Some(file) = run.sources.find(&format!("test {}", spec.name)) else {
+        return Err(Problem::new(
+            given.name("command").span.clone(),
+            format!("the example of `{}` cannot be run from here", spec.name),
+        )
+        .hint("write the name out after `test`"));
+    };
+    if run.reading.contains(&file) {
+        return Ok(Flow::Next);
+    }
+    run_inner(run, command, file)
 }
 
 /// `pause [message]`: a page cannot wait, so the message is shown.
 pub fn pause<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let text = &run.project.files[run.file].text[command.word_span.end..command.span.end];
-    let message = text.trim();
+    let source = &run.sources.all[run.file];
+    let message = source.text[command.word_span.end..command.span.end].trim();
     run.say(Severity::Note, command.span.clone(), || {
         let message = if message.is_empty() { "pause" } else { message };
         (message.to_owned(), None)
@@ -112,67 +143,31 @@ pub fn colors<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     Ok(Flow::Next)
 }
 
-/// `help [command]`, `man command`
+/// `help [command]`
 pub fn help<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    if !read.more() {
-        run.say(Severity::Note, command.word_span.clone(), || (list(), None));
-        return Ok(Flow::Next);
-    }
-    let name = read.name("a command")?;
-    read.end()?;
-    let Some(spec) = commands::find(name.text) else {
-        return Err(
-            Problem::new(name.span, format!("there is no command `{}`", name.text))
-                .maybe_hint(commands::suggestion(name.text, std::iter::empty())),
-        );
+    let given = run.given(command)?;
+    let text = match given.maybe_name("command") {
+        Some(name) => manual::summary(find_command(name)?),
+        None => manual::list(),
     };
-    run.say(Severity::Note, command.span.clone(), || (page(spec), None));
+    run.say(Severity::Note, command.span.clone(), || (text, None));
     Ok(Flow::Next)
 }
 
-/// All opcodes, group by group.
-fn list() -> String {
-    let groups = [
-        Group::Run,
-        Group::Camera,
-        Group::Materials,
-        Group::Primitives,
-        Group::Objects,
-        Group::Options,
-        Group::Scene,
-        Group::Tools,
-        Group::Extensions,
-    ];
-    let line = |group: &Group| {
-        let names: Vec<_> = COMMANDS
-            .iter()
-            .filter(|spec| spec.group == *group)
-            .map(|spec| spec.name)
-            .collect();
-        format!("{group:?}: {}", names.join(" "))
-    };
-    groups.iter().map(line).collect::<Vec<_>>().join("\n")
+/// `man command`
+pub fn man<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let given = run.given(command)?;
+    let text = manual::page(find_command(given.name("command"))?);
+    run.say(Severity::Note, command.span.clone(), || (text, None));
+    Ok(Flow::Next)
 }
 
-/// All that the table says of a command.
-fn page(spec: &CommandSpec) -> String {
-    let mut page = format!("{}: {}", spec.synopsis(), spec.meaning);
-    if !spec.default.is_empty() {
-        page += &format!(" (by default {})", spec.default);
-    }
-    match spec.action {
-        Action::Later => page += "; not carried out in this version",
-        Action::NoEffect(reason) => page += &format!("; changes nothing here: {reason}"),
-        Action::Run(_) | Action::Structure => {}
-    }
-    for option in spec.options {
-        page += &format!("\n  {} {}", option.name, option.arguments);
-        page.truncate(page.trim_end().len());
-        page += &format!(": {}", option.meaning);
-        if !option.default.is_empty() {
-            page += &format!(" (by default {})", option.default);
-        }
-    }
-    page
+fn find_command(name: &Name<'_>) -> Outcome<&'static CommandSpec> {
+    commands::find(name.text).ok_or_else(|| {
+        Problem::new(
+            name.span.clone(),
+            format!("there is no command `{}`", name.text),
+        )
+        .maybe_hint(commands::suggestion(name.text, std::iter::empty()))
+    })
 }

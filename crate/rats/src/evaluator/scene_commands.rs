@@ -2,7 +2,6 @@
 
 use super::{Evaluator, Flow};
 use crate::Severity;
-use crate::commands::options::{LIGHT, RESET};
 use crate::limits::MAX_LIGHTS;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
@@ -11,27 +10,24 @@ use scene::{Camera, DEFAULT_BACKGROUND, Light, LightKind, Settings};
 
 /// `light Color [option …]`
 pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let colour = read.colour("the light's colour")?;
+    let given = run.given(command)?;
+    let colour = given.colour("Color");
     let mut is_distant = false;
-    let mut position: Option<DVec3> = None;
-    let mut direction: Option<DVec3> = None;
-    let mut intensity = 1.0;
-    let mut shadow = true;
     let mut as_point = None;
-    while let Some((option, span)) = read.option(LIGHT)? {
-        match option.name {
+    for chosen in &given.options {
+        match chosen.name {
             "point" => is_distant = false,
             "distant" => is_distant = true,
-            "spot" | "extended" => as_point = Some((option.name, span)),
-            "position" => position = Some(read.vector("the light's position")?),
-            "direction" => direction = Some(read.direction("the light's direction")?),
-            "intensity" => intensity = read.number_in("the intensity", 0.0, 1e6)?,
-            "noshadow" => shadow = false,
-            "angle" => _ = read.number_in("the opening", 0.0, 180.0)?,
-            _ => _ = read.number_in("the light's radius", 0.0, 1e6)?,
+            "spot" | "extended" => as_point = Some((chosen.name, chosen.span.clone())),
+            _ => {}
         }
     }
+    let vector = |name| given.option(name).map(|chosen| chosen.given.vector("XYZ"));
+    let (position, direction) = (vector("position"), vector("direction"));
+    let intensity = given
+        .option("intensity")
+        .map_or(1.0, |chosen| chosen.given.number("k"));
+    let shadow = given.option("noshadow").is_none();
     let kind = if is_distant {
         let towards = direction
             .map(|d| -d)
@@ -72,43 +68,79 @@ pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 
 /// `background Color`
 pub fn background<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let colour = read.colour("the background's colour")?;
-    let rest = read.more().then(|| read.here());
-    run.background = colour;
-    if let Some(span) = rest {
+    let given = run.given(command)?;
+    run.background = given.colour("Color");
+    if let Some(span) = given.span("options") {
         run.not_carried_out(span, "a background of more than one colour");
     }
     Ok(Flow::Next)
 }
 
-/// `report …`
+/// `report [what …]`
 pub fn report<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let parts = run.model.parts.iter().filter(|part| !part.removed).count();
-    let (materials, lights) = (run.palette.surfaces.len(), run.lights.len());
+    let given = run.given(command)?;
+    let words = given.words("what");
+    let is = |names: &[&str]| {
+        words.is_empty()
+            || words
+                .iter()
+                .any(|(word, _)| names.contains(word) || *word == "all")
+    };
     run.scope
         .step(1 + run.model.parts.len() as u64 / 16, &command.word_span)?;
+    let parts = run.model.parts.iter().filter(|part| !part.removed).count();
+    let (camera, settings) = (run.camera, run.settings);
+    let mut lines = Vec::new();
+    if is(&["data", "model"]) {
+        lines.push(format!("{parts} shapes"));
+    }
+    if is(&["surfaces"]) {
+        lines.push(format!("{} materials", run.palette.surfaces.len()));
+    }
+    if is(&["textures"]) {
+        lines.push(format!("{} textures", run.palette.textures()));
+    }
+    if is(&["lights"]) {
+        lines.push(format!("{} lights", run.lights.len()));
+    }
+    if is(&["background"]) {
+        let [r, g, b] = run.background;
+        lines.push(format!("the background {r} {g} {b}"));
+    }
+    if is(&["cameras"]) {
+        let [eye, target] = [camera.eye, camera.target].map(|p| format!("{} {} {}", p.x, p.y, p.z));
+        lines.push(format!(
+            "the eye at {eye}, seeing {target} at {} degrees",
+            camera.fov
+        ));
+    }
+    if is(&["options"]) {
+        let [width, height] = settings.frame;
+        lines.push(format!(
+            "a picture of {width}×{height} pixels, {} samples, gamma {}, soft {}",
+            settings.samples,
+            settings.gamma,
+            if settings.soft { "on" } else { "off" }
+        ));
+    }
+    if is(&["var"]) {
+        lines.push(format!("{} variables", run.scope.names().count()));
+    }
+    for nothing in ["clouds", "fog"] {
+        if words.iter().any(|(word, _)| *word == nothing) {
+            lines.push(format!("no {nothing}"));
+        }
+    }
     run.say(Severity::Note, command.span.clone(), || {
-        (
-            format!(
-                "the scene holds {parts} shapes, {materials} materials and {lights} lights here"
-            ),
-            None,
-        )
+        (format!("there are here: {}", lines.join(", ")), None)
     });
     Ok(Flow::Next)
 }
 
 /// `reset all|data|…`
 pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    if !read.more() {
-        return Err(read.expected("what to reset, such as `all`"));
-    }
-    let mut what = Vec::new();
-    while let Some((option, _)) = read.option(RESET)? {
-        what.push(option.name);
-    }
+    let given = run.given(command)?;
+    let what = given.words("what").into_iter().map(|(word, _)| word);
     for name in what {
         let is = |wanted: &str| name == wanted || name == "all";
         if is("data") || is("model") {
@@ -129,9 +161,11 @@ pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         if is("cameras") {
             run.camera = Camera::default();
             run.vertical = None;
+            run.view_plane = super::camera::ViewPlane::default();
         }
         if is("options") {
             run.settings = Settings::default();
+            run.output = crate::compile::Output::default();
         }
         if is("var") {
             run.scope.clear();
@@ -143,7 +177,10 @@ pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 
 /// `shoot`: the picture is the scene as it is here.
 pub fn shoot<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.reader(command).end()?;
+    let given = run.given(command)?;
+    if let Some(span) = given.span("options") {
+        run.not_carried_out(span, "an option of `shoot`");
+    }
     if run.shot.is_none() {
         run.shot = Some(run.picture());
     }

@@ -56,9 +56,10 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         loop {
             let here = read.start();
             if read.keyword("hot") {
-                hot = Some(read.since(here));
-            } else if let Some(span) = per_frame(&mut read)? {
-                animated = Some(span);
+                let numbers = slider(&mut read)?;
+                hot = Some((read.since(here), numbers));
+            } else if let Some(change) = per_frame(&mut read)? {
+                animated = Some(change);
             } else {
                 break;
             }
@@ -69,13 +70,30 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
             (Some(Value::Colour(_)), Value::Vector(v)) => Value::Colour(v),
             _ => value,
         };
-        run.scope.set(name, value);
-        if let Some(span) = hot {
-            make_hot(run, word, value, literal, span);
+        if matches!(value, Value::Name(_)) {
+            return Err(Problem::new(
+                spelled.span,
+                "a variable holds a number, three numbers or a colour, no name",
+            ));
         }
+        run.scope.set(name, value);
+        if let Some((span, numbers)) = hot {
+            make_hot(run, word, value, literal, numbers, span);
+        }
+    } else {
+        read.end()?;
     }
-    if let Some(span) = animated {
-        run.not_carried_out(span, "a change with every frame");
+    if let Some((change, span)) = animated {
+        run.animated = true;
+        let now = run.scope.get(name).unwrap_or(Value::Scalar(0.0));
+        let value = moved(now, change, run.frame);
+        if !value.all(|x| x.abs() <= MAX_MAGNITUDE) {
+            return Err(Problem::new(
+                span,
+                format!("in frame {} the value is too large", run.frame),
+            ));
+        }
+        run.scope.set(name, value);
     }
     Ok(())
 }
@@ -88,8 +106,63 @@ fn is_taken(word: &str) -> bool {
         || crate::functions::constant(word).is_some()
 }
 
-/// `+= step` or `*= factor`; gives its place.
-fn per_frame(read: &mut Reader<'_, '_>) -> Outcome<Option<Range<usize>>> {
+/// A change with every frame of an animation.
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    /// `+= step`
+    Add(Value),
+    /// `*= factor`
+    Multiply(f64),
+}
+
+/// A value after some frames.
+fn moved(value: Value, change: Change, frames: u32) -> Value {
+    let frames = f64::from(frames);
+    match change {
+        Change::Add(step) => match (value, step) {
+            (Value::Scalar(_), Value::Scalar(_)) => value.zip(step, |x, s| x + s * frames),
+            (_, Value::Scalar(s)) => Some(value.map(|x| x + s * frames)),
+            _ => value.zip(step, |x, s| x + s * frames),
+        }
+        .unwrap_or(value),
+        Change::Multiply(factor) => {
+            let factor = libm::pow(factor, frames);
+            value.map(|x| x * factor)
+        }
+    }
+}
+
+/// The numbers after `hot`: the slider's lowest and highest value, and its step.
+fn slider(read: &mut Reader<'_, '_>) -> Outcome<(Option<[f64; 2]>, Option<f64>)> {
+    let start = read.start();
+    if !is_number_next(read) {
+        return Ok((None, None));
+    }
+    let low = read.number("the slider's lowest value")?;
+    let high = read.number("the slider's highest value")?;
+    if low >= high {
+        return Err(Problem::new(
+            read.since(start),
+            format!("the slider's lowest value, {low}, is not below its highest, {high}"),
+        ));
+    }
+    let mut step = None;
+    if is_number_next(read) {
+        let start = read.start();
+        let value = read.number("the slider's step")?;
+        if value <= 0.0 {
+            return Err(Problem::new(
+                read.since(start),
+                "the slider's step must be above 0",
+            ));
+        }
+        step = Some(value);
+    }
+    Ok((Some([low, high]), step))
+}
+
+/// `+= step` or `*= factor`, and its place.
+fn per_frame(read: &mut Reader<'_, '_>) -> Outcome<Option<(Change, Range<usize>)>> {
     let start = read.start();
     let sign = |at: usize| read.items.get(at).map(|item| item.datum);
     if !matches!(sign(read.at), Some(Datum::Sign(b'+' | b'*')))
@@ -97,9 +170,25 @@ fn per_frame(read: &mut Reader<'_, '_>) -> Outcome<Option<Range<usize>>> {
     {
         return Ok(None);
     }
+    let adds = sign(read.at) == Some(Datum::Sign(b'+'));
     read.at += 2;
-    read.number("the change with every frame")?;
-    Ok(Some(read.since(start)))
+    let change = if adds {
+        let value = read.value("the change with every frame")?;
+        match value {
+            Value::Scalar(x) if is_number_next(read) => {
+                let y = read.number("the second number")?;
+                Change::Add(Value::Vector(DVec3::new(
+                    x,
+                    y,
+                    read.number("the third number")?,
+                )))
+            }
+            value => Change::Add(value),
+        }
+    } else {
+        Change::Multiply(read.number("the change with every frame")?)
+    };
+    Ok(Some((change, read.since(start))))
 }
 
 /// One number, three numbers or a colour; and its place if it is written out, so that a slider can
@@ -138,6 +227,7 @@ fn is_number_next(read: &mut Reader<'_, '_>) -> bool {
         && match read.datum() {
             Some(Datum::Number(_)) => true,
             Some(Datum::Sign(b'-' | b'(')) => true,
+            // `+=` is no number.
             Some(Datum::Sign(b'+')) => {
                 read.items.get(read.at + 1).map(|i| i.datum) != Some(Datum::Sign(b'='))
             }
@@ -193,8 +283,12 @@ fn make_hot(
     name: &str,
     value: Value,
     literal: Option<Range<usize>>,
+    (range, step): (Option<[f64; 2]>, Option<f64>),
     span: Range<usize>,
 ) {
+    if !run.is_own() {
+        return;
+    }
     if run.repeating > 0 {
         run.say(Severity::Warning, span, || {
             (
@@ -208,12 +302,15 @@ fn make_hot(
         Value::Scalar(x) => HotValue::Scalar(x),
         Value::Vector(v) => HotValue::Vector(v.to_array()),
         Value::Colour(c) => HotValue::Colour(c.to_array().map(|x| x as f32)),
+        Value::Name(_) => return,
     };
     let variable = HotVariable {
         name: name.to_owned(),
         value,
         file: run.file,
         literal,
+        range,
+        step,
     };
     match run.hot.iter_mut().find(|known| known.name == name) {
         Some(known) => *known = variable,
@@ -223,9 +320,6 @@ fn make_hot(
 
 /// `seed n`
 pub fn seed<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let seed = read.number("the seed")?;
-    read.end()?;
-    run.scope.random = Random::new(seed);
+    run.scope.random = Random::new(run.given(command)?.number("n"));
     Ok(Flow::Next)
 }

@@ -1,0 +1,283 @@
+//! What a command's operands are: the kinds, units and ranges from which the reader checks them and
+//! the manual, the hints of errors and the editor explain them.
+
+use super::OptionSpec;
+use crate::limits::MAX_MAGNITUDE;
+
+/// What a parameter takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// A number from `low` to `high`.
+    Number {
+        /// The least.
+        low: f64,
+        /// The largest.
+        high: f64,
+    },
+    /// A whole number from `low` to `high`.
+    Whole {
+        /// The least.
+        low: u32,
+        /// The largest.
+        high: u32,
+    },
+    /// Three numbers, or a vector.
+    Vector,
+    /// Three numbers that are not all 0.
+    Direction,
+    /// A colour's name, a colour or three numbers.
+    Colour,
+    /// A colour, or a share of another: `N%`.
+    Share,
+    /// `on` or `off`.
+    Switch,
+    /// A number, a vector or a colour.
+    Value,
+    /// A truth: a comparison of numbers.
+    Condition,
+    /// One of these words.
+    Word(&'static [OptionSpec]),
+    /// A name that the command makes.
+    New(Names),
+    /// A name that was made before.
+    Known(Names),
+    /// `=` and a name that was made before, which is copied.
+    Copy(Names),
+    /// How to texture: a solid, two waves, a colour or an image.
+    Method,
+    /// A file of the project.
+    File,
+    /// A file that the command writes.
+    NewFile,
+    /// Anything, to the end of the line.
+    Text,
+    /// Commands in `{ … }`.
+    Block,
+}
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Names {
+    /// A material (`surface`).
+    Material,
+    /// A texture.
+    Texture,
+    /// An object, chain or instance.
+    Object,
+    /// A variable.
+    Variable,
+    /// A command.
+    Command,
+}
+
+impl Names {
+    /// As messages call it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Material => "material",
+            Self::Texture => "texture",
+            Self::Object => "object",
+            Self::Variable => "variable",
+            Self::Command => "command",
+        }
+    }
+}
+
+/// In what a number is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Nothing: a count, a factor, a share.
+    None,
+    /// The units of the model.
+    Length,
+    /// Degrees.
+    Degrees,
+    /// Pixels.
+    Pixels,
+}
+
+impl Unit {
+    /// As the manual says it; empty for a plain number.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::None => "",
+            Self::Length => "model units",
+            Self::Degrees => "degrees",
+            Self::Pixels => "pixels",
+        }
+    }
+}
+
+/// How often a parameter is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arity {
+    /// Once.
+    One,
+    /// Once or not at all.
+    Optional,
+    /// Once or more.
+    Many,
+    /// As often as one likes.
+    Any,
+}
+
+/// A parameter of a command or option.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its name in the synopsis; UPPERCASE is a triple.
+    pub name: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+    /// What it is: `the tube radius`. Messages say that this was expected.
+    pub meaning: &'static str,
+    /// In what it is measured.
+    pub unit: Unit,
+    /// Its value if it is left out; empty if it cannot be, or if there is none.
+    pub default: &'static str,
+    /// How often it is given.
+    pub arity: Arity,
+}
+
+impl Parameter {
+    /// Its range as a sentence's end; empty if any value will do.
+    #[must_use]
+    pub fn range(&self) -> String {
+        match self.kind {
+            Kind::Number { low, high } => range(low, high),
+            Kind::Whole { low, high } => {
+                format!("whole, {}", range(f64::from(low), f64::from(high)))
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// As the synopsis shows it.
+    #[must_use]
+    pub fn synopsis(&self) -> String {
+        let name = match self.kind {
+            Kind::Switch => String::from("on | off"),
+            Kind::Word(words) if words.len() <= 8 => {
+                let names: Vec<_> = words.iter().map(|word| word.name).collect();
+                names.join(" | ")
+            }
+            Kind::Block if self.arity == Arity::One => String::from("{ … }"),
+            _ => self.name.to_owned(),
+        };
+        match self.arity {
+            Arity::One => name,
+            Arity::Optional => format!("[{name}]"),
+            Arity::Many => format!("{name} …"),
+            Arity::Any => format!("[{name} …]"),
+        }
+    }
+
+    pub(super) const fn unit(mut self, unit: Unit) -> Self {
+        self.unit = unit;
+        self
+    }
+
+    pub(super) const fn optional(mut self, default: &'static str) -> Self {
+        self.arity = Arity::Optional;
+        self.default = default;
+        self
+    }
+
+    pub(super) const fn many(mut self) -> Self {
+        self.arity = Arity::Many;
+        self
+    }
+
+    pub(super) const fn any(mut self) -> Self {
+        self.arity = Arity::Any;
+        self
+    }
+
+    pub(super) const fn from(mut self, low: f64, high: f64) -> Self {
+        self.kind = Kind::Number { low, high };
+        self
+    }
+
+    pub(super) const fn at_least(self, low: f64) -> Self {
+        self.from(low, MAX_MAGNITUDE)
+    }
+}
+
+fn range(low: f64, high: f64) -> String {
+    match (low > -MAX_MAGNITUDE, high < MAX_MAGNITUDE) {
+        (true, true) => format!("from {low} to {high}"),
+        (true, false) => format!("at least {low}"),
+        (false, true) => format!("at most {high}"),
+        (false, false) => String::new(),
+    }
+}
+
+pub(super) const fn parameter(name: &'static str, kind: Kind, meaning: &'static str) -> Parameter {
+    Parameter {
+        name,
+        kind,
+        meaning,
+        unit: Unit::None,
+        default: "",
+        arity: Arity::One,
+    }
+}
+
+/// A number of any size.
+pub(super) const fn number(name: &'static str, meaning: &'static str) -> Parameter {
+    let kind = Kind::Number {
+        low: -MAX_MAGNITUDE,
+        high: MAX_MAGNITUDE,
+    };
+    parameter(name, kind, meaning)
+}
+
+/// A length of any sign.
+pub(super) const fn length(name: &'static str, meaning: &'static str) -> Parameter {
+    number(name, meaning).unit(Unit::Length)
+}
+
+/// An angle in degrees.
+pub(super) const fn degrees(name: &'static str, meaning: &'static str) -> Parameter {
+    number(name, meaning).unit(Unit::Degrees)
+}
+
+/// A whole number.
+pub(super) const fn whole(
+    name: &'static str,
+    low: u32,
+    high: u32,
+    meaning: &'static str,
+) -> Parameter {
+    parameter(name, Kind::Whole { low, high }, meaning)
+}
+
+/// A place.
+pub(super) const fn vector(name: &'static str, meaning: &'static str) -> Parameter {
+    parameter(name, Kind::Vector, meaning).unit(Unit::Length)
+}
+
+/// A direction.
+pub(super) const fn direction(name: &'static str, meaning: &'static str) -> Parameter {
+    parameter(name, Kind::Direction, meaning)
+}
+
+/// A colour.
+pub(super) const fn colour(name: &'static str, meaning: &'static str) -> Parameter {
+    parameter(name, Kind::Colour, meaning)
+}
+
+/// One of some words.
+pub(super) const fn word(
+    name: &'static str,
+    words: &'static [OptionSpec],
+    meaning: &'static str,
+) -> Parameter {
+    parameter(name, Kind::Word(words), meaning)
+}
+
+/// `on` or `off`.
+pub(super) const ON_OFF: Parameter = parameter("on|off", Kind::Switch, "`on` or `off`");
+/// The parameters of a switch.
+pub(super) const SWITCH: &[Parameter] = &[ON_OFF];

@@ -1,0 +1,82 @@
+//! Ours: what the original language did not have.
+
+use super::{clay, flesh, library, row, run, structure};
+use crate::commands::CommandSpec;
+use crate::commands::options as o;
+use crate::commands::parameter::{
+    Arity, Kind, Names, Parameter, length, number, parameter, vector, word,
+};
+use crate::evaluator::{materials, options, primitives, variables};
+
+const BLOCK: Parameter = parameter("block", Kind::Block, "commands in `{ … }`");
+
+/// The commands.
+#[rustfmt::skip]
+pub static EXTENSIONS: &[CommandSpec] = &[
+    row("material", "the same as surface", run(materials::surface))
+        .takes(&[
+            parameter("alias", Kind::New(Names::Material), "the material's name"),
+            parameter("= old", Kind::Copy(Names::Material), "the name of the old material").optional(""),
+        ])
+        .options(o::SURFACE)
+        .example("light White, position 4 8 10\nmaterial Gold { diffuse Gold, specular White, shine 80 }\nsphere Gold 2, 0 0 0"),
+    row("blobscale", "how blobbiness is read", run(options::blobscale))
+        .takes(&[word("what", o::BLOBSCALE, "`relative` or `absolute`")])
+        .default("relative")
+        .details("relative: a² = |B|/R²; absolute: a² = |B|, as the published datasets read.")
+        .example(flesh!("blobscale absolute\nsphere Flesh 0.6, 0 0 0")),
+    row("influence", "share of the threshold below which a soft shape is ignored", run(options::influence))
+        .takes(&[number("e", "the share of the threshold").from(1e-9, 0.5)])
+        .default("0.001")
+        .example(flesh!("influence 1e-4\nsphere Flesh 0.6, 0 0 0")),
+    row("curve", "cubic Bézier curve", run(primitives::curve))
+        .takes(&[
+            parameter("sn", Kind::Known(Names::Material), "the material's name"),
+            length("b", "the tube radius"),
+            vector("P1", "the first control point"),
+            vector("P2", "the second control point"),
+            vector("P3", "the third control point"),
+            vector("P4", "the end point"),
+            Parameter { arity: Arity::Any, ..vector("P", "a further control point") },
+        ])
+        .details("More points, three at a time, join more curves: each begins where the last one ends.")
+        .example(flesh!("curve Flesh 0.6, <-3 -1 0> <-1 3 0> <1 -3 0> <3 1 0>")),
+    row("seed", "start the random numbers of `rand`", run(variables::seed))
+        .takes(&[number("n", "the seed")])
+        .default("0")
+        .example(clay!("seed 7\nfor i = 1 to 20 { sphere Clay 0.3, rand*6-3, rand*6-3, 0 }")),
+    structure("for", "repeat commands")
+        .takes(&[
+            parameter("i =", Kind::New(Names::Variable), "the name of the loop's variable"),
+            number("a", "the first value"),
+            number("to b", "the last value"),
+            number("step c", "the step").optional("1"),
+            BLOCK,
+        ])
+        .example(clay!("for i = 0 to 11 { sphere Clay 0.4, 3*cos(rad(30*i)), 3*sin(rad(30*i)), 0 }")),
+    structure("if", "run commands if a condition holds")
+        .takes(&[
+            parameter("condition", Kind::Condition, "a condition, such as `i < 3`"),
+            BLOCK,
+            parameter("else { … }", Kind::Block, "what is run if it does not hold").optional(""),
+        ])
+        .example(clay!("for i = -3 to 3 { if i < 0 or i > 1 { sphere Clay 0.4, i 0 0 } else { sphere Clay 0.4, i 1 0 } }")),
+    structure("else", "the other branch of if")
+        .takes(&[BLOCK])
+        .example(clay!("if 1 > 2 { sphere Clay 1, 0 0 0 } else { sphere Clay 2, 0 0 0 }")),
+    structure("define", "make a new command")
+        .takes(&[
+            parameter("name(a, B, c = 1)", Kind::New(Names::Command), "the new command's name and its parameters"),
+            BLOCK,
+        ])
+        .details("A parameter in CAPITALS takes a triple, one written `surface s` the name of a material, any other a number. `c = 1` may be left out by who calls; calls may name parameters: `leg length=2`. `return` leaves the command.")
+        .example(clay!("define leg(surface s, BASE, length = 2) {\n  cylinder s 0.3, BASE, BASE - vec(0, length, 0)\n}\nleg Clay, -1 1 0\nleg Clay, 1 1 0, length=3")),
+    library("tree", "a branching tree")
+        .example("surface Bark, diffuse SaddleBrown, radius 0.3, blobbiness -3\nlight White, position 4 8 10\ntree Bark"),
+    library("spikes", "spikes scattered over a sphere")
+        .example(clay!("spikes Clay")),
+    library("sphereflake", "the standard procedural database's flake of spheres")
+        .example(clay!("sphereflake Clay, 2")),
+    library("spiral", "a spiral of spheres")
+        .example(clay!("spiral Clay")),
+];

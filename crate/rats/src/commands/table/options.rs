@@ -1,0 +1,127 @@
+//! OPTIONS: settings of the picture and of how it is made.
+
+use super::{Action, clay, flesh, idle, later, row, run};
+use crate::commands::CommandSpec;
+use crate::commands::options as o;
+use crate::commands::parameter::{
+    Kind, Names, ON_OFF, Parameter, SWITCH, Unit, colour, number, parameter, whole, word,
+};
+use crate::evaluator::options;
+use scene::Settings;
+
+const SAVING: &str = "the picture is named and saved by whoever draws it";
+const PACKING: &str = "shapes are sorted as suits them best";
+const REPORTS: &str = "the page and the program report what they do";
+const WINDOWS: &str = "there are no windows here";
+
+const fn switch(
+    name: &'static str,
+    meaning: &'static str,
+    action: Action,
+    default: &'static str,
+) -> CommandSpec {
+    row(name, meaning, action).takes(SWITCH).default(default)
+}
+
+const FRAGILE: Parameter = word(
+    "what",
+    o::FRAGILE,
+    "`all`, `none` or the names of primitives",
+)
+.many();
+
+/// The commands.
+#[rustfmt::skip]
+pub static OPTIONS: &[CommandSpec] = &[
+    switch("echo", "echo commands", run(options::silent_switch), "on").example("echo off"),
+    switch("warning", "show warnings", run(options::warning), "on").example("warning off"),
+    switch("verbose", "show notes", run(options::verbose), "on").example("verbose off"),
+    switch("bounds", "use bounding volumes", idle(PACKING), "on").example("bounds on"),
+    switch("soft", "blend soft shapes; off draws their offset surfaces", run(options::soft), "on")
+        .example(flesh!("soft off\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
+    switch("timer", "report times", idle(REPORTS), "on").example("timer on"),
+    switch("double", "draw both sides of faces", idle("both sides are always drawn"), "on").example("double on"),
+    switch("dither", "dither pictures for viewing", idle("screens show all colours now"), "on").example("dither on"),
+    switch("compress", "compress saved pictures", idle(SAVING), "on").example("compress on"),
+    switch("stat", "report statistics", idle(REPORTS), "off").example("stat on"),
+    row("map", "make an image of the time spent on each pixel", later())
+        .takes(&[ON_OFF, number("N", "the gamma of the map").from(0.1, 10.0).optional("1")])
+        .default("off")
+        .example("map off"),
+    switch("penumbra", "soft shadows", later(), "off").example("penumbra off"),
+    switch("noview", "do not display the picture", idle(WINDOWS), "off").example("noview on"),
+    switch("nosave", "do not save the picture", idle(SAVING), "off").example("nosave on"),
+    row("gamma", "gamma correction", run(options::gamma))
+        .takes(&[number("value", "gamma").from(0.1, 10.0)])
+        .default("1")
+        .example(clay!("gamma 1.8\nsphere Clay 2, 0 0 0")),
+    row("framesize", "size of the picture", run(options::framesize))
+        .takes(&[
+            whole("w", 1, Settings::MAX_FRAME, "the width").unit(Unit::Pixels),
+            whole("h", 1, Settings::MAX_FRAME, "the height").unit(Unit::Pixels),
+        ])
+        .default("128 128")
+        .example(clay!("framesize 320 200\nsphere Clay 2, 0 0 0")),
+    row("filename", "name of the saved picture", run(options::filename))
+        .takes(&[parameter("name", Kind::NewFile, "the picture's name")])
+        .default("scene")
+        .details("The program saves the picture under this name, and the page offers it.")
+        .example("filename shell"),
+    row("format", "format of the saved picture", run(options::format))
+        .takes(&[word("format", o::FORMATS, "a format, such as `tif`")])
+        .default("tif")
+        .details("The program writes all of these; the page saves PNG whatever stands here.")
+        .example("format png"),
+    row("epsilon", "precision of hits", idle("hits are found to a tolerance of the tracer's own"))
+        .takes(&[number("value", "the precision").from(1e-12, 1.0)])
+        .default("1e-4")
+        .example("epsilon 1e-4"),
+    row("vanish", "least colour that counts", idle("no light is left out"))
+        .takes(&[number("value", "the least colour").from(0.0, 1.0)])
+        .default("4e-3")
+        .example("vanish 4e-3"),
+    row("maxdepth", "depth of the shading tree", idle("rays are not mirrored in this version"))
+        .takes(&[whole("number", 1, 100, "the depth")])
+        .default("5")
+        .example("maxdepth 5"),
+    row("maxmol", "largest group of soft shapes", idle("groups can have any size"))
+        .takes(&[whole("number", 1, 1_000_000_000, "the number of shapes")])
+        .default("300")
+        .example("maxmol 300"),
+    row("digger", "what finds the roots", run(options::digger))
+        .takes(&[word("name", o::DIGGER, "the digger's name")])
+        .default("hermite")
+        .example("digger hermite"),
+    row("contrast", "contrast above which a pixel is sampled further", run(options::contrast))
+        .takes(&[colour("r g b", "the contrast")])
+        .default(".25 .2 .4")
+        .example(clay!("contrast 0.1 0.1 0.1\nsample 4\nsphere Clay 2, 0 0 0")),
+    row("pack", "how shapes are sorted", idle(PACKING))
+        .takes(&[word("what", o::PACK, "`none` or `grid`")])
+        .default("grid")
+        .example("pack none"),
+    row("indicator", "how progress is shown", idle(REPORTS))
+        .takes(&[word("what", o::INDICATOR, "what to show, such as `bar`").many()])
+        .default("bar")
+        .example("indicator bar"),
+    row("fragile", "soft shapes whose own radius is overruled by their material's", run(options::fragile))
+        .takes(&[FRAGILE])
+        .default("none")
+        .example(flesh!("fragile all\nsphere Flesh 2, -0.6 0 0\nsphere Flesh 0.1, 0.6 0 0")),
+    row("sample", "at most n×n rays a pixel", run(options::sample))
+        .takes(&[
+            whole("n", 1, Settings::MAX_SAMPLES, "the number of samples"),
+            parameter("method", Kind::Text, "the method").optional(""),
+        ])
+        .default("1")
+        .example(clay!("sample 4\nsphere Clay 2, 0 0 0")),
+    row("mesh", "triangles of a file (ours), or how polygons are checked", run(options::mesh))
+        .takes(&[
+            word("control", o::MESH, "`robust` or `fast`").optional(""),
+            parameter("sn", Kind::Known(Names::Material), "the material's name").optional(""),
+            parameter("fn", Kind::File, "the mesh's name").optional(""),
+        ])
+        .default("robust")
+        .details("`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL or GLB. Soft: each triangle is a skeleton. `mesh robust`, as RATS has it, changes nothing here: faces are always checked.")
+        .example("mesh robust"),
+];

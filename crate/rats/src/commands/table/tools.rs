@@ -1,0 +1,77 @@
+//! TOOLS: pictures, films, and generators.
+
+use super::{clay, idle, library, row, run as does};
+use crate::commands::CommandSpec;
+use crate::commands::options as o;
+use crate::commands::parameter::{Kind, Parameter, Unit, number, parameter, whole};
+use crate::evaluator::{run, tools};
+
+const WINDOWS: &str = "there are no windows here";
+const FILE: Parameter = parameter("fn", Kind::File, "a picture's name");
+const OTHER: Parameter = parameter("fn2", Kind::File, "another picture's name");
+const WINDOW: Parameter = parameter("w", Kind::Text, "a window").optional("");
+/// What all of them say: the compiler only lists the work.
+const WORK: &str = "The program carries it out on files of the dataset's folder when it runs the dataset; the page lists it among the notes.";
+
+/// The commands.
+#[rustfmt::skip]
+pub static TOOLS: &[CommandSpec] = &[
+    row("animate", "make a film of pictures", does(tools::animate))
+        .takes(&[FILE.many()])
+        .options(o::ANIMATE)
+        .details(WORK)
+        .example("animate one.png two.png loop"),
+    row("play", "play a film", does(tools::play))
+        .takes(&[FILE])
+        .options(o::ANIMATE)
+        .details(WORK)
+        .example("play film.gif"),
+    row("split", "split a film into pictures", does(tools::split))
+        .takes(&[FILE, parameter("frame.fmt", Kind::NewFile, "the pictures' name").optional("frame.png")])
+        .details(WORK)
+        .example("split film.gif frame.png"),
+    row("collage", "put pictures side by side", does(tools::collage))
+        .takes(&[FILE.many()])
+        .options(o::COLLAGE)
+        .details(WORK)
+        .example("collage one.png two.png columns 2"),
+    row("fli", "make a film of pictures of one size", does(tools::fli))
+        .takes(&[FILE.many()])
+        .options(o::FLI)
+        .details("RATS wrote Autodesk's FLI; ours is an animated PNG or GIF. The program carries it out; the page lists it among the notes.")
+        .example("fli one.png two.png speed 12"),
+    row("convert", "convert a picture", does(tools::convert))
+        .takes(&[FILE, parameter("fn2", Kind::NewFile, "the new picture's name")])
+        .details(WORK)
+        .example("convert one.png one.tga"),
+    row("resize", "resize a picture", does(tools::resize))
+        .takes(&[FILE, whole("x", 1, 8192, "the width").unit(Unit::Pixels), whole("y", 1, 8192, "the height").unit(Unit::Pixels)])
+        .details(WORK)
+        .example("resize one.png 320 200"),
+    row("diff", "difference of two pictures", does(tools::diff))
+        .takes(&[FILE, OTHER]).options(o::SAVE).details(WORK)
+        .example("diff one.png two.png save difference.png"),
+    row("and", "AND of two pictures", does(tools::and))
+        .takes(&[FILE, OTHER]).options(o::SAVE).details(WORK)
+        .example("and one.png two.png save both.png"),
+    row("xor", "XOR of two pictures", does(tools::xor))
+        .takes(&[FILE, OTHER]).options(o::SAVE).details(WORK)
+        .example("xor one.png two.png save either.png"),
+    row("show", "show a file, a colour, a palette", does(tools::show))
+        .options(o::SHOW)
+        .details(WORK)
+        .example("show color OrangeRed"),
+    row("kill", "close windows", idle(WINDOWS)).takes(&[WINDOW]).example("kill"),
+    row("refresh", "draw windows again", idle(WINDOWS)).takes(&[WINDOW]).example("refresh"),
+    row("tile", "arrange windows", idle(WINDOWS)).takes(&[WINDOW]).example("tile"),
+    row("colors", "list the colours by name", does(run::colors)).example("colors"),
+    row("rats", "small talk", does(run::rats)).example("rats"),
+    row("table", "plot numbers", does(tools::table))
+        .takes(&[number("v", "a number").many()])
+        .details("A polyline of 2 to 256 points. The program draws it as a picture; the page lists it among the notes.")
+        .example("table 1 4 9 16 25"),
+    library("shell", "a spiral shell of spheres")
+        .example(clay!("shell Clay")),
+    library("horn", "a curled horn that tapers")
+        .example(clay!("horn Clay")),
+];

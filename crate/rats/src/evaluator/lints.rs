@@ -1,0 +1,198 @@
+//! What is probably not meant: shapes outside the picture, an eye inside the surface, flesh too weak
+//! to be seen.
+//!
+//! Lints are about the finished scene, so they are looked for only when the text has no errors. Those
+//! that evaluate the field are left out in large scenes: an edit must not wait for them.
+
+use super::Evaluator;
+use crate::Severity;
+use field::THRESHOLD;
+use glam::DVec3;
+use scene::{Element, Scene, Shape};
+
+/// Elements up to which the field is evaluated.
+const MOST_ELEMENTS: usize = 2000;
+/// Evaluations of one element's field that the lints may cost.
+const MOST_EVALUATIONS: usize = 40_000;
+
+impl Evaluator<'_> {
+    /// Looks at the finished scene.
+    pub(super) fn lint(&mut self, scene: &Scene) {
+        if self.report.has_errors() || self.report.no_warnings {
+            return;
+        }
+        self.lint_view(scene);
+        if scene.elements.len() <= MOST_ELEMENTS && scene.settings.soft {
+            self.lint_field(scene);
+        }
+    }
+
+    /// Notes what lies outside the picture.
+    fn lint_view(&mut self, scene: &Scene) {
+        let [width, height] = scene.settings.frame;
+        let projection = scene.camera.projection(width, height);
+        let outside: Vec<&Element> = scene
+            .elements
+            .iter()
+            .filter(|element| {
+                ball(scene, element).is_some_and(|(c, r)| is_outside(&projection, c, r))
+            })
+            .collect();
+        let Some(first) = outside.first() else { return };
+        let count = outside.len();
+        let origin = first.origin;
+        let span = origin.start as usize..origin.end as usize;
+        if count == scene.elements.len() {
+            self.say_at(origin.file as usize, Severity::Warning, span, || {
+                (
+                    String::from("nothing of the model is in the picture"),
+                    Some(String::from(
+                        "look at it with `eyep` and `vrp`, or press “See the whole model”",
+                    )),
+                )
+            });
+        } else {
+            self.say_at(origin.file as usize, Severity::Note, span, || {
+                let more = match count - 1 {
+                    0 => String::new(),
+                    1 => String::from(", and so is one more"),
+                    n => format!(", and so are {n} more"),
+                };
+                (format!("this shape is outside the picture{more}"), None)
+            });
+        }
+    }
+
+    /// Warns of an eye inside the surface and of flesh that never reaches the threshold.
+    fn lint_field(&mut self, scene: &Scene) {
+        let surface = scene.soft_surface();
+        let terms = &surface.field.primitives;
+        if terms.is_empty() {
+            return;
+        }
+        let value = |p: DVec3| -> f64 {
+            terms
+                .iter()
+                .map(|term| term.value::<f64>([p.x, p.y, p.z]))
+                .sum()
+        };
+        if value(scene.camera.eye) >= THRESHOLD {
+            let (file, span) = self.aimed_at.clone();
+            self.say_at(file, Severity::Warning, span, || {
+                (
+                    String::from("the eye is inside the surface"),
+                    Some(String::from("move `eyep` away from the model")),
+                )
+            });
+        }
+        let mut left = MOST_EVALUATIONS;
+        for (index, element) in scene.elements.iter().enumerate() {
+            let material = &scene.materials[element.material];
+            // An element of full strength reaches the threshold by itself: so is it normalised.
+            let weak =
+                material.strength < 1.0 || material.restriction > 0.0 || material.profile.is_some();
+            if !weak || material.strength <= 0.0 || !scene.is_soft(element) {
+                continue;
+            }
+            let points = bone(&element.shape);
+            let Some(rest) = left.checked_sub(points.len() * terms.len()) else {
+                return;
+            };
+            left = rest;
+            if points.iter().all(|p| value(*p) < THRESHOLD) {
+                let origin = scene.elements[index].origin;
+                let span = origin.start as usize..origin.end as usize;
+                self.say_at(origin.file as usize, Severity::Warning, span, || {
+                    (
+                        String::from(
+                            "this soft shape cannot be seen: its field never reaches the threshold",
+                        ),
+                        Some(String::from(
+                            "raise the `strength` of its material, or put it nearer to others",
+                        )),
+                    )
+                });
+            }
+        }
+    }
+}
+
+/// Points on a shape's skeleton, where its own field is strongest.
+fn bone(shape: &Shape) -> Vec<DVec3> {
+    match shape {
+        Shape::Sphere { center, .. } => vec![*center],
+        Shape::Cylinder { base, apex, .. } => (0..=8)
+            .map(|i| base.lerp(*apex, f64::from(i) / 8.0))
+            .collect(),
+        Shape::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+            ..
+        } => (0..=8)
+            .map(|i| {
+                let t = angle * f64::from(i) / 8.0;
+                *center + (*u * libm::cos(t) + *v * libm::sin(t)) * *sweep
+            })
+            .collect(),
+        Shape::Triangle { corners, .. } => {
+            let [a, b, c] = *corners;
+            let middle = (a + b + c) / 3.0;
+            vec![
+                middle,
+                middle.lerp(a, 0.5),
+                middle.lerp(b, 0.5),
+                middle.lerp(c, 0.5),
+            ]
+        }
+        Shape::Polygon { rings, .. } => rings.iter().flatten().copied().take(16).collect(),
+        Shape::Curve { control, .. } => (0..=8)
+            .map(|i| {
+                let t = f64::from(i) / 8.0;
+                let [a, b, c, d] = *control;
+                let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
+                ab.lerp(bc, t).lerp(bc.lerp(cd, t), t)
+            })
+            .collect(),
+        Shape::Plane { point, .. } => vec![*point],
+    }
+}
+
+/// A ball around a shape as it is drawn: soft flesh reaches a little farther than its radius. `None`
+/// for a plane, which is everywhere.
+fn ball(scene: &Scene, element: &Element) -> Option<(DVec3, f64)> {
+    if matches!(element.shape, Shape::Plane { .. }) {
+        return None;
+    }
+    let points = match &element.shape {
+        Shape::Triangle { corners, .. } => corners.to_vec(),
+        Shape::Polygon { rings, .. } => rings.iter().flatten().copied().collect(),
+        Shape::Curve { control, .. } => control.to_vec(),
+        Shape::Cylinder { base, apex, .. } => vec![*base, *apex],
+        shape => bone(shape),
+    };
+    let centre = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+    let reach = points
+        .iter()
+        .map(|p| p.distance(centre))
+        .fold(0.0, f64::max);
+    let flesh = scene.radius(element) * if scene.is_soft(element) { 1.5 } else { 1.0 };
+    Some((centre, reach + flesh))
+}
+
+/// Whether a ball is wholly outside the pyramid that the picture shows.
+fn is_outside(projection: &scene::Projection, centre: DVec3, radius: f64) -> bool {
+    let view = projection.world_from_view.transpose() * (centre - projection.eye);
+    let beyond = |across: f64, tangent: f64| {
+        (across + tangent * view.z) / libm::sqrt(1.0 + tangent * tangent) > radius
+    };
+    let [x, y] = projection.shift;
+    let (w, h) = (projection.half_width, projection.half_height);
+    view.z > radius
+        || beyond(view.x, w + x)
+        || beyond(-view.x, w - x)
+        || beyond(view.y, h + y)
+        || beyond(-view.y, h - y)
+}

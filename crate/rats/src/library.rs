@@ -1,0 +1,162 @@
+//! The library: commands that are written in the language itself, in `crate/rats/library/`.
+//!
+//! Each file defines one command of the file's name. It is read when the command is used for the first
+//! time, or by `read NAME.rat`. Its first comment is its manual: `# NAME: what it makes`, then a line
+//! `#   parameter  meaning` for each parameter; the defaults stand in the `define` only.
+
+use std::fmt::Write;
+
+/// All files: their names and texts.
+pub const FILES: &[(&str, &str)] = &[
+    ("shell.rat", include_str!("../library/shell.rat")),
+    ("horn.rat", include_str!("../library/horn.rat")),
+    ("tree.rat", include_str!("../library/tree.rat")),
+    ("spikes.rat", include_str!("../library/spikes.rat")),
+    (
+        "sphereflake.rat",
+        include_str!("../library/sphereflake.rat"),
+    ),
+    ("spiral.rat", include_str!("../library/spiral.rat")),
+];
+
+/// A parameter of a library's command.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: &'static str,
+    /// Whether it takes a material's name.
+    pub is_surface: bool,
+    /// The expression it has if it is left out; empty if it must be given.
+    pub default: &'static str,
+    /// What it is.
+    pub meaning: String,
+}
+
+/// The text of a file of the library.
+#[must_use]
+pub fn find(file: &str) -> Option<&'static str> {
+    FILES
+        .iter()
+        .find(|(name, _)| *name == file)
+        .map(|(_, text)| *text)
+}
+
+/// The text that defines a command.
+#[must_use]
+pub fn text_of(command: &str) -> Option<&'static str> {
+    FILES
+        .iter()
+        .find(|(name, _)| name.strip_suffix(".rat") == Some(command))
+        .map(|(_, text)| *text)
+}
+
+/// The parameters of a command, from its `define` and the comment at the head of its file.
+#[must_use]
+pub fn parameters(command: &str) -> Vec<Parameter> {
+    let Some(text) = text_of(command) else {
+        return Vec::new();
+    };
+    let head = format!("define {command}(");
+    let Some(start) = text.find(&head).map(|at| at + head.len()) else {
+        return Vec::new();
+    };
+    let signature = &text[start..];
+    let signature = &signature[..signature.find('{').unwrap_or(signature.len())];
+    let signature = signature.trim_end().trim_end_matches(')');
+    split(signature)
+        .into_iter()
+        .map(|one| {
+            let (name, default) = one.split_once('=').unwrap_or((one, ""));
+            let name = name.trim();
+            let (is_surface, name) = match name.strip_prefix("surface ") {
+                Some(name) => (true, name.trim()),
+                None => (false, name),
+            };
+            Parameter {
+                name,
+                is_surface,
+                default: default.trim(),
+                meaning: meaning(text, name),
+            }
+        })
+        .collect()
+}
+
+/// Cuts a list at the commas that stand outside of parentheses.
+fn split(list: &'static str) -> Vec<&'static str> {
+    let (mut parts, mut depth, mut start) = (Vec::new(), 0_i32, 0);
+    for (at, sign) in list.char_indices() {
+        match sign {
+            '(' | '<' => depth += 1,
+            ')' | '>' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(list[start..at].trim());
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(list[start..].trim());
+    parts.retain(|part| !part.is_empty());
+    parts
+}
+
+/// What the head comment says of a parameter.
+fn meaning(text: &str, name: &str) -> String {
+    let mut meaning = String::new();
+    let mut found = false;
+    for line in text.lines().take_while(|line| line.starts_with('#')) {
+        let Some(rest) = line.strip_prefix("#   ") else {
+            if found {
+                break;
+            }
+            continue;
+        };
+        if !rest.starts_with(' ') {
+            found = rest.split_whitespace().next() == Some(name);
+            if found {
+                meaning = rest[name.len()..].trim().to_owned();
+            }
+        } else if found {
+            meaning.push(' ');
+            meaning += rest.trim();
+        }
+    }
+    meaning
+}
+
+/// A command with its parameters, as the manual shows it.
+#[must_use]
+pub fn synopsis(command: &str) -> String {
+    let mut text = command.to_owned();
+    for parameter in parameters(command) {
+        let _ = if parameter.default.is_empty() {
+            write!(text, " {}", parameter.name)
+        } else {
+            write!(text, " [{}={}]", parameter.name, parameter.default)
+        };
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands;
+
+    #[test]
+    fn every_file_is_a_command_with_a_manual() {
+        let in_table = commands::all().filter(|spec| spec.is_library());
+        assert_eq!(in_table.count(), FILES.len());
+        for (file, text) in FILES {
+            let command = file.strip_suffix(".rat").expect("a dataset");
+            assert!(commands::find(command).is_some_and(commands::CommandSpec::is_library));
+            assert!(text.starts_with(&format!("# {command}: ")), "{file}");
+            let parameters = parameters(command);
+            assert!(!parameters.is_empty(), "{file}");
+            for parameter in parameters {
+                assert!(!parameter.meaning.is_empty(), "{file}: {}", parameter.name);
+            }
+        }
+    }
+}

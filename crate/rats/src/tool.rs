@@ -1,0 +1,130 @@
+//! What the commands of the TOOLS group ask for.
+//!
+//! The compiler touches no files. It turns `resize`, `collage`, `diff` … into the jobs below, in the
+//! order of the text, and leaves them to whoever keeps files: the program `sinew` carries them out in
+//! the folder of the dataset.
+//!
+//! All names of files are as the text gives them: not checked, possibly leading anywhere.
+
+/// A job on pictures.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Tool {
+    /// `animate fn1 … [loop|mirror|dither]`: pictures to an animation.
+    Animate {
+        /// The frames, in order.
+        files: Vec<String>,
+        /// What happens after the last frame.
+        playback: Playback,
+        /// Whether colours that a format of 256 colours cannot show are mixed from dots.
+        dither: bool,
+    },
+    /// `play fn`: show an animation.
+    Play {
+        /// The animation.
+        file: String,
+    },
+    /// `split fn [frame.fmt]`: an animation to pictures.
+    Split {
+        /// The animation.
+        file: String,
+        /// Name and format of the pictures: `frame.png` gives `frame000.png`, `frame001.png` …
+        pattern: Option<String>,
+    },
+    /// `collage [columns n] fn1 fn2 …`: several pictures on one sheet.
+    Collage {
+        /// How many stand side by side; `None`: about as many as stand below each other.
+        columns: Option<u32>,
+        /// The pictures, row by row.
+        files: Vec<String>,
+    },
+    /// `fli fn1 … [speed n] [size w h]`: pictures to an animation of 256 colours.
+    Fli {
+        /// The frames, in order.
+        files: Vec<String>,
+        /// Frames in a second.
+        speed: Option<f64>,
+        /// Width and height in pixels; `None`: those of the first frame.
+        size: Option<[u32; 2]>,
+    },
+    /// `convert fn1 fn2`: a picture in another format.
+    Convert {
+        /// The picture.
+        from: String,
+        /// The new file; its ending tells the format.
+        to: String,
+    },
+    /// `resize fn x y`: a picture in another size.
+    Resize {
+        /// The picture.
+        file: String,
+        /// New width, pixels.
+        width: u32,
+        /// New height, pixels.
+        height: u32,
+    },
+    /// `diff fn1 fn2 [save]`: how far two pictures differ.
+    Diff {
+        /// The first picture.
+        a: String,
+        /// The second picture.
+        b: String,
+        /// Where the result is written, if it is.
+        save: Option<String>,
+    },
+    /// `and fn1 fn2 [save]`: the bits that two pictures share.
+    And {
+        /// The first picture.
+        a: String,
+        /// The second picture.
+        b: String,
+        /// Where the result is written, if it is.
+        save: Option<String>,
+    },
+    /// `xor fn1 fn2 [save]`: the bits in which two pictures differ.
+    Xor {
+        /// The first picture.
+        a: String,
+        /// The second picture.
+        b: String,
+        /// Where the result is written, if it is.
+        save: Option<String>,
+    },
+    /// `show …`: a file, a colour or a palette.
+    Show {
+        /// What is shown.
+        what: Shown,
+    },
+    /// `table v1 v2 …`: a line through numbers.
+    Table {
+        /// The heights, at equal distances from left to right; 2 … 256.
+        values: Vec<f64>,
+    },
+}
+
+/// What an animation does after its last frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Playback {
+    /// It stops.
+    #[default]
+    Once,
+    /// It begins again.
+    Loop,
+    /// It runs back to the first frame, and so on.
+    Mirror,
+}
+
+/// What `show` shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shown {
+    /// A picture or an animation.
+    File(String),
+    /// A colour.
+    Colour {
+        /// Its name, or how it was written.
+        name: String,
+        /// Red, green, blue, each 0 … 1.
+        rgb: [f32; 3],
+    },
+    /// Colours side by side, each red, green, blue in 0 … 1; `show palette` gives all that have a name.
+    Palette(Vec<[f32; 3]>),
+}
