@@ -193,6 +193,7 @@ const EXAMPLES: &[&str] = &[
     "coral-crab",
     "coral-tree",
     "cowrie",
+    "generators",
     "hermite-crab",
     "icicle",
     "sea-urchin",

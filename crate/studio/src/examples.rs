@@ -42,7 +42,7 @@ macro_rules! example {
 }
 
 /// All of them. The first one is what a first visit shows.
-pub const ALL: [Example; 21] = [
+pub const ALL: [Example; 22] = [
     example!("Cowrie", "a shell with random spikes", "cowrie"),
     example!("Seahorse", "the classic, all of arcs", "seahorse"),
     example!("Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -60,6 +60,7 @@ pub const ALL: [Example; 21] = [
         "spinal-starecase"
     ),
     example!("Sphereflake", "balls on balls, by recursion", "sphereflake"),
+    example!("Generators", "six commands, a line each", "generators"),
     example!("T-shape", "two bars that melt together", "tshape"),
     example!("Icicle", "a first little dataset", "icicle"),
     example!("Starfish A", "seven arcs, the bare skeleton", "starfish-a"),
