@@ -96,6 +96,7 @@ pub fn frame(scene: &Scene, size: [u32; 2]) -> Camera {
     Camera {
         eye: bounds.center + backwards * (bounds.radius / sine),
         target: bounds.center,
+        shift: [0.0; 2],
         ..camera
     }
 }
@@ -104,7 +105,11 @@ pub fn frame(scene: &Scene, size: [u32; 2]) -> Camera {
 fn usable(camera: Camera) -> Camera {
     let fallback = Camera::default();
     let near = |v: DVec3| v.is_finite() && v.abs().max_element() < 1e100;
-    if !near(camera.eye) || !near(camera.target) || !camera.fov.is_finite() {
+    if !near(camera.eye)
+        || !near(camera.target)
+        || !camera.fov.is_finite()
+        || camera.shift.iter().any(|s| !(-1e3..=1e3).contains(s))
+    {
         return fallback;
     }
     let up = if near(camera.up) && camera.up.try_normalize().is_some() {

@@ -363,6 +363,7 @@ impl Session {
                 && camera.target.is_finite()
                 && camera.up.is_finite()
                 && camera.fov.is_finite()
+                && camera.shift.iter().all(|shift| shift.is_finite())
         });
         if finite && self.camera != camera {
             self.camera = camera;

@@ -15,13 +15,8 @@ fn tilted() -> Camera {
         target: DVec3::new(0.5, 0.25, -1.0),
         up: DVec3::new(0.1, 0.2, 2.0),
         fov: 30.0,
-    }, shift: [0.0; 2],
-
-        eye: DVec3::new(3.0, -2.0, 5.0),
-        target: DVec3::new(0.5, 0.25, -1.0),
-        up: DVec3::new(0.1, 0.2, 2.0),
-        fov: 30.0, shift: [0.0; 2],
-}
+        shift: [0.1, -0.2],
+    }
 }
 
 #[test]
@@ -98,8 +93,9 @@ fn orbit_leaves_a_pole_smoothly() {
         eye: DVec3::new(0.0, 10.0, 0.0),
         target: DVec3::ZERO,
         up: DVec3::Y,
-        fov: 45.0, shift: [0.0; 2],
-};
+        fov: 45.0,
+        shift: [0.0; 2],
+    };
     let after = orbit(camera, 0.0, -0.01);
     assert!(angle(camera.eye, after.eye) < 0.05);
 }
@@ -153,8 +149,9 @@ fn senseless_cameras_and_pointers_give_usable_cameras() {
                     eye,
                     target,
                     up,
-                    fov: 45.0, shift: [0.0; 2],
-};
+                    fov: 45.0,
+                    shift: [0.0; 2],
+                };
                 for x in [0.3, f64::NAN, f64::INFINITY, -1e300] {
                     for after in [
                         orbit(camera, x, x),

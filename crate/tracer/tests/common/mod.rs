@@ -95,6 +95,7 @@ pub fn empty() -> Scene {
             target: DVec3::ZERO,
             up: DVec3::Y,
             fov: 50.0,
+            shift: [0.0; 2],
         },
         ..Scene::default()
     };
