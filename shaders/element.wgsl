@@ -1,4 +1,4 @@
-// What the draft's five shapes share: the camera, the box that covers an element on the screen,
+// What the draft's shapes share: the camera, the box that covers an element on the screen,
 // the viewing ray in the element's own coordinates, and the shading of the point it meets.
 //
 // A shape's file is appended to this one. It defines
@@ -138,12 +138,17 @@ const BOX_ROOM: f32 = 1e-3;
 // The box of an element. Its back faces are drawn, which are there even for an eye inside it.
 @vertex
 fn cover_box(@builtin(vertex_index) index: u32, instance: Instance) -> Varying {
-    let offset = from_eye(instance);
     let corner = mix(
         instance.low - vec3f(BOX_ROOM),
         instance.high + vec3f(BOX_ROOM),
         cube_corner(index),
     );
+    return cover_point(instance, corner);
+}
+
+// A corner of what covers an element, given in its own coordinates.
+fn cover_point(instance: Instance, corner: vec3f) -> Varying {
+    let offset = from_eye(instance);
     let seen = offset + rotate(instance.rotation, corner * instance.unit);
     let distance = dot(seen, view.forward.xyz);
     // The depth is written per fragment; half of w is never clipped, near or far.

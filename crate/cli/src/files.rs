@@ -3,11 +3,13 @@
 //! A dataset may `read` others. The compiler only ever sees the texts of a project, so the ones it
 //! asks for are fetched here, from the folder of the first file, until it asks for no more.
 
-use rats::{Compiled, File, Project};
+use rats::{Asset, Compiled, File, Project};
 use std::path::{Path, PathBuf};
 
 /// Largest text accepted from disk, bytes.
 const MAX_TEXT: u64 = 4 * 1024 * 1024;
+/// Largest image or mesh accepted from disk, bytes.
+const MAX_ASSET: u64 = 32 * 1024 * 1024;
 /// Most files fetched for one project.
 const MAX_FILES: usize = 256;
 
@@ -15,6 +17,8 @@ const MAX_FILES: usize = 256;
 pub struct Loaded {
     /// The texts.
     pub project: Project,
+    /// The images and meshes that they use.
+    pub assets: Vec<Asset>,
     /// What they mean.
     pub compiled: Compiled,
     /// Time the compiler took for the last, complete run.
@@ -49,13 +53,38 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
         }
         next += 1;
     }
+    let mut assets: Vec<Asset> = Vec::new();
+    for wanted in project
+        .files
+        .iter()
+        .flat_map(|f| rats::asset_names(&f.text))
+    {
+        let known = assets.iter().any(|asset| asset.name == wanted);
+        if !known && let Some(bytes) = inside(&folder, &wanted).and_then(|path| bytes(&path)) {
+            let bytes = bytes.into();
+            assets.push(Asset {
+                name: wanted,
+                bytes,
+            });
+        }
+    }
     let start = std::time::Instant::now();
-    let compiled = rats::compile(&project);
+    let compiled = rats::compile_at(&project, &assets, 0);
     Ok(Loaded {
         project,
+        assets,
         compiled,
         compile_seconds: start.elapsed().as_secs_f64(),
     })
+}
+
+/// An image or mesh; none if it cannot be read or is too large, which the compiler then says.
+fn bytes(path: &Path) -> Option<Vec<u8>> {
+    let size = std::fs::metadata(path).ok()?.len();
+    if size > MAX_ASSET {
+        return None;
+    }
+    std::fs::read(path).ok()
 }
 
 /// The path of a file named in a dataset; names that lead out of the dataset's folder are refused,

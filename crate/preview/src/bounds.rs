@@ -3,7 +3,7 @@
 use crate::instance::Units;
 use crate::solid::Solid;
 use glam::DVec3;
-use scene::Scene;
+use scene::{Element, Scene, Shape};
 
 /// A sphere around everything in a scene that has an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +22,7 @@ impl Bounds {
         let boxes = scene
             .elements
             .iter()
-            .flat_map(|element| Solid::of(scene, element))
-            .filter_map(|solid| solid.bounds());
+            .flat_map(|element| boxes(scene, element));
         let sum = boxes.reduce(|(low, high), (a, b)| (low.min(a), high.max(b)));
         let camera = scene.camera;
         let seen = Self {
@@ -54,4 +53,17 @@ impl Bounds {
             radius: self.radius,
         }
     }
+}
+
+/// Axis-parallel boxes that hold an element, as the draft shows it.
+fn boxes(scene: &Scene, element: &Element) -> Vec<(DVec3, DVec3)> {
+    if let Shape::Quadric(quadric) = &element.shape {
+        // The box that cuts it off, without looking where in it the surface is.
+        let [x, y, z] = quadric.axes.map(DVec3::abs);
+        let corners = [1.0, -1.0].map(|side| quadric.center - side * (x + y + z));
+        let is_there = quadric.is_surface();
+        return is_there.then_some(corners.into()).into_iter().collect();
+    }
+    let solids = Solid::of(scene, element, 0);
+    solids.iter().filter_map(Solid::bounds).collect()
 }

@@ -1,13 +1,14 @@
 //! The draft itself: a scene on the GPU, and the passes that draw it.
 
 use crate::bounds::Bounds;
+use crate::facets;
 use crate::instance::{Instance, Instances, Units};
 use crate::materials;
 use crate::pipelines::Pipelines;
 use crate::solid::{Kind, Solid};
 use crate::targets::{Sampling, Targets};
 use crate::view::{Lights, Tone, View};
-use scene::{Camera, Scene};
+use scene::{Camera, Scene, Shape};
 
 /// Elements that the draft takes; of more, the first ones are drawn.
 pub const MAX_ELEMENTS: usize = 200_000;
@@ -84,8 +85,14 @@ impl Draft {
         };
         let limit = Instances::limit(device);
         let mut lists: [Vec<Instance>; Kind::COUNT] = Default::default();
+        let detail = facets::detail(scene);
         for element in &scene.elements {
-            let solids = Solid::of(scene, element);
+            let is_quadric = matches!(element.shape, Shape::Quadric(_));
+            if is_quadric && lists[Kind::Patch as usize].len() >= facets::MOST {
+                drawn.left_out += 1;
+                continue;
+            }
+            let solids = Solid::of(scene, element, detail);
             if solids.is_empty() {
                 drawn.invisible += 1;
                 continue;

@@ -2,7 +2,7 @@
 
 use crate::solid::{Kind, Solid};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2Swizzles as _, Vec3};
 
 /// One element as its vertex shader reads it; the fields are explained in `shaders/element.wgsl`.
 #[repr(C)]
@@ -28,6 +28,13 @@ impl Instance {
     /// Packs a solid, `units` telling how draft units come from world coordinates.
     pub(crate) fn new(solid: &Solid, material: u32, units: Units) -> Self {
         let (origin_high, origin_low) = units.place(solid.origin);
+        // A patch is covered by itself and needs no box, but has normals.
+        let [low, high] = if solid.kind == Kind::Patch {
+            let [[a, b], [c, d], [e, f]] = solid.normals.map(fold);
+            [[a, b, c], [d, e, f]]
+        } else {
+            [solid.low, solid.high].map(|corner| corner.as_vec3().to_array())
+        };
         Self {
             origin_high,
             material,
@@ -37,10 +44,19 @@ impl Instance {
             rotation: solid.rotation.as_quat().normalize().to_array(),
             a: solid.a.map(|x| x as f32),
             b: solid.b.map(|x| x as f32),
-            low: solid.low.as_vec3().to_array(),
-            high: solid.high.as_vec3().to_array(),
+            low,
+            high,
         }
     }
+}
+
+/// A unit vector as a point of the square onto which the octahedron |x| + |y| + |z| = 1 unfolds; the
+/// lower half is folded outwards.
+fn fold(v: DVec3) -> [f32; 2] {
+    let flat = v.truncate() / v.abs().element_sum();
+    let folded = (1.0 - flat.abs().yx()) * flat.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
+    let place = if v.z < 0.0 { folded } else { flat };
+    place.as_vec2().to_array()
 }
 
 /// From world coordinates to draft units: the scene's middle is the origin, its radius 1.

@@ -1,8 +1,8 @@
 //! The instant draft: what a scene looks like, as fast as a GPU can draw it.
 //!
 //! Every element is drawn as its *offset surface* – a ball, a cylinder, a piece of a torus, a
-//! prism, a slab of the radius that counts for it ([`scene::Scene::radius`]) – and not as a mesh:
-//! the GPU rasterises a box around the element, and a shader (see `shaders/`) casts the viewing
+//! prism, a slab of the radius that counts for it ([`scene::Scene::radius`]) – and not as a mesh
+//! (but for what is flat, and quadrics): the GPU rasterises a box around the element, and a shader (see `shaders/`) casts the viewing
 //! ray of each pixel at the exact shape inside. Silhouettes are smooth at any distance, shapes
 //! that pass through each other meet in the right curve, and nothing is prepared when the text
 //! changes but a list of numbers. The draft and the tracer share the projection
@@ -15,6 +15,7 @@
 
 mod bounds;
 mod draft;
+mod facets;
 mod instance;
 mod materials;
 pub mod orbit;

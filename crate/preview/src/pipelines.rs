@@ -18,6 +18,7 @@ impl Kind {
             Self::Arc => "arcs",
             Self::Triangle => "triangles",
             Self::Plane => "planes",
+            Self::Patch => "patches",
         }
     }
 
@@ -36,6 +37,7 @@ impl Kind {
             Self::Arc => element!("arc.wgsl"),
             Self::Triangle => element!("triangle.wgsl"),
             Self::Plane => element!("plane.wgsl"),
+            Self::Patch => element!("patch.wgsl"),
         }
     }
 
@@ -43,6 +45,7 @@ impl Kind {
     pub(crate) fn cover(self) -> (&'static str, u32) {
         match self {
             Self::Plane => ("cover_picture", 3),
+            Self::Patch => ("cover_corners", 3),
             _ => ("cover_box", 36),
         }
     }
@@ -195,8 +198,8 @@ fn element_pipeline(
             step_mode: wgpu::VertexStepMode::Instance,
             attributes: &Instance::ATTRIBUTES,
         })],
-        // The back faces of a box are drawn; the triangle over the whole picture has only one.
-        (kind != Kind::Plane).then_some(wgpu::Face::Front),
+        // The back faces of a box are drawn; of a single triangle, whichever is seen.
+        (cover == "cover_box").then_some(wgpu::Face::Front),
         Some(wgpu::DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(true),

@@ -1,6 +1,7 @@
 //! What a shape's offset surface is to the draft: an oriented box, and a few numbers that describe
 //! the shape inside it. Everything is computed in `f64`; [`crate::instance`] packs it for the GPU.
 
+use crate::facets;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use scene::{Element, Scene, Shape};
 
@@ -12,16 +13,18 @@ pub(crate) enum Kind {
     Arc,
     Triangle,
     Plane,
+    Patch,
 }
 
 impl Kind {
-    pub(crate) const COUNT: usize = 5;
+    pub(crate) const COUNT: usize = 6;
     pub(crate) const ALL: [Self; Self::COUNT] = [
         Self::Sphere,
         Self::Cylinder,
         Self::Arc,
         Self::Triangle,
         Self::Plane,
+        Self::Patch,
     ];
 }
 
@@ -41,19 +44,25 @@ pub(crate) struct Solid {
     /// Numbers that the shape's shader explains.
     pub(crate) a: [f64; 4],
     pub(crate) b: [f64; 4],
+    /// Of a patch: the unit normals at its corners, own coordinates.
+    pub(crate) normals: [DVec3; 3],
 }
 
 impl Solid {
     /// The solids that the draft shows for an element of a scene; none where there is nothing to
     /// see: no radius, no length, numbers that are not finite, or a soft element that adds no
-    /// flesh because its strength is not positive.
-    pub(crate) fn of(scene: &Scene, element: &Element) -> Vec<Self> {
+    /// flesh because its strength is not positive. `detail` is that of [`facets::detail`].
+    pub(crate) fn of(scene: &Scene, element: &Element, detail: usize) -> Vec<Self> {
         let strength = scene.materials.get(element.material).map(|m| m.strength);
         if scene.is_soft(element) && strength.is_none_or(|s| s <= 0.0) {
             return Vec::new();
         }
         let radius = scene.radius(element);
-        let parts = element.shape.parts(radius);
+        let parts = match element.shape {
+            Shape::Box { center, axes } => facets::cuboid(center, axes),
+            Shape::Quadric(ref quadric) => facets::quadric(quadric, detail),
+            ref other => other.parts(radius),
+        };
         let solids = parts.iter().filter_map(|part| Self::new(part, radius));
         solids.collect()
     }
@@ -65,7 +74,14 @@ impl Solid {
         }
         let solid = match *shape {
             Shape::Sphere { center, .. } => Self::sphere(center, radius),
-            Shape::Cylinder { base, apex, .. } => Self::cylinder(base, apex, radius),
+            Shape::Cylinder { base, apex, .. } => Self::cone([base, apex], [radius; 2]),
+            Shape::Cone {
+                base,
+                base_radius,
+                apex,
+                apex_radius,
+            } => Self::cone([base, apex], [base_radius, apex_radius]),
+            Shape::Pipe { base, apex, .. } => Self::pipe(base, apex, radius),
             Shape::Arc {
                 center,
                 u,
@@ -75,9 +91,12 @@ impl Solid {
                 ..
             } => Self::arc(center, u, v, sweep, angle, radius),
             Shape::Triangle { corners, .. } => Self::triangle(corners, radius),
+            Shape::Patch { corners, normals } => Self::patch(corners, normals),
             Shape::Plane { point, normal, .. } => Self::plane(point, normal, radius),
             // Made of several solids.
-            Shape::Polygon { .. } | Shape::Curve { .. } => None,
+            Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Box { .. } | Shape::Quadric(_) => {
+                None
+            }
         }?;
         let numbers = solid.a.iter().chain(&solid.b);
         (solid.origin.is_finite()
@@ -86,6 +105,7 @@ impl Solid {
             && solid.unit > 0.0
             && solid.low.is_finite()
             && solid.high.is_finite()
+            && solid.normals.iter().all(|n| n.is_finite())
             && numbers.copied().all(f64::is_finite))
         .then_some(solid)
     }
@@ -123,16 +143,21 @@ impl Solid {
             high: DVec3::ONE,
             a: [1.0, 0.0, 0.0, 0.0],
             b: [0.0; 4],
+            normals: [DVec3::ZERO; 3],
         })
     }
 
-    fn cylinder(base: DVec3, apex: DVec3, radius: f64) -> Option<Self> {
+    fn cone([base, apex]: [DVec3; 2], [first, last]: [f64; 2]) -> Option<Self> {
         let length = base.distance(apex);
-        if radius <= 0.0 || length <= 0.0 {
+        let radius = first.max(last);
+        let sound = radius > 0.0 && first.min(last) >= 0.0 && length > 0.0;
+        if !sound {
             return None;
         }
         let unit = radius.max(0.5 * length);
         let high = DVec3::new(radius, radius, 0.5 * length) / unit;
+        // Flatter than this it cannot be told from a disc, and squares must stay `f32`s.
+        let slope = ((last - first) / length).clamp(-1e6, 1e6);
         Some(Self {
             kind: Kind::Cylinder,
             origin: base.midpoint(apex),
@@ -140,8 +165,40 @@ impl Solid {
             unit,
             low: -high,
             high,
-            a: [radius / unit, 0.5 * length / unit, 0.0, 0.0],
+            a: [first.midpoint(last) / unit, 0.5 * length / unit, slope, 0.0],
             b: [0.0; 4],
+            normals: [DVec3::ZERO; 3],
+        })
+    }
+
+    fn pipe(base: DVec3, apex: DVec3, radius: f64) -> Option<Self> {
+        let mut pipe = Self::cone([base, apex], [radius; 2])?;
+        pipe.a[3] = 1.0;
+        Some(pipe)
+    }
+
+    /// A flat triangle whose normals at the corners may have any length; 0 stands for the face's.
+    fn patch(corners: [DVec3; 3], normals: [DVec3; 3]) -> Option<Self> {
+        let flat = Self::triangle(corners, 0.0)?;
+        let [p, q, r] = [
+            [flat.a[0], flat.a[1]],
+            [flat.a[2], flat.a[3]],
+            [flat.b[0], flat.b[1]],
+        ];
+        // The corners may have been renumbered; a normal belongs to the one nearest to its place.
+        let back = flat.rotation.inverse();
+        let own = [p, q, r].map(|corner| {
+            let world = flat.origin + flat.rotation * DVec2::from(corner).extend(0.0) * flat.unit;
+            let nearest = (0..3).min_by(|&i, &j| {
+                let distance = |k: usize| corners[k].distance_squared(world);
+                distance(i).total_cmp(&distance(j))
+            });
+            (back * normals[nearest.unwrap_or(0)]).normalize_or(DVec3::Z)
+        });
+        Some(Self {
+            kind: Kind::Patch,
+            normals: own,
+            ..flat
         })
     }
 
@@ -182,6 +239,7 @@ impl Solid {
             high: DVec3::new(radius, high_y, radius) / unit,
             a: [sweep / unit, radius / unit, sine, cosine],
             b: [sweep * sine / unit, f64::from(u8::from(ring)), 0.0, 0.0],
+            normals: [DVec3::ZERO; 3],
         })
     }
 
@@ -217,6 +275,7 @@ impl Solid {
             high,
             a: [p2.x, p2.y, q2.x, q2.y],
             b: [r2.x, r2.y, half / unit, 0.0],
+            normals: [DVec3::ZERO; 3],
         })
     }
 
@@ -232,6 +291,7 @@ impl Solid {
             high: DVec3::ONE,
             a: [half / unit, 0.0, 0.0, 0.0],
             b: [0.0; 4],
+            normals: [DVec3::ZERO; 3],
         })
     }
 }

@@ -5,9 +5,9 @@ mod common;
 
 use common::gpu::{gpus, open};
 use common::scenes::{arc, element, look};
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use preview::{Draft, Drawn, MAX_ELEMENTS, MAX_LIGHTS, Sampling};
-use scene::{Camera, Element, Light, LightKind, Material, Scene, Settings, Shape};
+use scene::{Camera, Element, Light, LightKind, Material, Quadric, Scene, Settings, Shape};
 
 /// A ball of radius 1 at the origin, seen from z = 5.
 fn ball(material: Material, lights: Vec<Light>) -> Scene {
@@ -300,6 +300,32 @@ fn scenes_without_sense_are_drawn_without_harm() {
                     normal: DVec3::new(b, a, 0.0),
                     radius: a,
                 },
+                Shape::Cone {
+                    base: p,
+                    base_radius: a,
+                    apex: DVec3::new(b, a, 0.0),
+                    apex_radius: b,
+                },
+                Shape::Pipe {
+                    base: p,
+                    apex: DVec3::new(b, a, 0.0),
+                    radius: b,
+                },
+                Shape::Box {
+                    center: p,
+                    axes: [DVec3::X * a, DVec3::Y * b, DVec3::new(a, b, 1.0)],
+                },
+                Shape::Patch {
+                    corners: [p, DVec3::new(b, a, b), DVec3::splat(a)],
+                    normals: [p, DVec3::Z, DVec3::X * a],
+                },
+                Shape::Quadric(Box::new(Quadric {
+                    square: DMat3::from_diagonal(DVec3::new(a, b, 1.0)),
+                    linear: p,
+                    constant: b,
+                    center: p,
+                    axes: [DVec3::X * a, DVec3::Y * b, DVec3::Z],
+                })),
             ] {
                 elements.push(element(shape, if a == 1.0 { usize::MAX } else { 0 }));
             }

@@ -37,6 +37,7 @@ fn shaders_are_valid_and_translate_to_webgl2() {
         [
             "arc.wgsl",
             "cylinder.wgsl",
+            "patch.wgsl",
             "plane.wgsl",
             "resolve.wgsl",
             "sphere.wgsl",

@@ -5,8 +5,8 @@ mod common;
 use common::gpu::{Gpu, gpus};
 use common::reference::{self, Met};
 use common::scenes::{arc, by_index, by_normal, index_of, look, turned};
-use glam::{DQuat, DVec3};
-use scene::{Camera, Scene, Shape};
+use glam::{DMat3, DQuat, DVec3};
+use scene::{Camera, Quadric, Scene, Shape};
 use std::slice;
 
 const SIZE: [u32; 2] = [56, 42];
@@ -221,6 +221,109 @@ fn triangles() {
     compare_around("prism", triangle(corners, 0.2), DVec3::ZERO, 1.0);
     let sliver = [[-0.9, -0.6, 0.2], [0.8, 0.4, -0.3], [0.4, 0.3, -0.1]];
     compare_around("sliver", triangle(sliver, 0.1), DVec3::ZERO, 1.0);
+}
+
+fn cone(ends: [[f64; 3]; 2], radii: [f64; 2]) -> Shape {
+    Shape::Cone {
+        base: ends[0].into(),
+        base_radius: radii[0],
+        apex: ends[1].into(),
+        apex_radius: radii[1],
+    }
+}
+
+#[test]
+fn cones() {
+    let ends = [[-0.8, -0.5, 0.1], [0.9, 0.6, -0.2]];
+    compare_around("blunt cone", cone(ends, [0.5, 0.2]), DVec3::ZERO, 1.0);
+    compare_around("hat", cone(ends, [0.0, 0.6]), DVec3::ZERO, 1.0);
+    compare_around("needle", cone(ends, [0.04, 0.0]), DVec3::ZERO, 1.0);
+    let flat = [[0.0, -0.1, 0.0], [0.02, 0.1, 0.01]];
+    compare_around("plate", cone(flat, [1.0, 0.3]), DVec3::ZERO, 1.0);
+    let upright = [[0.0, 0.0, -0.7], [0.0, 0.0, 0.7]];
+    compare_around(
+        "along the view",
+        cone(upright, [0.6, 0.1]),
+        DVec3::ZERO,
+        1.0,
+    );
+}
+
+#[test]
+fn pipes() {
+    let pipe = Shape::Pipe {
+        base: DVec3::new(-0.8, -0.5, 0.1),
+        apex: DVec3::new(0.9, 0.6, -0.2),
+        radius: 0.4,
+    };
+    compare_around("pipe", pipe, DVec3::ZERO, 1.0);
+    let upright = Shape::Pipe {
+        base: DVec3::NEG_Z * 0.5,
+        apex: DVec3::Z * 0.5,
+        radius: 0.7,
+    };
+    compare_around("along the view", upright, DVec3::ZERO, 1.0);
+}
+
+#[test]
+fn boxes() {
+    let rotation = turned();
+    for (what, axes) in [
+        ("cube", [DVec3::X, DVec3::Y, DVec3::Z]),
+        ("board", [DVec3::X, DVec3::Y * 0.4, DVec3::Z * 0.05]),
+        (
+            "sheared",
+            [
+                DVec3::X,
+                DVec3::new(0.4, 0.6, 0.0),
+                DVec3::new(0.1, -0.2, 0.5),
+            ],
+        ),
+    ] {
+        let axes = axes.map(|axis| rotation * axis * 0.7);
+        let center = DVec3::new(0.1, 0.0, -0.1);
+        compare_around(what, Shape::Box { center, axes }, DVec3::ZERO, 1.0);
+    }
+}
+
+#[test]
+fn patches() {
+    let corners = [[-0.9, -0.6, 0.2], [0.8, -0.4, -0.3], [0.1, 0.9, 0.1]].map(DVec3::from);
+    let round = corners.map(|corner| corner + DVec3::new(0.1, 0.2, 1.0));
+    let flat = [DVec3::new(0.1, -0.1, 1.0) * 7.0; 3];
+    // Bent outwards far enough that some would face away.
+    let bent = corners.map(|corner| corner * 3.0 + DVec3::Z);
+    for (what, normals) in [("round", round), ("flat", flat)] {
+        compare_around(what, Shape::Patch { corners, normals }, DVec3::ZERO, 1.0);
+    }
+    for gpu in gpus() {
+        let shape = Shape::Patch {
+            corners,
+            normals: bent,
+        };
+        let camera = look([0.0, 0.0, 3.0], [0.0, 0.0, 0.0], 45.0);
+        compare(gpu, "bent", slice::from_ref(&shape), camera);
+    }
+}
+
+#[test]
+fn quadrics() {
+    let cut = |square: DMat3, linear: DVec3, constant: f64| {
+        let half = DVec3::new(0.9, 1.0, 0.8);
+        let mut quadric = Quadric::new(square, linear, constant, -half, half).expect("a quadric");
+        quadric.axes = quadric.axes.map(|axis| turned() * axis);
+        Shape::Quadric(Box::new(quadric))
+    };
+    let diagonal = |x, y, z| DMat3::from_diagonal(DVec3::new(x, y, z));
+    for (what, shape) in [
+        ("ellipsoid", cut(diagonal(2.0, 1.3, 3.0), DVec3::ZERO, -1.0)),
+        ("cut ball", cut(diagonal(1.0, 1.0, 1.0), DVec3::ZERO, -1.2)),
+        ("bowl", cut(diagonal(1.0, 1.0, 0.0), DVec3::Z * -0.5, -0.5)),
+        ("waist", cut(diagonal(1.0, 1.0, -0.7), DVec3::ZERO, -0.2)),
+        ("plane", cut(DMat3::ZERO, DVec3::new(0.3, 0.2, 1.0), 0.1)),
+    ] {
+        compare_around(what, shape, DVec3::ZERO, 1.0);
+    }
 }
 
 #[test]

@@ -253,7 +253,11 @@ impl<'a> Evaluator<'a> {
                 Ok(Flow::Next)
             }
             Action::Later => {
-                self.given(command)?;
+                let given = self.given(command)?;
+                // What is switched off is as if it were not there.
+                if given.is_off() {
+                    return Ok(Flow::Next);
+                }
                 self.not_carried_out(command.word_span.clone(), &format!("`{}`", spec.name));
                 Ok(Flow::Next)
             }
@@ -576,6 +580,27 @@ impl<'a> Evaluator<'a> {
         let mut read = self.reader(command);
         read.at = skipped;
         read.given(parameters, spec.options)
+    }
+
+    /// An image or mesh of the project.
+    fn asset(&self, name: &Name<'_>) -> Outcome<&'a Asset> {
+        let assets: &'a [Asset] = self.assets;
+        let bare = name.text.strip_prefix("./").unwrap_or(name.text);
+        let mut all = assets.iter().chain(crate::library::assets());
+        all.find(|asset| asset.name == bare).ok_or_else(|| {
+            let known: Vec<_> = assets.iter().map(|asset| asset.name.as_str()).collect();
+            let hint = if known.is_empty() {
+                String::from("drop the file onto the page, or put it beside the dataset")
+            } else {
+                crate::suggest::hint(bare, known.iter().copied())
+                    .unwrap_or_else(|| format!("the files are {}", known.join(", ")))
+            };
+            Problem::new(
+                name.span.clone(),
+                format!("there is no image or mesh `{bare}` in the project"),
+            )
+            .hint(hint)
+        })
     }
 
     /// One level deeper.

@@ -1,7 +1,7 @@
 //! The geometry behind the primitives: an arc's axes, the circle through three points, transforms.
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
-use scene::Shape;
+use scene::{Quadric, Shape};
 
 /// The local axes u, v of an arc with unit normal `n`: u is the world's x axis made perpendicular to n
 /// (the y axis if n is parallel to x), v = n × u. Angles run from u towards v.
@@ -251,6 +251,11 @@ impl Transform {
         self.linear * point + self.shift
     }
 
+    /// The direction across the image of what a normal is across.
+    fn normal(&self, normal: DVec3) -> DVec3 {
+        (self.linear.inverse().transpose() * normal).normalize_or(normal)
+    }
+
     /// The image of a shape. If the map is not uniform, round shapes stay round, with radii grown by the
     /// mean factor.
     #[must_use]
@@ -306,9 +311,38 @@ impl Transform {
                 radius,
             } => Shape::Plane {
                 point: self.point(point),
-                normal: (self.linear.inverse().transpose() * normal).normalize_or(normal),
+                normal: self.normal(normal),
                 radius: radius * self.growth,
             },
+            Shape::Cone {
+                base,
+                base_radius,
+                apex,
+                apex_radius,
+            } => Shape::Cone {
+                base: self.point(base),
+                base_radius: base_radius * self.growth,
+                apex: self.point(apex),
+                apex_radius: apex_radius * self.growth,
+            },
+            Shape::Pipe { base, apex, radius } => Shape::Pipe {
+                base: self.point(base),
+                apex: self.point(apex),
+                radius: radius * self.growth,
+            },
+            Shape::Box { center, axes } => Shape::Box {
+                center: self.point(center),
+                axes: axes.map(|axis| self.linear * axis),
+            },
+            Shape::Patch { corners, normals } => Shape::Patch {
+                corners: corners.map(|corner| self.point(corner)),
+                normals: normals.map(|normal| self.normal(normal)),
+            },
+            Shape::Quadric(ref quadric) => Shape::Quadric(Box::new(Quadric {
+                center: self.point(quadric.center),
+                axes: quadric.axes.map(|axis| self.linear * axis),
+                ..**quadric
+            })),
         }
     }
 }

@@ -148,6 +148,14 @@ impl<'a> Given<'a> {
         }
     }
 
+    /// Whether the first operand is `off`.
+    pub fn is_off(&self) -> bool {
+        matches!(
+            self.operands.first().map(|filled| &filled.operand),
+            Some(Operand::Switch(false))
+        )
+    }
+
     /// A word of the table that may have been left out.
     pub fn word(&self, parameter: &'static str) -> Option<&'static str> {
         match self.one(parameter) {

@@ -10,6 +10,7 @@
 //! commands there are stands in one table ([`commands`]), which also serves [`highlight`] and help.
 //! All bounds are in [`limits`].
 
+mod assets;
 pub mod colours;
 pub mod commands;
 pub mod compile;
@@ -45,5 +46,5 @@ mod value;
 pub use compile::{Compiled, HotValue, HotVariable, Output, Placement, compile, compile_at};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
-pub use reads::reads;
+pub use reads::{ASSET_ENDINGS, asset_names, reads};
 pub use tool::Tool;

@@ -4,7 +4,9 @@
 //! time, or by `read NAME.rat`. Its first comment is its manual: `# NAME: what it makes`, then a line
 //! `#   parameter  meaning` for each parameter; the defaults stand in the `define` only.
 
+use crate::project::Asset;
 use std::fmt::Write;
+use std::sync::LazyLock;
 
 /// All files: their names and texts.
 pub const FILES: &[(&str, &str)] = &[
@@ -18,6 +20,24 @@ pub const FILES: &[(&str, &str)] = &[
     ),
     ("spiral.rat", include_str!("../library/spiral.rat")),
 ];
+
+/// An image and a mesh, for the examples of `terra` and `mesh`.
+static ASSETS: LazyLock<[Asset; 2]> = LazyLock::new(|| {
+    let asset = |name: &str, bytes: &[u8]| Asset {
+        name: name.to_owned(),
+        bytes: bytes.into(),
+    };
+    [
+        asset("hills.png", include_bytes!("../library/hills.png")),
+        asset("gem.obj", include_bytes!("../library/gem.obj")),
+    ]
+});
+
+/// The images and meshes of the library.
+#[must_use]
+pub fn assets() -> &'static [Asset] {
+    &*ASSETS
+}
 
 /// A parameter of a library's command.
 #[derive(Clone, Debug, PartialEq, Eq)]

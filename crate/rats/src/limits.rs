@@ -12,7 +12,7 @@ pub const MAX_FILES: usize = 64;
 /// would have given up waiting; a few tenths of a second at most.
 pub const MAX_STEPS: u64 = 2_000_000;
 /// What one error costs in steps, so that a loop of errors ends soon too.
-pub const STEPS_PER_ERROR: u64 = 1000;
+pub const STEPS_PER_ERROR: u64 = 2000;
 /// Files read from files.
 pub const MAX_NESTED_FILES: usize = 128;
 /// Calls of defined commands inside each other.

@@ -12,26 +12,55 @@ pub fn reads(text: &str) -> Vec<String> {
     let mut symbols = Symbols::default();
     let syntax = parse(text, &mut symbols);
     let mut names = Vec::new();
-    collect(&syntax.block, &syntax, text, &mut names);
+    collect(&syntax.block, &["read"], &syntax, text, &mut names);
     names
 }
 
-fn collect(block: &Block, syntax: &Syntax, text: &str, names: &mut Vec<String>) {
+/// Endings of the files that are no texts: images and meshes.
+pub const ASSET_ENDINGS: [&str; 5] = ["png", "obj", "ply", "stl", "glb"];
+
+/// The images and meshes that a text asks for (`mesh`, `terra`), in order, wherever it does.
+#[must_use]
+pub fn asset_names(text: &str) -> Vec<String> {
+    let mut symbols = Symbols::default();
+    let syntax = parse(text, &mut symbols);
+    let mut names = Vec::new();
+    collect(&syntax.block, &["mesh", "terra"], &syntax, text, &mut names);
+    names.retain(|name| {
+        name.rsplit_once('.').is_some_and(|(_, ending)| {
+            ASSET_ENDINGS
+                .iter()
+                .any(|known| ending.eq_ignore_ascii_case(known))
+        })
+    });
+    names
+}
+
+fn collect(block: &Block, commands: &[&str], syntax: &Syntax, text: &str, names: &mut Vec<String>) {
     for node in block {
         match node {
-            Node::Command(command) => names_of(command, syntax, text, names),
-            Node::For(each) => collect(&each.body, syntax, text, names),
+            Node::Command(command) => names_of(command, commands, syntax, text, names),
+            Node::For(each) => collect(&each.body, commands, syntax, text, names),
             Node::If(choice) => {
-                collect(&choice.then, syntax, text, names);
-                collect(&choice.otherwise, syntax, text, names);
+                collect(&choice.then, commands, syntax, text, names);
+                collect(&choice.otherwise, commands, syntax, text, names);
             }
-            Node::Define(define) => collect(&define.body, syntax, text, names),
+            Node::Define(define) => collect(&define.body, commands, syntax, text, names),
         }
     }
 }
 
-fn names_of(command: &Command, syntax: &Syntax, text: &str, names: &mut Vec<String>) {
-    if command.spec.is_none_or(|spec| spec.name != "read") {
+fn names_of(
+    command: &Command,
+    commands: &[&str],
+    syntax: &Syntax,
+    text: &str,
+    names: &mut Vec<String>,
+) {
+    if command
+        .spec
+        .is_none_or(|spec| !commands.contains(&spec.name))
+    {
         return;
     }
     // As `Reader::file_name`: a name goes on as long as nothing separates its parts.
@@ -56,11 +85,18 @@ fn names_of(command: &Command, syntax: &Syntax, text: &str, names: &mut Vec<Stri
 
 #[cfg(test)]
 mod tests {
-    use super::reads;
+    use super::{asset_names, reads};
 
     #[test]
     fn names_are_found_wherever_read_stands() {
         let text = "read a.rat, sub/b-2.rat # not c.rat\nif 1 {\n  @READ d.rat\n}\nfor i = 1 to 2 {\n read e.rat\n}\nreadx f.rat\n";
         assert_eq!(reads(text), ["a.rat", "sub/b-2.rat", "d.rat", "e.rat"]);
+    }
+
+    #[test]
+    fn images_and_meshes_are_found() {
+        let text =
+            "mesh Clay, parts/bunny.ply\nif 1 { terra Clay hills.png 0 0 0 1 1 1 }\nmesh robust";
+        assert_eq!(asset_names(text), ["parts/bunny.ply", "hills.png"]);
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! All coordinates are world coordinates: objects and their transforms are already applied.
 
+use crate::Quadric;
 use field::Kernel;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -96,10 +97,50 @@ pub enum Shape {
         /// Half the thickness; 0 for a plain plane.
         radius: f64,
     },
+    /// A cone cut off at both ends, with flat lids. Soft: a line segment whose radius in isolation
+    /// varies evenly from one end to the other.
+    Cone {
+        /// One end of the axis.
+        base: DVec3,
+        /// The radius there, ≥ 0.
+        base_radius: f64,
+        /// The other end.
+        apex: DVec3,
+        /// The radius there, ≥ 0; at least one of the two is > 0.
+        apex_radius: f64,
+    },
+    /// The wall of a cylinder, without lids. Soft: a line segment.
+    Pipe {
+        /// One end of the axis.
+        base: DVec3,
+        /// The other end.
+        apex: DVec3,
+        /// Radius, > 0.
+        radius: f64,
+    },
+    /// A box that may be turned and sheared: the points `center + Σ sᵢ·axisᵢ`, −1 ≤ sᵢ ≤ 1. It has
+    /// no skeleton and stays hard.
+    Box {
+        /// Its middle.
+        center: DVec3,
+        /// From the middle to the middles of three faces; they span a volume.
+        axes: [DVec3; 3],
+    },
+    /// A flat triangle that is lit as if it were curved (Phong's interpolation of normals). Soft:
+    /// the flat triangle.
+    Patch {
+        /// Corners.
+        corners: [DVec3; 3],
+        /// The normals that light sees at the corners; any length but 0.
+        normals: [DVec3; 3],
+    },
+    /// A piece of a surface of the second degree. It has no skeleton and stays hard.
+    Quadric(Box<Quadric>),
 }
 
 impl Shape {
-    /// The shape's own radius (its tube, ball or half thickness).
+    /// The shape's own radius (its tube, ball or half thickness; of a cone, the larger one). 0 for
+    /// what has none.
     #[must_use]
     pub fn radius(&self) -> f64 {
         match *self {
@@ -109,7 +150,21 @@ impl Shape {
             | Self::Triangle { radius, .. }
             | Self::Polygon { radius, .. }
             | Self::Curve { radius, .. }
-            | Self::Plane { radius, .. } => radius,
+            | Self::Plane { radius, .. }
+            | Self::Pipe { radius, .. } => radius,
+            Self::Cone {
+                base_radius,
+                apex_radius,
+                ..
+            } => base_radius.max(apex_radius),
+            Self::Box { .. } | Self::Patch { .. } | Self::Quadric(_) => 0.0,
         }
+    }
+
+    /// Whether the shape can be part of a convolution surface. What has no skeleton stays hard,
+    /// whatever its material.
+    #[must_use]
+    pub fn has_skeleton(&self) -> bool {
+        !matches!(self, Self::Box { .. } | Self::Quadric(_))
     }
 }

@@ -12,6 +12,7 @@ pub mod light;
 pub mod limbs;
 pub mod material;
 pub mod parts;
+pub mod quadric;
 pub mod settings;
 pub mod soft;
 pub mod wire;
@@ -20,6 +21,7 @@ pub use camera::{Camera, Projection};
 pub use element::{Element, Origin, Shape};
 pub use light::{Light, LightKind};
 pub use material::Material;
+pub use quadric::Quadric;
 pub use settings::{Fragile, Settings};
 pub use soft::SoftSurface;
 

@@ -1,5 +1,5 @@
 //! What a shape's offset surface is made of, for renderers that know balls, cylinders, arcs, triangles
-//! and planes only: a polygon is cut into triangles, a curve into short cylinders with balls between.
+//! and the like only: a polygon is cut into triangles, a curve into short cylinders with balls between.
 
 use crate::Shape;
 use glam::DVec3;
@@ -33,6 +33,11 @@ impl Shape {
                 }
                 parts
             }
+            // With flesh around it, a patch is a triangle like others.
+            Self::Patch { corners, .. } if radius > 0.0 => vec![Self::Triangle {
+                corners: *corners,
+                radius,
+            }],
             simple => vec![simple.clone()],
         }
     }

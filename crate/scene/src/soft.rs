@@ -22,14 +22,17 @@ impl Scene {
     }
 
     fn material_is_soft(&self, element: &Element) -> bool {
-        self.materials
-            .get(element.material)
-            .is_some_and(crate::Material::is_soft)
+        element.shape.has_skeleton()
+            && self
+                .materials
+                .get(element.material)
+                .is_some_and(crate::Material::is_soft)
     }
 
     /// The radius that counts for an element: for soft materials the material's own where
     /// `fragile` says so and it is given, else the shape's. With `soft off` the offset surface of
-    /// such an element is drawn at the same radius.
+    /// such an element is drawn at the same radius. A cone keeps its own two radii; this is the
+    /// larger one.
     #[must_use]
     pub fn radius(&self, element: &Element) -> f64 {
         let own = element.shape.radius();
@@ -38,17 +41,24 @@ impl Scene {
         }
         let Fragile {
             arc,
+            pipe,
             cylinder,
             sphere,
-            ..
         } = self.settings.fragile;
         let material = &self.materials[element.material];
         let given = if material.depth > 0.0 {
             let shaping = self.shaping(element, material, 1.0);
             let dimension = match element.shape {
                 Shape::Sphere { .. } => 0,
-                Shape::Cylinder { .. } | Shape::Arc { .. } | Shape::Curve { .. } => 1,
-                Shape::Triangle { .. } | Shape::Polygon { .. } | Shape::Plane { .. } => 2,
+                Shape::Cylinder { .. }
+                | Shape::Pipe { .. }
+                | Shape::Arc { .. }
+                | Shape::Curve { .. } => 1,
+                Shape::Triangle { .. }
+                | Shape::Patch { .. }
+                | Shape::Polygon { .. }
+                | Shape::Plane { .. } => 2,
+                Shape::Cone { .. } | Shape::Box { .. } | Shape::Quadric(_) => return own,
             };
             let radius = shaping.radius_of_depth(material.depth, dimension);
             radius.unwrap_or(0.0)
@@ -60,9 +70,14 @@ impl Scene {
         let overruled = match element.shape {
             Shape::Arc { .. } | Shape::Curve { .. } => arc,
             Shape::Cylinder { .. } => cylinder,
+            Shape::Pipe { .. } => pipe,
             Shape::Sphere { .. } => sphere,
             // These have no radius of their own in the language.
-            Shape::Triangle { .. } | Shape::Polygon { .. } | Shape::Plane { .. } => true,
+            Shape::Triangle { .. }
+            | Shape::Patch { .. }
+            | Shape::Polygon { .. }
+            | Shape::Plane { .. } => true,
+            Shape::Cone { .. } | Shape::Box { .. } | Shape::Quadric(_) => return own,
         };
         // Some commands write shapes without a radius (`dot`, `line`).
         if (overruled || own == 0.0) && given > 0.0 {
@@ -76,21 +91,40 @@ impl Scene {
     #[must_use]
     pub fn is_too_long(&self, element: &Element) -> bool {
         let material = &self.materials[element.material];
-        let tapers = material.end_radius.is_some() || material.end_blobbiness.is_some();
+        let shaping = self.shaping(element, material, self.radius(element));
+        let tapers = shaping.taper.is_some();
         // From above: an arc's circle, a curve's control polygon.
         let length = match &element.shape {
             Shape::Curve { control, .. } => control.windows(2).map(|w| w[0].distance(w[1])).sum(),
-            Shape::Cylinder { base, apex, .. } if tapers => base.distance(*apex),
+            Shape::Cylinder { base, apex, .. }
+            | Shape::Pipe { base, apex, .. }
+            | Shape::Cone { base, apex, .. }
+                if tapers =>
+            {
+                base.distance(*apex)
+            }
             Shape::Arc { sweep, angle, .. } if tapers => sweep * angle,
             _ => return false,
         };
-        let shaping = self.shaping(element, material, self.radius(element));
         shaping.widths_along(length) > field::primitive::LONGEST
     }
 
     /// What the field is told of an element with this radius.
     fn shaping(&self, element: &Element, material: &Material, radius: f64) -> field::Shaping {
-        let tapers = material.end_radius.is_some() || material.end_blobbiness.is_some();
+        // A cone brings its own radii, whatever its material's.
+        let (radius, end_radius) = match element.shape {
+            Shape::Cone {
+                base_radius,
+                apex_radius,
+                ..
+            } => {
+                // A tip may be at the start.
+                let start = base_radius.max(SLIMMEST * apex_radius);
+                (start, (apex_radius != start).then_some(apex_radius))
+            }
+            _ => (radius, material.end_radius),
+        };
+        let tapers = end_radius.is_some() || material.end_blobbiness.is_some();
         field::Shaping {
             kernel: material.kernel.unwrap_or(element.kernel),
             radius,
@@ -99,7 +133,7 @@ impl Scene {
             strength: material.strength,
             influence: self.settings.influence,
             taper: tapers.then(|| field::Taper {
-                radius: material.end_radius.unwrap_or(radius),
+                radius: end_radius.unwrap_or(radius),
                 blobbiness: material.end_blobbiness.unwrap_or(material.blobbiness),
             }),
         }
@@ -117,7 +151,9 @@ impl Scene {
             let material = &self.materials[element.material];
             let skeleton = match element.shape.clone() {
                 Shape::Sphere { center, .. } => Skeleton::Point { center },
-                Shape::Cylinder { base, apex, .. } => Skeleton::Segment { base, apex },
+                Shape::Cylinder { base, apex, .. }
+                | Shape::Pipe { base, apex, .. }
+                | Shape::Cone { base, apex, .. } => Skeleton::Segment { base, apex },
                 Shape::Arc {
                     center,
                     u,
@@ -132,10 +168,13 @@ impl Scene {
                     radius: sweep,
                     angle,
                 },
-                Shape::Triangle { corners, .. } => Skeleton::Triangle { corners },
+                Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
+                    Skeleton::Triangle { corners }
+                }
                 Shape::Polygon { rings, .. } => Skeleton::Polygon { rings },
                 Shape::Curve { control, .. } => Skeleton::Curve { control },
                 Shape::Plane { point, normal, .. } => Skeleton::Plane { point, normal },
+                Shape::Box { .. } | Shape::Quadric(_) => continue,
             };
             let shaping = self.shaping(element, material, self.radius(element));
             let profile = match skeleton {

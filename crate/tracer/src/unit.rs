@@ -59,7 +59,7 @@ impl Unit {
                     *center = self.map(*center);
                     *radius *= k;
                 }
-                Shape::Cylinder { base, apex, radius } => {
+                Shape::Cylinder { base, apex, radius } | Shape::Pipe { base, apex, radius } => {
                     *base = self.map(*base);
                     *apex = self.map(*apex);
                     *radius *= k;
@@ -91,6 +91,26 @@ impl Unit {
                 Shape::Plane { point, radius, .. } => {
                     *point = self.map(*point);
                     *radius *= k;
+                }
+                Shape::Cone {
+                    base,
+                    base_radius,
+                    apex,
+                    apex_radius,
+                } => {
+                    *base = self.map(*base);
+                    *apex = self.map(*apex);
+                    *base_radius *= k;
+                    *apex_radius *= k;
+                }
+                Shape::Box { center, axes } => {
+                    *center = self.map(*center);
+                    *axes = axes.map(|axis| axis * k);
+                }
+                Shape::Patch { corners, .. } => *corners = corners.map(|c| self.map(c)),
+                Shape::Quadric(quadric) => {
+                    quadric.center = self.map(quadric.center);
+                    quadric.axes = quadric.axes.map(|axis| axis * k);
                 }
             }
         }
@@ -139,13 +159,23 @@ fn corners(shape: &Shape) -> (DVec3, DVec3) {
         Shape::Polygon { ref rings, .. } => around(&mut rings.iter().flatten()),
         Shape::Curve { ref control, .. } => around(&mut control.iter()),
         Shape::Sphere { center, .. } => (center, center),
-        Shape::Cylinder { base, apex, .. } => (base.min(apex), base.max(apex)),
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Pipe { base, apex, .. }
+        | Shape::Cone { base, apex, .. } => around(&mut [base, apex].iter()),
         Shape::Arc { center, sweep, .. } => {
             (center - DVec3::splat(sweep), center + DVec3::splat(sweep))
         }
-        Shape::Triangle {
-            corners: [a, b, c], ..
-        } => (a.min(b).min(c), a.max(b).max(c)),
+        Shape::Triangle { ref corners, .. } | Shape::Patch { ref corners, .. } => {
+            around(&mut corners.iter())
+        }
         Shape::Plane { point, .. } => (point, point),
+        Shape::Box { center, axes } => boxed(center, axes),
+        Shape::Quadric(ref quadric) => boxed(quadric.center, quadric.axes),
     }
+}
+
+/// The corners of the axis-parallel box around one that need not be.
+fn boxed(center: DVec3, axes: [DVec3; 3]) -> (DVec3, DVec3) {
+    let reach = axes[0].abs() + axes[1].abs() + axes[2].abs();
+    (center - reach, center + reach)
 }

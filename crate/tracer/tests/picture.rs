@@ -302,6 +302,16 @@ fn strange_scenes_end() {
                 Shape::Polygon { rings, .. } => rings[0][0].x = bad,
                 Shape::Curve { control, .. } => control[2].y = bad,
                 Shape::Plane { normal, .. } => *normal *= bad,
+                Shape::Cone { apex_radius, .. } => *apex_radius = bad,
+                Shape::Pipe { apex, .. } => apex.z = bad,
+                Shape::Box { axes, .. } => axes[1] *= bad,
+                Shape::Patch { corners, normals } => {
+                    normals[2] *= bad;
+                    if i % 2 == 0 {
+                        corners[0].x = bad;
+                    }
+                }
+                Shape::Quadric(quadric) => quadric.constant = bad,
                 Shape::Sphere { radius, .. } => *radius = bad,
             }
         }

@@ -2,7 +2,7 @@
 //! shares neither formula nor method with the shaders.
 
 use glam::{DVec2, DVec3};
-use scene::{Scene, Shape};
+use scene::{Quadric, Scene, Shape};
 
 /// Steps along a ray. A chord shorter than a step is missed, which concerns silhouettes only.
 const STEPS: u32 = 1000;
@@ -24,7 +24,18 @@ pub fn first(scene: &Scene, eye: DVec3, direction: DVec3) -> Option<Met> {
         if let Some(distance) = boundary(&element.shape, radius, eye, direction)
             && best.is_none_or(|met| distance < met.distance)
         {
-            let normal = normal(&element.shape, radius, eye + direction * distance);
+            let mut normal = normal(&element.shape, radius, eye + direction * distance);
+            if let Shape::Patch {
+                corners: [a, b, c], ..
+            } = element.shape
+            {
+                // A patch is seen from the side that its face shows, at most edge-on.
+                let face = (b - a).cross(c - a);
+                let face = face * face.dot(normal).signum();
+                if face.dot(direction) * normal.dot(direction) < 0.0 {
+                    normal = (normal - direction * normal.dot(direction)).normalize();
+                }
+            }
             best = Some(Met {
                 element: index,
                 distance,
@@ -62,6 +73,14 @@ fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<
         }
         _ => {}
     }
+    // A flat thing with normals of its own is where its plane is.
+    if let Shape::Patch { corners, .. } = *shape {
+        let flat = Shape::Triangle {
+            corners,
+            radius: 0.0,
+        };
+        return boundary(&flat, 0.0, eye, direction);
+    }
     let (center, reach) = ball_around(shape, radius);
     let middle = (center - eye).dot(direction);
     let square = reach * reach - (center - eye - direction * middle).length_squared();
@@ -72,8 +91,14 @@ fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<
     }
     let at = |i: u32| from + (to - from) * f64::from(i) / f64::from(STEPS);
     let is_inside = |t: f64| inside(shape, radius, eye + direction * t);
-    let start = is_inside(from);
-    let change = (1..=STEPS).find(|&i| is_inside(at(i)) != start)?;
+    // What is open ends where it is cut off; going in or out there is no crossing.
+    let reaches = |t: f64| reaches(shape, eye + direction * t);
+    let crossed = |&i: &u32| {
+        let (a, b) = (at(i - 1), at(i));
+        is_inside(a) != is_inside(b) && reaches(a) && reaches(b)
+    };
+    let change = (1..=STEPS).find(crossed)?;
+    let start = is_inside(at(change - 1));
     let (mut before, mut after) = (at(change - 1), at(change));
     for _ in 0..60 {
         let half = 0.5 * (before + after);
@@ -117,8 +142,46 @@ fn ball_around(shape: &Shape, radius: f64) -> (DVec3, f64) {
             let far = corners.map(|c| c.distance(center));
             (center, far[0].max(far[1]).max(far[2]) + radius)
         }
-        Shape::Plane { .. } => unreachable!("solved directly"),
+        Shape::Cone {
+            base,
+            apex,
+            base_radius,
+            apex_radius,
+        } => (
+            base.midpoint(apex),
+            base.distance(apex) * 0.5 + base_radius.max(apex_radius),
+        ),
+        Shape::Pipe { base, apex, .. } => (base.midpoint(apex), base.distance(apex) * 0.5 + radius),
+        Shape::Box { center, axes } => (center, axes.iter().map(|a| a.length()).sum()),
+        Shape::Quadric(ref q) => (q.center, q.axes.iter().map(|a| a.length()).sum()),
+        Shape::Plane { .. } | Shape::Patch { .. } => unreachable!("solved directly"),
         Shape::Polygon { .. } | Shape::Curve { .. } => unreachable!("drawn as their parts"),
+    }
+}
+
+/// A point in coordinates along three axes (Cramer's rule).
+fn along([x, y, z]: [DVec3; 3], d: DVec3) -> DVec3 {
+    let sides = [d.cross(y).dot(z), x.cross(d).dot(z), x.cross(y).dot(d)];
+    DVec3::from(sides) / x.cross(y).dot(z)
+}
+
+fn in_quadric(quadric: &Quadric, p: DVec3) -> DVec3 {
+    along(quadric.axes, p - quadric.center)
+}
+
+/// Share of the way from one end to the other of the foot of p on an axis, and its distance from it.
+fn about_axis(base: DVec3, apex: DVec3, p: DVec3) -> (f64, f64) {
+    let way = apex - base;
+    let share = (p - base).dot(way) / way.length_squared();
+    (share, (p - base - way * share).length())
+}
+
+/// Whether an open surface is there at all, or cut off.
+fn reaches(shape: &Shape, p: DVec3) -> bool {
+    match *shape {
+        Shape::Pipe { base, apex, .. } => (0.0..=1.0).contains(&about_axis(base, apex, p).0),
+        Shape::Quadric(ref quadric) => in_quadric(quadric, p).abs().max_element() <= 1.0,
+        _ => true,
     }
 }
 
@@ -165,7 +228,20 @@ fn inside(shape: &Shape, radius: f64, p: DVec3) -> bool {
                 .normalize();
             (p - corners[0]).dot(normal).abs() <= radius && inside_edges(corners, p)
         }
-        Shape::Plane { .. } => unreachable!("solved directly"),
+        Shape::Cone {
+            base,
+            apex,
+            base_radius,
+            apex_radius,
+        } => {
+            let (share, distance) = about_axis(base, apex, p);
+            (0.0..=1.0).contains(&share)
+                && distance <= base_radius + (apex_radius - base_radius) * share
+        }
+        Shape::Pipe { base, apex, .. } => about_axis(base, apex, p).1 <= radius,
+        Shape::Box { center, axes } => along(axes, p - center).abs().max_element() <= 1.0,
+        Shape::Quadric(ref quadric) => quadric.value(in_quadric(quadric, p)).0 <= 0.0,
+        Shape::Plane { .. } | Shape::Patch { .. } => unreachable!("solved directly"),
         Shape::Polygon { .. } | Shape::Curve { .. } => unreachable!("drawn as their parts"),
     }
 }
@@ -177,6 +253,48 @@ fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
         Shape::Sphere { center, .. } => return (p - center).normalize(),
         Shape::Plane { normal, .. } => return normal,
         Shape::Polygon { .. } | Shape::Curve { .. } => unreachable!("drawn as their parts"),
+        Shape::Patch { corners, normals } => {
+            let [a, b, c] = corners;
+            let n = (b - a).cross(c - a);
+            let share = |q: DVec3, r: DVec3| (q - p).cross(r - p).dot(n);
+            let mixed = normals[0].normalize() * share(b, c)
+                + normals[1].normalize() * share(c, a)
+                + normals[2].normalize() * share(a, b);
+            return mixed.normalize();
+        }
+        Shape::Pipe { base, apex, .. } => {
+            let way = (apex - base).normalize();
+            return (p - base).reject_from_normalized(way).normalize();
+        }
+        Shape::Quadric(ref quadric) => {
+            // From one side to the other along each axis of the world.
+            let value = |p: DVec3| quadric.value(in_quadric(quadric, p)).0;
+            let slope = |axis: DVec3| value(p + axis * 1e-5) - value(p - axis * 1e-5);
+            return DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)).normalize();
+        }
+        Shape::Box { center, axes } => {
+            let at = along(axes, p - center);
+            for i in 0..3 {
+                let across = axes[(i + 1) % 3].cross(axes[(i + 2) % 3]).normalize();
+                faces.push(((at[i].abs() - 1.0).abs(), across));
+            }
+        }
+        Shape::Cone {
+            base,
+            apex,
+            base_radius,
+            apex_radius,
+        } => {
+            let (share, distance) = about_axis(base, apex, p);
+            let length = base.distance(apex);
+            let axis = (apex - base) / length;
+            let slope = (apex_radius - base_radius) / length;
+            faces.push(((share * length).abs(), axis));
+            faces.push((((1.0 - share) * length).abs(), axis));
+            let wall = (distance - base_radius - slope * share * length).abs();
+            let aside = (p - base).reject_from_normalized(axis).normalize();
+            faces.push((wall, (aside - axis * slope).normalize()));
+        }
         Shape::Cylinder { base, apex, .. } => {
             let axis = (apex - base).normalize();
             let along = (p - base).dot(axis);

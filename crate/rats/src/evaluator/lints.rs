@@ -10,8 +10,9 @@ use field::THRESHOLD;
 use glam::DVec3;
 use scene::{Element, Scene, Shape};
 
-/// Elements up to which the field is evaluated.
-const MOST_ELEMENTS: usize = 2000;
+/// Weight of the scene up to which the field is evaluated (see [`crate::limits::CURVE_WEIGHT`]): limbs
+/// that taper take a millisecond each to prepare.
+const MOST_WEIGHT: usize = 1000;
 /// Evaluations of one element's field that the lints may cost.
 const MOST_EVALUATIONS: usize = 40_000;
 
@@ -22,7 +23,7 @@ impl Evaluator<'_> {
             return;
         }
         self.lint_view(scene);
-        if scene.elements.len() <= MOST_ELEMENTS && scene.settings.soft {
+        if self.model.weight() <= MOST_WEIGHT && scene.settings.soft {
             self.lint_field(scene);
         }
     }
@@ -121,7 +122,9 @@ impl Evaluator<'_> {
 fn bone(shape: &Shape) -> Vec<DVec3> {
     match shape {
         Shape::Sphere { center, .. } => vec![*center],
-        Shape::Cylinder { base, apex, .. } => (0..=8)
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Pipe { base, apex, .. }
+        | Shape::Cone { base, apex, .. } => (0..=8)
             .map(|i| base.lerp(*apex, f64::from(i) / 8.0))
             .collect(),
         Shape::Arc {
@@ -137,7 +140,9 @@ fn bone(shape: &Shape) -> Vec<DVec3> {
                 *center + (*u * libm::cos(t) + *v * libm::sin(t)) * *sweep
             })
             .collect(),
-        Shape::Triangle { corners, .. } => {
+        Shape::Box { center, .. } => vec![*center],
+        Shape::Quadric(quadric) => vec![quadric.center],
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
             let [a, b, c] = *corners;
             let middle = (a + b + c) / 3.0;
             vec![
@@ -166,18 +171,26 @@ fn ball(scene: &Scene, element: &Element) -> Option<(DVec3, f64)> {
     if matches!(element.shape, Shape::Plane { .. }) {
         return None;
     }
-    let points = match &element.shape {
-        Shape::Triangle { corners, .. } => corners.to_vec(),
-        Shape::Polygon { rings, .. } => rings.iter().flatten().copied().collect(),
-        Shape::Curve { control, .. } => control.to_vec(),
-        Shape::Cylinder { base, apex, .. } => vec![*base, *apex],
-        shape => bone(shape),
+    let around = |points: &[DVec3]| {
+        let centre = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+        let reach = points.iter().map(|p| p.distance(centre));
+        (centre, reach.fold(0.0, f64::max))
     };
-    let centre = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
-    let reach = points
-        .iter()
-        .map(|p| p.distance(centre))
-        .fold(0.0, f64::max);
+    let (centre, reach) = match &element.shape {
+        Shape::Sphere { center, .. } => (*center, 0.0),
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => around(corners),
+        Shape::Polygon { rings, .. } => around(&rings[0]),
+        Shape::Curve { control, .. } => around(control),
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Pipe { base, apex, .. }
+        | Shape::Cone { base, apex, .. } => around(&[*base, *apex]),
+        Shape::Box { center, axes } => (*center, axes.iter().map(|a| a.length()).sum()),
+        Shape::Quadric(quadric) => {
+            let reach = quadric.axes.iter().map(|axis| axis.length()).sum();
+            (quadric.center, reach)
+        }
+        shape => around(&bone(shape)),
+    };
     let flesh = scene.radius(element) * if scene.is_soft(element) { 1.5 } else { 1.0 };
     Some((centre, reach + flesh))
 }

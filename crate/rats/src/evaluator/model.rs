@@ -24,8 +24,6 @@ pub struct Part {
     pub to_world: DAffine3,
     /// Whether its command may have made other shapes too.
     pub repeated: bool,
-    /// Whether it was written as a pipe.
-    pub is_pipe: bool,
     /// Whether its width varies along it.
     pub tapers: bool,
     /// Whether it has been removed.
@@ -97,6 +95,11 @@ impl<'a> Model<'a> {
         self.last = Some(self.parts.len()..self.parts.len() + 1);
         self.parts.push(part);
         Ok(())
+    }
+
+    /// Makes all shapes from `first` on one nameless object: what transforms without a name move.
+    pub fn group(&mut self, first: usize) {
+        self.last = Some(first..self.parts.len());
     }
 
     /// Begins an object, or a chain of shapes of one material.
@@ -223,6 +226,12 @@ impl<'a> Model<'a> {
         Ok(())
     }
 
+    /// As how many shapes they count.
+    #[must_use]
+    pub fn weight(&self) -> usize {
+        self.weight
+    }
+
     /// Whether some of these shapes are round, so that only a uniform scale keeps their kind.
     #[must_use]
     pub fn has_round(&self, range: Range<usize>) -> bool {
@@ -232,6 +241,8 @@ impl<'a> Model<'a> {
                 Shape::Sphere { .. }
                     | Shape::Arc { .. }
                     | Shape::Cylinder { .. }
+                    | Shape::Pipe { .. }
+                    | Shape::Cone { .. }
                     | Shape::Curve { .. }
             )
         })

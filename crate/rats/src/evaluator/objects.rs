@@ -115,7 +115,11 @@ pub fn explode<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
 fn middle(shape: &Shape) -> DVec3 {
     match shape {
         Shape::Sphere { center, .. } => *center,
-        Shape::Cylinder { base, apex, .. } => (*base + *apex) * 0.5,
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Pipe { base, apex, .. }
+        | Shape::Cone { base, apex, .. } => (*base + *apex) * 0.5,
+        Shape::Box { center, .. } => *center,
+        Shape::Quadric(quadric) => quadric.center,
         Shape::Arc {
             center,
             u,
@@ -124,7 +128,9 @@ fn middle(shape: &Shape) -> DVec3 {
             angle,
             ..
         } => *center + (*u * libm::cos(0.5 * angle) + *v * libm::sin(0.5 * angle)) * *sweep,
-        Shape::Triangle { corners, .. } => corners.iter().sum::<DVec3>() / 3.0,
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
+            corners.iter().sum::<DVec3>() / 3.0
+        }
         Shape::Polygon { rings, .. } => rings.first().map_or(DVec3::ZERO, |ring| {
             ring.iter().sum::<DVec3>() / ring.len().max(1) as f64
         }),
@@ -185,8 +191,7 @@ fn target<'a>(
 
 /// Work on many shapes counts as many steps.
 fn charge(run: &mut Evaluator<'_>, command: &Command, range: &Range<usize>) -> Outcome<()> {
-    run.scope
-        .step(1 + range.len() as u64 / 4, &command.word_span)
+    run.scope.step(1 + range.len() as u64, &command.word_span)
 }
 
 impl Evaluator<'_> {

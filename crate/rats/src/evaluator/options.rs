@@ -1,7 +1,8 @@
 //! OPTIONS: settings of the whole picture.
 
 use super::{Evaluator, Flow};
-use crate::commands::options::FORMATS;
+use crate::Severity;
+use crate::commands::options::{FORMATS, MESH};
 use crate::problem::Outcome;
 use crate::syntax::Command;
 use field::BlobScale;
@@ -130,7 +131,21 @@ pub fn digger<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 
 /// `mesh robust|fast`, `mesh sn fn`
 pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.given(command)?;
-    run.not_carried_out(command.word_span.clone(), "`mesh`");
+    let mut read = run.reader(command);
+    let is_control = read.peek_word().is_some_and(|(_, word)| {
+        MESH.iter()
+            .any(|control| control.name.eq_ignore_ascii_case(word))
+    });
+    if !is_control {
+        return super::primitives::mesh(run, command);
+    }
+    read.at += 1;
+    read.end()?;
+    run.say(Severity::Note, command.word_span.clone(), || {
+        (
+            String::from("`mesh` with this word changes nothing here: faces are always checked"),
+            None,
+        )
+    });
     Ok(Flow::Next)
 }

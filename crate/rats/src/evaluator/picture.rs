@@ -87,17 +87,6 @@ impl Evaluator<'_> {
 /// A part's element in the scene, with the material that it needs there.
 fn settle(part: &Part, scene: &mut Scene, grown: &mut HashMap<(usize, u64), usize>) -> Element {
     let mut element = part.element.clone();
-    if part.is_pipe {
-        let radius = scene.materials[element.material].radius;
-        // The scene knows cylinders only; `fragile pipe` is settled here.
-        if scene.settings.fragile.pipe
-            && scene.materials[element.material].is_soft()
-            && radius > 0.0
-            && let Shape::Cylinder { radius: own, .. } = &mut element.shape
-        {
-            *own = radius * part.growth;
-        }
-    }
     // What is scaled has flesh scaled alike: the material's radius grows, an absolute width shrinks.
     if part.growth != 1.0 && scene.materials[element.material].is_soft() {
         let key = (element.material, part.growth.to_bits());
@@ -129,11 +118,17 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
     let is_soft = scene
         .materials
         .get(element.material)
-        .is_some_and(Material::is_soft);
+        .is_some_and(Material::is_soft)
+        && element.shape.has_skeleton();
     let needs_radius = is_soft
         || matches!(
             element.shape,
-            Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Arc { .. } | Shape::Curve { .. }
+            Shape::Sphere { .. }
+                | Shape::Cylinder { .. }
+                | Shape::Cone { .. }
+                | Shape::Pipe { .. }
+                | Shape::Arc { .. }
+                | Shape::Curve { .. }
         );
     if needs_radius && radius <= 0.0 {
         return Some(if is_soft {
@@ -150,9 +145,14 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
     }
     let degenerate = match element.shape {
         Shape::Sphere { .. } | Shape::Plane { .. } => false,
-        Shape::Cylinder { base, apex, .. } => base == apex,
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Pipe { base, apex, .. }
+        | Shape::Cone { base, apex, .. } => base == apex,
         Shape::Arc { sweep, angle, .. } => sweep <= 0.0 || angle <= 0.0,
         Shape::Triangle {
+            corners: [a, b, c], ..
+        }
+        | Shape::Patch {
             corners: [a, b, c], ..
         } => {
             let (ab, ac) = (b - a, c - a);
@@ -163,6 +163,8 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
             control: [a, b, c, d],
             ..
         } => a == b && b == c && c == d,
+        Shape::Box { axes, .. } => scene::quadric::inverse(axes).is_none(),
+        Shape::Quadric(ref quadric) => !quadric.is_surface(),
     };
     if is_soft && scene.is_too_long(element) {
         return Some((
@@ -180,6 +182,18 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
             Shape::Cylinder { .. } => {
                 || String::from("this cylinder's ends are the same point, so it is left out")
             }
+            Shape::Pipe { .. } => {
+                || String::from("this pipe's ends are the same point, so it is left out")
+            }
+            Shape::Cone { .. } => {
+                || String::from("this cone's ends are the same point, so it is left out")
+            }
+            Shape::Box { .. } => || String::from("this box has no volume, so it is left out"),
+            Shape::Quadric(_) => || {
+                String::from(
+                    "this quadric is no surface, or its box has no volume, so it is left out",
+                )
+            },
             Shape::Arc { .. } => || {
                 String::from("this arc has no length (sweep radius or width 0), so it is left out")
             },
@@ -217,9 +231,15 @@ fn is_in_bounds(part: &Part) -> bool {
     let fits = |v: glam::DVec3| v.abs().max_element() <= MAX_MAGNITUDE && v.is_finite();
     let places = match *shape {
         Shape::Sphere { center, .. } => fits(center),
-        Shape::Cylinder { base, apex, .. } => fits(base) && fits(apex),
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Pipe { base, apex, .. }
+        | Shape::Cone { base, apex, .. } => fits(base) && fits(apex),
         Shape::Arc { center, sweep, .. } => fits(center) && sweep.abs() <= MAX_MAGNITUDE,
-        Shape::Triangle { corners, .. } => corners.into_iter().all(fits),
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
+            corners.into_iter().all(fits)
+        }
+        Shape::Box { center, axes } => fits(center) && axes.into_iter().all(fits),
+        Shape::Quadric(ref quadric) => fits(quadric.center) && quadric.axes.into_iter().all(fits),
         Shape::Polygon { ref rings, .. } => rings.iter().flatten().copied().all(fits),
         Shape::Curve { control, .. } => control.into_iter().all(fits),
         Shape::Plane { point, normal, .. } => fits(point) && normal.is_finite(),

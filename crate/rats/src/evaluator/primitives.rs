@@ -3,15 +3,17 @@
 use super::model::Part;
 use super::{Evaluator, Flow};
 use crate::Severity;
-use crate::geometry::{self, ThreePoints};
+use crate::assets;
+use crate::geometry::{self, ThreePoints, Transform};
 use crate::given::Given;
 use crate::limits::MAX_CORNERS;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
 use field::Kernel;
-use glam::DAffine3;
-use scene::{Element, Shape};
+use glam::{DAffine3, DMat3, DVec3};
+use mesh::Mesh;
+use scene::{Element, Quadric, Shape};
 
 /// The operands, and the material's name: the chain's inside a chain, where shapes leave it out.
 fn operands<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<(Name<'a>, Given<'a>)> {
@@ -26,7 +28,7 @@ fn operands<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<(Name<
 impl<'a> Evaluator<'a> {
     fn add(&mut self, command: &'a Command, name: &Name<'a>, shape: Shape) -> Outcome<Flow> {
         let material = self.material(name)?;
-        self.add_of(command, material, shape, Kernel::Cauchy, false)
+        self.add_of(command, material, shape, Kernel::Cauchy)
     }
 
     fn add_of(
@@ -35,12 +37,16 @@ impl<'a> Evaluator<'a> {
         material: usize,
         shape: Shape,
         kernel: Kernel,
-        is_pipe: bool,
     ) -> Outcome<Flow> {
         let flesh = &self.palette.surfaces[material].material;
         let part = Part {
-            tapers: matches!(shape, Shape::Cylinder { .. } | Shape::Arc { .. })
-                && (flesh.end_radius.is_some() || flesh.end_blobbiness.is_some()),
+            tapers: match shape {
+                Shape::Cylinder { .. } | Shape::Pipe { .. } | Shape::Arc { .. } => {
+                    flesh.end_radius.is_some() || flesh.end_blobbiness.is_some()
+                }
+                Shape::Cone { .. } => flesh.is_soft(),
+                _ => false,
+            },
             element: Element {
                 shape,
                 material,
@@ -50,7 +56,6 @@ impl<'a> Evaluator<'a> {
             growth: 1.0,
             to_world: DAffine3::IDENTITY,
             repeated: self.repeating > 0 || !self.is_own(),
-            is_pipe,
             removed: false,
         };
         self.model.push(part, &command.span)?;
@@ -83,12 +88,15 @@ pub fn cylinder<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
     run.add(command, &name, cylinder_of(&given))
 }
 
-/// `pipe sn r BASE APEX`: drawn with lids, which soft ones do not show.
+/// `pipe sn r BASE APEX`
 pub fn pipe<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let (name, given) = operands(run, command)?;
-    let shape = cylinder_of(&given);
-    let material = run.material(&name)?;
-    run.add_of(command, material, shape, Kernel::Cauchy, true)
+    let shape = Shape::Pipe {
+        radius: given.number("r"),
+        base: given.vector("BASE"),
+        apex: given.vector("APEX"),
+    };
+    run.add(command, &name, shape)
 }
 
 /// `arc sn a b P N a1 a2`
@@ -262,7 +270,7 @@ fn of_kernel<'a>(
             *radius = surface.radius;
         }
     }
-    run.add_of(command, material, shape, kernel, false)
+    run.add_of(command, material, shape, kernel)
 }
 
 fn point(given: &Given<'_>) -> Shape {
@@ -296,27 +304,154 @@ pub fn triad<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
     of_kernel(run, command, Kernel::Inverse, |given| corners(given))
 }
 
-pub fn box_<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    not_yet(run, command)
-}
-pub fn brick<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    not_yet(run, command)
-}
+/// `cone sn b BASE a APEX`
 pub fn cone<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    not_yet(run, command)
+    let (name, given) = operands(run, command)?;
+    let shape = Shape::Cone {
+        base: given.vector("BASE"),
+        base_radius: given.number("b"),
+        apex: given.vector("APEX"),
+        apex_radius: given.number("a"),
+    };
+    run.add(command, &name, shape)
 }
+
+/// A shape that has no skeleton: a soft material makes it no softer.
+fn add_hard<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    name: &Name<'a>,
+    shape: Shape,
+) -> Outcome<Flow> {
+    let material = run.material(name)?;
+    if run.palette.surfaces[material].material.is_soft() {
+        let word = run.scope.symbols.word(command.word);
+        run.say(Severity::Warning, command.word_span.clone(), || {
+            (
+                format!("a {word} is no skeleton: it stays hard, whatever its material"),
+                Some(String::from("give it a material without blobbiness")),
+            )
+        });
+    }
+    run.add(command, name, shape)
+}
+
+fn box_between(low: DVec3, high: DVec3) -> Shape {
+    let half = (high - low).abs() * 0.5;
+    Shape::Box {
+        center: (low + high) * 0.5,
+        axes: [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * half),
+    }
+}
+
+/// `box sn PMIN PMAX`
+pub fn box_<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let (name, given) = operands(run, command)?;
+    let shape = box_between(given.vector("PMIN"), given.vector("PMAX"));
+    add_hard(run, command, &name, shape)
+}
+
+/// `brick sn x y z`
+pub fn brick<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let (name, given) = operands(run, command)?;
+    let half = DVec3::from_array(["x", "y", "z"].map(|side| given.number(side))) * 0.5;
+    add_hard(run, command, &name, box_between(-half, half))
+}
+
+/// `patch sn V1 N1 V2 N2 V3 N3`
 pub fn patch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    not_yet(run, command)
+    let (name, given) = operands(run, command)?;
+    let shape = Shape::Patch {
+        corners: ["V1", "V2", "V3"].map(|corner| given.vector(corner)),
+        normals: ["N1", "N2", "N3"].map(|normal| given.vector(normal)),
+    };
+    run.add(command, &name, shape)
 }
+
+/// `quadric sn a b c d e f g h i j [translate XYZ] [scale XYZ] [bounds MIN MAX]`
 pub fn quadric<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    not_yet(run, command)
+    let (name, given) = operands(run, command)?;
+    let [a, b, c, d, e, f, g, h, i, j] =
+        ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j"].map(|factor| given.number(factor));
+    let square = DMat3::from_cols(
+        DVec3::new(a, 0.5 * d, 0.5 * f),
+        DVec3::new(0.5 * d, b, 0.5 * e),
+        DVec3::new(0.5 * f, 0.5 * e, c),
+    );
+    let linear = DVec3::new(g, h, i) * 0.5;
+    let (low, high) = given
+        .option("bounds")
+        .map_or((-DVec3::ONE, DVec3::ONE), |bounds| {
+            let (low, high) = (bounds.given.vector("MIN"), bounds.given.vector("MAX"));
+            (low.min(high), low.max(high))
+        });
+    let mut quadric = Quadric::new(square, linear, j, low, high).ok_or_else(|| {
+        Problem::new(
+            command.span.clone(),
+            "this quadric is no surface: its factors are all 0, or its box has no volume",
+        )
+    })?;
+    let vector = |option| {
+        given
+            .option(option)
+            .map(|chosen| chosen.given.vector("XYZ"))
+    };
+    let scale = vector("scale").unwrap_or(DVec3::ONE);
+    let shift = vector("translate").unwrap_or(DVec3::ZERO);
+    quadric.axes = quadric.axes.map(|axis| axis * scale);
+    quadric.center = quadric.center * scale + shift;
+    add_hard(run, command, &name, Shape::Quadric(Box::new(quadric)))
 }
+
+/// `terra sn fn PMIN PMAX`: an image as a height field, lowest where it is black.
 pub fn terra<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    not_yet(run, command)
+    let (name, given) = operands(run, command)?;
+    let asset = run.asset(given.name("fn"))?;
+    let (one, other) = (given.vector("PMIN"), given.vector("PMAX"));
+    let (low, size) = (one.min(other), (other - one).abs());
+    let mesh = assets::terra(asset, size)
+        .map_err(|error| Problem::new(given.name("fn").span.clone(), error.to_string()))?;
+    let move_there = Transform::translation(low);
+    add_mesh(run, command, &name, &mesh, Some(&move_there))
 }
-fn not_yet<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    operands(run, command)?;
-    let name = run.scope.symbols.word(command.word);
-    run.not_carried_out(command.word_span.clone(), &format!("`{name}`"));
-    Ok(Flow::Next)
+
+/// `mesh sn fn`
+pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let (name, given) = operands(run, command)?;
+    let asset = run.asset(given.name("fn"))?;
+    let mesh = assets::mesh(asset)
+        .map_err(|error| Problem::new(given.name("fn").span.clone(), error.to_string()))?;
+    add_mesh(run, command, &name, &mesh, None)
+}
+
+/// Adds the triangles of a mesh as one object, named after nothing: it is the last one.
+fn add_mesh<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    name: &Name<'a>,
+    mesh: &Mesh,
+    transform: Option<&Transform>,
+) -> Outcome<Flow> {
+    let material = run.material(name)?;
+    run.scope
+        .step(mesh.triangles.len() as u64, &command.word_span)?;
+    let first = run.model.parts.len();
+    // Each triangle is one of many from here.
+    run.repeating += 1;
+    let mut result = Ok(());
+    for shape in mesh.shapes() {
+        let shape = match transform {
+            Some(transform) => transform.apply(&shape),
+            None => shape,
+        };
+        result = run
+            .add_of(command, material, shape, Kernel::Cauchy)
+            .map(drop);
+        if result.is_err() {
+            break;
+        }
+    }
+    run.repeating -= 1;
+    run.model.group(first);
+    result.map(|()| Flow::Next)
 }

@@ -30,32 +30,10 @@ impl Cylinder {
         let mut clip = Clip::whole_line();
         clip.half_space(ray, self.base, -self.axis);
         clip.half_space(ray, self.apex, self.axis);
-        // The infinite cylinder, in the plane across the axis.
-        let across = |v: DVec3| v - self.axis * v.dot(self.axis);
-        let start = across(ray.origin - self.base);
-        let rate = across(ray.direction);
-        let speed = rate.length();
-        if speed > 0.0 {
-            let way = rate / speed;
-            let nearest = -start.dot(way);
-            let half = self.radius * self.radius - (start + way * nearest).length_squared();
-            if half <= 0.0 {
-                return;
-            }
-            let half = half.sqrt();
-            let at = |s: f64| Crossing {
-                t: s / speed,
-                normal: (start + way * s) / self.radius,
-            };
-            let (enter, leave) = (at(nearest - half), at(nearest + half));
-            if enter.t > clip.enter.t {
-                clip.enter = enter;
-            }
-            if leave.t < clip.leave.t {
-                clip.leave = leave;
-            }
-        } else if start.length_squared() >= self.radius * self.radius {
-            return;
+        match wall(ray, self.base, self.axis, self.radius) {
+            Wall::Outside => return,
+            Wall::Inside => {}
+            Wall::Between(enter, leave) => clip.stretch(enter, leave),
         }
         clip.finish(out);
     }
@@ -68,5 +46,41 @@ impl Cylinder {
             0.5 * (self.base + self.apex),
             (half * half + self.radius * self.radius).sqrt(),
         )
+    }
+}
+
+/// Where a ray's line is within an endless cylinder.
+pub(super) enum Wall {
+    /// Nowhere.
+    Outside,
+    /// Everywhere: it runs along the axis.
+    Inside,
+    /// From where it enters to where it leaves.
+    Between(Crossing, Crossing),
+}
+
+/// Meets the endless cylinder about an axis through `base`, a unit vector, in the plane across it.
+pub(super) fn wall(ray: &Ray, base: DVec3, axis: DVec3, radius: f64) -> Wall {
+    let across = |v: DVec3| v - axis * v.dot(axis);
+    let start = across(ray.origin - base);
+    let rate = across(ray.direction);
+    let speed = rate.length();
+    if speed > 0.0 {
+        let way = rate / speed;
+        let nearest = -start.dot(way);
+        let half = radius * radius - (start + way * nearest).length_squared();
+        if half <= 0.0 {
+            return Wall::Outside;
+        }
+        let half = half.sqrt();
+        let at = |s: f64| Crossing {
+            t: s / speed,
+            normal: (start + way * s) / radius,
+        };
+        Wall::Between(at(nearest - half), at(nearest + half))
+    } else if start.length_squared() >= radius * radius {
+        Wall::Outside
+    } else {
+        Wall::Inside
     }
 }

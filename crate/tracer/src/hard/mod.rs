@@ -1,10 +1,15 @@
 //! Hard shapes: elements that do not blend, drawn as their offset surfaces.
 //!
-//! Each shape is a closed body (or, at zero thickness, a sheet) and knows every place where a ray
+//! Each shape is a closed body (or, without thickness or lids, a sheet) and knows every place where a ray
 //! crosses its surface.
 
+mod cone;
+mod cuboid;
 mod cylinder;
+mod patch;
+mod pipe;
 mod plane;
+mod quadric;
 mod sphere;
 mod torus;
 mod triangle;
@@ -16,8 +21,13 @@ use crate::ray::Ray;
 use glam::DVec3;
 use scene::Shape;
 
+pub use cone::Cone;
+pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
+pub use patch::Patch;
+pub use pipe::Pipe;
 pub use plane::Plane;
+pub use quadric::Quadric;
 pub use sphere::Sphere;
 pub use torus::Tube;
 pub use triangle::Prism;
@@ -44,11 +54,21 @@ pub enum Solid {
     Prism(Prism),
     /// A plane or slab.
     Plane(Plane),
+    /// A cone cut off at both ends, with flat lids.
+    Cone(Cone),
+    /// The wall of a cylinder.
+    Pipe(Pipe),
+    /// A box, maybe sheared.
+    Cuboid(Cuboid),
+    /// A triangle that is lit as if it were curved.
+    Patch(Patch),
+    /// A piece of a surface of the second degree.
+    Quadric(Box<Quadric>),
 }
 
 impl Solid {
-    /// A shape with the given radius (which may overrule the shape's own). `None` if it has no
-    /// surface: a number that is not finite, a size of zero.
+    /// A shape with the given radius, which may overrule the shape's own; those without a single
+    /// one ignore it. `None` if it has no surface: a number that is not finite, a size of zero.
     #[must_use]
     pub fn new(shape: &Shape, radius: f64) -> Option<Self> {
         if !radius.is_finite() {
@@ -71,6 +91,18 @@ impl Solid {
             Shape::Plane { point, normal, .. } => {
                 Plane::new(point, normal, radius).map(Self::Plane)
             }
+            Shape::Cone {
+                base,
+                base_radius,
+                apex,
+                apex_radius,
+            } => Cone::new([base, apex], [base_radius, apex_radius]).map(Self::Cone),
+            Shape::Pipe { base, apex, .. } => Pipe::new(base, apex, radius).map(Self::Pipe),
+            Shape::Box { center, axes } => Cuboid::new(center, axes).map(Self::Cuboid),
+            Shape::Patch { corners, normals } => Patch::new(corners, normals).map(Self::Patch),
+            Shape::Quadric(ref quadric) => {
+                Quadric::new(quadric).map(|q| Self::Quadric(Box::new(q)))
+            }
             // Made of several solids: see `Shape::parts`.
             Shape::Polygon { .. } | Shape::Curve { .. } => None,
         }
@@ -84,6 +116,11 @@ impl Solid {
             Self::Tube(s) => s.crossings(ray, out),
             Self::Prism(s) => s.crossings(ray, out),
             Self::Plane(s) => s.crossings(ray, out),
+            Self::Cone(s) => s.crossings(ray, out),
+            Self::Pipe(s) => s.crossings(ray, out),
+            Self::Cuboid(s) => s.crossings(ray, out),
+            Self::Patch(s) => s.crossings(ray, out),
+            Self::Quadric(s) => s.crossings(ray, out),
         }
     }
 
@@ -96,6 +133,11 @@ impl Solid {
             Self::Tube(s) => Some(s.ball()),
             Self::Prism(s) => Some(s.ball()),
             Self::Plane(_) => None,
+            Self::Cone(s) => Some(s.ball()),
+            Self::Pipe(s) => Some(s.ball()),
+            Self::Cuboid(s) => Some(s.ball()),
+            Self::Patch(s) => Some(s.ball()),
+            Self::Quadric(s) => Some(s.ball()),
         }
     }
 }
@@ -142,11 +184,46 @@ impl Clip {
         }
     }
 
-    /// Adds both ends if anything is left and they are finite.
-    fn finish(&self, out: &mut Vec<Crossing>) {
-        if self.enter.t < self.leave.t && self.enter.t.is_finite() && self.leave.t.is_finite() {
-            out.push(self.enter);
-            out.push(self.leave);
+    /// Keeps what is between two crossings.
+    fn stretch(&mut self, enter: Crossing, leave: Crossing) {
+        if enter.t > self.enter.t {
+            self.enter = enter;
+        }
+        if leave.t < self.leave.t {
+            self.leave = leave;
         }
     }
+
+    /// Adds both ends if anything is left and they are finite.
+    fn finish(&self, out: &mut Vec<Crossing>) {
+        self.finish_from(0.0, out);
+    }
+
+    /// The same where the clip was made for a ray that starts at parameter `start` of the true one.
+    fn finish_from(&self, start: f64, out: &mut Vec<Crossing>) {
+        if self.enter.t < self.leave.t && self.enter.t.is_finite() && self.leave.t.is_finite() {
+            out.extend([self.enter, self.leave].map(|c| Crossing {
+                t: start + c.t,
+                ..c
+            }));
+        }
+    }
+}
+
+/// Where `a·t² + 2·b·t + c` is zero, in order; an end is infinite where `a` vanishes. `None` where it
+/// is zero nowhere, or everywhere.
+fn zeros(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
+    let square = b * b - a * c;
+    if square.is_nan() || square < 0.0 {
+        return None;
+    }
+    // The sum that does not cancel; the other root follows from the product of both.
+    let sum = -(b + square.sqrt().copysign(b));
+    let [p, q] = if sum == 0.0 {
+        [0.0, 0.0 / a]
+    } else {
+        // Adding 0 makes a negative zero positive.
+        [sum / (a + 0.0), c / sum]
+    };
+    (!p.is_nan() && !q.is_nan()).then_some([p.min(q), p.max(q)])
 }

@@ -289,3 +289,347 @@ fn shapes_without_a_surface_are_refused() {
     };
     assert!(Solid::new(&nowhere, 0.0).is_none());
 }
+
+/// Walks along rays like [`check`], for surfaces that end: `height` is of one sign on each side of
+/// the surface, and `None` where it does not reach.
+fn check_sheet(
+    numbers: &mut Numbers,
+    solid: &Solid,
+    height: &dyn Fn(DVec3) -> Option<f64>,
+) -> usize {
+    let (ball, reach) = solid.ball().unwrap();
+    let mut seen = 0;
+    for _ in 0..20 {
+        let ray = numbers.ray();
+        let mut crossings = Vec::new();
+        solid.crossings(&ray, &mut crossings);
+        let step = 5e-3;
+        let mut was = height(ray.at(-12.0));
+        let mut t = -12.0;
+        while t < 12.0 {
+            let is = height(ray.at(t + step));
+            let between = crossings.iter().filter(|c| c.t > t && c.t <= t + step);
+            let count = between.count();
+            match (was, is) {
+                (Some(a), Some(b)) => assert_eq!(
+                    count % 2 == 1,
+                    (a < 0.0) != (b < 0.0),
+                    "{solid:?} {ray:?} {t} {crossings:?}"
+                ),
+                // At the border it is left open; outside there is nothing.
+                (None, None) => assert_eq!(count, 0, "{solid:?} {ray:?} {t}"),
+                _ => {}
+            }
+            was = is;
+            t += step;
+        }
+        for c in &crossings {
+            seen += 1;
+            let p = ray.at(c.t);
+            assert!(p.distance(ball) <= reach * (1.0 + 1e-9));
+            assert!((c.normal.length() - 1.0).abs() < 1e-6, "{solid:?}");
+            assert!(
+                height(p).is_none_or(|h| h.abs() < 1e-9),
+                "{solid:?} {ray:?}"
+            );
+        }
+    }
+    seen
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn cones_blunt_and_pointed() {
+    let mut n = Numbers(5);
+    let mut seen = 0;
+    for case in 0..60 {
+        let (base, apex) = (n.vector(), n.vector());
+        let mut radii = [0.02 + n.next().abs(), 0.02 + n.next().abs()];
+        match case % 4 {
+            0 => radii[0] = 0.0,
+            1 => radii[1] = 0.0,
+            2 => radii[1] = radii[0] * (1.0 + 1e-9 * n.next()),
+            _ => {}
+        }
+        let shape = Shape::Cone {
+            base,
+            base_radius: radii[0],
+            apex,
+            apex_radius: radii[1],
+        };
+        let solid = Solid::new(&shape, 0.0).unwrap();
+        let axis = (apex - base).normalize();
+        let length = base.distance(apex);
+        seen += check(&mut n, &solid, &|p| {
+            let along = (p - base).dot(axis);
+            let radius = radii[0] + (radii[1] - radii[0]) * along / length;
+            (0.0..length).contains(&along) && (p - base - axis * along).length() < radius
+        });
+    }
+    assert!(seen > 400, "{seen}");
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn a_cone_of_even_width_is_a_cylinder() {
+    let mut n = Numbers(6);
+    for _ in 0..200 {
+        let (base, apex, radius) = (n.vector(), n.vector(), 0.02 + n.next().abs());
+        let cone = Cone::new([base, apex], [radius; 2]).unwrap();
+        let cylinder = Cylinder::new(base, apex, radius).unwrap();
+        let axis = (apex - base).normalize();
+        // Some go along the axis, inside and outside.
+        let along = Ray {
+            origin: base + axis.any_orthonormal_vector() * n.next(),
+            direction: axis,
+        };
+        for ray in [n.ray(), n.ray(), along] {
+            let (mut a, mut b) = (Vec::new(), Vec::new());
+            cone.crossings(&ray, &mut a);
+            cylinder.crossings(&ray, &mut b);
+            assert_eq!(a.len(), b.len(), "{cone:?} {ray:?}");
+            for (a, b) in a.iter().zip(&b) {
+                assert!((a.t - b.t).abs() < 1e-9 && a.normal.distance(b.normal) < 1e-6);
+            }
+        }
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn rays_along_the_wall_of_a_cone() {
+    // Parallel to a line of the wall, the equation is of the first degree.
+    let cone = Cone::new([DVec3::ZERO, DVec3::Z], [1.0, 0.0]).unwrap();
+    let direction = DVec3::new(-1.0, 0.0, 1.0).normalize();
+    for (offset, count) in [(0.0, 0), (0.5, 0), (-0.5, 2), (-1.5, 2), (-2.5, 0)] {
+        let ray = Ray {
+            origin: DVec3::new(1.0 + offset, 0.0, 0.0) - direction * 3.0,
+            direction,
+        };
+        let mut out = Vec::new();
+        cone.crossings(&ray, &mut out);
+        // On the wall itself rounding decides.
+        if offset != 0.0 {
+            assert_eq!(out.len(), count, "{offset} {out:?}");
+        }
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn boxes_straight_and_sheared() {
+    let mut n = Numbers(7);
+    let mut seen = 0;
+    for case in 0..40 {
+        let center = n.vector() * 0.5;
+        let axes = if case % 2 == 0 {
+            [n.vector(), n.vector(), n.vector()]
+        } else {
+            [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * n.next())
+        };
+        let solid = Solid::new(&Shape::Box { center, axes }, 0.0).unwrap();
+        let [x, y, z] = axes;
+        let volume = x.cross(y).dot(z);
+        seen += check(&mut n, &solid, &|p| {
+            // Cramer's rule.
+            let d = p - center;
+            let s = [d.cross(y).dot(z), x.cross(d).dot(z), x.cross(y).dot(d)];
+            s.iter().all(|s| (s / volume).abs() < 1.0)
+        });
+    }
+    assert!(seen > 200, "{seen}");
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn pipes_are_open() {
+    let mut n = Numbers(8);
+    let mut seen = 0;
+    for _ in 0..40 {
+        let (base, apex, radius) = (n.vector(), n.vector(), 0.02 + n.next().abs());
+        let solid = Solid::new(&Shape::Pipe { base, apex, radius }, radius).unwrap();
+        let axis = (apex - base).normalize();
+        let length = base.distance(apex);
+        seen += check_sheet(&mut n, &solid, &|p| {
+            let along = (p - base).dot(axis);
+            let across = (p - base - axis * along).length();
+            (0.0..=length).contains(&along).then_some(across - radius)
+        });
+    }
+    assert!(seen > 200, "{seen}");
+    let pipe = Pipe::new(DVec3::ZERO, DVec3::Z, 1.0).unwrap();
+    let through = Ray {
+        origin: DVec3::new(0.5, 0.0, 5.0),
+        direction: DVec3::NEG_Z,
+    };
+    let mut out = Vec::new();
+    pipe.crossings(&through, &mut out);
+    assert!(out.is_empty());
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn patches_are_flat_but_lit_round() {
+    let mut n = Numbers(9);
+    let mut seen = 0;
+    for _ in 0..60 {
+        let corners = [n.vector() * 2.0, n.vector() * 2.0, n.vector() * 2.0];
+        let normals = [n.vector(), n.vector(), n.vector()];
+        let solid = Solid::new(&Shape::Patch { corners, normals }, 0.0).unwrap();
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize();
+        let inside = |p: DVec3| {
+            let left = |a: DVec3, b: DVec3| (b - a).cross(p - a).dot(normal) > 0.0;
+            left(a, b) && left(b, c) && left(c, a)
+        };
+        seen += check_sheet(&mut n, &solid, &|p| inside(p).then(|| (p - a).dot(normal)));
+        // In the middle of an edge it is the mean of two normals. (A ray along it is never edge-on.)
+        let direction = (normals[0].normalize() + normals[1].normalize()).normalize();
+        let ray = Ray {
+            origin: a.midpoint(b) + (c - a) * 1e-9 - direction * 3.0,
+            direction,
+        };
+        let mut out = Vec::new();
+        solid.crossings(&ray, &mut out);
+        assert_eq!(out.len(), 1);
+        assert!(out[0].normal.cross(ray.direction).length() < 1e-6);
+    }
+    assert!(seen > 100, "{seen}");
+}
+
+/// Whatever the normals, the one that is given is on the side of the face that is seen.
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn patches_near_the_outline_are_not_lit_from_within() {
+    let mut n = Numbers(10);
+    let mut turned = 0;
+    for _ in 0..2000 {
+        let normals = [0, 1, 2].map(|_| DVec3::Z + n.vector() * 0.9);
+        let corners = [DVec3::NEG_ONE, DVec3::X, DVec3::Y].map(|c| c.with_z(0.0));
+        let patch = Patch::new(corners, normals).unwrap();
+        let ray = n.ray();
+        let mut out = Vec::new();
+        patch.crossings(&ray, &mut out);
+        for crossing in out {
+            let seen_from_above = ray.direction.z < 0.0;
+            let faces = crossing.normal.dot(ray.direction);
+            assert_eq!(faces <= 0.0, seen_from_above, "{ray:?} {crossing:?}");
+            turned += usize::from(faces.abs() < 1e-8);
+        }
+    }
+    assert!(turned > 5, "{turned}");
+}
+
+/// No ray slips between two patches that share an edge.
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn patches_join_without_gaps() {
+    let mut n = Numbers(11);
+    for _ in 0..2000 {
+        let [a, b, c, d] = [n.vector(), n.vector(), n.vector(), n.vector()];
+        let patches = [[a, b, c], [b, a, d]].map(|corners| Patch::new(corners, corners).unwrap());
+        let origin = n.vector() * 20.0;
+        let target = a.lerp(b, 0.5 + 0.45 * n.next());
+        let ray = Ray {
+            origin,
+            direction: (target - origin).normalize(),
+        };
+        let mut out = Vec::new();
+        for patch in patches {
+            patch.crossings(&ray, &mut out);
+        }
+        // Seen edge-on from beside both it may be met by neither; that is not a gap.
+        let normal = (b - a).cross(ray.direction);
+        let beside = normal.dot(c - a) * normal.dot(d - a) > 0.0;
+        assert!(beside || !out.is_empty(), "{ray:?} {patches:?}");
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn quadrics_of_every_kind() {
+    use glam::DMat3;
+    let mut n = Numbers(12);
+    let mut seen = 0;
+    for case in 0..120 {
+        // Ellipsoids, hyperboloids, cones; then cylinders and paraboloids; then planes.
+        let mut signs = [DVec3::ONE, DVec3::new(1.0, 1.0, -1.0)][case % 2];
+        match case % 5 {
+            0 => signs.x = 0.0,
+            1 => signs = DVec3::new(0.0, 1.0, 0.0),
+            2 => signs = DVec3::ZERO,
+            _ => {}
+        }
+        let turn = DMat3::from_cols(n.vector(), n.vector(), n.vector());
+        let square = turn.transpose() * DMat3::from_diagonal(signs) * turn;
+        let (low, high) = (-0.3 - n.vector().abs(), 0.3 + n.vector().abs());
+        let linear = n.vector() * 0.5;
+        let constant = [0.4 * n.next(), -0.2, 0.0][case % 3];
+        let mut surface = scene::Quadric::new(square, linear, constant, low, high).unwrap();
+        if case % 2 == 0 {
+            surface.axes = [n.vector(), n.vector(), n.vector()];
+        }
+        let shape = Shape::Quadric(Box::new(surface));
+        let solid = Solid::new(&shape, 0.0).unwrap();
+        let [x, y, z] = surface.axes;
+        let volume = x.cross(y).dot(z);
+        seen += check_sheet(&mut n, &solid, &|p| {
+            let d = p - surface.center;
+            let q = DVec3::new(d.cross(y).dot(z), x.cross(d).dot(z), x.cross(y).dot(d)) / volume;
+            (q.abs().max_element() <= 1.0).then(|| surface.value(q).0)
+        });
+    }
+    assert!(seen > 300, "{seen}");
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn a_round_quadric_is_a_ball() {
+    use glam::DMat3;
+    let bounds = DVec3::splat(1.0);
+    let ball = scene::Quadric::new(DMat3::IDENTITY, DVec3::ZERO, -0.81, -bounds, bounds).unwrap();
+    let quadric = Quadric::new(&ball).unwrap();
+    let sphere = Sphere::new(DVec3::ZERO, 0.9).unwrap();
+    let mut n = Numbers(13);
+    for case in 0..500 {
+        let mut ray = n.ray();
+        if case % 2 == 0 {
+            ray.origin -= ray.direction * 1e5;
+        }
+        let (mut a, mut b) = (Vec::new(), Vec::new());
+        quadric.crossings(&ray, &mut a);
+        sphere.crossings(&ray, &mut b);
+        assert_eq!(a.len(), b.len(), "{ray:?}");
+        for (a, b) in a.iter().zip(&b) {
+            assert!((a.t - b.t).abs() < 1e-8 && a.normal.distance(b.normal) < 1e-8);
+        }
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn new_shapes_without_a_surface_are_refused() {
+    let cone = |apex, r, s| Cone::new([DVec3::ZERO, apex], [r, s]);
+    assert!(cone(DVec3::X, 1.0, 0.0).is_some());
+    assert!(cone(DVec3::ZERO, 1.0, 0.0).is_none());
+    assert!(cone(DVec3::X, 0.0, 0.0).is_none());
+    assert!(cone(DVec3::X, 1.0, -1.0).is_none());
+    assert!(Pipe::new(DVec3::ONE, DVec3::ONE, 1.0).is_none());
+    assert!(Pipe::new(DVec3::ZERO, DVec3::ONE, 0.0).is_none());
+    let flat = [DVec3::X, DVec3::Y, DVec3::ONE.with_z(0.0)];
+    assert!(Cuboid::new(DVec3::ZERO, flat).is_none());
+    assert!(Cuboid::new(DVec3::ZERO, [DVec3::X, DVec3::Y, DVec3::ZERO]).is_none());
+    let line = [DVec3::ZERO, DVec3::X, DVec3::X * 2.0];
+    assert!(Patch::new(line, [DVec3::Z; 3]).is_none());
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    assert!(Patch::new(corners, [DVec3::ZERO; 3]).is_some());
+    for bad in [f64::NAN, f64::INFINITY] {
+        let vector = DVec3::X * bad;
+        assert!(cone(vector, 1.0, 1.0).is_none() && cone(DVec3::X, bad, 1.0).is_none());
+        assert!(Pipe::new(vector, DVec3::ONE, 1.0).is_none());
+        assert!(Cuboid::new(vector, [DVec3::X, DVec3::Y, DVec3::Z]).is_none());
+        assert!(Cuboid::new(DVec3::ZERO, [vector, DVec3::Y, DVec3::Z]).is_none());
+        assert!(Patch::new([vector, DVec3::Y, DVec3::Z], [DVec3::Z; 3]).is_none());
+        assert!(Patch::new(corners, [vector, DVec3::Z, DVec3::Z]).is_none());
+    }
+}

@@ -117,11 +117,10 @@ pub static OPTIONS: &[CommandSpec] = &[
         .example(clay!("sample 4\nsphere Clay 2, 0 0 0")),
     row("mesh", "triangles of a file (ours), or how polygons are checked", run(options::mesh))
         .takes(&[
-            word("control", o::MESH, "`robust` or `fast`").optional(""),
-            parameter("sn", Kind::Known(Names::Material), "the material's name").optional(""),
-            parameter("fn", Kind::File, "the mesh's name").optional(""),
+            parameter("sn", Kind::Known(Names::Material), "the material's name"),
+            parameter("fn", Kind::File, "the mesh's name"),
         ])
         .default("robust")
-        .details("`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL or GLB. Soft: each triangle is a skeleton. `mesh robust`, as RATS has it, changes nothing here: faces are always checked.")
-        .example("mesh robust"),
+        .details("`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL or GLB (`gem.obj` is built in). Soft: each triangle is a skeleton. `mesh robust`, as RATS has it, changes nothing here: faces are always checked.")
+        .example(clay!("eyep 3 4 3\nfov 30\nvup 0 0 1\nmesh Clay gem.obj")),
 ];

@@ -4,7 +4,7 @@ use super::{clay, flesh, row, run};
 use crate::commands::CommandSpec;
 use crate::commands::options as o;
 use crate::commands::parameter::{
-    Kind, Names, Parameter, degrees, direction, length, number, parameter, vector, whole,
+    Kind, Names, Parameter, degrees, direction, length, number, parameter, vector,
 };
 use crate::evaluator::primitives;
 
@@ -125,8 +125,7 @@ pub static PRIMITIVES: &[CommandSpec] = &[
             parameter("fn", Kind::File, "the image's name"),
             vector("PMIN", "one corner"),
             vector("PMAX", "the opposite corner"),
-            whole("n", 2, 256, "the number of samples across").optional("64"),
         ])
-        .details("A PNG image of the project: black lies at the lowest y of the box between the two corners, white at the highest. The printed table leaves its operands open; these are ours.")
-        .example("# needs an image of the project:\n# terra Clay hills.png <-3 0 -3> <3 1 3>"),
+        .details("A PNG image of the project (`hills.png` is built in): black lies at the lowest z of the box between the two corners, white at the highest; the image lies along x and y. The printed table leaves its operands open; these are ours.")
+        .example(clay!("eyep 4 -5 5\nvup 0 0 1\nterra Clay hills.png, <-3 -3 0> <3 3 1.5>")),
 ];

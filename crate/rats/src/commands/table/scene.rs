@@ -16,14 +16,14 @@ pub static SCENE: &[CommandSpec] = &[
         .example("surface Clay, diffuse SandyBrown, specular Gray50, shine 40\nlight White, position 4 8 10, intensity 0.8\nlight SkyBlue, distant, direction 1 0 -1, intensity 0.4, noshadow\nsphere Clay 2, 0 0 0"),
     row("fog", "fog", later())
         .takes(&[colour("Color", "the fog's colour"), parameter("options", Kind::Text, "the fog's options").optional("")])
-        .example("# warns that it is not drawn yet:\n# fog Gray"),
+        .example(clay!("fog Gray\nsphere Clay 2, 0 0 0")),
     row("background", "colour behind everything", run(scene::background))
         .takes(&[colour("Color", "the background's colour"), parameter("options", Kind::Text, "more colours").optional("")])
         .default("a dark slate")
         .example(clay!("background MidnightBlue\nsphere Clay 2, 0 0 0")),
     row("cloud", "clouds of light, halos", later())
         .takes(&[colour("Color", "the cloud's colour"), parameter("options", Kind::Text, "the cloud's options").optional("")])
-        .example("# warns that it is not drawn yet:\n# cloud White"),
+        .example(clay!("cloud White\nsphere Clay 2, 0 0 0")),
     row("remove", "remove an object", run(objects::remove))
         .takes(&[parameter("object", Kind::Known(Names::Object), "the object's name")])
         .example(clay!("sphere Clay 2, 0 0 0\nobject EXTRA\n  sphere Clay 2, 1 0 0\nclose\nremove EXTRA")),

@@ -1,0 +1,14 @@
+//! The limits that keep any file harmless.
+
+/// The largest file, bytes.
+pub const MAX_BYTES: usize = 32 * 1024 * 1024;
+/// Triangles of a mesh.
+pub const MAX_TRIANGLES: usize = 200_000;
+/// Corners of a mesh, and positions or normals in a file: three for each triangle.
+pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
+/// Bytes of a GLB file's description (the rest is numbers).
+pub const MAX_JSON: usize = 4 * 1024 * 1024;
+/// Pixels of a picture of heights.
+pub const MAX_PIXELS: usize = 4096 * 4096;
+/// Triangles of a height field. A larger picture is averaged to a smaller grid.
+pub const MAX_TERRA: usize = 2 * 256 * 256;

@@ -1,0 +1,135 @@
+//! OBJ: lines of text, of which `v`, `vn` and `f` are read.
+
+use crate::limits::MAX_VERTICES;
+use crate::{Error, Mesh, fail};
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// A corner of a face: its position and its normal, counted from 0.
+type Corner = (u32, Option<u32>);
+
+#[derive(Default)]
+struct Reader {
+    mesh: Mesh,
+    positions: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    /// Which corner of the mesh a position with a normal became.
+    corners: HashMap<Corner, u32>,
+    /// The normal of each corner of the mesh.
+    chosen: Vec<Option<u32>>,
+}
+
+pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut reader = Reader::default();
+    // A backslash at its end continues a line.
+    let mut begun = String::new();
+    for (line, number) in text.lines().zip(1..) {
+        let result = if let Some(part) = line.trim_end().strip_suffix('\\') {
+            begun.push_str(part);
+            begun.push(' ');
+            Ok(())
+        } else if begun.is_empty() {
+            reader.line(line)
+        } else {
+            begun.push_str(line);
+            reader.line(&std::mem::take(&mut begun))
+        };
+        if let Err(Error(text)) = result {
+            return fail(format!("line {number}: {text}"));
+        }
+    }
+    Ok(reader.finish())
+}
+
+impl Reader {
+    fn line(&mut self, line: &str) -> Result<(), Error> {
+        let line = line.split_once('#').map_or(line, |(line, _)| line);
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => triple(&mut self.positions, words),
+            Some("vn") => triple(&mut self.normals, words),
+            Some("f") => self.face(words),
+            // Texture coordinates, groups, materials, lines, …
+            _ => Ok(()),
+        }
+    }
+
+    fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<(), Error> {
+        let mut first_and_last = None;
+        let mut count = 0;
+        for word in words {
+            let corner = self.corner(word)?;
+            count += 1;
+            first_and_last = match first_and_last {
+                None => Some((corner, None)),
+                Some((first, None)) => Some((first, Some(corner))),
+                Some((first, Some(last))) => {
+                    self.mesh.triangle([first, last, corner])?;
+                    Some((first, Some(corner)))
+                }
+            };
+        }
+        if count < 3 {
+            return fail("a face needs at least three corners");
+        }
+        Ok(())
+    }
+
+    /// A corner written as `position`, `position/texture`, `position//normal` or
+    /// `position/texture/normal`.
+    fn corner(&mut self, word: &str) -> Result<u32, Error> {
+        let mut parts = word.split('/');
+        let position = index(parts.next().unwrap_or(""), self.positions.len(), "v")?;
+        let normal = match parts.nth(1) {
+            None | Some("") => None,
+            Some(part) => Some(index(part, self.normals.len(), "vn")?),
+        };
+        if let Some(&known) = self.corners.get(&(position, normal)) {
+            return Ok(known);
+        }
+        let corner = self.mesh.corner(self.positions[position as usize])?;
+        self.corners.insert((position, normal), corner);
+        self.chosen.push(normal);
+        Ok(corner)
+    }
+
+    fn finish(mut self) -> Mesh {
+        let normals = self.chosen.iter();
+        self.mesh.normals = normals
+            .map(|chosen| chosen.map(|i| self.normals[i as usize]))
+            .collect();
+        self.mesh
+    }
+}
+
+/// A place in a list, from 0, of a number that counts from 1, or from the end if it is negative.
+fn index(word: &str, count: usize, list: &str) -> Result<u32, Error> {
+    let place = match word.parse::<i64>() {
+        Ok(n) if n > 0 => Some(n - 1),
+        Ok(n) if n < 0 => n.checked_add(count as i64),
+        _ => None,
+    };
+    match place {
+        Some(place) if (0..count as i64).contains(&place) => Ok(place as u32),
+        _ => fail(format!(
+            "`{}` is none of the {count} `{list}` so far",
+            word.chars().take(20).collect::<String>()
+        )),
+    }
+}
+
+fn triple<'a>(
+    list: &mut Vec<DVec3>,
+    mut words: impl Iterator<Item = &'a str>,
+) -> Result<(), Error> {
+    let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
+    let (Some(x), Some(y), Some(z)) = (next(), next(), next()) else {
+        return fail("three numbers are needed here");
+    };
+    if list.len() == MAX_VERTICES {
+        return fail(format!("more than {MAX_VERTICES} positions or normals"));
+    }
+    list.push(DVec3::new(x, y, z));
+    Ok(())
+}

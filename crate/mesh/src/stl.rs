@@ -1,0 +1,85 @@
+//! STL: a list of loose triangles, as text or as numbers.
+//!
+//! The normals that it gives are those of the flat triangles, so they are passed over.
+
+use crate::cursor::Cursor;
+use crate::{Error, Mesh, fail};
+use glam::DVec3;
+
+/// Bytes before the first triangle: a comment and the count.
+const HEAD: usize = 84;
+/// Bytes of a triangle.
+const TRIANGLE: usize = 50;
+
+pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
+    // Some binary files begin with `solid` too: the size tells.
+    let count = Cursor::new(bytes.get(80..).unwrap_or_default(), false)
+        .take()
+        .map(u32::from_le_bytes);
+    let wanted = count.map(|n| HEAD as u64 + TRIANGLE as u64 * u64::from(n));
+    let size = bytes.len() as u64;
+    if wanted == Some(size) {
+        return numbers(&bytes[HEAD..]);
+    }
+    let text = bytes.trim_ascii_start();
+    if text
+        .get(..5)
+        .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+    {
+        return lines(&String::from_utf8_lossy(text));
+    }
+    match wanted {
+        Some(wanted) if wanted < size => numbers(&bytes[HEAD..wanted as usize]),
+        Some(wanted) => fail(format!(
+            "this STL file is cut off: it should have {wanted} bytes and has {size}"
+        )),
+        None => fail("this is no STL file: it is too short, and does not begin with `solid`"),
+    }
+}
+
+fn add(mesh: &mut Mesh, corners: [DVec3; 3]) -> Result<(), Error> {
+    let [a, b, c] = corners.map(|corner| mesh.corner(corner));
+    mesh.triangle([a?, b?, c?])
+}
+
+fn numbers(bytes: &[u8]) -> Result<Mesh, Error> {
+    let mut mesh = Mesh::default();
+    for triangle in bytes.chunks_exact(TRIANGLE) {
+        // After the normal.
+        let mut at = Cursor::new(&triangle[12..], false);
+        let mut next = || at.f32().unwrap_or(f64::NAN);
+        let mut corner = || DVec3::new(next(), next(), next());
+        add(&mut mesh, [corner(), corner(), corner()])?;
+    }
+    Ok(mesh)
+}
+
+fn lines(text: &str) -> Result<Mesh, Error> {
+    let mut mesh = Mesh::default();
+    let mut corners: Vec<DVec3> = Vec::new();
+    for (line, number) in text.lines().zip(1..) {
+        let mut words = line.split_ascii_whitespace();
+        let Some(word) = words.next() else { continue };
+        let at_line = |text: &str| Error(format!("line {number}: {text}"));
+        if word.eq_ignore_ascii_case("vertex") {
+            let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
+            let (Some(x), Some(y), Some(z)) = (next(), next(), next()) else {
+                return Err(at_line("a vertex needs three numbers"));
+            };
+            if corners.len() == 3 {
+                return Err(at_line("a facet has more than three vertices"));
+            }
+            corners.push(DVec3::new(x, y, z));
+        } else if word.eq_ignore_ascii_case("endfacet") {
+            let Ok(triangle) = <[DVec3; 3]>::try_from(&corners[..]) else {
+                return Err(at_line("a facet has fewer than three vertices"));
+            };
+            add(&mut mesh, triangle)?;
+            corners.clear();
+        }
+    }
+    if !corners.is_empty() {
+        return fail("this STL file is cut off in the middle of a facet");
+    }
+    Ok(mesh)
+}

@@ -1,0 +1,113 @@
+//! A height field: a grid of heights as a smooth surface.
+
+use crate::limits::MAX_TERRA;
+use crate::{Error, Heights, Mesh, fail};
+use glam::DVec3;
+
+/// The surface over the rectangle from the origin to `size.x`, `size.y`, with heights from 0 to
+/// `size.z`: the picture's left edge is x = 0, its lower edge is y = 0, and white is `size.z` high.
+/// It has normals, so that it is lit as a smooth surface.
+///
+/// A picture of more than 257 × 257 pixels, or as many in other proportions, would have more than
+/// [`MAX_TERRA`] triangles: it is averaged to a smaller grid.
+///
+/// # Errors
+/// If the picture has a single row or column, or a size is not a positive number.
+pub fn terra(heights: &Heights, size: DVec3) -> Result<Mesh, Error> {
+    if !size.is_finite() || size.min_element() <= 0.0 {
+        return fail("a height field needs a size above 0 in all three directions");
+    }
+    let (columns, rows) = (heights.width() - 1, heights.height() - 1);
+    if columns == 0 || rows == 0 {
+        return fail("a height field needs a picture of at least two by two pixels");
+    }
+    let [across, down] = cells(columns, rows);
+    let grid = Grid {
+        across,
+        down,
+        size,
+        values: averaged(heights, across, down),
+    };
+    let mut mesh = Mesh::default();
+    let mut normals = Vec::with_capacity(grid.values.len());
+    for j in 0..=down {
+        for i in 0..=across {
+            mesh.corner(grid.place(i, j))?;
+            normals.push(grid.normal(i, j));
+        }
+    }
+    mesh.normals = Some(normals);
+    let corner = |i: usize, j: usize| (j * (across + 1) + i) as u32;
+    for j in 0..down {
+        for i in 0..across {
+            let [a, b] = [corner(i, j), corner(i + 1, j)];
+            let [c, d] = [corner(i + 1, j + 1), corner(i, j + 1)];
+            mesh.triangle([a, d, b])?;
+            mesh.triangle([b, d, c])?;
+        }
+    }
+    Ok(mesh)
+}
+
+/// Cells of the grid across and down: the picture's, or fewer in the same proportions.
+fn cells(columns: usize, rows: usize) -> [usize; 2] {
+    let most = MAX_TERRA / 2;
+    if columns * rows <= most {
+        return [columns, rows];
+    }
+    let shrink = (most as f64 / (columns as f64 * rows as f64)).sqrt();
+    let [across, down] = [columns, rows].map(|n| ((n as f64 * shrink) as usize).max(1));
+    // Of a very long strip one side is a single cell, which leaves fewer for the other.
+    [across.min(most / down), down.min(most / across)]
+}
+
+/// The heights at the corners of a grid: the mean of the pixels nearer to a corner than to the next.
+fn averaged(heights: &Heights, across: usize, down: usize) -> Vec<f64> {
+    let range = |i: usize, cells: usize, pixels: usize| {
+        // Pixels lie at the corners of as many cells as there are steps between them.
+        let step = (pixels - 1) as f64 / cells as f64;
+        let first = ((i as f64 - 0.5) * step).ceil().max(0.0) as usize;
+        let last = ((i as f64 + 0.5) * step).floor() as usize;
+        let last = last.min(pixels - 1);
+        first.min(last)..=last
+    };
+    let mut values = Vec::with_capacity((across + 1) * (down + 1));
+    for j in 0..=down {
+        for i in 0..=across {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for y in range(j, down, heights.height()) {
+                for x in range(i, across, heights.width()) {
+                    sum += f64::from(heights.at(x, y));
+                    count += 1.0;
+                }
+            }
+            values.push(sum / count);
+        }
+    }
+    values
+}
+
+struct Grid {
+    across: usize,
+    down: usize,
+    size: DVec3,
+    /// At the corners, row by row from the top.
+    values: Vec<f64>,
+}
+
+impl Grid {
+    fn place(&self, i: usize, j: usize) -> DVec3 {
+        let x = i as f64 / self.across as f64;
+        let y = 1.0 - j as f64 / self.down as f64;
+        self.size * DVec3::new(x, y, self.values[j * (self.across + 1) + i])
+    }
+
+    /// Across the lines to the neighbours on both sides; at an edge, to the one that is there.
+    fn normal(&self, i: usize, j: usize) -> DVec3 {
+        let [left, right] = [i.saturating_sub(1), (i + 1).min(self.across)];
+        let [above, below] = [j.saturating_sub(1), (j + 1).min(self.down)];
+        let along = self.place(right, j) - self.place(left, j);
+        let up = self.place(i, above) - self.place(i, below);
+        along.cross(up).normalize_or(DVec3::Z)
+    }
+}

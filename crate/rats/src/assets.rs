@@ -1,0 +1,79 @@
+//! Meshes and height fields made of a project's files, kept while the files are: a text is compiled at
+//! every keystroke, a large file should be read once.
+
+use crate::project::Asset;
+use glam::DVec3;
+use mesh::{Error, Mesh};
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::{Arc, Weak};
+
+/// How many are kept.
+const KEPT: usize = 8;
+
+type Made = Result<Rc<Mesh>, Error>;
+
+/// What was made of some bytes, and how.
+struct Kept {
+    bytes: Weak<[u8]>,
+    how: (String, Option<DVec3>),
+    made: Made,
+}
+
+thread_local! {
+    static CACHE: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
+}
+
+/// The triangles of an OBJ, PLY, STL or GLB file.
+///
+/// # Errors
+/// Says what is wrong with the file.
+pub fn mesh(asset: &Asset) -> Made {
+    make(asset, (asset.name.clone(), None), |bytes| {
+        mesh::read(&asset.name, bytes)
+    })
+}
+
+/// A PNG image as a height field that fills a box of this size from the origin.
+///
+/// # Errors
+/// Says what is wrong with the file.
+pub fn terra(asset: &Asset, size: DVec3) -> Made {
+    make(asset, (asset.name.clone(), Some(size)), |bytes| {
+        mesh::terra(&mesh::heights(bytes)?, size)
+    })
+}
+
+fn make(
+    asset: &Asset,
+    how: (String, Option<DVec3>),
+    read: impl FnOnce(&[u8]) -> Result<Mesh, Error>,
+) -> Made {
+    let is_it = |kept: &Kept| {
+        kept.how == how
+            && kept
+                .bytes
+                .upgrade()
+                .is_some_and(|bytes| Arc::ptr_eq(&bytes, &asset.bytes))
+    };
+    let known = CACHE.with_borrow(|cache| {
+        let kept = cache.iter().find(|kept| is_it(kept))?;
+        Some(kept.made.clone())
+    });
+    if let Some(made) = known {
+        return made;
+    }
+    let made = read(&asset.bytes).map(Rc::new);
+    CACHE.with_borrow_mut(|cache| {
+        cache.retain(|kept| kept.bytes.strong_count() > 0);
+        if cache.len() >= KEPT {
+            cache.remove(0);
+        }
+        cache.push(Kept {
+            bytes: Arc::downgrade(&asset.bytes),
+            how,
+            made: made.clone(),
+        });
+    });
+    made
+}
