@@ -50,6 +50,7 @@ fn what_is_made_last_counts() {
     made("define «leg»(a) {\n}\n|leg 3\n");
     made("define leg(«a», B) {\n sphere s |a B\n}\n");
     made("define leg(surface «s») {\n sphere |s 1 0 0 0\n}\n");
+    made("define walk() { leg 1, b|=3 }\ndefine leg(a, «b» = 2) {\n}\n");
     made("define leg(a, «b» = 2) {\n}\nleg 1, b|=3\n");
     made("for «i» = 1 to 3 {\n sphere s |i 0 0 0\n}\n");
     made("var i = 1\nfor «i» = 1 to 3 { sphere s |i 0 0 0 }\n");
@@ -86,9 +87,9 @@ fn all_names() {
             name("texture", "t", 1, 39),
         ]
     );
-    assert_eq!(index.places().count(), 17);
+    assert_eq!(index.places().count(), 15);
     assert_eq!(
-        index.symbol_at(0, 46).map(|s| s.kind),
+        index.symbol_at(0, 53).map(|s| s.kind),
         Some(SymbolKind::Material)
     );
 }
