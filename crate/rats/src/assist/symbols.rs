@@ -139,6 +139,9 @@ pub struct Index<'p> {
     /// All places of names, in the order of files and places.
     occurrences: Vec<Occurrence>,
     pub(super) here: Option<Here<'p>>,
+    /// The first mistake of form: its file, its byte and what is wrong. What is in a block that is not
+    /// closed is not indexed.
+    pub(super) mistake: Option<(usize, usize, String)>,
 }
 
 impl<'p> Index<'p> {
@@ -158,7 +161,12 @@ impl<'p> Index<'p> {
             .collect();
         let mut walker = Walker::new(project, &syntaxes, &symbols, place);
         walker.run();
-        walker.finish()
+        let mut index = walker.finish();
+        index.mistake = syntaxes.iter().enumerate().find_map(|(file, syntax)| {
+            let problem = syntax.problems.first()?;
+            Some((file, problem.span.start, problem.message.clone()))
+        });
+        index
     }
 
     /// The thing that stands for all that are the same.
@@ -1171,6 +1179,7 @@ impl<'p, 's> Walker<'p, 's> {
             entities: self.entities,
             occurrences: self.occurrences,
             here: self.here,
+            mistake: None,
         };
         let entities = &index.entities;
         index
