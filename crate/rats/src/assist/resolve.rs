@@ -30,6 +30,9 @@ pub fn resolve<'p>(
     walker.finish()
 }
 
+/// How many names are compared where files are read again.
+const MAX_COMPARED: usize = 200_000;
+
 /// A variable that a call has of its own.
 #[derive(Clone, Copy, Debug)]
 struct Local {
@@ -46,6 +49,8 @@ struct Frame<'p> {
     /// The order of the define; `None` for the project.
     owner: Option<usize>,
     locals: HashMap<&'p str, Local>,
+    /// The locals that were set in blocks that are open, with how deep these are.
+    set_inside: Vec<(&'p str, usize)>,
     /// The loops that are open, with their variables and numbers.
     loops: Vec<(&'p str, usize, usize)>,
     /// Names used before they were set, with the outermost loop that was open then.
@@ -91,6 +96,10 @@ struct Walker<'p, 's> {
     leaky: Vec<(&'p str, usize)>,
     /// Things that are the same if the project has a variable of this name.
     same_as_global: Vec<(usize, &'p str)>,
+    /// The places in which files have been read: the file, the call, the loop, its number of variables.
+    contexts: HashSet<(usize, Option<usize>, Option<usize>, usize)>,
+    /// How many more names may be compared where files are read again.
+    work_left: usize,
     /// Parameters that stand for names in files, where something else may have that name.
     stand_ins: HashSet<(usize, SymbolKind, &'p str)>,
     /// The variables that a file's text uses, for when it is read again.
@@ -137,6 +146,8 @@ impl<'p, 's> Walker<'p, 's> {
             free_in_defines: HashSet::new(),
             leaky: Vec::new(),
             same_as_global: Vec::new(),
+            contexts: HashSet::new(),
+            work_left: MAX_COMPARED,
             stand_ins: HashSet::new(),
             used_by_file: vec![HashSet::new(); syntaxes.len()],
             base: 1,
@@ -301,8 +312,8 @@ impl<'p, 's> Walker<'p, 's> {
         let frame = self.frame();
         frame.depth -= 1;
         let depth = frame.depth;
-        for local in frame.locals.values_mut() {
-            if local.depth > depth {
+        while let Some((name, _)) = frame.set_inside.pop_if(|(_, set)| *set > depth) {
+            if let Some(local) = frame.locals.get_mut(name).filter(|l| l.depth > depth) {
                 local.sure = false;
             }
         }
@@ -615,6 +626,9 @@ impl<'p, 's> Walker<'p, 's> {
                     depth,
                 };
                 self.frame().locals.insert(name, local);
+                if depth > 0 {
+                    self.frame().set_inside.push((name, depth));
+                }
             }
         }
     }
@@ -666,6 +680,9 @@ impl<'p, 's> Walker<'p, 's> {
                 });
                 if !local.sure || depth < local.depth {
                     (local.sure, local.depth) = (true, depth);
+                }
+                if depth > 0 {
+                    self.frame().set_inside.push((name, depth));
                 }
             }
         }
@@ -734,6 +751,17 @@ impl<'p, 's> Walker<'p, 's> {
 
     /// A file that was read before is read again, perhaps where other variables can be seen.
     fn read_again(&mut self, file: usize) {
+        let frame = self.frame();
+        let last_loop = frame.loops.last().map(|(_, _, number)| *number);
+        let context = (file, frame.owner, last_loop, frame.locals.len());
+        if !self.contexts.insert(context) {
+            return;
+        }
+        let work = self.used_by_file[file].len() + self.frame().types.len();
+        self.work_left = self.work_left.saturating_sub(work);
+        if self.work_left == 0 {
+            return;
+        }
         let names: Vec<(&'p str, usize)> = self.used_by_file[file].iter().copied().collect();
         for (name, entity) in names {
             let other = match self.bound(name) {
@@ -885,7 +913,10 @@ impl<'p, 's> Walker<'p, 's> {
             entities: self.entities,
             occurrences: self.occurrences,
             here: self.here,
-            mistake: None,
+            mistake: (self.work_left == 0).then(|| {
+                let message = "files are read again too often to tell their names apart";
+                (0, 0, String::from(message))
+            }),
         };
         let entities = &index.entities;
         index

@@ -155,10 +155,13 @@ impl<'p> Index<'p> {
             .map(|file| parse(&file.text, &mut symbols))
             .collect();
         let mut index = resolve(project, &syntaxes, &symbols, place);
-        index.mistake = syntaxes.iter().enumerate().find_map(|(file, syntax)| {
-            let problem = syntax.problems.first()?;
-            Some((file, problem.span.start, problem.message.clone()))
-        });
+        let mistakes = syntaxes.iter().enumerate();
+        index.mistake = index
+            .mistake
+            .or(mistakes.into_iter().find_map(|(file, syntax)| {
+                let problem = syntax.problems.first()?;
+                Some((file, problem.span.start, problem.message.clone()))
+            }));
         index
     }
 
