@@ -366,7 +366,7 @@ impl<'a> Reader<'_, 'a> {
                 if !self.sign(b'=') {
                     return Err(self.expected("`=`"));
                 }
-                Operand::Name(self.name(what)?)
+                Operand::Name(self.known_name(what)?)
             }
             Kind::Known(crate::commands::Names::Texture) => {
                 self.sign(b'+');
