@@ -8,7 +8,7 @@ use glam::{DVec3, IVec3};
 use scene::{Quadric, Scene, Shape};
 
 /// The most cells across a quadric.
-const FINEST: usize = 20;
+const FINEST: usize = 24;
 /// The fewest.
 const COARSEST: usize = 3;
 /// No quadric is drawn when there are as many patches already.
