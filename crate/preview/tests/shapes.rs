@@ -87,8 +87,11 @@ fn compare_pixels(gpu: &Gpu, what: &str, shapes: &[Shape], camera: Camera) -> u3
         wrong.len(),
         &wrong[..wrong.len().min(5)]
     );
+    // The cells of a quadric are flat, so its outline is off by a small part of a pixel.
+    let has_cells = shapes.iter().any(|s| matches!(s, Shape::Quadric(_)));
+    let share = if has_cells { 0.04 } else { 0.02 };
     assert!(
-        f64::from(edge_wrong) <= 0.02 * f64::from(edges) + 1.0,
+        f64::from(edge_wrong) <= share * f64::from(edges) + 1.0,
         "{what} on {name}: {edge_wrong} of {edges} edge pixels differ"
     );
     assert!(

@@ -132,10 +132,10 @@ impl Model {
             3 * self.triangles.len(),
             size - vertices
         );
-        while json.len() % 4 != 0 {
+        while !json.len().is_multiple_of(4) {
             json.push(' ');
         }
-        while numbers.len() % 4 != 0 {
+        while !numbers.len().is_multiple_of(4) {
             numbers.push(0);
         }
         let mut bytes = b"glTF".to_vec();
