@@ -42,13 +42,33 @@ macro_rules! example {
 }
 
 /// All of them. The first one is what a first visit shows.
-pub const ALL: [Example; 6] = [
+pub const ALL: [Example; 22] = [
     example!("Cowrie", "a shell with random spikes", "cowrie"),
     example!("Seahorse", "the classic, all of arcs", "seahorse"),
+    example!("Hermite crab", "988 elements of five kinds", "hermite-crab"),
+    example!("Coral crab", "a few bones and 608 spikes", "coral-crab"),
     example!("Starfish", "arms made by a loop", "starfish"),
+    example!("Sea urchin", "a ball and 180 needles", "sea-urchin"),
+    example!("Shell I", "361 points on a spiral", "shell-1"),
+    example!("Shell II", "42 lines to one point", "shell-2"),
+    example!("Shell III", "a spiral with horns", "shell-3"),
+    example!("Seaweed", "a tree whose branches fade", "seaweed"),
+    example!("Coral tree", "the same tree, with spikes", "coral-tree"),
+    example!(
+        "Spinal Starecase",
+        "36 legs, wound like a stair",
+        "spinal-starecase"
+    ),
     example!("Sphereflake", "balls on balls, by recursion", "sphereflake"),
+    example!("Generators", "six commands, a line each", "generators"),
     example!("T-shape", "two bars that melt together", "tshape"),
     example!("Icicle", "a first little dataset", "icicle"),
+    example!("Starfish A", "seven arcs, the bare skeleton", "starfish-a"),
+    example!("Starfish B", "soft flesh on the skeleton", "starfish-b"),
+    example!("Starfish C", "very fat: a wide kernel", "starfish-c"),
+    example!("Starfish D", "fleshy arms, firm joints", "starfish-d"),
+    example!("Starfish E", "skinny, webs between the arms", "starfish-e"),
+    example!("Starfish F", "skinny and crisp", "starfish-f"),
 ];
 
 /// What a new work begins with.
@@ -70,7 +90,7 @@ cylinder clay r, -1.5 0 0, 1.5 0 0
 cylinder clay r, 0 -1.5 0, 0 1.5 0
 ";
 
-/// A thumbnail's size and pixels, RGBA.
+/// The size and the pixels, RGBA, of a PNG file.
 #[must_use]
 pub fn decode(png: &[u8]) -> Option<crate::picture::Image> {
     let mut decoder = png::Decoder::new(std::io::Cursor::new(png));
@@ -85,7 +105,15 @@ pub fn decode(png: &[u8]) -> Option<crate::picture::Image> {
             .chunks_exact(3)
             .flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255])
             .collect(),
-        _ => return None,
+        png::ColorType::Grayscale => bytes
+            .iter()
+            .flat_map(|&grey| [grey, grey, grey, 255])
+            .collect(),
+        png::ColorType::GrayscaleAlpha => bytes
+            .chunks_exact(2)
+            .flat_map(|pixel| [pixel[0], pixel[0], pixel[0], pixel[1]])
+            .collect(),
+        png::ColorType::Indexed => return None,
     };
     Some(crate::picture::Image {
         size: [info.width, info.height],
@@ -104,7 +132,8 @@ mod tests {
             assert_eq!(compiled.diagnostics, [], "{}", example.title);
             assert!(!compiled.scene.elements.is_empty(), "{}", example.title);
             let thumbnail = decode(example.thumbnail).expect(example.title);
-            assert!(thumbnail.size[0] >= 160, "{}", example.title);
+            let largest = thumbnail.size[0].max(thumbnail.size[1]);
+            assert!(largest >= 200, "{}", example.title);
         }
     }
 
