@@ -333,7 +333,7 @@ impl<'a> Evaluator<'a> {
         let symbol = self.scope.symbols.find(name);
         let is_known = |run: &Self| symbol.is_some_and(|s| run.definitions.contains_key(&s));
         if !is_known(self)
-            && let Some(file) = self.sources.find(&format!("{name}.rat"))
+            && let Some(file) = self.sources.find_built_in(&format!("{name}.rat"))
         {
             self.enter(&command.word_span)?;
             self.uses.push((self.file, command.span.clone()));

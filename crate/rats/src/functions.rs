@@ -70,7 +70,7 @@ pub static FUNCTIONS: &[Function] = &[
         Run::One(f64::to_degrees),
     ),
     function("sqrt", "sqrt(x): square root", Run::One(libm::sqrt)),
-    function("exp", "exp(x): eˣ", Run::One(libm::exp)),
+    function("exp", "exp(x): e^x", Run::One(libm::exp)),
     function("ln", "ln(x): natural logarithm", Run::One(libm::log)),
     function("abs", "abs(x): magnitude", Run::One(f64::abs)),
     function("sign", "sign(x): −1, 0 or 1", Run::One(sign)),

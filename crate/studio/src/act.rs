@@ -4,7 +4,7 @@ use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::lab::Lesson;
 use crate::notice::Notice;
-use crate::{picture, platform, share};
+use crate::{picture, platform, share, work};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 impl App {
@@ -55,6 +55,18 @@ impl App {
             },
             Command::RenameFile(file, name) => session.rename_file(file, &name, now),
             Command::RemoveFile(file) => session.remove_file(file, now),
+            Command::PickFiles => platform::pick_files(&self.parts.requests),
+            Command::PutAsset(asset) => match session.put_assets(vec![asset]) {
+                Ok(()) => self.notice = None,
+                Err(refused) => self.notice = Some(Notice::trouble(refused.to_string())),
+            },
+            Command::RemoveAsset(name) => {
+                if let Some(asset) = session.remove_asset(&name) {
+                    let text = format!("Removed {name}.");
+                    let put_back = Command::PutAsset(asset);
+                    self.notice = Some(Notice::done(text, now).offering("Put it back", put_back));
+                }
+            }
             Command::Hold => session.hold(),
             Command::Release => session.release(),
             Command::Undo => {
@@ -92,6 +104,14 @@ impl App {
                 self.settings.theme = theme;
                 ctx.set_theme(theme);
             }
+            Command::Play => self.player.toggle(now),
+            Command::SetFilmFrame(frame) => {
+                self.player.pause();
+                session.set_film_frame(frame);
+            }
+            Command::SetFilmLength(count) => self.player.count = count,
+            Command::SaveFilm => self.begin_film(ctx),
+            Command::StopFilm => self.stop_film("You stopped it."),
             Command::SavePng => self.save_png(now),
             Command::Share => self.share(ctx, now),
             Command::OpenExample(index) => {
@@ -144,7 +164,14 @@ impl App {
                 self.gallery.refresh(self.parts.shelf.borrow().entries());
                 self.dialog = Some(Dialog::Gallery);
             }
-            Command::ShowHelp => self.dialog = Some(Dialog::Help),
+            Command::ShowHelp => {
+                self.help.turn_to_words();
+                self.dialog = Some(Dialog::Help);
+            }
+            Command::ShowManual(name) => {
+                self.help.turn_to(&name);
+                self.dialog = Some(Dialog::Help);
+            }
             Command::Close => {
                 if self.dialog.take().is_none() {
                     self.notice = None;
@@ -183,13 +210,7 @@ impl App {
         };
         match picture::png(image) {
             Ok(bytes) => {
-                let stem: String = self
-                    .work
-                    .name
-                    .chars()
-                    .map(|c| if c.is_alphanumeric() { c } else { '-' })
-                    .collect();
-                let name = format!("{}.png", if stem.is_empty() { "sinew" } else { &stem });
+                let name = format!("{}.png", work::file_stem(&self.work.name));
                 platform::download(&name, "image/png", &bytes);
                 let [width, height] = image.size;
                 let text = format!("Saved {name}, {width} × {height} pixels.");
@@ -211,7 +232,12 @@ impl App {
                     platform::set_hash(&format!("#{fragment}"));
                 }
                 let size = share::size(&link);
-                let text = format!("Link copied ({size}). It carries the text and the view.");
+                let carries = if session.assets().is_empty() {
+                    "It carries the text and the view."
+                } else {
+                    "It carries the texts and the view, not the images and meshes."
+                };
+                let text = format!("Link copied ({size}). {carries}");
                 ctx.copy_text(link);
                 self.notice = Some(Notice::done(text, now));
             }

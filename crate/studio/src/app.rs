@@ -3,10 +3,13 @@
 //! [`App::tick`] does what time and messages demand and runs even while the tab is hidden;
 //! [`App::show`] draws one frame. Widgets only list [`Command`]s, which are carried out afterwards.
 
+use crate::asset_view::AssetView;
 use crate::command::Command;
 use crate::draft::Draft;
 use crate::editor::Editor;
+use crate::film::Player;
 use crate::gallery::Gallery;
+use crate::help::Help;
 use crate::keyboard::Keyboard;
 use crate::lab::{Lab, Lesson};
 use crate::notice::Notice;
@@ -14,11 +17,12 @@ use crate::pool::Pool;
 use crate::render::{Phase, Renderer};
 use crate::report::Shared;
 use crate::request::Requests;
+use crate::screening::Saving;
 use crate::settings::Settings;
 use crate::sliders::Sliders;
 use crate::storage::Shelf;
 use crate::work::{Origin, Work};
-use crate::{Backend, platform, size, theme};
+use crate::{Backend, fonts, platform, size, theme};
 use egui::{Context, Ui};
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
@@ -88,8 +92,12 @@ pub struct App {
     pub(crate) backend: Backend,
     pub(crate) settings: Settings,
     pub(crate) editor: Editor,
+    pub(crate) asset_view: AssetView,
     pub(crate) sliders: Sliders,
     pub(crate) gallery: Gallery,
+    pub(crate) help: Help,
+    pub(crate) player: Player,
+    pub(crate) saving: Option<Saving>,
     pub(crate) lab: Lab,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) notice: Option<Notice>,
@@ -129,6 +137,7 @@ impl App {
         let carried = if lesson.is_some() { "" } else { &hash };
         let (work, trouble) = Work::start(parts.shelf.clone(), carried, calm);
         parts.requests.attach(ctx);
+        ctx.set_fonts(fonts::definitions());
         let settings: Settings = parts.shelf.borrow().settings();
         ctx.set_theme(settings.theme);
         let repaint = ctx.clone();
@@ -143,8 +152,12 @@ impl App {
                 .map(Draft::new),
             backend,
             editor: Editor::default(),
+            asset_view: AssetView::default(),
             sliders: Sliders::default(),
             gallery: Gallery::default(),
+            help: Help::default(),
+            player: Player::default(),
+            saving: None,
             dialog: None,
             notice: None,
             tab: Tab::Text,
@@ -208,6 +221,7 @@ impl App {
     pub fn tick(&mut self, ctx: &Context) {
         let now = platform::now(ctx);
         let started = *self.started.get_or_insert(now);
+        self.catch_drops(ctx);
         let mut answers = Vec::new();
         for request in self.parts.requests.take() {
             self.serve(ctx, request, now, &mut answers);
@@ -224,6 +238,7 @@ impl App {
             self.titled = title.to_owned();
             platform::set_title(&self.titled);
         }
+        self.screen(now);
         let session = &self.work.session;
         if session.enabled() {
             self.renderer
@@ -256,6 +271,7 @@ impl App {
         if !self.lab.is_open() {
             waits.push(self.renderer.wait(now));
         }
+        waits.push(self.player.wait(now));
         waits.push(match &self.notice {
             Some(notice) => notice.until.map(|until| until - now),
             None => None,
@@ -285,7 +301,7 @@ impl App {
     }
 
     /// The size to trace at.
-    fn size(&self, ctx: &Context) -> [u32; 2] {
+    pub(crate) fn size(&self, ctx: &Context) -> [u32; 2] {
         if let Some(size) = self.forced_size {
             return size;
         }
@@ -297,6 +313,10 @@ impl App {
     /// Another work is open: forget what belonged to the one before.
     pub(crate) fn opened(&mut self, ctx: &Context) {
         self.lab.close();
+        self.player = Player::default();
+        if let Some(saving) = self.saving.take() {
+            self.forced_size = saving.forced;
+        }
         self.editor.reset(ctx);
         self.sliders.clear();
         self.renderer.clear();

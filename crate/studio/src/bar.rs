@@ -130,6 +130,9 @@ fn more(ui: &mut Ui, choice: theme::Choice, commands: &mut Vec<Command>) {
         if ui.button("How it works").clicked() {
             commands.push(Command::ShowHelp);
         }
+        if ui.button("Open files…").clicked() {
+            commands.push(Command::PickFiles);
+        }
         if ui.button("Save picture").clicked() {
             commands.push(Command::SavePng);
         }

@@ -28,7 +28,9 @@ impl Colouring {
     }
 }
 
-fn colour(text: &str, palette: &Palette) -> LayoutJob {
+/// A text with coloured words, not wrapped.
+#[must_use]
+pub fn colour(text: &str, palette: &Palette) -> LayoutJob {
     let mut job = LayoutJob {
         keep_trailing_whitespace: true,
         ..LayoutJob::default()

@@ -1,6 +1,7 @@
 //! What the widgets ask the app to do. Widgets only read the state and list commands; the app
 //! carries them out after the frame, in one place ([`crate::app`]).
 
+use crate::asset::Asset;
 use crate::lab::Lesson;
 use crate::{size, theme, view::Show};
 use scene::Camera;
@@ -31,6 +32,12 @@ pub enum Command {
     RenameFile(usize, String),
     /// Remove a file.
     RemoveFile(usize),
+    /// Choose files to take in.
+    PickFiles,
+    /// Put an image or a mesh beside the texts.
+    PutAsset(Asset),
+    /// Take an image or a mesh away.
+    RemoveAsset(String),
     /// A gesture that is one undo step begins.
     Hold,
     /// The gesture ends.
@@ -60,6 +67,16 @@ pub enum Command {
     SetSize(size::Choice),
     /// Another palette.
     SetTheme(theme::Choice),
+    /// Play the film, or pause it.
+    Play,
+    /// Show a frame of the film.
+    SetFilmFrame(u32),
+    /// How many frames the film has.
+    SetFilmLength(u32),
+    /// Write all frames of the film to a file.
+    SaveFilm,
+    /// Give that up.
+    StopFilm,
     /// Write the picture to a file.
     SavePng,
     /// Make a link, copy it, and put it into the address bar.
@@ -97,6 +114,8 @@ pub enum Command {
     ShowGallery,
     /// Show the help.
     ShowHelp,
+    /// Show a command in the reference; with an empty name all of them.
+    ShowManual(String),
     /// Close the gallery, the help, or the notice.
     Close,
 }

@@ -20,6 +20,8 @@ use std::ops::Range;
 pub struct Editor {
     /// The file on show.
     pub file: usize,
+    /// The image or mesh on show instead, by its name.
+    pub asset: Option<String>,
     buffer: String,
     synced: Option<(u64, usize)>,
     colouring: Colouring,
@@ -38,9 +40,15 @@ fn id() -> Id {
 }
 
 impl Editor {
+    /// Shows a file.
+    pub fn open(&mut self, file: usize) {
+        self.file = file;
+        self.asset = None;
+    }
+
     /// Shows the cursor at a byte range of the file on show, at the next frame.
     pub fn jump(&mut self, file: usize, range: Range<usize>) {
-        self.file = file;
+        self.open(file);
         self.jump = Some(range);
     }
 
@@ -55,13 +63,13 @@ impl Editor {
 
     /// Shows a byte of a file, without taking the focus from where it is.
     pub fn show_place(&mut self, file: usize, byte: usize) {
-        self.file = file;
+        self.open(file);
         self.place = Some(byte);
     }
 
     /// Another piece of work is open: its first file, from the top.
     pub fn reset(&mut self, ctx: &egui::Context) {
-        self.file = 0;
+        self.open(0);
         self.synced = None;
         self.jump = None;
         ctx.data_mut(|data| data.remove::<egui::text_edit::TextEditState>(id()));
@@ -272,6 +280,10 @@ impl Editor {
                 ui.label(RichText::new(&diagnostic.message).color(colour));
                 if let Some(hint) = &diagnostic.hint {
                     ui.label(RichText::new(hint).color(palette.weak));
+                }
+                for related in &diagnostic.related {
+                    let text = format!("line {}: {}", related.line, related.message);
+                    ui.label(RichText::new(text).color(palette.note));
                 }
             }
         });

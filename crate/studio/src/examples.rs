@@ -90,7 +90,7 @@ cylinder clay r, -1.5 0 0, 1.5 0 0
 cylinder clay r, 0 -1.5 0, 0 1.5 0
 ";
 
-/// A thumbnail's size and pixels, RGBA.
+/// The size and the pixels, RGBA, of a PNG file.
 #[must_use]
 pub fn decode(png: &[u8]) -> Option<crate::picture::Image> {
     let mut decoder = png::Decoder::new(std::io::Cursor::new(png));
@@ -105,7 +105,15 @@ pub fn decode(png: &[u8]) -> Option<crate::picture::Image> {
             .chunks_exact(3)
             .flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255])
             .collect(),
-        _ => return None,
+        png::ColorType::Grayscale => bytes
+            .iter()
+            .flat_map(|&grey| [grey, grey, grey, 255])
+            .collect(),
+        png::ColorType::GrayscaleAlpha => bytes
+            .chunks_exact(2)
+            .flat_map(|pixel| [pixel[0], pixel[0], pixel[0], pixel[1]])
+            .collect(),
+        png::ColorType::Indexed => return None,
     };
     Some(crate::picture::Image {
         size: [info.width, info.height],

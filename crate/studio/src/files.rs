@@ -1,10 +1,12 @@
-//! The strip above the text: one tab for each file of the project.
+//! The strip above the text: one tab for each file of the work, and quieter ones for its images and
+//! meshes.
 
+use crate::asset::{self, Asset};
 use crate::command::Command;
 use crate::editor::Editor;
 use crate::icon::{self, Icon};
 use crate::session::Session;
-use crate::{problems, theme};
+use crate::{places, problems, theme};
 use egui::{
     Align, Button, Color32, Key, Layout, Popup, PopupCloseBehavior, RichText, TextEdit, Ui,
 };
@@ -23,9 +25,10 @@ pub fn show(
         ui.spacing_mut().item_spacing.x = 2.0;
         let files = &session.project().files;
         for (index, file) in files.iter().enumerate() {
-            let open = index == editor.file;
+            let open = index == editor.file && editor.asset.is_none();
             let colour = if open { palette.strong } else { palette.weak };
-            let fill = if open && files.len() > 1 {
+            let alone = files.len() == 1 && session.assets().is_empty();
+            let fill = if open && !alone {
                 palette.button
             } else {
                 Color32::TRANSPARENT
@@ -38,15 +41,24 @@ pub fn show(
                     "Other files run it with: read and its name. Right-click to rename or remove it."
                 });
             if tab.clicked() {
-                editor.file = index;
+                editor.open(index);
             }
             let menu_of_tab = Popup::context_menu(&tab)
                 .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             menu_of_tab.show(|ui| menu(ui, index, &file.name, commands));
         }
+        for asset in session.assets() {
+            asset_tab(ui, asset, editor, commands);
+        }
         let tip = "Add a file that this one can read";
         if icon::button(ui, Icon::Add, tip, true).clicked() {
             commands.push(Command::AddFile);
+        }
+        let tip = "Open files, or drop them on the page: texts, images, meshes";
+        let pick = icon::button(ui, Icon::Open, tip, true);
+        places::note(ui.ctx(), "open files", pick.rect);
+        if pick.clicked() {
+            commands.push(Command::PickFiles);
         }
         if !summary {
             return;
@@ -61,6 +73,41 @@ pub fn show(
                 ui.label(RichText::new(text).size(12.5).color(colour));
             }
         });
+    });
+}
+
+/// A tab of an image or a mesh: its sign stands before its name.
+fn asset_tab(ui: &mut Ui, asset: &Asset, editor: &mut Editor, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let open = editor.asset.as_deref() == Some(&asset.name);
+    let (colour, fill) = if open {
+        (palette.strong, palette.button)
+    } else {
+        (palette.weak, Color32::TRANSPARENT)
+    };
+    let (sign, what) = match asset::kind(&asset.name) {
+        Some(asset::Kind::Image) => (Icon::Image, "Image"),
+        _ => (Icon::Mesh, "Mesh"),
+    };
+    let text = RichText::new(format!("      {}", asset.name))
+        .size(12.5)
+        .italics()
+        .color(colour);
+    let size = asset::size(asset.bytes.len());
+    let tab = ui
+        .add(Button::new(text).fill(fill))
+        .on_hover_text(format!("{what}, {size}. Right-click to remove it."));
+    let at = tab.rect.left_center() + egui::vec2(ui.spacing().button_padding.x + 6.0, 0.0);
+    icon::paint(ui.painter(), sign, at, egui::Stroke::new(1.2, colour));
+    places::note(ui.ctx(), format!("tab {}", asset.name), tab.rect);
+    if tab.clicked() {
+        editor.asset = Some(asset.name.clone());
+    }
+    Popup::context_menu(&tab).show(|ui| {
+        if ui.button("Remove").clicked() {
+            commands.push(Command::RemoveAsset(asset.name.clone()));
+            ui.close();
+        }
     });
 }
 

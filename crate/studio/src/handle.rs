@@ -19,7 +19,7 @@
 //! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null), `remaining`
 //! (seconds or null), `fresh` (whether the picture on the screen is of the present text and camera),
 //! `picture` (`{width, height}` or null), `errors` (how many), `diagnostics` (each `{severity,
-//! message, file, span, line, column, hint}`), `hot` (names of the sliders), `backend` (`"webgpu"`,
+//! message, file, span, line, column, hint, related, command}`), `hot` (names of the sliders), `backend` (`"webgpu"`,
 //! `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`, `timings` (seconds:
 //! `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays, fieldEvaluations}`), `revision`
 //! (rises with each change of the text), `name`, `saved` (whether all changes are in the browser's

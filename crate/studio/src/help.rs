@@ -1,7 +1,9 @@
-//! A short help: enough of the language to change an example, and the keys.
+//! The help: enough of the language to change an example, the keys, and on its second page the
+//! reference.
 
 use crate::command::Command;
-use crate::theme;
+use crate::reference::Reference;
+use crate::{places, theme};
 use egui::{RichText, ScrollArea, Ui};
 
 const LANGUAGE: [(&str, &str); 9] = [
@@ -28,7 +30,7 @@ const LANGUAGE: [(&str, &str); 9] = [
         "a number with a name; hot makes it a slider",
     ),
     (
-        "for i = 1 to 10 { sphere flesh 0.2, i 0 0 }",
+        "for i = 1 to 10 { sphere flesh 0.2, i/4 0 0 }",
         "repeats; numbers can be computed: 2*r, sin(i), rand(i)",
     ),
     ("# words", "a remark"),
@@ -44,55 +46,105 @@ const KEYS: [(&str, &str); 7] = [
     ("Ctrl+S", "save the picture as PNG"),
 ];
 
-/// Shows the help.
-pub fn show(ui: &mut Ui, commands: &mut Vec<Command>) {
-    let palette = theme::palette(ui.visuals());
-    ui.horizontal(|ui| {
-        ui.label(
-            RichText::new("How it works")
-                .heading()
-                .color(palette.strong),
-        );
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.button("Close").clicked() {
-                commands.push(Command::Close);
+/// What the help shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Page {
+    /// A few words for a beginning.
+    #[default]
+    Words,
+    /// All commands.
+    Reference,
+}
+
+/// The state of the help.
+#[derive(Default)]
+pub struct Help {
+    page: Page,
+    reference: Reference,
+}
+
+impl Help {
+    /// Turns to the first page.
+    pub fn turn_to_words(&mut self) {
+        self.page = Page::Words;
+    }
+
+    /// Turns to a command of the reference; without a name to all of them.
+    pub fn turn_to(&mut self, name: &str) {
+        self.page = Page::Reference;
+        self.reference.open(name);
+    }
+
+    /// Shows the help.
+    pub fn show(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        self.head(ui, commands);
+        ui.add_space(6.0);
+        ScrollArea::vertical()
+            .id_salt(self.page == Page::Words)
+            .auto_shrink([false, true])
+            .show(ui, |ui| match self.page {
+                Page::Words => words(ui),
+                Page::Reference => self.reference.show(ui, commands),
+            });
+    }
+
+    fn head(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let palette = theme::palette(ui.visuals());
+        ui.horizontal(|ui| {
+            for (page, title) in [
+                (Page::Words, "How it works"),
+                (Page::Reference, "Reference"),
+            ] {
+                let open = self.page == page;
+                let colour = if open { palette.strong } else { palette.weak };
+                let title = RichText::new(title).size(17.0).color(colour);
+                let tab = ui.selectable_label(open, title);
+                places::note(ui.ctx(), format!("help {page:?}").to_lowercase(), tab.rect);
+                if tab.clicked() {
+                    self.page = page;
+                }
             }
-        });
-    });
-    ui.add_space(6.0);
-    ScrollArea::vertical()
-        .auto_shrink([false, true])
-        .show(ui, |ui| {
-            ui.label(
-                "A model is a text: a list of shapes made of materials. Soft shapes melt into each \
-                 other where they come near. Change a number and the picture follows; the link \
-                 behind Share carries everything.",
-            );
-            heading(ui, "Words");
-            for (code, meaning) in LANGUAGE {
-                ui.label(
-                    RichText::new(code)
-                        .monospace()
-                        .size(12.5)
-                        .color(palette.command),
-                );
-                ui.label(RichText::new(meaning).color(palette.weak).size(13.0));
-                ui.add_space(5.0);
-            }
-            heading(ui, "Hands");
-            egui::Grid::new("keys").spacing([18.0, 5.0]).show(ui, |ui| {
-                for (key, meaning) in KEYS {
-                    ui.label(RichText::new(key).color(palette.text).size(13.0));
-                    ui.label(RichText::new(meaning).color(palette.weak).size(13.0));
-                    ui.end_row();
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button("Close").clicked() {
+                    commands.push(Command::Close);
                 }
             });
-            heading(ui, "Yours");
-            ui.label(
-                "What you write stays in this browser, under My work in the gallery. A link that \
-                 someone sends you never overwrites it.",
-            );
         });
+    }
+}
+
+fn words(ui: &mut Ui) {
+    let palette = theme::palette(ui.visuals());
+    ui.label(
+        "A model is a text: a list of shapes made of materials. Soft shapes melt into each \
+                 other where they come near. Change a number and the picture follows; the link \
+                 behind Share carries everything.",
+    );
+    heading(ui, "Words");
+    for (code, meaning) in LANGUAGE {
+        ui.label(
+            RichText::new(code)
+                .monospace()
+                .size(12.5)
+                .color(palette.command),
+        );
+        ui.label(RichText::new(meaning).color(palette.weak).size(13.0));
+        ui.add_space(5.0);
+    }
+    heading(ui, "Hands");
+    egui::Grid::new("keys").spacing([18.0, 5.0]).show(ui, |ui| {
+        for (key, meaning) in KEYS {
+            ui.label(RichText::new(key).color(palette.text).size(13.0));
+            ui.label(RichText::new(meaning).color(palette.weak).size(13.0));
+            ui.end_row();
+        }
+    });
+    heading(ui, "Yours");
+    ui.label(
+                "What you write stays in this browser, under My work in the gallery. A link that \
+                 someone sends you never overwrites it. Texts, images and meshes can be dropped on the \
+                 page; links carry the texts.",
+            );
 }
 
 fn heading(ui: &mut Ui, text: &str) {

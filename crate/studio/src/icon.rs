@@ -1,7 +1,7 @@
 //! Buttons with small drawn pictures, so that they look the same whatever fonts there are.
 
 use crate::theme;
-use egui::{Painter, Pos2, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
+use egui::{Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
 /// What a button shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,16 @@ pub enum Icon {
     More,
     /// A cross.
     Close,
+    /// A triangle to the right.
+    Play,
+    /// Two bars.
+    Pause,
+    /// A folder.
+    Open,
+    /// A framed landscape.
+    Image,
+    /// A triangle with its middle lines.
+    Mesh,
 }
 
 /// A square button; `name` is its tooltip and its name for screen readers.
@@ -58,7 +68,8 @@ pub fn button(ui: &mut Ui, icon: Icon, name: &str, enabled: bool) -> Response {
     }
 }
 
-fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
+/// Draws an icon around a point.
+pub fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
     let line = |points: &[(f32, f32)]| {
         let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
         painter.add(Shape::line(points, stroke));
@@ -123,6 +134,54 @@ fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
             for x in [-5.0, 0.0, 5.0] {
                 painter.circle_filled(at + vec2(x, 0.0), 1.6, stroke.color);
             }
+        }
+        Icon::Play => {
+            let corners = [(-4.0, -6.0), (6.5, 0.0), (-4.0, 6.0)];
+            let corners = corners.map(|(x, y)| at + vec2(x, y)).to_vec();
+            painter.add(Shape::convex_polygon(corners, stroke.color, Stroke::NONE));
+        }
+        Icon::Pause => {
+            for x in [-3.0, 3.0] {
+                let bar = Rect::from_center_size(at + vec2(x, 0.0), vec2(3.0, 11.0));
+                painter.rect_filled(bar, 1.0, stroke.color);
+            }
+        }
+        Icon::Open => {
+            line(&[
+                (-6.5, 5.0),
+                (-6.5, -5.0),
+                (-2.5, -5.0),
+                (-1.0, -3.0),
+                (5.0, -3.0),
+                (5.0, -0.5),
+            ]);
+            line(&[
+                (-6.5, 5.0),
+                (-4.0, -0.5),
+                (7.5, -0.5),
+                (5.0, 5.0),
+                (-6.5, 5.0),
+            ]);
+        }
+        Icon::Image => {
+            line(&[
+                (-5.0, -4.0),
+                (5.0, -4.0),
+                (5.0, 4.0),
+                (-5.0, 4.0),
+                (-5.0, -4.0),
+            ]);
+            line(&[
+                (-5.0, 3.0),
+                (-1.5, -0.5),
+                (1.0, 2.0),
+                (2.5, 0.5),
+                (5.0, 3.0),
+            ]);
+        }
+        Icon::Mesh => {
+            line(&[(-5.0, 4.0), (0.0, -5.0), (5.0, 4.0), (-5.0, 4.0)]);
+            line(&[(-2.5, -0.5), (2.5, -0.5), (0.0, 4.0), (-2.5, -0.5)]);
         }
         Icon::Close => {
             line(&[(-4.0, -4.0), (4.0, 4.0)]);

@@ -6,7 +6,9 @@ use crate::command::Command;
 use crate::icon::{self, Icon};
 use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery, Show};
-use crate::{bar, files, help, lab, notice, places, platform, problems, size, status};
+use crate::{
+    bar, files, intake, lab, notice, places, platform, problems, size, sliders, status, timeline,
+};
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Rect, RichText,
     ScrollArea, Stroke, Ui, UiBuilder, pos2, vec2,
@@ -72,6 +74,7 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         });
     }
     dialogs(app, ui.ctx(), commands);
+    drop_hint(ui.ctx());
 }
 
 /// The left side of a wide page: files, text, sliders, problems.
@@ -95,17 +98,51 @@ fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
             .show(ui, |ui| problem_list(app, ui, commands));
     }
     if !app.work.session.compiled().hot.is_empty() {
-        let rows = app.work.session.compiled().hot.len().min(6) as f32;
-        let row = ui.spacing().interact_size.y + ui.spacing().item_spacing.y;
+        let rows = sliders::height(ui, &app.work.session.compiled().hot);
+        let most = (0.4 * ui.available_height()).clamp(60.0, 260.0);
         Panel::bottom("sliders")
-            .exact_size(rows * row + 42.0)
+            .exact_size(rows.min(most) + 42.0)
             .frame(inset)
             .show(ui, |ui| slider_list(app, ui, commands));
     }
-    CentralPanel::no_frame().show(ui, |ui| {
-        places::note(ui.ctx(), "editor", ui.max_rect());
-        app.editor.show(ui, &app.work.session, commands);
-    });
+    CentralPanel::no_frame().show(ui, |ui| text_or_asset(app, ui, commands));
+}
+
+/// The editor, or the image or mesh whose tab is open.
+fn text_or_asset(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let assets = app.work.session.assets();
+    let shown = app.editor.asset.as_ref();
+    match shown.and_then(|name| assets.iter().find(|asset| asset.name == *name)) {
+        Some(asset) => {
+            if app.asset_view.show(ui, asset, commands) {
+                app.editor.asset = None;
+            }
+        }
+        None => {
+            app.editor.asset = None;
+            places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
+            app.editor.show(ui, &app.work.session, commands);
+        }
+    }
+}
+
+/// Says, while files are dragged over the page, what becomes of them.
+fn drop_hint(ctx: &Context) {
+    if ctx.input(|input| input.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop hint"));
+    let painter = ctx.layer_painter(layer);
+    let palette = theme::palette(&ctx.global_style().visuals);
+    let place = ctx.content_rect();
+    painter.rect_filled(place, 0.0, palette.stage.gamma_multiply(0.85));
+    let edge = Stroke::new(2.0, palette.accent);
+    painter.rect_stroke(place.shrink(14.0), 10.0, edge, egui::StrokeKind::Inside);
+    let text = format!("Drop {} here", intake::KINDS);
+    let font = egui::FontId::proportional(17.0);
+    let width = place.width() - 60.0;
+    let galley = painter.layout(text, font, palette.strong, width);
+    painter.galley(place.center() - galley.size() / 2.0, galley, palette.strong);
 }
 
 fn problem_list(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
@@ -246,6 +283,16 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let narrow = is_narrow(ui.ctx());
     ui.painter().rect_filled(place, 0.0, palette.stage);
+    let mut place = place;
+    if app.work.session.is_animated() {
+        let height = if narrow { 48.0 } else { STRIP };
+        let strip = Rect::from_min_max(pos2(place.left(), place.bottom() - height), place.max);
+        place.max.y = strip.top();
+        ui.painter().rect_filled(strip, 0.0, palette.panel);
+        let builder = UiBuilder::new().max_rect(strip).id_salt("timeline");
+        let frame = app.work.session.film_frame();
+        timeline::show(&mut ui.new_child(builder), &app.player, frame, commands);
+    }
     let margin = if narrow { 0.0 } else { 18.0 };
     let rect = view::fit(place.shrink(margin), app.work.session.frame());
     let scale = ui.ctx().pixels_per_point();
@@ -304,7 +351,8 @@ fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let mut ui = ui.new_child(UiBuilder::new().max_rect(below).id_salt("below"));
     match app.tab {
         Tab::Text => {
-            if app.work.session.project().files.len() > 1 {
+            let session = &app.work.session;
+            if session.project().files.len() > 1 || !session.assets().is_empty() {
                 let builder = UiBuilder::new()
                     .max_rect(Rect::from_min_size(below.min, vec2(below.width(), 46.0)));
                 let mut strip = ui.new_child(builder);
@@ -317,8 +365,7 @@ fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
                 );
                 ui.add_space(46.0);
             }
-            places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
-            app.editor.show(&mut ui, &app.work.session, commands);
+            text_or_asset(app, &mut ui, commands);
         }
         Tab::Sliders => {
             Frame::new().inner_margin(14).show(&mut ui, |ui| {
@@ -414,7 +461,7 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
                     app.gallery
                         .show(ui, shelf.opened(), platform::unix_time(), commands);
                 }
-                Dialog::Help => help::show(ui, commands),
+                Dialog::Help => app.help.show(ui, commands),
             }
         });
     places::note(ctx, "dialog", modal.response.rect);

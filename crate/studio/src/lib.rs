@@ -6,6 +6,9 @@
 
 mod act;
 pub mod app;
+mod arrivals;
+pub mod asset;
+pub mod asset_view;
 pub mod backend;
 pub mod bar;
 #[cfg(target_arch = "wasm32")]
@@ -22,6 +25,8 @@ pub mod emulation;
 pub mod entry;
 pub mod examples;
 pub mod files;
+pub mod film;
+pub mod fonts;
 pub mod gallery;
 #[cfg(target_arch = "wasm32")]
 pub mod handle;
@@ -29,20 +34,24 @@ pub mod help;
 pub mod history;
 pub mod icon;
 pub mod indent;
+pub mod intake;
 pub mod keyboard;
 pub mod lab;
 pub mod layout;
 pub mod marks;
 pub mod notice;
 mod outside;
+pub mod pad;
 pub mod picture;
 pub mod places;
 pub mod platform;
 pub mod pool;
 pub mod problems;
+pub mod reference;
 pub mod render;
 pub mod report;
 pub mod request;
+mod screening;
 pub mod session;
 pub mod settings;
 pub mod share;
@@ -52,6 +61,7 @@ pub mod software;
 pub mod status;
 pub mod storage;
 pub mod theme;
+pub mod timeline;
 pub mod view;
 pub mod work;
 

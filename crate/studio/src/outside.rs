@@ -32,6 +32,7 @@ impl App {
                 }
                 answers.push(Box::new(move || answer(result)));
             }
+            Request::Files(taken) => self.take_in(ctx, taken, now),
             Request::SetCamera(camera) => self.work.session.set_camera(camera),
             Request::Picture(answer) => answer(self.renderer.image()),
             Request::Cancel => self.renderer.cancel(),

@@ -2,8 +2,9 @@
 
 use crate::command::Command;
 use crate::theme::{self, Palette};
-use egui::{Color32, RichText, Sense, Ui, vec2};
+use egui::{Button, Color32, RichText, Sense, Ui, vec2};
 use rats::{Diagnostic, Project, Severity};
+use std::ops::Range;
 
 /// Rows shown; a text can have thousands of mistakes.
 const MOST: usize = 200;
@@ -52,26 +53,68 @@ pub fn show(
     let palette = theme::palette(ui.visuals());
     ui.spacing_mut().item_spacing.y = 2.0;
     for (index, diagnostic) in diagnostics.iter().take(MOST).enumerate() {
-        let row = ui
-            .push_id(("problem", index), |ui| {
-                row(ui, palette, project, diagnostic)
-            })
-            .inner;
-        if row.clicked()
-            && let Some(file) = project
-                .files
-                .iter()
-                .position(|file| file.name == diagnostic.file)
-        {
-            commands.push(Command::Jump {
-                file,
-                range: diagnostic.span.clone(),
-            });
-        }
+        ui.push_id(("problem", index), |ui| {
+            let clicked = row(ui, palette, project, diagnostic).clicked();
+            let place = (&diagnostic.file, &diagnostic.span);
+            commands.extend(jump(project, place).filter(|_| clicked));
+            more(ui, palette, project, diagnostic, commands);
+        });
     }
     if diagnostics.len() > MOST {
         ui.weak(format!("… and {} more", diagnostics.len() - MOST));
     }
+}
+
+/// Goes to a place, if its file is still there.
+fn jump(project: &Project, (name, span): (&String, &Range<usize>)) -> Option<Command> {
+    let file = project.files.iter().position(|file| file.name == *name)?;
+    Some(Command::Jump {
+        file,
+        range: span.clone(),
+    })
+}
+
+/// Below a message: other places that explain it, and the way to the manual.
+fn more(
+    ui: &mut Ui,
+    palette: &Palette,
+    project: &Project,
+    diagnostic: &Diagnostic,
+    commands: &mut Vec<Command>,
+) {
+    if diagnostic.related.is_empty() && diagnostic.command.is_none() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.add_space(20.0);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let quiet = |text: String| {
+            Button::new(RichText::new(text).size(12.5).color(palette.note))
+                .fill(Color32::TRANSPARENT)
+                .wrap()
+        };
+        for related in &diagnostic.related {
+            let place = if related.file == diagnostic.file {
+                format!("{}:{}", related.line, related.column)
+            } else {
+                format!("{}:{}:{}", related.file, related.line, related.column)
+            };
+            let text = format!("{place} {}", related.message);
+            if ui.add(quiet(text)).on_hover_text("Go there").clicked() {
+                commands.extend(jump(project, (&related.file, &related.span)));
+            }
+        }
+        if let Some(name) = &diagnostic.command {
+            let text = format!("manual: {name}");
+            if ui
+                .add(quiet(text))
+                .on_hover_text("How this command is written")
+                .clicked()
+            {
+                commands.push(Command::ShowManual(name.clone()));
+            }
+        }
+    });
 }
 
 fn row(

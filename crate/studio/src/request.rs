@@ -1,5 +1,6 @@
 //! What comes from outside the window: scripts of the page (`handle`) and the browser itself.
 
+use crate::intake::Taken;
 use crate::picture::Image;
 use egui::Context;
 use rats::Project;
@@ -18,6 +19,8 @@ pub enum Request {
     HashChanged,
     /// Open these texts; the answer is given when they are compiled.
     Load(Project, Box<dyn FnOnce(Result<(), String>)>),
+    /// Take in files that the user dropped or chose.
+    Files(Vec<Taken>),
     /// See the scene from here; `None`: from where the text says.
     SetCamera(Option<Camera>),
     /// Give the traced picture.

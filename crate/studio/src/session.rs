@@ -5,6 +5,7 @@
 //! [`Session::generation`] with every change of what is to be drawn. Times are seconds on any clock
 //! that never goes back.
 
+use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
 use rats::{Compiled, Diagnostic, Project, Severity};
 use scene::{Camera, Scene};
@@ -38,6 +39,13 @@ pub enum Refused {
         /// How many there are.
         files: usize,
     },
+    /// More images and meshes than [`MAX_ASSETS`], or larger than [`MAX_ALL`] together.
+    TooManyAssets {
+        /// How many there are.
+        assets: usize,
+        /// Their bytes.
+        bytes: usize,
+    },
 }
 
 impl std::fmt::Display for Refused {
@@ -52,6 +60,12 @@ impl std::fmt::Display for Refused {
             Self::TooManyFiles { files } => write!(
                 f,
                 "This project has {files} files and the editor takes {MAX_FILES}. Nothing was changed; join some of them."
+            ),
+            Self::TooManyAssets { assets, bytes } => write!(
+                f,
+                "That would make {assets} images and meshes of {}; a work takes {MAX_ASSETS} of {}. None was added; remove some first.",
+                asset::size(*bytes),
+                asset::size(MAX_ALL)
             ),
         }
     }
@@ -83,11 +97,15 @@ pub struct Kept {
     /// What can be undone.
     #[serde(default)]
     pub history: History<Project>,
+    /// Images and meshes; the storage keeps them apart from the texts.
+    #[serde(skip)]
+    pub assets: Vec<Asset>,
 }
 
 /// The user's work.
 pub struct Session {
     project: Project,
+    assets: Vec<Asset>,
     history: History<Project>,
     compiled: Compiled,
     good: Option<Scene>,
@@ -97,6 +115,7 @@ pub struct Session {
     enabled: bool,
     stale: bool,
     compile_seconds: f64,
+    film_frame: u32,
 }
 
 impl Session {
@@ -106,6 +125,7 @@ impl Session {
     pub fn new(kept: Kept, compile: bool) -> Self {
         let mut session = Self {
             project: Project::default(),
+            assets: Vec::new(),
             history: History::default(),
             compiled: Compiled::default(),
             good: None,
@@ -115,6 +135,7 @@ impl Session {
             enabled: compile,
             stale: false,
             compile_seconds: 0.0,
+            film_frame: 0,
         };
         session.open(kept);
         session
@@ -130,7 +151,9 @@ impl Session {
             });
         }
         self.history = kept.history;
+        self.assets = kept.assets;
         self.camera = kept.camera;
+        self.film_frame = 0;
         self.good = None;
         self.changed();
     }
@@ -142,6 +165,7 @@ impl Session {
             project: self.project.clone(),
             camera: self.camera,
             history: self.history.within(history_bytes),
+            assets: self.assets.clone(),
         }
     }
 
@@ -226,6 +250,67 @@ impl Session {
             self.project.files.remove(file);
             self.changed();
         }
+    }
+
+    /// Adds files; one whose name is taken replaces what was there. One undo step.
+    ///
+    /// # Errors
+    /// If there would be too many, or too much text; then nothing changes.
+    pub fn put_files(&mut self, files: Vec<rats::File>, now: f64) -> Result<(), Refused> {
+        let mut project = self.project.clone();
+        for file in files {
+            match project.files.iter_mut().find(|old| old.name == file.name) {
+                Some(old) => *old = file,
+                None => project.files.push(file),
+            }
+        }
+        check_size(&project)?;
+        if project != self.project {
+            self.whole_step(now);
+            self.project = project;
+            self.changed();
+        }
+        Ok(())
+    }
+
+    /// Images and meshes beside the texts.
+    #[must_use]
+    pub fn assets(&self) -> &[Asset] {
+        &self.assets
+    }
+
+    /// Adds images and meshes; one whose name is taken replaces what was there. Undo does not know of
+    /// them.
+    ///
+    /// # Errors
+    /// If there would be too many or they would be too large; then nothing changes.
+    pub fn put_assets(&mut self, assets: Vec<Asset>) -> Result<(), Refused> {
+        let mut all = self.assets.clone();
+        for asset in assets {
+            match all.iter_mut().find(|old| old.name == asset.name) {
+                Some(old) => *old = asset,
+                None => all.push(asset),
+            }
+        }
+        let bytes = all.iter().map(|asset| asset.bytes.len()).sum();
+        if all.len() > MAX_ASSETS || bytes > MAX_ALL {
+            return Err(Refused::TooManyAssets {
+                assets: all.len(),
+                bytes,
+            });
+        }
+        if all != self.assets {
+            self.assets = all;
+            self.changed();
+        }
+        Ok(())
+    }
+
+    /// Takes an image or a mesh away and gives it.
+    pub fn remove_asset(&mut self, name: &str) -> Option<Asset> {
+        let index = self.assets.iter().position(|asset| asset.name == name)?;
+        self.changed();
+        Some(self.assets.remove(index))
     }
 
     fn is_free(&self, name: &str) -> bool {
@@ -371,13 +456,33 @@ impl Session {
         }
     }
 
+    /// Whether the text changes from frame to frame of a film.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        self.compiled.animated
+    }
+
+    /// The frame of the film on show, from 0.
+    #[must_use]
+    pub fn film_frame(&self) -> u32 {
+        self.film_frame
+    }
+
+    /// Shows a frame of the film, from the next [`Session::compile`] on.
+    pub fn set_film_frame(&mut self, frame: u32) {
+        if self.film_frame != frame {
+            self.film_frame = frame;
+            self.stale = true;
+        }
+    }
+
     /// How long compiling the present text took.
     #[must_use]
     pub fn compile_seconds(&self) -> f64 {
         self.compile_seconds
     }
 
-    /// Rises with every change of the text.
+    /// Rises with every change of the texts and of what lies beside them.
     #[must_use]
     pub fn revision(&self) -> u64 {
         self.revision
@@ -407,7 +512,7 @@ impl Session {
             return;
         }
         let start = crate::platform::stopwatch();
-        self.compiled = rats::compile(&self.project);
+        self.compiled = rats::compile_at(&self.project, &self.assets, self.film_frame);
         self.compile_seconds = crate::platform::stopwatch() - start;
         if self.errors() == 0 || self.good.is_none() {
             let scene = &self.compiled.scene;
@@ -593,6 +698,48 @@ mod tests {
             session.add_file(9.0).unwrap();
         }
         assert!(session.add_file(9.0).is_err());
+    }
+
+    #[test]
+    fn images_come_and_go_within_their_limits() {
+        let mut session = session(TEXT);
+        let image = |name: &str, bytes: usize| Asset {
+            name: name.to_owned(),
+            bytes: vec![0; bytes].into(),
+        };
+        let revision = session.revision();
+        session.put_assets(vec![image("a.png", 3)]).unwrap();
+        session.put_assets(vec![image("a.png", 4)]).unwrap();
+        assert_eq!(session.assets(), [image("a.png", 4)]);
+        assert_eq!(session.revision(), revision + 2);
+        assert_eq!(session.keep(0).assets.len(), 1);
+        let refused = session
+            .put_assets(vec![image("b.png", MAX_ALL)])
+            .unwrap_err();
+        assert!(refused.to_string().contains("2 images"), "{refused}");
+        let many = (0..MAX_ASSETS).map(|i| image(&format!("{i}.png"), 1));
+        assert!(session.put_assets(many.collect()).is_err());
+        assert_eq!(session.assets().len(), 1);
+        assert_eq!(session.remove_asset("a.png"), Some(image("a.png", 4)));
+        assert_eq!(session.remove_asset("a.png"), None);
+    }
+
+    #[test]
+    fn files_from_outside_are_one_step() {
+        let mut session = session(TEXT);
+        let file = |name: &str, text: &str| File {
+            name: name.to_owned(),
+            text: text.to_owned(),
+        };
+        let files = vec![file("main.rat", "# new\n"), file("leg.rat", "# leg\n")];
+        session.put_files(files, 1.0).unwrap();
+        assert_eq!(session.text(0), "# new\n");
+        assert_eq!(session.project().files.len(), 2);
+        let long = "x".repeat(MAX_TEXT);
+        assert!(session.put_files(vec![file("l.rat", &long)], 2.0).is_err());
+        session.undo();
+        assert_eq!(session.text(0), TEXT);
+        assert_eq!(session.project().files.len(), 1);
     }
 
     #[test]

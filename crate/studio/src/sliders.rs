@@ -1,9 +1,10 @@
-//! Sliders, colour pickers and drag fields for the variables marked `hot`. Moving one rewrites its
+//! Sliders, colour pickers and drag pads for the variables marked `hot`. Moving one rewrites its
 //! literal in the text, so that the text stays the one truth and undo works as for typing.
 
 use crate::command::Command;
+use crate::pad::{self, Bounds};
 use crate::{places, theme};
-use egui::{DragValue, RichText, Slider, Ui};
+use egui::{DragValue, RichText, Slider, SliderClamping, Ui};
 use rats::{HotValue, HotVariable, hot};
 use std::collections::HashMap;
 
@@ -23,7 +24,6 @@ impl Sliders {
     /// Shows one row for each variable.
     pub fn show(&mut self, ui: &mut Ui, hot: &[HotVariable], commands: &mut Vec<Command>) {
         let mut dragging = false;
-        let palette = theme::palette(ui.visuals());
         let widest = hot
             .iter()
             .map(|variable| variable.name.chars().count())
@@ -33,41 +33,34 @@ impl Sliders {
         for variable in hot {
             ui.push_id((variable.file, &variable.name), |ui| {
                 ui.horizontal(|ui| {
-                    let name = RichText::new(&variable.name)
-                        .monospace()
-                        .color(palette.text);
-                    let height = ui.spacing().interact_size.y;
-                    ui.allocate_ui_with_layout(
-                        egui::vec2(name_width, height),
-                        egui::Layout::left_to_right(egui::Align::Center),
-                        |ui| {
-                            ui.set_min_width(name_width);
-                            ui.add(egui::Label::new(name).truncate());
-                        },
-                    );
+                    name(ui, &variable.name, name_width);
                     let Some(range) = &variable.literal else {
                         ui.weak(hot::write(&variable.value)).on_hover_text(
                             "This value is computed, so there is no number in the text to move.",
                         );
                         return;
                     };
-                    let mut replace = |with: String| {
+                    let (held, value) = match variable.value {
+                        HotValue::Scalar(value) => {
+                            let (held, value) = self.scalar(ui, variable, value);
+                            (held, value.map(HotValue::Scalar))
+                        }
+                        HotValue::Vector(vector) => {
+                            let (held, vector) = self.vector(ui, variable, vector);
+                            (held, vector.map(HotValue::Vector))
+                        }
+                        HotValue::Colour(colour) => {
+                            let (held, colour) = colour_button(ui, &variable.name, colour);
+                            (held, colour.map(HotValue::Colour))
+                        }
+                    };
+                    dragging |= held;
+                    if let Some(value) = value {
                         commands.push(Command::Replace {
                             file: variable.file,
                             range: range.clone(),
-                            with,
+                            with: hot::write(&value),
                         });
-                    };
-                    match variable.value {
-                        HotValue::Scalar(value) => {
-                            dragging |= self.scalar(ui, variable, value, &mut replace);
-                        }
-                        HotValue::Vector(vector) => {
-                            dragging |= vector_fields(ui, vector, &mut replace);
-                        }
-                        HotValue::Colour(colour) => {
-                            dragging |= colour_button(ui, colour, &mut replace);
-                        }
                     }
                 });
             });
@@ -83,58 +76,128 @@ impl Sliders {
         }
     }
 
+    /// Gives whether a drag goes on, and the number if it was changed.
     fn scalar(
         &mut self,
         ui: &mut Ui,
         variable: &HotVariable,
         mut value: f64,
-        replace: &mut impl FnMut(String),
-    ) -> bool {
+    ) -> (bool, Option<f64>) {
         let key = (variable.file, variable.name.clone());
-        let fresh = fitting_range(value);
-        let range = *self.ranges.entry(key.clone()).or_insert(fresh);
+        let (given, step) = bounds(variable);
+        let fresh = given.unwrap_or_else(|| fitting_range(value));
+        let range = match given {
+            Some(range) => range,
+            None => *self.ranges.entry(key.clone()).or_insert(fresh),
+        };
         let (low, high) = range;
-        let decimals = if counts(value) {
+        let decimals = if given.is_none() && counts(value) {
             0
         } else {
             decimals(high - low)
         };
         const FIELD: f32 = 66.0;
         let width = ui.available_width() - FIELD - 2.0 * ui.spacing().item_spacing.x;
+        let clamping = match given {
+            Some(_) => SliderClamping::Edits,
+            None => SliderClamping::Never,
+        };
         let slider = ui.scope(|ui| {
             colours(ui);
             ui.spacing_mut().slider_width = width.clamp(60.0, 420.0);
-            ui.add(
-                Slider::new(&mut value, low..=high)
-                    .clamping(egui::SliderClamping::Never)
-                    .max_decimals(decimals)
-                    .show_value(false)
-                    .smart_aim(false),
-            )
+            let mut slider = Slider::new(&mut value, low..=high)
+                .clamping(clamping)
+                .max_decimals(decimals)
+                .show_value(false)
+                .smart_aim(false);
+            if let Some(step) = step {
+                slider = slider.step_by(step);
+            }
+            ui.add(slider)
         });
         let slider = slider.inner.accessible_name(&variable.name);
         places::note(ui.ctx(), format!("slider {}", variable.name), slider.rect);
         let size = egui::vec2(FIELD, ui.spacing().interact_size.y);
-        let field = DragValue::new(&mut value)
-            .speed((high - low) / 500.0)
+        let mut field = DragValue::new(&mut value)
+            .speed(step.unwrap_or((high - low) / 500.0))
             .max_decimals(decimals)
             .custom_formatter(|value, _| hot::write(&HotValue::Scalar(value)));
+        if given.is_some() {
+            field = field.range(low..=high).clamp_existing_to_range(false);
+        }
         let field = ui
             .add_sized(size, field)
             .on_hover_text("Drag sideways, or click to type");
         let dragged = slider.dragged() || field.dragged();
-        if (slider.changed() || field.changed()) && value.is_finite() {
-            replace(hot::write(&HotValue::Scalar(rounded(value, decimals))));
-        }
+        let changed = (slider.changed() || field.changed()) && value.is_finite();
         // At rest the range follows the value, so that a slider at its end can go further.
-        if !dragged && !slider.is_pointer_button_down_on() {
+        if given.is_none() && !dragged && !slider.is_pointer_button_down_on() {
             let inside = value > low + 0.02 * (high - low) || value == low && low == 0.0;
             if !inside || value >= high {
                 self.ranges.insert(key, fresh);
             }
         }
-        dragged
+        (
+            dragged,
+            changed.then(|| stepped(value, low, step, decimals)),
+        )
     }
+
+    /// Gives whether a drag goes on, and the vector if it was changed.
+    fn vector(
+        &mut self,
+        ui: &mut Ui,
+        variable: &HotVariable,
+        vector: [f64; 3],
+    ) -> (bool, Option<[f64; 3]>) {
+        let key = (variable.file, variable.name.clone());
+        let (given, step) = bounds(variable);
+        let largest = vector.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let reach = if largest > 0.0 { 2.0 * largest } else { 1.0 };
+        let range = match given {
+            Some(range) => range,
+            None => *self.ranges.entry(key.clone()).or_insert((-reach, reach)),
+        };
+        let (held, changed) = pad::show(ui, &variable.name, vector, Bounds { range, step });
+        let down = ui.input(|input| input.pointer.any_down());
+        if given.is_none() && !held && !down && (largest >= range.1 || largest < 0.05 * range.1) {
+            self.ranges.insert(key, (-reach, reach));
+        }
+        (held, changed)
+    }
+}
+
+/// How high the rows of these variables are together.
+#[must_use]
+pub fn height(ui: &Ui, hot: &[HotVariable]) -> f32 {
+    let spacing = ui.spacing();
+    hot.iter()
+        .map(|variable| match (&variable.value, &variable.literal) {
+            (HotValue::Vector(_), Some(_)) => pad::height(ui),
+            _ => spacing.interact_size.y,
+        })
+        .map(|height| height + spacing.item_spacing.y)
+        .sum()
+}
+
+/// The range and the step that the text gives the variable.
+fn bounds(variable: &HotVariable) -> (Option<(f64, f64)>, Option<f64>) {
+    let range = variable.range.filter(|[low, high]| low < high);
+    (range.map(|[low, high]| (low, high)), variable.step)
+}
+
+fn name(ui: &mut Ui, name: &str, width: f32) {
+    let palette = theme::palette(ui.visuals());
+    let name = RichText::new(name).monospace().color(palette.text);
+    let height = ui.spacing().interact_size.y;
+    ui.allocate_ui_with_layout(
+        egui::vec2(width, height),
+        egui::Layout::left_to_right(egui::Align::Center),
+        |ui| {
+            ui.set_min_width(width);
+            ui.add(egui::Label::new(name).truncate());
+        },
+    );
 }
 
 /// The accent on what is filled, and a knob that stands out from the rail.
@@ -155,36 +218,22 @@ pub(crate) fn colours(ui: &mut Ui) {
     widgets.active.bg_fill = palette.accent;
 }
 
-fn vector_fields(ui: &mut Ui, mut vector: [f64; 3], replace: &mut impl FnMut(String)) -> bool {
-    let largest = vector.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-    let speed = if largest > 0.0 { largest / 200.0 } else { 0.01 };
-    let mut dragging = false;
-    let mut changed = false;
-    for (name, value) in ["x", "y", "z"].into_iter().zip(&mut vector) {
-        let field = ui
-            .add(DragValue::new(value).speed(speed).max_decimals(4))
-            .on_hover_text(format!("{name}: drag sideways, or click to type"));
-        dragging |= field.dragged();
-        changed |= field.changed();
-    }
-    if changed && vector.iter().all(|v| v.is_finite()) {
-        replace(hot::write(&HotValue::Vector(vector.map(|v| rounded(v, 4)))));
-    }
-    dragging
-}
-
-fn colour_button(ui: &mut Ui, colour: [f32; 3], replace: &mut impl FnMut(String)) -> bool {
+/// Gives whether a drag goes on, and the colour if it was changed.
+fn colour_button(ui: &mut Ui, name: &str, colour: [f32; 3]) -> (bool, Option<[f32; 3]>) {
     // With gamma 1, the default, a colour's numbers go to the screen as they are.
     let mut bytes = colour.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
     let button = ui
         .color_edit_button_srgb(&mut bytes)
+        .accessible_name(&format!("Colour {name}"))
         .on_hover_text("Choose a colour");
-    if button.changed() {
-        let colour = bytes.map(|byte| f32::from(byte) / 255.0);
-        replace(hot::write(&HotValue::Colour(colour)));
-    }
+    places::note(ui.ctx(), format!("colour {name}"), button.rect);
+    let changed = button.changed();
     // The picker is a popup of its own; while the pointer is down in it, a drag goes on.
-    button.changed() && ui.input(|input| input.pointer.any_down())
+    let held = changed && ui.input(|input| input.pointer.any_down());
+    (
+        held,
+        changed.then(|| bytes.map(|byte| f32::from(byte) / 255.0)),
+    )
 }
 
 /// A range to play in: up to four times the value, or a unit around zero.
@@ -212,6 +261,15 @@ pub fn decimals(range: f64) -> usize {
 /// Whether a number is likely to count something (spikes, turns), so that it should stay whole.
 fn counts(value: f64) -> bool {
     value.abs() >= 20.0 && value.fract() == 0.0
+}
+
+/// The nearest of the numbers that lie whole steps above `low`, without digits that no hand could set.
+#[must_use]
+pub fn stepped(value: f64, low: f64, step: Option<f64>, decimals: usize) -> f64 {
+    match step {
+        Some(step) if step > 0.0 => rounded(low + ((value - low) / step).round() * step, 9),
+        _ => rounded(value, decimals),
+    }
 }
 
 /// A number without the digits that no hand could set.

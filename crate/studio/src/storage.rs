@@ -5,8 +5,14 @@
 //! tabs that edit the same record do not overwrite each other either: the one that finds a record
 //! changed behind its back goes on under a new key. A record that cannot be read, because it is
 //! damaged or from a newer version, is left alone.
+//!
+//! Images and meshes of a work are a record beside it, written only when they change. Local storage
+//! is small, so those beyond [`MAX_KEPT`] are remembered by name alone.
 
+use crate::asset::{self, Asset};
 use crate::session::Kept;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
 
 /// Version of the records; newer ones are not touched.
@@ -16,6 +22,11 @@ pub const DELAY: f64 = 0.5;
 /// Most bytes of undo steps that are written with a record.
 const HISTORY_BYTES: usize = 512 * 1024;
 
+/// Most bytes of images and meshes that are kept with a work. Browsers give a page about 5 MB, and
+/// writing bytes as text takes a third more.
+pub const MAX_KEPT: usize = 1_500_000;
+
+const ASSETS: &str = "sinew/assets/";
 const DOCUMENT: &str = "sinew/document/";
 const CURRENT: &str = "sinew/current";
 const SETTINGS: &str = "sinew/settings";
@@ -71,6 +82,13 @@ struct Record {
     kept: Kept,
 }
 
+/// An image or a mesh as it is written; without bytes if it was too large.
+#[derive(Serialize, Deserialize)]
+struct KeptAsset {
+    name: String,
+    bytes: Option<String>,
+}
+
 /// All saved works, and the one that is open.
 pub struct Shelf {
     store: Box<dyn Store>,
@@ -80,6 +98,10 @@ pub struct Shelf {
     /// The open record and the stamp it had when this tab last read or wrote it.
     open: Option<(String, String)>,
     pending: Option<(String, Kept)>,
+    /// The images and meshes that were written last, and the record they belong to.
+    assets: Option<(String, Vec<Asset>)>,
+    /// What must be said about images and meshes that were not kept.
+    warning: Option<String>,
 }
 
 impl Shelf {
@@ -92,6 +114,8 @@ impl Shelf {
             writes: 0,
             open: None,
             pending: None,
+            assets: None,
+            warning: None,
         }
     }
 
@@ -124,12 +148,96 @@ impl Shelf {
 
     /// Opens a saved work: from now on edits go there. Gives its name and what was kept.
     pub fn open(&mut self, id: &str) -> Option<(String, Kept)> {
-        let (stamp, record) = self.read(id)?;
+        let (stamp, mut record) = self.read(id)?;
         self.open = Some((id.to_owned(), stamp));
         self.pending = None;
+        record.kept.assets = self.read_assets(id);
         // If this is refused, the next start opens another record; nothing is lost.
         let _ = self.store.set(CURRENT, id);
         Some((record.name, record.kept))
+    }
+
+    /// What must be said about images and meshes that could not be kept, once.
+    pub fn take_warning(&mut self) -> Option<String> {
+        self.warning.take()
+    }
+
+    /// Reads the images and meshes of a work; says which were too large to be kept.
+    fn read_assets(&mut self, id: &str) -> Vec<Asset> {
+        let kept = self.store.get(&format!("{ASSETS}{id}"));
+        let kept: Vec<KeptAsset> = kept
+            .and_then(|json| serde_json::from_str(&json).ok())
+            .unwrap_or_default();
+        let (mut assets, mut lost) = (Vec::new(), Vec::new());
+        for KeptAsset { name, bytes } in kept {
+            match bytes.and_then(|text| STANDARD.decode(text).ok()) {
+                Some(bytes) => assets.push(Asset {
+                    name,
+                    bytes: bytes.into(),
+                }),
+                None => lost.push(name),
+            }
+        }
+        if lost.is_empty() {
+            self.assets = Some((id.to_owned(), assets.clone()));
+        } else {
+            self.warning = Some(format!(
+                "{} could not be kept in this browser. Add the file again to see the whole picture.",
+                lost.join(", ")
+            ));
+        }
+        assets
+    }
+
+    /// Writes the images and meshes of a work if they changed.
+    fn write_assets(&mut self, id: &str, assets: &[Asset]) {
+        let known = self.assets.as_ref();
+        if known.is_some_and(|(of, known)| of == id && known == assets)
+            || known.is_none_or(|(of, _)| of != id) && assets.is_empty()
+        {
+            return;
+        }
+        self.assets = Some((id.to_owned(), assets.to_vec()));
+        let key = format!("{ASSETS}{id}");
+        if assets.is_empty() {
+            self.store.remove(&key);
+            return;
+        }
+        let mut left = MAX_KEPT;
+        let mut lost = Vec::new();
+        let mut kept: Vec<KeptAsset> = Vec::new();
+        for Asset { name, bytes } in assets {
+            let fits = bytes.len() <= left;
+            if fits {
+                left -= bytes.len();
+            } else {
+                lost.push(name.clone());
+            }
+            kept.push(KeptAsset {
+                name: name.clone(),
+                bytes: fits.then(|| STANDARD.encode(bytes)),
+            });
+        }
+        let write = |store: &mut dyn Store, kept: &[KeptAsset]| {
+            serde_json::to_string(kept)
+                .map_err(|error| error.to_string())
+                .and_then(|json| store.set(&key, &json))
+        };
+        if write(&mut *self.store, &kept).is_err() {
+            lost = assets.iter().map(|asset| asset.name.clone()).collect();
+            for asset in &mut kept {
+                asset.bytes = None;
+            }
+            // Their names alone: without them, too, the work itself is safe.
+            let _ = write(&mut *self.store, &kept);
+        }
+        if !lost.is_empty() {
+            self.warning = Some(format!(
+                "{} cannot be kept: this browser keeps {} of images and meshes with a work. It stays until you close the page; the text is kept.",
+                lost.join(", "),
+                asset::size(MAX_KEPT)
+            ));
+        }
     }
 
     /// The id of the open work, if it has been written.
@@ -189,6 +297,7 @@ impl Shelf {
             .set(&key, &record(HISTORY_BYTES)?)
             .or_else(|_| self.store.set(&key, &record(0)?))?;
         self.store.set(CURRENT, &id)?;
+        self.write_assets(&id, &kept.assets);
         self.open = Some((id, stamp));
         self.pending = None;
         Ok(())
@@ -198,6 +307,7 @@ impl Shelf {
     pub fn delete(&mut self, id: &str) {
         if self.opened() != Some(id) {
             self.store.remove(&format!("{DOCUMENT}{id}"));
+            self.store.remove(&format!("{ASSETS}{id}"));
         }
     }
 
@@ -350,6 +460,65 @@ mod tests {
             shelf.put("mine", kept("mine"));
             shelf.flush(1.0).unwrap();
             assert_eq!(store.get(&key).unwrap(), strange);
+        }
+    }
+
+    fn with_assets(sizes: &[usize]) -> Kept {
+        let assets = sizes.iter().enumerate().map(|(index, size)| Asset {
+            name: format!("{index}.png"),
+            bytes: vec![7; *size].into(),
+        });
+        Kept {
+            assets: assets.collect(),
+            ..kept("text")
+        }
+    }
+
+    #[test]
+    fn images_are_kept_beside_the_text_and_go_with_it() {
+        let store = Common::default();
+        let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
+        shelf.put("a", with_assets(&[3, 5]));
+        shelf.flush(1.0).unwrap();
+        assert_eq!(shelf.take_warning(), None);
+        let id = shelf.opened().unwrap().to_owned();
+        let key = format!("{ASSETS}{id}");
+        // What did not change is not written again.
+        let mut watched = store.clone();
+        watched.remove(&key);
+        shelf.put("a", with_assets(&[3, 5]));
+        shelf.flush(2.0).unwrap();
+        assert_eq!(store.get(&key), None);
+        shelf.put("a", with_assets(&[3]));
+        shelf.flush(3.0).unwrap();
+        let mut again = Shelf::new(Box::new(store.clone()), String::from("b"));
+        assert_eq!(again.open(&id).unwrap().1, with_assets(&[3]));
+        again.begin();
+        again.delete(&id);
+        assert_eq!((store.get(&key), again.entries().len()), (None, 0));
+    }
+
+    #[test]
+    fn an_image_that_cannot_be_kept_is_named_and_the_text_is_safe() {
+        for (limit, sizes, lost) in [
+            (None, &[3, MAX_KEPT][..], "1.png"),
+            (Some(2000), &[3, 9000], "0.png, 1.png"),
+        ] {
+            let store = Common(Rc::default(), limit);
+            let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
+            shelf.put("a", with_assets(sizes));
+            shelf.flush(1.0).unwrap();
+            let warning = shelf.take_warning().unwrap();
+            assert!(warning.starts_with(lost), "{warning}");
+            shelf.put("b", with_assets(sizes));
+            shelf.flush(2.0).unwrap();
+            assert_eq!(shelf.take_warning(), None, "said once");
+            let id = shelf.opened().unwrap().to_owned();
+            let mut again = Shelf::new(Box::new(store), String::from("b"));
+            let (name, kept) = again.open(&id).unwrap();
+            assert_eq!((name.as_str(), text(&kept)), ("b", "text"));
+            assert_eq!(kept.assets.len(), 2 - lost.split(", ").count());
+            assert!(again.take_warning().unwrap().starts_with(lost));
         }
     }
 

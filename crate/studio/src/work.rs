@@ -4,6 +4,7 @@
 //! it is edited; then it becomes a work of its own. So nothing that is opened ever takes the place
 //! of what the user made.
 
+use crate::asset::Asset;
 use crate::examples;
 use crate::lab::Lesson;
 use crate::platform;
@@ -173,6 +174,25 @@ impl Work {
         Ok(())
     }
 
+    /// Opens files from outside as a work that is not edited yet.
+    ///
+    /// # Errors
+    /// If they are too long, or the open work cannot be written; then it stays open.
+    pub fn open_files(&mut self, files: Vec<File>, assets: Vec<Asset>) -> Result<(), String> {
+        let project = Project { files };
+        check_size(&project).map_err(|refused| refused.to_string())?;
+        self.leave()?;
+        let name = title(&project);
+        let kept = Kept {
+            project,
+            ..Kept::default()
+        };
+        self.begin(name, Origin::Fresh, kept);
+        self.session
+            .put_assets(assets)
+            .map_err(|refused| refused.to_string())
+    }
+
     /// The own work to go back to, if a link took its place.
     #[must_use]
     pub fn before(&self) -> Option<&str> {
@@ -183,10 +203,12 @@ impl Work {
     /// written.
     pub fn tick(&mut self, now: f64) -> Option<String> {
         self.settle(now);
-        if self.changed.is_some_and(|changed| now - changed >= DELAY) {
-            return self.flush().err();
+        if self.changed.is_some_and(|changed| now - changed >= DELAY)
+            && let Err(trouble) = self.flush()
+        {
+            return Some(trouble);
         }
-        None
+        self.shelf.borrow_mut().take_warning()
     }
 
     /// Puts what changed on the shelf, from where it is written even if the program stops, and then
@@ -286,6 +308,20 @@ impl Work {
 
     fn note(&mut self) {
         self.noted = (self.session.revision(), self.session.chosen_camera());
+    }
+}
+
+/// What a file of this work is called, without its ending.
+#[must_use]
+pub fn file_stem(name: &str) -> String {
+    let stem: String = name
+        .chars()
+        .map(|c| if c.is_alphanumeric() { c } else { '-' })
+        .collect();
+    if stem.is_empty() {
+        String::from("sinew")
+    } else {
+        stem
     }
 }
 

@@ -67,6 +67,7 @@ fn show(ui: &mut Ui, picture: &egui::TextureHandle) {
 /// One frame: what to paint and the changes of the textures.
 fn frame(scale: f32) -> (Vec<ClippedPrimitive>, TexturesDelta) {
     let context = Context::default();
+    context.set_fonts(studio::fonts::definitions());
     let texels = (0..32 * 24)
         .map(|i| {
             Color32::from_rgb(

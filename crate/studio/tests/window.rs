@@ -1,13 +1,16 @@
 //! The window, driven as a user drives it: keys, pointer, and what is on the screen afterwards.
 
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, pos2, vec2};
+mod driver;
+
+use driver::Window;
+use egui::{Event, Key, Modifiers, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use rats::{File, Project};
 use studio::Backend;
 use studio::app::{App, Parts};
 use studio::request::Request;
-use studio::{places, platform, share};
+use studio::{platform, share};
 
 const TEXT: &str = "\
 framesize 64 48
@@ -17,149 +20,6 @@ surface flesh, diffuse Coral, blobbiness -2
 var size = 0.5 hot
 sphere flesh size, 0 0 0
 ";
-
-struct Window {
-    harness: Harness<'static, Option<App>>,
-    parts: Parts,
-}
-
-impl Window {
-    fn open(width: f32, height: f32) -> Self {
-        Self::open_with(width, height, Parts::new())
-    }
-
-    fn open_with(width: f32, height: f32, parts: Parts) -> Self {
-        platform::set_troubled(false);
-        let inner = parts.clone();
-        let harness = Harness::builder()
-            .with_size(vec2(width, height))
-            .with_step_dt(0.05)
-            .build_ui_state(
-                move |ui, app: &mut Option<App>| {
-                    let app = app.get_or_insert_with(|| {
-                        App::new(ui.ctx(), None, Backend::None, inner.clone())
-                    });
-                    app.tick(ui.ctx());
-                    app.show(ui);
-                },
-                None,
-            );
-        let mut window = Self { harness, parts };
-        window.steps(4);
-        window
-    }
-
-    fn with_text(text: &str) -> Self {
-        let mut window = Self::open(1000.0, 700.0);
-        window.load(text);
-        window
-    }
-
-    fn load(&mut self, text: &str) {
-        let file = File {
-            name: String::from("main.rat"),
-            text: text.to_owned(),
-        };
-        let project = Project { files: vec![file] };
-        let request = Request::Load(project, Box::new(|result| result.unwrap()));
-        self.parts.requests.ask(request);
-        self.steps(3);
-    }
-
-    fn steps(&mut self, steps: usize) {
-        self.harness.run_steps(steps);
-    }
-
-    /// Runs until the picture is finished.
-    fn finish(&mut self) {
-        for _ in 0..2000 {
-            self.steps(1);
-            let outbox = self.parts.outbox.borrow();
-            if outbox.report.phase == "done" && outbox.report.fresh {
-                return;
-            }
-            drop(outbox);
-            std::thread::sleep(std::time::Duration::from_millis(5));
-        }
-        panic!("no picture: {:?}", self.parts.outbox.borrow().report);
-    }
-
-    fn place(&self, name: &str) -> Rect {
-        let places = places::all(&self.harness.ctx);
-        *places
-            .get(name)
-            .unwrap_or_else(|| panic!("no {name} among {:?}", places.keys()))
-    }
-
-    fn press(&self, at: Pos2, pressed: bool) {
-        self.harness.event(Event::PointerButton {
-            pos: at,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        });
-    }
-
-    fn click(&mut self, at: Pos2) {
-        self.harness.event(Event::PointerMoved(at));
-        self.steps(1);
-        self.press(at, true);
-        self.steps(1);
-        self.press(at, false);
-        self.steps(2);
-    }
-
-    fn drag(&mut self, from: Pos2, to: Pos2) {
-        self.harness.event(Event::PointerMoved(from));
-        self.steps(1);
-        self.press(from, true);
-        self.steps(1);
-        for step in 1..=8 {
-            let at = from + (to - from) * (step as f32 / 8.0);
-            self.harness.event(Event::PointerMoved(at));
-            self.steps(1);
-        }
-        self.press(to, false);
-        self.steps(2);
-    }
-
-    fn key(&mut self, modifiers: Modifiers, key: Key) {
-        self.harness.key_press_modifiers(modifiers, key);
-        self.steps(2);
-    }
-
-    /// Puts the cursor at the start of the text.
-    fn edit(&mut self) {
-        let editor = self.place("editor");
-        self.click(editor.center_top() + vec2(0.0, 20.0));
-        self.key(Modifiers::COMMAND, Key::Home);
-    }
-
-    fn write(&mut self, text: &str) {
-        self.harness.event(Event::Text(text.to_owned()));
-        self.steps(2);
-    }
-
-    fn text(&self) -> String {
-        self.parts.outbox.borrow().project.files[0].text.clone()
-    }
-
-    fn errors(&self) -> usize {
-        self.parts.outbox.borrow().report.errors
-    }
-
-    fn image(&mut self) -> Vec<u8> {
-        let image = std::rc::Rc::new(std::cell::RefCell::new(Vec::new()));
-        let inner = image.clone();
-        self.parts
-            .requests
-            .ask(Request::Picture(Box::new(move |picture| {
-                *inner.borrow_mut() = picture.map_or_else(Vec::new, |picture| picture.rgba.clone());
-            })));
-        self.steps(1);
-        image.take()
-    }
-}
 
 #[test]
 fn typing_edits_and_an_error_is_listed_while_the_picture_stays() {
@@ -458,4 +318,36 @@ fn every_widget_has_a_name() {
         // Runs until nothing moves; then egui_kittest checks the names for screen readers.
         window.harness.run();
     }
+}
+
+#[test]
+fn a_problem_leads_to_the_manual_and_its_example_opens() {
+    let mut window = Window::with_text(&format!("{TEXT}sphere flesh\n"));
+    assert_eq!(window.errors(), 1);
+    window.harness.get_by_label("manual: sphere").click();
+    window.steps(20);
+    assert!(window.place("search commands").width() > 100.0);
+    window.harness.get_by_label("Try it").click();
+    window.steps(3);
+    assert_eq!(
+        window.text(),
+        rats::commands::find("sphere").unwrap().example
+    );
+    assert_eq!(window.errors(), 0);
+}
+
+#[test]
+fn a_related_place_is_a_way_there() {
+    let mut window = Window::with_text(&format!("{TEXT}for i = 1 to 3 {{\n"));
+    let related = window.parts.outbox.borrow().report.diagnostics[0]
+        .related
+        .first()
+        .cloned();
+    let related = related.expect("where the brace was opened");
+    let label = format!("{}:{} {}", related.line, related.column, related.message);
+    window.harness.get_by_label(&label).click();
+    window.steps(3);
+    window.write("#");
+    let at = related.span.start;
+    assert_eq!(&window.text()[at..=at], "#");
 }

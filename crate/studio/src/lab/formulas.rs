@@ -203,6 +203,7 @@ mod tests {
             }
         }
         let context = Context::default();
+        context.set_fonts(crate::fonts::definitions());
         let mut missing = String::new();
         let output = context.run_ui(RawInput::default(), |ui| {
             ui.ctx().fonts_mut(|fonts| {

@@ -1,11 +1,14 @@
 //! Stand-ins for tests: an address and a storage in memory, for each thread its own.
 
+use crate::intake::Taken;
+use crate::request::{Request, Requests};
 use crate::storage::Store;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
 thread_local! {
     static HASH: RefCell<String> = const { RefCell::new(String::new()) };
+    static PICKED: Cell<bool> = const { Cell::new(false) };
     static DOWNLOAD: RefCell<Option<(String, Vec<u8>)>> = const { RefCell::new(None) };
 }
 
@@ -66,6 +69,26 @@ pub fn store() -> Box<dyn Store> {
 /// Gives the user a file.
 pub fn download(name: &str, _mime: &str, bytes: &[u8]) {
     DOWNLOAD.set(Some((name.to_owned(), bytes.to_vec())));
+}
+
+/// Reads files that were dropped on the window and asks for them to be taken in.
+pub fn read_dropped(files: Vec<egui::DroppedFileHandle>, requests: &Requests) {
+    let taken = files.iter().map(|file| Taken {
+        name: file.path().display().to_string(),
+        bytes: file.bytes(),
+    });
+    requests.ask(Request::Files(taken.collect()));
+}
+
+/// Lets the user choose files. Tests ask for them to be taken in themselves.
+pub fn pick_files(_requests: &Requests) {
+    PICKED.set(true);
+}
+
+/// Whether the user was asked to choose files since the last call, for tests.
+#[must_use]
+pub fn picked() -> bool {
+    PICKED.take()
 }
 
 /// The file that was given last, for tests.

@@ -1,8 +1,10 @@
 //! The browser.
 
+use crate::intake::{self, Taken};
+use crate::request::{Request, Requests};
 use crate::storage::Store;
 use std::collections::BTreeMap;
-use wasm_bindgen::{JsCast, JsValue};
+use wasm_bindgen::{JsCast, JsValue, closure::Closure};
 
 fn window() -> web_sys::Window {
     web_sys::window().expect("the app runs in a page, not in a worker")
@@ -124,6 +126,66 @@ pub fn download(name: &str, mime: &str, bytes: &[u8]) {
     if let Err(error) = save() {
         web_sys::console::error_1(&error);
     }
+}
+
+/// Reads files that were dropped on the window and asks for them to be taken in.
+pub fn read_dropped(files: Vec<egui::DroppedFileHandle>, requests: &Requests) {
+    let files = files
+        .iter()
+        .filter_map(|file| file.web_file().cloned())
+        .collect();
+    read_files(files, requests.clone());
+}
+
+/// Lets the user choose files and asks for them to be taken in.
+pub fn pick_files(requests: &Requests) {
+    let requests = requests.clone();
+    let pick = || -> Result<(), JsValue> {
+        let document = window().document().ok_or(JsValue::NULL)?;
+        let input: web_sys::HtmlInputElement = document.create_element("input")?.dyn_into()?;
+        // Without a list of kinds: phones would hide files whose kind they do not know.
+        input.set_type("file");
+        input.set_multiple(true);
+        let source = input.clone();
+        let chosen = Closure::once_into_js(move || {
+            let list = source.files();
+            let files = list.iter().flat_map(|list| {
+                let all = 0..list.length();
+                all.filter_map(|index| list.get(index))
+            });
+            read_files(files.collect(), requests);
+        });
+        input.set_onchange(Some(chosen.unchecked_ref()));
+        input.click();
+        Ok(())
+    };
+    if let Err(error) = pick() {
+        web_sys::console::error_1(&error);
+    }
+}
+
+/// Reads files one after another; what is too large is not read at all.
+fn read_files(files: Vec<web_sys::File>, requests: Requests) {
+    wasm_bindgen_futures::spawn_local(async move {
+        let mut taken = Vec::new();
+        for file in files {
+            let name = file.name();
+            let bytes = match intake::check_length(&name, file.size()) {
+                Ok(()) if taken.len() < intake::MOST => {
+                    match wasm_bindgen_futures::JsFuture::from(file.array_buffer()).await {
+                        Ok(buffer) => Ok(js_sys::Uint8Array::new(&buffer).to_vec()),
+                        Err(_) => Err(String::from("the browser could not read it")),
+                    }
+                }
+                Ok(()) => Ok(Vec::new()),
+                Err(reason) => Err(reason),
+            };
+            taken.push(Taken { name, bytes });
+        }
+        if !taken.is_empty() {
+            requests.ask(Request::Files(taken));
+        }
+    });
 }
 
 /// Bytes as the browser's file object.

@@ -318,6 +318,7 @@ mod tests {
     impl Window {
         fn new() -> Self {
             let context = Context::default();
+            context.set_fonts(crate::fonts::definitions());
             Self {
                 context,
                 painter: Painter::default(),

@@ -1,0 +1,140 @@
+//! Taking in files that were dropped on the page or opened: a new work where nothing of the user's
+//! is open, else new tabs.
+
+use crate::app::App;
+use crate::asset::Asset;
+use crate::intake::{self, Sorted, Taken};
+use crate::notice::Notice;
+use crate::platform;
+use crate::work::Origin;
+use egui::Context;
+
+impl App {
+    /// Asks the browser for what was dropped on the window; it answers later.
+    pub(crate) fn catch_drops(&self, ctx: &Context) {
+        let dropped = ctx.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
+        if !dropped.is_empty() {
+            platform::read_dropped(dropped, &self.parts.requests);
+        }
+    }
+
+    /// Makes texts into tabs or a new work, and puts images and meshes beside them.
+    pub(crate) fn take_in(&mut self, ctx: &Context, taken: Vec<Taken>, now: f64) {
+        let Sorted {
+            texts,
+            assets,
+            refused,
+        } = intake::sort(taken);
+        let names = |texts: &[rats::File], assets: &[Asset]| {
+            let texts = texts.iter().map(|file| file.name.clone());
+            let assets = assets.iter().map(|asset| asset.name.clone());
+            listed(&texts.chain(assets).collect::<Vec<_>>())
+        };
+        let all = names(&texts, &assets);
+        if self.lab.is_open() && !all.is_empty() {
+            platform::push_hash("");
+            self.lab.close();
+        }
+        let outcome = if all.is_empty() {
+            Ok(String::new())
+        } else if texts.is_empty() || self.work.origin == Origin::Own {
+            self.add(texts, assets, now).map(|replaced| {
+                if replaced.is_empty() {
+                    format!("Added {all}.")
+                } else {
+                    format!("Took in {all}; Undo brings back {}.", listed(&replaced))
+                }
+            })
+        } else {
+            self.work.open_files(texts, assets).map(|()| {
+                platform::set_hash("");
+                self.opened(ctx);
+                format!("Opened {all} as a new work.")
+            })
+        };
+        let mut said = Vec::new();
+        let bad = outcome.is_err() || !refused.is_empty();
+        match outcome {
+            Ok(done) => said.extend((!done.is_empty()).then_some(done)),
+            Err(trouble) => said.push(trouble),
+        }
+        let (few, more) = refused.split_at(refused.len().min(3));
+        if !refused.is_empty() {
+            said.push(format!("Not taken: {}", few.join(" ")));
+        }
+        if !more.is_empty() {
+            said.push(format!("And {} more.", more.len()));
+        }
+        let text = said.join(" ");
+        if !text.is_empty() {
+            self.notice = Some(if bad {
+                Notice::trouble(text)
+            } else {
+                Notice::done(text, now)
+            });
+        }
+        ctx.request_repaint();
+    }
+
+    /// Adds to the open work. Gives the names of texts that were replaced.
+    fn add(
+        &mut self,
+        texts: Vec<rats::File>,
+        assets: Vec<Asset>,
+        now: f64,
+    ) -> Result<Vec<String>, String> {
+        let session = &mut self.work.session;
+        let first = texts.first().map(|file| file.name.clone());
+        let replaced = session
+            .project()
+            .files
+            .iter()
+            .filter(|old| {
+                texts
+                    .iter()
+                    .any(|new| new.name == old.name && new.text != old.text)
+            })
+            .map(|old| old.name.clone())
+            .collect();
+        let shown = assets.last().map(|asset| asset.name.clone());
+        session
+            .put_files(texts, now)
+            .and_then(|()| session.put_assets(assets))
+            .map_err(|refused| refused.to_string())?;
+        let files = &session.project().files;
+        if let Some(file) = first.and_then(|name| files.iter().position(|f| f.name == name)) {
+            self.editor.open(file);
+        } else if let Some(name) = shown {
+            self.editor.asset = Some(name);
+        }
+        Ok(replaced)
+    }
+}
+
+/// Names in a sentence; many are counted.
+fn listed(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first, .., last] if names.len() <= 3 => {
+            let between = &names[1..names.len() - 1];
+            let start = [std::slice::from_ref(first), between].concat().join(", ");
+            format!("{start} and {last}")
+        }
+        [first, ..] => format!("{first} and {} more files", names.len() - 1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_make_a_sentence() {
+        let names = ["a", "b", "c", "d"].map(String::from);
+        assert_eq!(listed(&names[..1]), "a");
+        assert_eq!(listed(&names[..2]), "a and b");
+        assert_eq!(listed(&names[..3]), "a, b and c");
+        assert_eq!(listed(&names), "a and 3 more files");
+    }
+}

@@ -1,0 +1,120 @@
+//! An image or a mesh of the work, shown in the place of the text.
+
+use crate::asset::{self, Asset, Kind};
+use crate::command::Command;
+use crate::examples;
+use crate::{places, theme};
+use egui::{ColorImage, RichText, ScrollArea, TextureHandle, TextureOptions, Ui};
+use std::sync::Arc;
+
+/// Longest side of the image shown, pixels.
+const PREVIEW: usize = 512;
+
+/// The image on show, decoded once.
+#[derive(Default)]
+pub struct AssetView {
+    image: Option<(Arc<[u8]>, Option<TextureHandle>)>,
+}
+
+impl AssetView {
+    /// Shows an image or a mesh in all the space of `ui`. Gives whether the user goes back to the text.
+    pub fn show(&mut self, ui: &mut Ui, asset: &Asset, commands: &mut Vec<Command>) -> bool {
+        let palette = theme::palette(ui.visuals());
+        ui.painter().rect_filled(ui.max_rect(), 0.0, palette.paper);
+        places::note(ui.ctx(), "asset", ui.max_rect());
+        let mut back = false;
+        egui::Frame::new().inner_margin(16).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                ui.label(RichText::new(&asset.name).heading().color(palette.strong));
+                let facts = asset::facts(asset).unwrap_or_else(|reason| reason);
+                let size = asset::size(asset.bytes.len());
+                ui.label(RichText::new(format!("{facts}, {size}")).color(palette.text));
+                ui.label(
+                    RichText::new(
+                        "It belongs to this work and stays in this browser. Links carry texts only.",
+                    )
+                    .color(palette.weak)
+                    .size(12.5),
+                );
+                ui.add_space(6.0);
+                ui.horizontal(|ui| {
+                    back = ui.button("Back to the text").clicked();
+                    if ui.button("Remove").clicked() {
+                        commands.push(Command::RemoveAsset(asset.name.clone()));
+                    }
+                });
+                ui.add_space(10.0);
+                if asset::kind(&asset.name) == Some(Kind::Image) {
+                    self.image(ui, asset);
+                }
+            });
+        });
+        back
+    }
+
+    fn image(&mut self, ui: &mut Ui, asset: &Asset) {
+        let known = self.image.as_ref();
+        if known.is_none_or(|(bytes, _)| !Arc::ptr_eq(bytes, &asset.bytes)) {
+            // The head was checked when it was taken in; an old record may hold anything.
+            let image = asset::facts(asset)
+                .ok()
+                .and_then(|_| examples::decode(&asset.bytes))
+                .map(|image| {
+                    let pixels = preview(&image);
+                    ui.load_texture("asset", pixels, TextureOptions::LINEAR)
+                });
+            self.image = Some((asset.bytes.clone(), image));
+        }
+        match &self.image {
+            Some((_, Some(texture))) => {
+                let size = texture.size_vec2();
+                let scale = (ui.available_width() / size.x).min(1.0);
+                let image = egui::Image::from_texture(texture)
+                    .fit_to_exact_size(size * scale)
+                    .corner_radius(4)
+                    .alt_text(&asset.name);
+                let shown = ui.add(image);
+                places::note(ui.ctx(), "asset image", shown.rect);
+            }
+            _ => {
+                ui.weak("This image is damaged: it cannot be shown.");
+            }
+        }
+    }
+}
+
+/// The image, made smaller by leaving out pixels if it is large.
+fn preview(image: &crate::picture::Image) -> ColorImage {
+    let [width, height] = image.size.map(|side| side as usize);
+    let every = width.max(height).div_ceil(PREVIEW).max(1);
+    let (columns, rows) = (width.div_ceil(every), height.div_ceil(every));
+    let mut rgba = Vec::with_capacity(4 * columns * rows);
+    for y in (0..height).step_by(every) {
+        for x in (0..width).step_by(every) {
+            let start = 4 * (y * width + x);
+            rgba.extend_from_slice(&image.rgba[start..start + 4]);
+        }
+    }
+    ColorImage::from_rgba_unmultiplied([columns, rows], &rgba)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::Image;
+
+    #[test]
+    fn large_images_are_shown_small() {
+        for (size, shown) in [
+            ([1300, 3], [434, 1]),
+            ([512, 512], [512, 512]),
+            ([1, 1], [1, 1]),
+        ] {
+            let image = Image {
+                size,
+                rgba: vec![9; (4 * size[0] * size[1]) as usize],
+            };
+            assert_eq!(preview(&image).size, shown);
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Files that the user drops on the page or opens: which become texts of the work, which become
+//! images and meshes beside it, and which are refused, with the reason.
+
+use crate::asset::{self, Asset, MAX_ASSET};
+use crate::session::MAX_TEXT;
+use rats::File;
+use rats::link::MAX_NAME;
+
+/// Extensions of texts.
+const TEXTS: [&str; 5] = ["rat", "art", "ice", "dat", "txt"];
+/// What can be taken in, in words.
+pub const KINDS: &str =
+    "texts (.rat .art .ice .dat .txt), images (.png) and meshes (.obj .ply .stl .glb)";
+/// Files that are read at once.
+pub const MOST: usize = 32;
+
+/// A file from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Taken {
+    /// Its name, perhaps with folders before it.
+    pub name: String,
+    /// What is in it, or why it could not be read.
+    pub bytes: Result<Vec<u8>, String>,
+}
+
+/// What to do with files from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sorted {
+    /// Texts.
+    pub texts: Vec<File>,
+    /// Images and meshes.
+    pub assets: Vec<Asset>,
+    /// Why some were left out, a sentence each.
+    pub refused: Vec<String>,
+}
+
+/// Whether a file of this size is read at all.
+///
+/// # Errors
+/// Says the limit.
+pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
+    let (most, what) = if asset::kind(name).is_some() {
+        (MAX_ASSET, "an image or a mesh")
+    } else {
+        (MAX_TEXT, "a text")
+    };
+    if bytes > most as f64 {
+        let size = asset::size(bytes as usize);
+        return Err(format!(
+            "it has {size} and {what} may have {}",
+            asset::size(most)
+        ));
+    }
+    Ok(())
+}
+
+/// Sorts files from outside.
+#[must_use]
+pub fn sort(taken: Vec<Taken>) -> Sorted {
+    let mut sorted = Sorted::default();
+    for (index, file) in taken.into_iter().enumerate() {
+        let name = plain_name(&file.name);
+        let outcome = if index >= MOST {
+            Err(format!("only {MOST} files are taken at once"))
+        } else if name.is_empty() || name.len() > MAX_NAME {
+            Err(String::from("its name is empty or too long"))
+        } else {
+            file.bytes.and_then(|bytes| take(&mut sorted, &name, bytes))
+        };
+        if let Err(reason) = outcome {
+            sorted.refused.push(format!("{name}: {reason}."));
+        }
+    }
+    // The text that is run comes first: the one that no other reads.
+    let read: Vec<String> = sorted
+        .texts
+        .iter()
+        .flat_map(|file| rats::reads(&file.text))
+        .collect();
+    let run = |file: &File| !read.contains(&file.name);
+    if let Some(first) = sorted.texts.iter().position(run) {
+        sorted.texts[..=first].rotate_right(1);
+    }
+    sorted
+}
+
+fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
+    check_length(name, bytes.len() as f64)?;
+    if asset::kind(name).is_some() {
+        let asset = Asset {
+            name: name.to_owned(),
+            bytes: bytes.into(),
+        };
+        asset::facts(&asset)?;
+        sorted.assets.retain(|other| other.name != name);
+        sorted.assets.push(asset);
+    } else if TEXTS.contains(&asset::extension(name).as_str()) {
+        let text = text(bytes).ok_or("there is no text in it")?;
+        sorted.texts.retain(|other| other.name != name);
+        sorted.texts.push(File {
+            name: name.to_owned(),
+            text,
+        });
+    } else {
+        return Err(format!("Sinew takes {KINDS}"));
+    }
+    Ok(())
+}
+
+/// The name without folders and without blanks, which would end it in `read`.
+fn plain_name(name: &str) -> String {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
+    last.trim()
+        .chars()
+        .filter(|c| !c.is_control())
+        .map(|c| if c.is_whitespace() { '-' } else { c })
+        .collect()
+}
+
+/// A text in UTF-8, or in Latin-1 as old datasets are; `None` if it is none.
+fn text(bytes: Vec<u8>) -> Option<String> {
+    if bytes.contains(&0) {
+        return None;
+    }
+    let text = match String::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(error) => error.into_bytes().into_iter().map(char::from).collect(),
+    };
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    Some(text.replace("\r\n", "\n").replace('\r', "\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn taken(name: &str, bytes: &[u8]) -> Taken {
+        Taken {
+            name: name.to_owned(),
+            bytes: Ok(bytes.to_vec()),
+        }
+    }
+
+    #[test]
+    fn the_text_that_no_other_reads_is_run() {
+        let sorted = sort(vec![
+            taken("a/leg.rat", b"sphere a 1, 0 0 0\r\n"),
+            taken("body.rat", b"read leg.rat\n"),
+            taken("mö bel.txt", b"# \xe4"),
+        ]);
+        let names: Vec<&str> = sorted.texts.iter().map(|file| file.name.as_str()).collect();
+        assert_eq!(names[0], "body.rat");
+        assert_eq!(sorted.texts[2].text, "# ä");
+        assert_eq!(sorted.texts[1].text, "sphere a 1, 0 0 0\n");
+        assert_eq!(sorted.refused, Vec::<String>::new());
+    }
+
+    #[test]
+    fn what_is_not_taken_is_told() {
+        let unread = Taken {
+            name: String::from("b.rat"),
+            bytes: Err(String::from("it could not be read")),
+        };
+        let long = vec![b' '; MAX_TEXT + 1];
+        let sorted = sort(vec![
+            taken("a.gif", b"GIF"),
+            taken("a.rat", b"\0"),
+            taken("a.png", b"GIF"),
+            taken("long.rat", &long),
+            taken("/", b""),
+            unread,
+        ]);
+        assert_eq!((sorted.texts.len(), sorted.assets.len()), (0, 0));
+        assert_eq!(sorted.refused.len(), 6, "{:?}", sorted.refused);
+        let many = (0..MOST + 3).map(|i| taken(&format!("{i}.rat"), b"# x"));
+        let sorted = sort(many.collect());
+        assert_eq!((sorted.texts.len(), sorted.refused.len()), (MOST, 3));
+    }
+}

@@ -1,0 +1,172 @@
+//! Files that are dropped or opened, and the tabs they become.
+
+mod driver;
+
+use driver::Window;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use rats::File;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use studio::app::Parts;
+use studio::examples;
+use studio::intake::Taken;
+use studio::request::Request;
+use studio::{platform, share, storage};
+
+const TEXT: &str = "\
+framesize 64 48
+eyep 0 0 6
+surface flesh, diffuse Coral, blobbiness -2
+sphere flesh 0.5, 0 0 0
+";
+
+const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+fn take_in(window: &mut Window, files: &[(&str, &[u8])]) {
+    let taken = files.iter().map(|(name, bytes)| Taken {
+        name: (*name).to_owned(),
+        bytes: Ok(bytes.to_vec()),
+    });
+    window.parts.requests.ask(Request::Files(taken.collect()));
+    window.steps(4);
+}
+
+fn files(window: &Window) -> Vec<File> {
+    window.parts.outbox.borrow().project.files.clone()
+}
+
+fn names(window: &Window) -> Vec<String> {
+    files(window).into_iter().map(|file| file.name).collect()
+}
+
+/// A file dropped on the window.
+#[derive(Debug)]
+struct Dropped(PathBuf, Vec<u8>);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        Ok(self.1.clone())
+    }
+}
+
+#[test]
+fn a_text_dropped_on_an_example_is_a_new_work_and_on_own_work_a_tab() {
+    let mut window = Window::open(1000.0, 700.0);
+    assert_eq!(names(&window), ["cowrie.rat"]);
+    let file = Dropped(PathBuf::from("/home/me/bone.rat"), TEXT.as_bytes().to_vec());
+    window
+        .harness
+        .input_mut()
+        .dropped_files
+        .push(Arc::new(file));
+    window.steps(5);
+    assert_eq!(names(&window), ["bone.rat"]);
+    assert_eq!(window.text(), TEXT);
+    window.harness.get_by_label_contains("as a new work");
+
+    window.edit();
+    window.write("# mine\n");
+    take_in(
+        &mut window,
+        &[("leg.rat", b"# leg\n"), ("foot.txt", b"# foot\n")],
+    );
+    assert_eq!(names(&window), ["bone.rat", "leg.rat", "foot.txt"]);
+    window
+        .harness
+        .get_by_label_contains("Added leg.rat and foot.txt");
+
+    // One of the same name takes its place, and undo brings it back.
+    take_in(&mut window, &[("bone.rat", b"# other\n")]);
+    assert_eq!(window.text(), "# other\n");
+    window
+        .harness
+        .get_by_label_contains("Undo brings back bone.rat");
+    window.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(window.text(), format!("# mine\n{TEXT}"));
+}
+
+#[test]
+fn images_and_meshes_are_tabs_that_show_them_and_are_kept_but_not_shared() {
+    let parts = Parts::new();
+    let mut window = Window::open_with(1000.0, 700.0, parts.clone());
+    window.load(TEXT);
+    window.edit();
+    window.write("# mine\n");
+    let png = examples::ALL[0].thumbnail;
+    take_in(&mut window, &[("wood.png", png), ("tri.obj", OBJ)]);
+    window.harness.get_by_label_contains("3 corners, 1 faces");
+    let tab = window.place("tab wood.png").center();
+    window.click(tab);
+    window.harness.get_by_label_contains("pixels, ");
+    assert!(window.place("asset image").width() > 100.0);
+    window.steps(20);
+
+    let share = window.place("share").center();
+    window.click(share);
+    window
+        .harness
+        .get_by_label_contains("not the images and meshes");
+    let shared = share::open(&platform::hash()).unwrap().unwrap();
+    assert_eq!(shared.project.files.len(), 1);
+    platform::set_hash("");
+
+    window.harness.get_by_label("Back to the text").click();
+    window.steps(3);
+    assert!(window.place("editor").height() > 100.0);
+    drop(window);
+
+    // They are there again after the page was closed.
+    let mut window = Window::open_with(1000.0, 700.0, parts);
+    let tab = window.place("tab tri.obj").center();
+    window.click(tab);
+    window.harness.get_by_label("Remove").click();
+    window.steps(3);
+    assert!(!studio::places::all(&window.harness.ctx).contains_key("tab tri.obj"));
+    window.harness.get_by_label("Put it back").click();
+    window.steps(3);
+    window.place("tab tri.obj");
+}
+
+#[test]
+fn what_cannot_be_kept_or_taken_is_said() {
+    let mut window = Window::with_text(TEXT);
+    window.edit();
+    window.write("# mine\n");
+    let mut large = OBJ.to_vec();
+    large.resize(storage::MAX_KEPT + 1, b' ');
+    take_in(&mut window, &[("large.obj", &large)]);
+    window.steps(20);
+    window
+        .harness
+        .get_by_label_contains("large.obj cannot be kept");
+
+    let before = window.text();
+    take_in(
+        &mut window,
+        &[("a.gif", b"GIF89a"), ("b.png", b"no"), ("c.rat", b"\0")],
+    );
+    window.harness.get_by_label_contains("Not taken: a.gif");
+    assert_eq!((names(&window).len(), window.text()), (1, before));
+}
+
+#[test]
+fn files_can_be_chosen_with_a_button_on_a_desk_and_on_a_phone() {
+    let mut window = Window::with_text(TEXT);
+    let button = window.place("open files").center();
+    window.click(button);
+    assert!(platform::picked());
+    drop(window);
+    let mut window = Window::open(390.0, 844.0);
+    let more = window.place("more").center();
+    window.click(more);
+    window.harness.get_by_label("Open files…").click();
+    window.steps(2);
+    assert!(platform::picked());
+    // The tabs have room there too.
+    take_in(&mut window, &[("tri.obj", OBJ)]);
+    window.place("tab tri.obj");
+}
