@@ -11,6 +11,7 @@
 //! All bounds are in [`limits`].
 
 mod assets;
+pub mod assist;
 pub mod colours;
 pub mod commands;
 pub mod compile;

@@ -44,6 +44,22 @@ impl App {
                     self.notice = Some(Notice::trouble(refused.to_string()));
                 }
             }
+            Command::Step { file, text } => {
+                session.end_step();
+                if let Err(refused) = session.set_text(file, text, now) {
+                    self.editor.resync(ctx);
+                    self.notice = Some(Notice::trouble(refused.to_string()));
+                }
+                session.end_step();
+            }
+            Command::Edit(edits) => {
+                let project = rats::assist::rename::apply(session.project(), &edits);
+                if let Err(refused) = session.put_files(project.files, now) {
+                    self.notice = Some(Notice::trouble(refused.to_string()));
+                }
+            }
+            Command::Tell(trouble) => self.notice = Some(Notice::trouble(trouble)),
+            Command::SetHints(hints) => self.settings.hints = hints,
             Command::Replace { file, range, with } => {
                 if let Err(refused) = session.replace(file, range, &with, now) {
                     self.notice = Some(Notice::trouble(refused.to_string()));

@@ -343,6 +343,11 @@ impl Session {
         self.set_text(file, text, now)
     }
 
+    /// The next edit begins an undo step, however soon it comes.
+    pub fn end_step(&mut self) {
+        self.history.close();
+    }
+
     /// Begins a gesture, such as dragging a slider, that is one undo step.
     pub fn hold(&mut self) {
         self.history.hold();
