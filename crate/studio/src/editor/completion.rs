@@ -20,9 +20,14 @@ const REST: f64 = 0.15;
 const QUICK: f64 = 0.004;
 /// Letters after which the list opens by itself.
 const LETTERS: usize = 2;
-/// Rows on show.
-const ROWS: usize = 8;
-const ROW: f32 = 22.0;
+/// How many rows are on show and how high they are: fewer and higher ones for thumbs.
+fn rows(style: &egui::Style) -> (usize, f32) {
+    if style.spacing.interact_size.y >= 40.0 {
+        (5, 36.0)
+    } else {
+        (8, 22.0)
+    }
+}
 
 /// The list and where it belongs.
 #[derive(Default)]
@@ -126,6 +131,7 @@ impl Popup {
             return Keyed::Nothing;
         };
         let count = completions.items.len();
+        let (page, _) = rows(ui.style());
         let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
         let selected = self.selected;
         let mut moved = |to: usize| {
@@ -137,9 +143,9 @@ impl Popup {
         } else if pressed(Key::ArrowUp) {
             moved((selected + count - 1) % count);
         } else if pressed(Key::PageDown) {
-            moved((selected + ROWS).min(count - 1));
+            moved((selected + page).min(count - 1));
         } else if pressed(Key::PageUp) {
-            moved(selected.saturating_sub(ROWS));
+            moved(selected.saturating_sub(page));
         } else if pressed(Key::Escape) {
             self.close();
         } else if pressed(Key::Enter) || pressed(Key::Tab) {
@@ -167,14 +173,15 @@ impl Popup {
         };
         let palette = theme::palette(ui.visuals());
         let items = &completions.items;
-        let rows = items.len().min(ROWS);
+        let (most, row_height) = rows(ui.style());
+        let rows = items.len().min(most);
         let first = self
             .selected
-            .saturating_sub(ROWS - 1)
+            .saturating_sub(most - 1)
             .min(items.len() - rows);
         let screen = ui.ctx().content_rect();
         let width = 380.0_f32.min(screen.width() - 16.0);
-        let height = (rows + 1) as f32 * ROW + 14.0;
+        let height = rows as f32 * row_height + 36.0;
         let below = caret.bottom() + 4.0;
         let top = if below + height <= screen.bottom() {
             below
@@ -194,7 +201,7 @@ impl Popup {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 for (index, item) in items.iter().enumerate().skip(first).take(rows) {
                     let is_selected = index == self.selected;
-                    if row(ui, palette, item, is_selected) {
+                    if row(ui, palette, item, is_selected, row_height) {
                         clicked = Some(index);
                     }
                 }
@@ -216,8 +223,9 @@ impl Popup {
 }
 
 /// One row. Gives whether it was clicked.
-fn row(ui: &mut Ui, palette: &Palette, item: &Completion, selected: bool) -> bool {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+fn row(ui: &mut Ui, palette: &Palette, item: &Completion, selected: bool, height: f32) -> bool {
+    let size = vec2(ui.available_width(), height);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| {
         WidgetInfo::selected(Role::ListBoxOption, true, selected, item.text.as_str())
     });
@@ -271,10 +279,7 @@ fn foot(ui: &mut Ui, palette: &Palette, item: &Completion, told: &str) {
         .size(12.0)
         .color(palette.weak);
     ui.add_space(4.0);
-    let line = ui.add_sized(
-        vec2(ui.available_width(), ROW - 4.0),
-        egui::Label::new(text).truncate(),
-    );
+    let line = ui.add(egui::Label::new(text).truncate());
     super::say(ui.ctx(), line.id, told);
 }
 
