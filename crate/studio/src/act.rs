@@ -58,7 +58,7 @@ impl App {
                     self.notice = Some(Notice::trouble(refused.to_string()));
                 }
             }
-            Command::Tell(trouble) => self.notice = Some(Notice::trouble(trouble)),
+            Command::Tell(text) => self.notice = Some(Notice::done(text, now)),
             Command::SetHints(hints) => self.settings.hints = hints,
             Command::Replace { file, range, with } => {
                 if let Err(refused) = session.replace(file, range, &with, now) {
@@ -69,7 +69,11 @@ impl App {
                 Ok(file) => self.editor.jump(file, 0..0),
                 Err(refused) => self.notice = Some(Notice::trouble(refused.to_string())),
             },
-            Command::RenameFile(file, name) => session.rename_file(file, &name, now),
+            Command::RenameFile(file, name) => {
+                if let Err(trouble) = session.rename_file(file, &name, now) {
+                    self.notice = Some(Notice::trouble(trouble));
+                }
+            }
             Command::RemoveFile(file) => session.remove_file(file, now),
             Command::PickFiles => platform::pick_files(&self.parts.requests),
             Command::PutAsset(asset) => match session.put_assets(vec![asset]) {

@@ -26,7 +26,7 @@ pub enum Command {
     },
     /// Change several places at once, as one undo step.
     Edit(Vec<rats::assist::Edit>),
-    /// Say something that went wrong.
+    /// Say something about the text.
     Tell(String),
     /// Whether a line at the caret says how its command is written.
     SetHints(bool),

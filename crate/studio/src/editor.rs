@@ -229,16 +229,23 @@ impl Editor {
 
     /// Keys that ask about the text: completions, manual, definition, renaming, layout.
     fn questions(&mut self, ui: &Ui, session: &Session, commands: &mut Vec<Command>) {
+        let pressed = |modifiers, key| {
+            let shortcut = egui::KeyboardShortcut::new(modifiers, key);
+            ui.input_mut(|input| input.consume_shortcut(&shortcut))
+        };
+        // The card that the user looks at comes before the caret.
+        if let Some(command) = self.hover.take_command()
+            && pressed(Modifiers::NONE, Key::F1)
+        {
+            commands.push(Command::ShowManual(command.to_owned()));
+            return;
+        }
         let Some(place) = self.place() else {
             return;
         };
         if !ui.memory(|memory| memory.has_focus(id())) {
             return;
         }
-        let pressed = |modifiers, key| {
-            let shortcut = egui::KeyboardShortcut::new(modifiers, key);
-            ui.input_mut(|input| input.consume_shortcut(&shortcut))
-        };
         if pressed(Modifiers::CTRL, Key::Space) || pressed(Modifiers::COMMAND, Key::Space) {
             self.completions.ask(place);
             ui.ctx().request_repaint();
@@ -328,10 +335,10 @@ impl Editor {
             .show(ui);
         let (galley, origin) = (output.galley.clone(), output.galley_pos);
         if output.response.response.changed() {
-            let is_letter = |event: &egui::Event| matches!(event, egui::Event::Text(text) if text.chars().all(char::is_alphanumeric));
             let erased = |input: &egui::InputState| input.key_pressed(Key::Backspace);
             self.typed = ui.input(|input| {
-                input.events.iter().any(is_letter) || self.completions.is_open() && erased(input)
+                input.events.iter().any(writes_letters)
+                    || self.completions.is_open() && erased(input)
             });
         }
         let mut state = output.state;
@@ -481,6 +488,16 @@ impl Editor {
             starts = row.ends_with_newline;
             line += usize::from(starts);
         }
+    }
+}
+
+/// Whether letters were typed, on a keyboard or on a phone's.
+fn writes_letters(event: &egui::Event) -> bool {
+    match event {
+        egui::Event::Text(text) | egui::Event::Ime(egui::ImeEvent::Commit(text)) => {
+            !text.is_empty() && text.chars().all(char::is_alphanumeric)
+        }
+        _ => false,
     }
 }
 

@@ -34,6 +34,8 @@ fn rows(style: &egui::Style) -> (usize, f32) {
 pub struct Popup {
     /// What is offered, and for which place of which text.
     offers: Option<(Place, Completions)>,
+    /// The part of the word that was written, in small letters.
+    written: String,
     selected: usize,
     /// Whether the user moved the selection, so that Enter surely means it.
     chosen: bool,
@@ -119,6 +121,9 @@ impl Popup {
             .iter()
             .any(|item| item.insert.trim_end() == typed);
         if !completions.items.is_empty() && (asked || !done) {
+            let before = completions.replace.start..here.byte;
+            let written = session.text(here.file).get(before).unwrap_or_default();
+            self.written = written.to_lowercase();
             self.offers = Some((here, completions));
             self.selected = 0;
             self.chosen = false;
@@ -148,10 +153,26 @@ impl Popup {
             moved(selected.saturating_sub(page));
         } else if pressed(Key::Escape) {
             self.close();
-        } else if pressed(Key::Enter) || pressed(Key::Tab) {
+        } else if pressed(Key::Tab) {
             return self.take(selected);
+        } else if self.means(selected) {
+            if pressed(Key::Enter) {
+                return self.take(selected);
+            }
+        } else if ui.input(|input| input.key_pressed(Key::Enter)) {
+            // The line ends here; the text gets the key.
+            self.close();
         }
         Keyed::Nothing
+    }
+
+    /// Whether Enter means this row: it was chosen, or goes on as the word begins.
+    fn means(&self, index: usize) -> bool {
+        let item = self
+            .offers
+            .as_ref()
+            .and_then(|(_, completions)| completions.items.get(index));
+        self.chosen || item.is_some_and(|item| item.text.to_lowercase().starts_with(&self.written))
     }
 
     fn take(&mut self, index: usize) -> Keyed {

@@ -14,9 +14,16 @@ const REST: f32 = 0.35;
 #[derive(Default)]
 pub struct Hover {
     card: Option<(Place, u64, Option<Card>)>,
+    /// The command that the card on show is about.
+    command: Option<&'static str>,
 }
 
 impl Hover {
+    /// The command that the card on show is about, until the next frame.
+    pub fn take_command(&mut self) -> Option<&'static str> {
+        self.command.take()
+    }
+
     /// Shows what there is to say about a place of the text under the pointer.
     pub fn show(
         &mut self,
@@ -50,6 +57,7 @@ impl Hover {
         }
         let card = self.card.as_ref().filter(known);
         let card = card.and_then(|(_, _, card)| card.as_ref());
+        self.command = card.and_then(|card| card.command);
         if messages.is_empty() && card.is_none() {
             return;
         }
