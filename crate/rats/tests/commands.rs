@@ -616,3 +616,21 @@ fn every_command_has_an_etude_and_a_manual() {
         assert!(said[0].message.contains(spec.meaning));
     }
 }
+
+/// A project may have files that are called like those of the library.
+#[test]
+fn a_file_called_like_one_of_the_library() {
+    let text = "surface s diff Red\nsphereflake s, 1";
+    let compiled = compile(&Project {
+        files: vec![File {
+            name: String::from("sphereflake.rat"),
+            text: text.to_owned(),
+        }],
+    });
+    assert_eq!(compiled.diagnostics, []);
+    assert_eq!(compiled.scene.elements.len(), 10);
+    // A command of the text's own hides the library's.
+    let own =
+        scene("surface s diff Red\ndefine sphereflake(n) { sphere s n 0 0 0 }\nsphereflake 2");
+    assert_eq!(own.elements.len(), 1);
+}

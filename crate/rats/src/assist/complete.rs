@@ -281,7 +281,13 @@ impl Offers {
             }
             Kind::Vector | Kind::Direction if part == 0 => self.values(here, None, &detail),
             Kind::Vector | Kind::Direction => self.values(here, Some(Type::Number), &detail),
-            Kind::Colour | Kind::Share | Kind::Value if part == 0 => {
+            Kind::Colour | Kind::Share if part == 0 => {
+                self.variables(here, None, &detail);
+                self.functions(|name| name == "rgb");
+                self.colours();
+                self.functions(|name| name != "rgb");
+            }
+            Kind::Value if part == 0 => {
                 self.values(here, None, &detail);
                 self.colours();
             }
@@ -321,32 +327,43 @@ impl Offers {
 
     /// Variables of a type (or all), functions and constants.
     fn values(&mut self, here: &Here<'_>, wanted: Option<Type>, detail: &str) {
+        self.variables(here, wanted, detail);
+        self.functions(|_| true);
+        self.add("pi", CompletionKind::Function, "3.14159…");
+    }
+
+    /// Variables of a type (or all), then the parts of triples where a number is wanted.
+    fn variables(&mut self, here: &Here<'_>, wanted: Option<Type>, detail: &str) {
         let fits = |value: Type| match value {
             Type::Name => false,
             Type::Any => true,
             known => wanted.is_none_or(|wanted| wanted == known),
         };
+        for (name, value, kind) in here.variables.iter().filter(|(_, value, _)| fits(*value)) {
+            let what = match value {
+                Type::Triple => "three numbers",
+                Type::Number => "a number",
+                Type::Name | Type::Any => "a value",
+            };
+            let detail = if detail.is_empty() {
+                format!("{}, {what}", kind.word())
+            } else {
+                format!("{}, {what}, for {detail}", kind.word())
+            };
+            self.add(name, CompletionKind::Name(*kind), detail);
+        }
         for (name, value, kind) in &here.variables {
-            if fits(*value) {
-                let what = match value {
-                    Type::Triple => "three numbers",
-                    Type::Number => "a number",
-                    Type::Name | Type::Any => "a value",
-                };
-                let detail = if detail.is_empty() {
-                    format!("{}, {what}", kind.word())
-                } else {
-                    format!("{}, {what}, for {detail}", kind.word())
-                };
-                self.add(name, CompletionKind::Name(*kind), detail);
-            } else if *value == Type::Triple {
+            if *value == Type::Triple && !fits(*value) {
                 for part in ["x", "y", "z"] {
                     let text = format!("{name}.{part}");
                     self.add(&text, CompletionKind::Name(*kind), "a number of the three");
                 }
             }
         }
-        for function in functions::FUNCTIONS {
+    }
+
+    fn functions(&mut self, wanted: impl Fn(&str) -> bool) {
+        for function in functions::FUNCTIONS.iter().filter(|f| wanted(f.name)) {
             self.items.push(Completion {
                 text: function.name.to_owned(),
                 kind: CompletionKind::Function,
@@ -355,7 +372,6 @@ impl Offers {
                 swatch: None,
             });
         }
-        self.add("pi", CompletionKind::Function, "3.14159…");
     }
 
     fn colours(&mut self) {
@@ -412,17 +428,14 @@ fn ranked(items: Vec<Completion>, typed: &str) -> Vec<Completion> {
     fitting.into_iter().map(|(_, _, item)| item).collect()
 }
 
-/// How well a text fits what is typed: 0 begins so, 1 in another case, 2 holds it, 3 nearly.
+/// How well a text fits what is typed, in any case: 0 begins so, 1 holds it, 2 nearly.
 fn fit(text: &str, typed: &str) -> Option<usize> {
-    if text.starts_with(typed) {
-        return Some(0);
-    }
     let (lower, typed_lower) = (text.to_lowercase(), typed.to_lowercase());
     if lower.starts_with(&typed_lower) {
-        return Some(1);
+        return Some(0);
     }
     if lower.contains(&typed_lower) {
-        return Some(2);
+        return Some(1);
     }
     let letters = typed.chars().count();
     if letters < 3 {
@@ -430,5 +443,5 @@ fn fit(text: &str, typed: &str) -> Option<usize> {
     }
     let beginning: String = text.chars().take(letters).collect();
     let near = suggest::nearest(typed, [text, beginning.as_str()]);
-    near.map(|_| 3)
+    near.map(|_| 2)
 }

@@ -158,12 +158,12 @@ fn options() {
 fn values() {
     begins(
         &with_head("sphere Skin |"),
-        &["P.x", "P.y", "P.z", "r", "sin"],
+        &["r", "P.x", "P.y", "P.z", "sin"],
     );
     begins(&with_head("sphere Skin 1 |"), &["P", "r", "sin"]);
     begins(
         &with_head("sphere Skin 1 r |"),
-        &["P.x", "P.y", "P.z", "r", "sin"],
+        &["r", "P.x", "P.y", "P.z", "sin"],
     );
     exactly(&with_head("sphere Skin 2*sq|"), &["sqrt"]);
     among(
@@ -176,6 +176,8 @@ fn values() {
     among(&with_head("sphere Skin Or|"), &["!OrangeRed"]);
     begins(&with_head("surface s diff Oran|"), &["Orange", "Orange1"]);
     among(&with_head("surface s diff 1 Or|"), &["!OrangeRed"]);
+    begins(&with_head("background |"), &["P", "r", "rgb", "AliceBlue"]);
+    begins(&with_head("background si|"), &["Sienna", "Sienna1"]);
     exactly(&with_head("sphere Skin 1|"), &[]);
     begins(&with_head("var r|"), &["r"]);
     begins(&with_head("for k = 1 to 3 { sphere Skin k|"), &["k"]);
@@ -184,7 +186,7 @@ fn values() {
         &["j"],
     );
     begins(&with_head("for k = 1 to 3 { sphere Skin k| }"), &["k"]);
-    begins(&with_head("leg Skin, P, |"), &["P.x", "P.y", "P.z", "r"]);
+    begins(&with_head("leg Skin, P, |"), &["r", "P.x", "P.y", "P.z"]);
     among(&with_head("leg Skin, P, |"), &["length="]);
     begins(&with_head("leg Skin, P, le|"), &["length", "length="]);
     among("shell s, |", &["turns="]);

@@ -96,7 +96,7 @@ fn meaning_stays_in_any_words() {
         same_meaning(&project);
         Ok(())
     })
-    .budget_ms(4000);
+    .budget_ms(3000);
 }
 
 #[test]
