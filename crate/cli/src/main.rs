@@ -1,24 +1,29 @@
 //! The program `sinew`: the same core as the page, on a command line.
 //!
-//! Each subcommand is a module of its own. Results go to the standard output, everything said to
+//! Each subcommand is a module of its own; without one the program takes the options of RATS. Results go to the standard output, everything said to
 //! a person goes to the standard error, and the exit status is 0 when all went well, 1 when the
 //! dataset has errors, and 2 when the command could not be carried out at all.
 
+mod animate;
 mod check;
+mod classic;
 mod files;
 mod probe;
 mod render;
 mod report;
 mod share;
+mod tools;
+mod trace;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
 #[derive(Parser)]
 #[command(
     name = "sinew",
     version,
-    about = "Convolution surfaces: smooth shapes grown on a skeleton"
+    about = "Convolution surfaces: smooth shapes grown on a skeleton",
+    after_help = "sinew [-/+options] FILE.rat … runs datasets as RATS did; sinew -? lists its options."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -31,6 +36,8 @@ enum Command {
     Check(check::Check),
     /// Trace a dataset's picture
     Render(render::Render),
+    /// Trace a dataset whose variables change with the frames to an animation
+    Animate(animate::Animate),
     /// Evaluate the field at points, or intersect rays with the surface
     Probe(probe::Probe),
     /// Print the evaluated scene as JSON
@@ -46,20 +53,37 @@ enum Command {
 type Outcome = Result<bool, String>;
 
 fn main() -> ExitCode {
-    let outcome = match Arguments::parse().command {
-        Command::Check(command) => command.run(),
-        Command::Render(command) => command.run(),
-        Command::Probe(command) => command.run(),
-        Command::Scene(command) => command.run(),
-        Command::Share(command) => command.run(),
-        Command::Open(command) => command.run(),
-    };
-    match outcome {
+    match run() {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(sentence) => {
             eprintln!("sinew: {sentence}");
             ExitCode::from(2)
         }
+    }
+}
+
+fn run() -> Outcome {
+    let arguments: Vec<String> = std::env::args_os()
+        .skip(1)
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
+    let description = Arguments::command();
+    let subcommands: Vec<&str> = description
+        .get_subcommands()
+        .map(|subcommand| subcommand.get_name())
+        .chain(["help"])
+        .collect();
+    if classic::is_meant(&arguments, &subcommands) {
+        return classic::run(&arguments);
+    }
+    match Arguments::parse().command {
+        Command::Check(command) => command.run(),
+        Command::Render(command) => command.run(),
+        Command::Animate(command) => command.run(),
+        Command::Probe(command) => command.run(),
+        Command::Scene(command) => command.run(),
+        Command::Share(command) => command.run(),
+        Command::Open(command) => command.run(),
     }
 }

@@ -11,6 +11,16 @@ use std::io::IsTerminal;
 ///
 /// Returns whether the dataset is free of errors.
 pub fn to_stderr(loaded: &Loaded) -> bool {
+    let text = text(loaded, Severity::Note);
+    if std::io::stderr().is_terminal() && !text.is_empty() {
+        eprintln!();
+    }
+    eprint!("{text}");
+    is_clean(loaded)
+}
+
+/// The diagnostics that are at least so bad, with the lines they are about.
+pub fn text(loaded: &Loaded, least: Severity) -> String {
     let mut files = SimpleFiles::new();
     let ids: Vec<_> = loaded
         .project
@@ -24,7 +34,8 @@ pub fn to_stderr(loaded: &Loaded) -> bool {
         })
         .collect();
     let mut text = String::new();
-    for diagnostic in &loaded.compiled.diagnostics {
+    let diagnostics = loaded.compiled.diagnostics.iter();
+    for diagnostic in diagnostics.filter(|diagnostic| diagnostic.severity >= least) {
         let shown = match diagnostic.severity {
             Severity::Error => Diagnostic::error(),
             Severity::Warning => Diagnostic::warning(),
@@ -53,11 +64,7 @@ pub fn to_stderr(loaded: &Loaded) -> bool {
             ));
         }
     }
-    if std::io::stderr().is_terminal() && !text.is_empty() {
-        eprintln!();
-    }
-    eprint!("{text}");
-    is_clean(loaded)
+    text
 }
 
 /// Whether a dataset has no errors (warnings are fine).

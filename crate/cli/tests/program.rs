@@ -100,7 +100,7 @@ fn render_refuses_what_it_cannot_do() {
     let folder = Folder::new("refuse");
     let file = folder.write("ball.rat", BALL);
     for arguments in [
-        ["-o", "x.gif", "-r", "4", "4"],
+        ["-o", "x.jpeg", "-r", "4", "4"],
         ["-o", "x.png", "-r", "0", "4"],
         ["-o", "x.png", "-r", "4", "100000"],
     ] {
@@ -218,4 +218,138 @@ fn links_carry_all_texts_there_and_back() {
             .code(),
         Some(2)
     );
+}
+
+#[test]
+fn the_options_of_rats() {
+    let folder = Folder::new("classic");
+    let file = folder.write("ball.rat", &format!("wibble\n{BALL}"));
+    let picture = folder.path("ball.tga");
+    let log = folder.path("said.txt");
+    let output = sinew(
+        &[
+            "-r", "20", "10", "-s", "1", "+e", "-a", "-q", "-o", &picture, "-l", &log, &file,
+        ],
+        "",
+    );
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "wibble is an error: {said}");
+    for part in ["-a changes nothing", "> sphere flesh", "wibble", "20×10"] {
+        assert!(said.contains(part), "{said}");
+    }
+    assert_eq!(said, std::fs::read_to_string(&log).expect("the log"));
+    let tga = std::fs::read(&picture).expect("written");
+    assert_eq!(
+        tga[12..16],
+        [20, 0, 10, 0],
+        "width and height of a TGA file"
+    );
+
+    let file = folder.write("good.rat", BALL);
+    assert_eq!(sinew(&["-v", &file], "").status.code(), Some(0));
+    assert!(folder.0.join("scene.png").exists());
+    let named = format!(
+        "filename ball\nformat mtv\n{BALL}convert ball.mtv again.tif\nconvert no.png no.tga\n"
+    );
+    let file = folder.write("named.rat", &named);
+    let output = sinew(&[&file], "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "no.png is missing: {said}");
+    assert!(
+        said.contains("wrote again.tif, 32×24") && said.contains("cannot read no.png"),
+        "{said}"
+    );
+    let mtv = std::fs::read(folder.0.join("ball.mtv")).expect("written");
+    assert!(mtv.starts_with(b"32 24\n"));
+    let file = folder.write("away.rat", &format!("filename ../ball\n{BALL}"));
+    let said = sinew(&[&file], "");
+    assert_eq!(
+        said.status.code(),
+        Some(2),
+        "{}",
+        String::from_utf8_lossy(&said.stderr)
+    );
+
+    // A text that only works on pictures draws none.
+    std::fs::remove_file(folder.0.join("scene.png")).expect("removed");
+    let file = folder.write("tools.rat", "resize again.tif 16 12\n");
+    assert_eq!(sinew(&[&file], "").status.code(), Some(0));
+    assert!(folder.0.join("again-16x12.tif").exists() && !folder.0.join("scene.png").exists());
+
+    for arguments in [
+        &["-l", "good.rat"][..],
+        &["-q"],
+        &["-x", "a.rat"],
+        &["-o", "a.rat", "b.rat"],
+    ] {
+        assert_eq!(sinew(arguments, "").status.code(), Some(2), "{arguments:?}");
+    }
+    assert!(printed(&sinew(&["-?"], "")).contains("-r W H"));
+}
+
+#[test]
+fn every_format_shows_the_same_picture() {
+    let folder = Folder::new("formats");
+    let file = folder.write("ball.rat", BALL);
+    let pictures = ["png", "tga", "tif", "mtv"].map(|ending| {
+        let path = folder.path(&format!("ball.{ending}"));
+        assert!(sinew(&["render", &file, "-o", &path], "").status.success());
+        let bytes = std::fs::read(&path).expect("written");
+        let format = picture::Format::of(path.as_ref()).expect("a format");
+        picture::file::decode(&bytes, format).expect("a picture")
+    });
+    assert!(pictures.iter().all(|other| *other == pictures[0]));
+}
+
+#[test]
+fn animate_follows_the_variables() {
+    let folder = Folder::new("animate");
+    let file = folder.write(
+        "turn.rat",
+        &format!(
+            "var a = 0\nvar a += 30\nvar r = 0.5 + a/100\n{}",
+            BALL.replace("flesh 1 0", "flesh r 0")
+        ),
+    );
+    for ending in ["png", "gif"] {
+        let film = folder.path(&format!("film.{ending}"));
+        let output = sinew(
+            &[
+                "animate", &file, "-o", &film, "--frames", "3", "--fps", "10",
+            ],
+            "",
+        );
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let bytes = std::fs::read(&film).expect("written");
+        let format = picture::Format::of(film.as_ref()).expect("a format");
+        let frames: Vec<_> = picture::animation::frames(&bytes, format)
+            .expect("an animation")
+            .collect::<Result<_, _>>()
+            .expect("whole frames");
+        assert_eq!(frames.len(), 3);
+        assert!(frames[0] != frames[1] && frames[1] != frames[2]);
+    }
+    let still = folder.write("still.rat", BALL);
+    let film = folder.path("still.png");
+    for (arguments, why) in [
+        (["animate", &still, "-o", &film, "--frames", "3"], "changes"),
+        (
+            ["animate", &file, "-o", &film, "--frames", "0"],
+            "1 to 10000",
+        ),
+        (
+            ["animate", &file, "-o", "film.tga", "--frames", "2"],
+            "animations",
+        ),
+    ] {
+        let output = sinew(&arguments, "");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(why), "{said}");
+    }
+    assert!(!folder.0.join("still.png").exists());
 }

@@ -8,9 +8,10 @@
 //! (`syntax`), `evaluator` runs the tree. Each command's operands are read while it runs
 //! (`given`, `reader`, `operands`, `expression`), because what a word means depends on the variables at that time. What
 //! commands there are stands in one table ([`commands`]), which also serves [`highlight`] and help.
-//! All bounds are in [`limits`].
+//! [`assist`] answers what an editor asks. All bounds are in [`limits`].
 
 mod assets;
+pub mod assist;
 pub mod colours;
 pub mod commands;
 pub mod compile;

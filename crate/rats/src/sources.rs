@@ -46,8 +46,7 @@ impl<'a> Sources<'a> {
             let source = &sources.all[next];
             used(&source.syntax.block, source, &mut wanted);
             for name in wanted {
-                let is_own = sources.all[..sources.own].iter().any(|s| s.name == name);
-                if is_own || known.contains(&name) {
+                if known.contains(&name) {
                     continue;
                 }
                 let text = match name.strip_prefix("test ") {
@@ -69,10 +68,20 @@ impl<'a> Sources<'a> {
         self.all.push(Source { name, text, syntax });
     }
 
-    /// The index of a file, or of an example.
+    /// The index of a file; one of the project hides one of the library of the same name.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<usize> {
         self.all.iter().position(|source| source.name == name)
+    }
+
+    /// The index of a file of the library, or of an example (`test NAME`).
+    #[must_use]
+    pub fn find_built_in(&self, name: &str) -> Option<usize> {
+        let built_in = self.all.iter().skip(self.own);
+        let index = built_in
+            .into_iter()
+            .position(|source| source.name == name)?;
+        Some(self.own + index)
     }
 }
 

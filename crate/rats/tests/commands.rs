@@ -261,6 +261,17 @@ fn surfaces() {
     assert_eq!(u.ambient, [1.0, 0.0, 0.0]);
 }
 
+/// `surface new = s` copies what the parameter `s` stands for.
+#[test]
+fn a_material_that_was_passed_on_is_copied() {
+    let text = "surface Clay diff Red\ndefine ball(surface s) {\n\
+                surface own = s, rad 2\nsphere own 1, 0 0 0\n}\nball Clay\n";
+    let scene = scene(text);
+    let material = &scene.materials[scene.elements[0].material];
+    assert_eq!(material.diffuse, [1.0, 0.0, 0.0]);
+    assert_eq!(material.radius, 2.0);
+}
+
 #[test]
 fn a_material_made_anew_leaves_older_shapes_alone() {
     let scene = scene(
@@ -615,4 +626,22 @@ fn every_command_has_an_etude_and_a_manual() {
         );
         assert!(said[0].message.contains(spec.meaning));
     }
+}
+
+/// A project may have files that are called like those of the library.
+#[test]
+fn a_file_called_like_one_of_the_library() {
+    let text = "surface s diff Red\nsphereflake s, 1";
+    let compiled = compile(&Project {
+        files: vec![File {
+            name: String::from("sphereflake.rat"),
+            text: text.to_owned(),
+        }],
+    });
+    assert_eq!(compiled.diagnostics, []);
+    assert_eq!(compiled.scene.elements.len(), 10);
+    // A command of the text's own hides the library's.
+    let own =
+        scene("surface s diff Red\ndefine sphereflake(n) { sphere s n 0 0 0 }\nsphereflake 2");
+    assert_eq!(own.elements.len(), 1);
 }

@@ -157,11 +157,61 @@ fn sphereflake() {
     }
 }
 
+#[test]
+fn the_thesis_s_models_have_its_numbers_of_elements() {
+    // Points, lines, arcs and curves, triangles; hard ones among them.
+    let wanted = [
+        ("starfish-a", [0, 0, 7, 0], 7),
+        ("starfish-b", [0, 0, 7, 0], 0),
+        ("shell-1", [361, 0, 0, 0], 0),
+        ("shell-2", [0, 42, 0, 0], 0),
+        ("shell-3", [0, 55 + 15, 0, 0], 0),
+        ("seaweed", [0, 31, 0, 0], 0),
+        ("coral-crab", [2, 28 + 608, 26, 7], 2),
+        ("spinal-starecase", [38 + 107, 333, 0, 0], 107),
+    ];
+    for (name, numbers, hard) in wanted {
+        let scene = example(name).1.scene;
+        let found = [
+            count(&scene, |s| matches!(s, Shape::Sphere { .. })),
+            count(&scene, |s| {
+                matches!(s, Shape::Cylinder { .. } | Shape::Pipe { .. })
+            }),
+            count(&scene, |s| {
+                matches!(s, Shape::Arc { .. } | Shape::Curve { .. })
+            }),
+            count(&scene, |s| matches!(s, Shape::Triangle { .. })),
+        ];
+        assert_eq!(found, numbers, "{name}");
+        let found = scene.elements.iter().filter(|e| !scene.is_soft(e)).count();
+        assert_eq!(found, hard, "{name}");
+    }
+    assert_eq!(example("hermite-crab").1.scene.elements.len(), 988);
+    // 31 branches; the spikes are shared out among them in whole numbers.
+    assert_eq!(example("coral-tree").1.scene.elements.len(), 31 + 508);
+}
+
 const EXAMPLES: &[&str] = &[
+    "coral-crab",
+    "coral-tree",
     "cowrie",
+    "generators",
+    "hermite-crab",
     "icicle",
+    "sea-urchin",
     "seahorse",
+    "seaweed",
+    "shell-1",
+    "shell-2",
+    "shell-3",
     "sphereflake",
+    "spinal-starecase",
     "starfish",
+    "starfish-a",
+    "starfish-b",
+    "starfish-c",
+    "starfish-d",
+    "starfish-e",
+    "starfish-f",
     "tshape",
 ];

@@ -42,13 +42,33 @@ macro_rules! example {
 }
 
 /// All of them. The first one is what a first visit shows.
-pub const ALL: [Example; 6] = [
+pub const ALL: [Example; 22] = [
     example!("Cowrie", "a shell with random spikes", "cowrie"),
     example!("Seahorse", "the classic, all of arcs", "seahorse"),
+    example!("Hermite crab", "988 elements of five kinds", "hermite-crab"),
+    example!("Coral crab", "a few bones and 608 spikes", "coral-crab"),
     example!("Starfish", "arms made by a loop", "starfish"),
+    example!("Sea urchin", "a ball and 180 needles", "sea-urchin"),
+    example!("Shell I", "361 points on a spiral", "shell-1"),
+    example!("Shell II", "42 lines to one point", "shell-2"),
+    example!("Shell III", "a spiral with horns", "shell-3"),
+    example!("Seaweed", "a tree whose branches fade", "seaweed"),
+    example!("Coral tree", "the same tree, with spikes", "coral-tree"),
+    example!(
+        "Spinal Starecase",
+        "36 legs, wound like a stair",
+        "spinal-starecase"
+    ),
     example!("Sphereflake", "balls on balls, by recursion", "sphereflake"),
+    example!("Generators", "six commands, a line each", "generators"),
     example!("T-shape", "two bars that melt together", "tshape"),
     example!("Icicle", "a first little dataset", "icicle"),
+    example!("Starfish A", "seven arcs, the bare skeleton", "starfish-a"),
+    example!("Starfish B", "soft flesh on the skeleton", "starfish-b"),
+    example!("Starfish C", "very fat: a wide kernel", "starfish-c"),
+    example!("Starfish D", "fleshy arms, firm joints", "starfish-d"),
+    example!("Starfish E", "skinny, webs between the arms", "starfish-e"),
+    example!("Starfish F", "skinny and crisp", "starfish-f"),
 ];
 
 /// What a new work begins with.
@@ -112,7 +132,8 @@ mod tests {
             assert_eq!(compiled.diagnostics, [], "{}", example.title);
             assert!(!compiled.scene.elements.is_empty(), "{}", example.title);
             let thumbnail = decode(example.thumbnail).expect(example.title);
-            assert!(thumbnail.size[0] >= 160, "{}", example.title);
+            let largest = thumbnail.size[0].max(thumbnail.size[1]);
+            assert!(largest >= 200, "{}", example.title);
         }
     }
 

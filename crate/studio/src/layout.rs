@@ -123,7 +123,8 @@ fn text_or_asset(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
             app.editor.asset = None;
             places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
             app.editor.lit = app.hands.lit(&app.work.session);
-            app.editor.show(ui, &app.work.session, commands);
+            let hints = app.settings.hints;
+            app.editor.show(ui, &app.work.session, hints, commands);
         }
     }
 }
@@ -470,7 +471,7 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
                     app.gallery
                         .show(ui, shelf.opened(), platform::unix_time(), commands);
                 }
-                Dialog::Help => app.help.show(ui, commands),
+                Dialog::Help => app.help.show(ui, app.settings.hints, commands),
             }
         });
     places::note(ctx, "dialog", modal.response.rect);

@@ -44,7 +44,7 @@ macro_rules! flesh {
         )
     };
 }
-pub(self) use {clay, flesh};
+use {clay, flesh};
 
 const fn row(name: &'static str, meaning: &'static str, action: Action) -> CommandSpec {
     CommandSpec {

@@ -6,7 +6,7 @@
 
 use super::Evaluator;
 use crate::Severity;
-use field::THRESHOLD;
+use field::{Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::{Element, Scene, Shape};
 
@@ -71,13 +71,7 @@ impl Evaluator<'_> {
         if terms.is_empty() {
             return;
         }
-        let value = |p: DVec3| -> f64 {
-            terms
-                .iter()
-                .map(|term| term.value::<f64>([p.x, p.y, p.z]))
-                .sum()
-        };
-        if value(scene.camera.eye) >= THRESHOLD {
+        if sum(terms, scene.camera.eye) >= THRESHOLD {
             let (file, span) = self.aimed_at.clone();
             self.say_at(file, Severity::Warning, span, || {
                 (
@@ -87,21 +81,27 @@ impl Evaluator<'_> {
             });
         }
         let mut left = MOST_EVALUATIONS;
+        let mut term = 0;
         for (index, element) in scene.elements.iter().enumerate() {
-            let material = &scene.materials[element.material];
-            // An element of full strength reaches the threshold by itself: so is it normalised.
-            let weak =
-                material.strength < 1.0 || material.restriction > 0.0 || material.profile.is_some();
-            if !weak || material.strength <= 0.0 || !scene.is_soft(element) {
+            let first = term;
+            while surface.element.get(term) == Some(&index) {
+                term += 1;
+            }
+            let own = &terms[first..term];
+            if own.is_empty() || scene.materials[element.material].strength <= 0.0 {
                 continue;
             }
+            // Most are strong enough by themselves, which is soon seen.
             let points = bone(&element.shape);
+            if points.iter().rev().any(|p| sum(own, *p) >= THRESHOLD) {
+                continue;
+            }
             let Some(rest) = left.checked_sub(points.len() * terms.len()) else {
                 return;
             };
             left = rest;
-            if points.iter().all(|p| value(*p) < THRESHOLD) {
-                let origin = scene.elements[index].origin;
+            if points.iter().all(|p| sum(terms, *p) < THRESHOLD) {
+                let origin = element.origin;
                 let span = origin.start as usize..origin.end as usize;
                 self.say_at(origin.file as usize, Severity::Warning, span, || {
                     (
@@ -109,13 +109,18 @@ impl Evaluator<'_> {
                             "this soft shape cannot be seen: its field never reaches the threshold",
                         ),
                         Some(String::from(
-                            "raise the `strength` of its material, or put it nearer to others",
+                            "raise the `strength` or `radius` of its material, make it larger, or put it nearer to others",
                         )),
                     )
                 });
             }
         }
     }
+}
+
+fn sum(terms: &[Primitive], p: DVec3) -> f64 {
+    let point = [p.x, p.y, p.z];
+    terms.iter().map(|term| term.value::<f64>(point)).sum()
 }
 
 /// Points on a shape's skeleton, where its own field is strongest.

@@ -78,7 +78,7 @@ pub fn test<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
         });
         return Ok(Flow::Next);
     }
-    let Some(file) = run.sources.find(&format!("test {}", spec.name)) else {
+    let Some(file) = run.sources.find_built_in(&format!("test {}", spec.name)) else {
         return Err(Problem::new(
             given.name("command").span.clone(),
             format!("the example of `{}` cannot be run from here", spec.name),

@@ -81,7 +81,8 @@ pub static PRIMITIVES: &[CommandSpec] = &[
         .example(flesh!("triangle Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>")),
     row("triad", "triangle with the Newtonian kernel", run(primitives::triad))
         .takes(&[SN, vector("V1", "the first corner"), vector("V2", "the second corner"), vector("V3", "the third corner")])
-        .example(flesh!("triad Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>")),
+        .details("The potential of a flat mass. Its flesh is as thick as the radius only where the triangle is many radii wide; smaller ones need more `strength`.")
+        .example("light White, position 4 8 10\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine 40, radius 0.4, blobbiness -2, strength 3\ntriad Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>"),
     row("plane", "infinite plane", run(primitives::plane))
         .takes(&[SN, vector("POS", "a point of the plane"), direction("NORM", "the normal")])
         .example(clay!("plane Clay, <0 -2 0>, <0 1 0>")),

@@ -1,0 +1,132 @@
+//! From a scene to a picture in a file, as several subcommands need it.
+
+use picture::{Format, Picture, file};
+use scene::{Scene, Settings};
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::time::Instant;
+
+/// What is asked for on the command line and overrules the dataset.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wishes {
+    /// Width and height, pixels.
+    pub size: Option<[u32; 2]>,
+    /// At most n×n rays a pixel.
+    pub samples: Option<u32>,
+    /// Whether soft shapes blend.
+    pub soft: Option<bool>,
+    /// Threads; `None`: as many as the machine has cores.
+    pub threads: Option<usize>,
+}
+
+/// A picture and what it took.
+pub struct Traced {
+    /// The picture.
+    pub picture: Picture,
+    /// Counts of the work.
+    pub stats: tracer::Stats,
+    /// Time, seconds.
+    pub seconds: f64,
+    /// Threads used.
+    pub threads: usize,
+}
+
+impl Wishes {
+    /// Changes a scene's settings to what is asked for.
+    ///
+    /// # Errors
+    /// If a size or a number of rays is out of its range.
+    pub fn apply(&self, scene: &mut Scene) -> Result<(), String> {
+        let settings = &mut scene.settings;
+        settings.frame = self.size.unwrap_or(settings.frame);
+        settings.samples = self.samples.unwrap_or(settings.samples);
+        settings.soft = self.soft.unwrap_or(settings.soft);
+        let [width, height] = settings.frame;
+        let largest = Settings::MAX_FRAME;
+        if !(1..=largest).contains(&width) || !(1..=largest).contains(&height) {
+            return Err(format!(
+                "a picture of {width}×{height} pixels cannot be made: each side must be 1 to {largest}"
+            ));
+        }
+        if !(1..=Settings::MAX_SAMPLES).contains(&settings.samples) {
+            return Err(format!("-s takes 1 to {}", Settings::MAX_SAMPLES));
+        }
+        Ok(())
+    }
+
+    /// Traces a scene as asked for. `progress` is called from any thread with the share done, 0 … 1.
+    ///
+    /// # Errors
+    /// As [`Self::apply`], or if the number of threads is 0.
+    pub fn trace(
+        &self,
+        scene: &mut Scene,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Traced, String> {
+        self.apply(scene)?;
+        let threads = match self.threads {
+            Some(0) => return Err(String::from("--threads takes 1 or more")),
+            Some(threads) => threads.min(1024),
+            None => std::thread::available_parallelism().map_or(1, usize::from),
+        };
+        let start = Instant::now();
+        let size = scene.settings.frame;
+        let (pixels, stats) = tracer::render(scene, size, threads, tracer::Pass::Smooth, progress);
+        let seconds = start.elapsed().as_secs_f64();
+        let picture =
+            Picture::new(size[0], size[1], pixels).map_err(|problem| problem.to_string())?;
+        Ok(Traced {
+            picture,
+            stats,
+            seconds,
+            threads,
+        })
+    }
+}
+
+/// Checks that a name given on the command line is that of a picture, before hours are spent on it.
+///
+/// # Errors
+/// If the name's ending is not that of a known format.
+pub fn check_name(path: &Path) -> Result<(), String> {
+    Format::of(path).map_or_else(|problem| Err(problem.to_string()), |_| Ok(()))
+}
+
+/// Writes a picture in the format that the name's ending tells.
+///
+/// # Errors
+/// If the ending is not that of a known format, or if the file cannot be written.
+pub fn write(path: &Path, picture: &Picture) -> Result<(), String> {
+    let format = Format::of(path).map_err(|problem| problem.to_string())?;
+    let bytes = file::encode(picture, format)
+        .map_err(|problem| format!("cannot write {}: {problem}", path.display()))?;
+    whole(path, |file| {
+        file.write_all(&bytes).map_err(|error| error.to_string())
+    })
+}
+
+/// Writes a file that is there completely or not at all: what was there before stays until the new one is done.
+///
+/// # Errors
+/// If the file cannot be written, or what `fill` says.
+pub fn whole(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), String>,
+) -> Result<(), String> {
+    let fail = |error: &dyn Display| format!("cannot write {}: {error}", path.display());
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    let part = path.with_file_name(name);
+    let file = File::create(&part).map_err(|error| fail(&error))?;
+    let mut file = BufWriter::new(file);
+    let done = fill(&mut file)
+        .and_then(|()| file.flush().map_err(|error| error.to_string()))
+        .and_then(|()| std::fs::rename(&part, path).map_err(|error| error.to_string()));
+    done.map_err(|error| {
+        // The mistake that is told matters more than a leftover.
+        let _ = std::fs::remove_file(&part);
+        fail(&error)
+    })
+}

@@ -1,0 +1,33 @@
+//! Plain pictures, and what the TOOLS group of the language does with them.
+//!
+//! A [`Picture`] is a width, a height and four bytes a pixel. [`combine`] and [`resize()`] make new ones of
+//! old ones, [`collage()`] puts several on a sheet, [`plot()`] and [`swatches()`] draw simple ones.
+//! [`file`] turns pictures into the bytes of PNG, TGA, TIFF, GIF and MTV files and back,
+//! [`animation`] does so with animations in PNG and GIF.
+//!
+//! Without the feature `formats` only PNG and MTV are known, which keeps the page small. Bytes of files
+//! are never trusted: what is larger than the limits of [`limits`], cut or wrong is a [`Problem`], which
+//! is a sentence for a person.
+
+pub mod animation;
+mod collage;
+pub mod combine;
+pub mod file;
+#[cfg(feature = "formats")]
+mod formats;
+pub mod limits;
+mod mtv;
+mod picture;
+mod plot;
+mod png_file;
+mod problem;
+mod resize;
+mod swatches;
+
+pub use collage::collage;
+pub use file::Format;
+pub use picture::Picture;
+pub use plot::plot;
+pub use problem::Problem;
+pub use resize::resize;
+pub use swatches::swatches;

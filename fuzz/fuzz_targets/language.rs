@@ -1,0 +1,22 @@
+//! Datasets that are nearly right.
+#![no_main]
+
+#[allow(dead_code)]
+#[path = "../../crate/rats/examples/fuzz/check.rs"]
+mod check;
+#[path = "../../crate/rats/examples/fuzz/generate.rs"]
+mod generate;
+
+use arbitrary::Unstructured;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(text) = generate::dataset(&mut Unstructured::new(bytes)) else {
+        return;
+    };
+    let project = check::project(&text, "sphere m0 1 0 0 0\n");
+    let compiled = rats::compile(&project);
+    check::compiled(&project, &compiled).expect("a sound scene");
+    check::repeats(&project, &compiled).expect("the same scene");
+    check::sent(&project).expect("the same project");
+});
