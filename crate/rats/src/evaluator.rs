@@ -18,6 +18,7 @@ pub mod scene_commands;
 pub mod textures;
 pub mod tools;
 pub mod variables;
+pub mod watch;
 
 use crate::commands::{self, Action};
 use crate::compile::{Compiled, HotVariable, Output, Placement};
@@ -93,6 +94,8 @@ pub struct Evaluator<'a> {
     /// The picture that `shoot` took.
     shot: Option<(Scene, Vec<Placement>)>,
     told_after_shot: bool,
+    /// Whether, and for which command, the run is watched.
+    watch: Option<Box<watch::Watch<'a>>>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -132,6 +135,7 @@ impl<'a> Evaluator<'a> {
             repeating: 0,
             shot: None,
             told_after_shot: false,
+            watch: None,
         }
     }
 
@@ -233,6 +237,9 @@ impl<'a> Evaluator<'a> {
 
     fn command(&mut self, command: &'a Command) -> Outcome<Flow> {
         self.scope.step(1, &command.word_span)?;
+        if self.watch.as_ref().is_some_and(|watch| watch.is_done()) {
+            return Ok(Flow::Quit);
+        }
         let Some(spec) = command.spec else {
             return self.call(command, command.word);
         };
