@@ -218,7 +218,7 @@ impl Fuzzer {
         // Written first, since a stack that overflows leaves no time.
         let _ = std::fs::write(&self.case, text);
         let before = forget_peak();
-        let (outcome, took) = try_text(text, self.random.below(16) == 0);
+        let (outcome, took) = try_text(text, self.random.below(4) == 0);
         let memory = peak().saturating_sub(before);
         if took > self.longest.0 {
             self.longest = (took, text.to_owned());
@@ -274,6 +274,7 @@ fn try_text(text: &str, thorough: bool) -> (Result<(), String>, Duration) {
         check::compiled(&project, &compiled)?;
         check::unrun(text)?;
         if thorough {
+            check::laid_out(&project, &compiled)?;
             check::repeats(&project, &compiled)?;
             check::sent(&project)?;
         }
