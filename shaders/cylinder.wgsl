@@ -36,7 +36,7 @@ fn meet(ray: Ray, solid: Varying) -> Hit {
     }
 
     if solid.a.w > 0.5 {
-        let shown = wall >= lids.xx && wall <= lids.yy && wall > vec2f(ray.start);
+        let shown = (wall >= lids.xx) & (wall <= lids.yy) & (wall > vec2f(ray.start));
         if !any(shown) {
             return MISS;
         }

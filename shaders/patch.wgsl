@@ -1,8 +1,11 @@
 // A triangle in the plane z = 0, lit as if it were curved. a: first and second corner, b.xy: third
 // corner. low and high, in order: the normals at the corners, two numbers each (see `unfold`).
 //
-// What is drawn is the triangle itself, not a box around it, so that triangles with a common edge
-// leave no gap, and large meshes cost little.
+// What is drawn is the triangle itself, not a box around it, so that large meshes cost little.
+
+// What f32 may be off by, as a share of a distance. Triangles grow by so much, so that no ray passes
+// between those with a common edge.
+const ROUNDING: f32 = 5e-7;
 
 @vertex
 fn cover_corners(@builtin(vertex_index) index: u32, instance: Instance) -> Varying {
@@ -13,7 +16,16 @@ fn cover_corners(@builtin(vertex_index) index: u32, instance: Instance) -> Varyi
     if index == 2u {
         corner = instance.b.xy;
     }
-    return cover_point(instance, vec3f(corner, 0.0));
+    let p = instance.a.xy;
+    let q = instance.a.zw;
+    let r = instance.b.xy;
+    // Away from the middle: edges move as the radius of the inscribed circle grows.
+    let around = distance(p, q) + distance(q, r) + distance(r, p);
+    let inscribed = abs(area(p, q, r)) / around;
+    let room = ROUNDING * (length(from_eye(instance)) / instance.unit + 1.0);
+    let growth = min(room / max(inscribed, 1e-30), 0.1);
+    let middle = (p + q + r) / 3.0;
+    return cover_point(instance, vec3f(corner + growth * (corner - middle), 0.0));
 }
 
 // A unit vector from the square onto which the octahedron |x| + |y| + |z| = 1 unfolds.
@@ -29,14 +41,15 @@ fn area(p: vec2f, q: vec2f, r: vec2f) -> f32 {
 }
 
 fn meet(ray: Ray, solid: Varying) -> Hit {
-    if abs(ray.direction.z) < 1e-12 {
-        return MISS;
-    }
-    let s = -ray.origin.z / ray.direction.z;
-    let at = ray.origin.xy + s * ray.direction.xy;
     let p = solid.a.xy;
     let q = solid.a.zw;
     let r = solid.b.xy;
+    // Seen edge-on, where the ray meets the plane may be far from the triangle. But it does meet the
+    // triangle, because that is drawn here.
+    let reach = max(max(length(p), length(q)), length(r));
+    let steep = abs(ray.direction.z) > 1e-12;
+    let s = select(0.0, clamp(-ray.origin.z / ray.direction.z, -reach, reach), steep);
+    let at = ray.origin.xy + s * ray.direction.xy;
     // The whole picture element belongs to the triangle, even if its middle is a little outside.
     let weights = max(vec3f(area(at, q, r), area(at, r, p), area(at, p, q)), vec3f(0.0));
     let mixed = weights.x * unfold(solid.low.xy)

@@ -22,10 +22,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
         return numbers(&bytes[HEAD..]);
     }
     let text = bytes.trim_ascii_start();
-    if text
+    let begins = text
         .get(..5)
-        .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
-    {
+        .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    // Text has no zeros; numbers hardly go without.
+    if begins && !text.iter().take(1000).any(|byte| *byte == 0) {
         return lines(&String::from_utf8_lossy(text));
     }
     match wanted {

@@ -58,7 +58,8 @@ fn cells(columns: usize, rows: usize) -> [usize; 2] {
     let shrink = (most as f64 / (columns as f64 * rows as f64)).sqrt();
     let [across, down] = [columns, rows].map(|n| ((n as f64 * shrink) as usize).max(1));
     // Of a very long strip one side is a single cell, which leaves fewer for the other.
-    [across.min(most / down), down.min(most / across)]
+    let across = across.min(most / down);
+    [across, down.min(most / across)]
 }
 
 /// The heights at the corners of a grid: the mean of the pixels nearer to a corner than to the next.

@@ -8,7 +8,7 @@ use glam::{DVec3, IVec3};
 use scene::{Quadric, Scene, Shape};
 
 /// The most cells across a quadric.
-const FINEST: usize = 20;
+const FINEST: usize = 24;
 /// The fewest.
 const COARSEST: usize = 3;
 /// No quadric is drawn when there are as many patches already.
@@ -121,7 +121,12 @@ fn crossing(quadric: &Quadric, from: DVec3, to: DVec3) -> DVec3 {
     let a = (to - from).dot(quadric.square * (to - from));
     let sum = -0.5 * (b + (b * b - 4.0 * a * c).max(0.0).sqrt().copysign(b));
     let roots = [sum / a, c / sum];
-    let t = roots.into_iter().find(|t| (0.0..=1.0).contains(t));
-    // Rounding may push the root of an edge that begins on the surface out of the edge.
-    from.lerp(to, t.unwrap_or(if c == 0.0 { 0.0 } else { 0.5 }))
+    // Rounding may push the root of an edge that ends on the surface a little out of the edge.
+    let out = |t: f64| (t - t.clamp(0.0, 1.0)).abs();
+    let t = if out(roots[1]) <= out(roots[0]) || roots[0].is_nan() {
+        roots[1]
+    } else {
+        roots[0]
+    };
+    from.lerp(to, if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) })
 }

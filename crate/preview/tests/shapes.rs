@@ -5,6 +5,7 @@ mod common;
 use common::gpu::{Gpu, gpus};
 use common::reference::{self, Met};
 use common::scenes::{arc, by_index, by_normal, index_of, look, turned};
+use core::f64::consts::TAU;
 use glam::{DMat3, DQuat, DVec3};
 use scene::{Camera, Quadric, Scene, Shape};
 use std::slice;
@@ -81,14 +82,18 @@ fn compare_pixels(gpu: &Gpu, what: &str, shapes: &[Shape], camera: Camera) -> u3
         }
     }
     let name = &gpu.name;
+    // The cells of a quadric are flat, so its outlines are off by a small part of a pixel; where two
+    // of them nearly touch, a pixel that is uniform in the reference may see between them.
+    let has_cells = shapes.iter().any(|s| matches!(s, Shape::Quadric(_)));
+    let (few, share) = if has_cells { (2, 0.04) } else { (0, 0.02) };
     assert!(
-        wrong.is_empty(),
+        wrong.len() <= few,
         "{what} on {name}: {} wrong, {:?}",
         wrong.len(),
         &wrong[..wrong.len().min(5)]
     );
     assert!(
-        f64::from(edge_wrong) <= 0.02 * f64::from(edges) + 1.0,
+        f64::from(edge_wrong) <= share * f64::from(edges) + 1.0,
         "{what} on {name}: {edge_wrong} of {edges} edge pixels differ"
     );
     assert!(
@@ -492,5 +497,51 @@ fn a_grain_far_from_the_middle_of_a_large_scene_is_sharp() {
     let camera = look([far + 0.002, 0.001, 0.006], [far, 0.0, 0.0], 40.0);
     for gpu in gpus() {
         compare(gpu, "grain", &shapes, camera);
+    }
+}
+
+/// A ball of patches, of which no ray passes between two.
+#[test]
+fn a_mesh_of_patches_has_no_gaps() {
+    let at = |i: u32, j: u32| {
+        let (a, b) = (f64::from(i) * TAU / 48.0, f64::from(j) * TAU / 80.0 - 0.3);
+        let (sine, cosine) = libm::sincos(a);
+        let (low, high) = libm::sincos(b);
+        DVec3::new(cosine * high, sine * high, low)
+    };
+    // More than the half of the ball that is seen, in one colour.
+    let mut shapes = Vec::new();
+    for i in 0..48 {
+        for j in 0..24 {
+            for (a, b, c) in [((0, 0), (1, 0), (1, 1)), ((0, 0), (1, 1), (0, 1))] {
+                let corners = [a, b, c].map(|(x, y)| at(i + x, j + y));
+                shapes.push(Shape::Patch {
+                    corners,
+                    normals: corners,
+                });
+            }
+        }
+    }
+    for gpu in gpus() {
+        for (distance, fov) in [(3.0, 20.0), (300.0, 0.2), (3000.0, 0.02)] {
+            let way = turned() * DVec3::Z;
+            let way = way.with_z(way.z.abs() + 1.0).normalize();
+            let camera = Camera {
+                eye: way * distance,
+                target: DVec3::Z * 0.3,
+                up: DVec3::Y,
+                fov,
+                shift: [-0.2, 0.1],
+            };
+            let mut scene = by_index(&shapes, camera);
+            for element in &mut scene.elements {
+                element.material = 0;
+            }
+            let picture = gpu.draw(&scene, [120, 90]);
+            let missed = (0..90)
+                .flat_map(|y| (0..120).map(move |x| (x, y)))
+                .filter(|&(x, y)| index_of(picture.at(x, y)).is_none());
+            assert_eq!(missed.collect::<Vec<_>>(), [], "{distance} on {}", gpu.name);
+        }
     }
 }

@@ -430,6 +430,7 @@ impl<'a> Evaluator<'a> {
         {
             read.at += 1;
         }
+        let mut surfaces = Vec::new();
         let mut named = false;
         while read.more() {
             let start = read.start();
@@ -476,17 +477,33 @@ impl<'a> Evaluator<'a> {
                     next - 1
                 }
             };
+            let start = read.start();
             let value = argument(&mut read, &define.parameters[index]);
-            values[index].1 = Some(value.map_err(|problem| match problem.hint {
+            let value = value.map_err(|problem| match problem.hint {
                 None => problem.hint(usage.clone()),
                 Some(_) => problem,
-            })?);
+            })?;
+            // Better refuse a material here than where the command uses it.
+            if let Value::Name(symbol) = value {
+                surfaces.push(Name {
+                    text: read.scope.symbols.word(symbol),
+                    span: read.since(start),
+                });
+            }
+            values[index].1 = Some(value);
         }
         for (parameter, (name, value)) in define.parameters.iter().zip(&values) {
             if value.is_none() && parameter.default.is_empty() {
                 let word = read.scope.symbols.word(*name);
-                return Err(read.expected(&format!("`{word}`")).maybe_hint(Some(usage)));
+                let what = match parameter.takes {
+                    Takes::Surface => format!("the material's name (`{word}`)"),
+                    _ => format!("`{word}`"),
+                };
+                return Err(read.expected(&what).maybe_hint(Some(usage)));
             }
+        }
+        for name in surfaces {
+            self.material(&name)?;
         }
         Ok(values)
     }
@@ -645,6 +662,9 @@ impl<'a> Evaluator<'a> {
             let name = &self.sources.all[self.file].name;
             problem.message = format!("in {name}: {}", problem.message);
             problem.span = span.clone();
+            if problem.fatal {
+                problem.hint = Some(String::from("ask for less: smaller counts or depths"));
+            }
             problem.related.clear();
             self.report.add(*file, severity, problem);
         }
@@ -736,10 +756,14 @@ fn argument(read: &mut Reader<'_, '_>, parameter: &Formal) -> Outcome<Value> {
         Takes::Number => Ok(Value::Scalar(read.number(&what)?)),
         Takes::Triple => read.triple(&what),
         Takes::Surface => {
-            let what = format!("{what}, a material's name");
+            let what = format!("the material's name ({what})");
             let name = read.known_name(&what)?;
             match read.scope.symbols.find(name.text) {
                 Some(symbol) => Ok(Value::Name(symbol)),
+                None if name.text.parse::<f64>().is_ok() => Err(Problem::new(
+                    name.span,
+                    format!("expected {what}, found `{}`", name.text),
+                )),
                 None => Err(Problem::new(
                     name.span,
                     format!("`{}` cannot be a material's name here", name.text),

@@ -245,7 +245,13 @@ impl Reader<'_, '_> {
                 let value = self.binary(0, "a number")?;
                 self.listed = listed;
                 if self.datum() != Some(Datum::Sign(b')')) {
-                    return Err(self.expected("`)`"));
+                    let problem = self.expected("`)`");
+                    return Err(match self.datum() {
+                        Some(Datum::Sign(b'<' | b'>' | b'=' | b'!')) => {
+                            problem.hint("comparisons stand only in `if`")
+                        }
+                        _ => problem,
+                    });
                 }
                 self.at += 1;
                 Ok(value)
@@ -260,6 +266,10 @@ impl Reader<'_, '_> {
                 let value = self.word_value(symbol)?;
                 self.at += 1;
                 Ok(value)
+            }
+            Some(Datum::Sign(b'<')) if !self.listed || what.contains("operator") => {
+                let problem = self.expected(what);
+                Err(problem.hint("in an expression a vector is written `vec(x, y, z)`"))
             }
             _ => Err(self.expected(what)),
         }

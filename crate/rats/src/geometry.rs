@@ -472,4 +472,56 @@ mod tests {
         // (1, −1, 0) in the plane becomes (2, −1, 0).
         assert!(normal.dot(DVec3::new(2.0, -1.0, 0.0)).abs() < 1e-12);
     }
+
+    #[test]
+    fn transforms_of_boxes_patches_and_quadrics() {
+        let map = Transform {
+            shift: DVec3::new(3.0, -1.0, 2.0),
+            ..Transform::scaling(DVec3::new(2.0, 1.0, -0.5))
+        };
+        let axes = [DVec3::X, DVec3::new(0.2, 1.0, 0.0), DVec3::Z];
+        let center = DVec3::ONE;
+        let corner = |shape: &Shape| match shape {
+            Shape::Box { center, axes } => *center + axes[0] - axes[1] + axes[2],
+            Shape::Quadric(q) => q.place(DVec3::new(1.0, -1.0, 1.0)),
+            other => panic!("{other:?}"),
+        };
+        let quadric = Quadric {
+            square: DMat3::IDENTITY,
+            linear: DVec3::X,
+            constant: -1.0,
+            center,
+            axes,
+        };
+        for shape in [
+            Shape::Box { center, axes },
+            Shape::Quadric(Box::new(quadric)),
+        ] {
+            assert!(near(corner(&map.apply(&shape)), map.point(corner(&shape))));
+        }
+        // Normals stay across.
+        let corners = [DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0), DVec3::Y];
+        let normals = [(corners[1]).cross(corners[2]); 3];
+        let Shape::Patch { corners, normals } = map.apply(&Shape::Patch { corners, normals })
+        else {
+            panic!("no patch");
+        };
+        for edge in [corners[1] - corners[0], corners[2] - corners[0]] {
+            assert!(normals.iter().all(|n| n.dot(edge).abs() < 1e-12));
+        }
+        let cone = Shape::Cone {
+            base: DVec3::ZERO,
+            base_radius: 1.0,
+            apex: DVec3::X,
+            apex_radius: 0.5,
+        };
+        let twice = Transform::scaling(DVec3::splat(-2.0));
+        let grown = Shape::Cone {
+            base: DVec3::ZERO,
+            base_radius: 2.0,
+            apex: DVec3::X * -2.0,
+            apex_radius: 1.0,
+        };
+        assert_eq!(twice.apply(&cone), grown);
+    }
 }

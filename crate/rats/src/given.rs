@@ -214,8 +214,23 @@ impl<'a> Reader<'_, 'a> {
         parameters: &'static [Parameter],
         options: &'static [OptionSpec],
     ) -> Outcome<Given<'a>> {
+        // `collage columns 2 fn1 fn2`: options of a list of files may come first.
+        let mut first = Vec::new();
+        if let Some(Kind::File) = parameters.first().map(|parameter| parameter.kind) {
+            while let Some((_, word)) = self.peek_word()
+                && options.iter().any(|o| o.name.eq_ignore_ascii_case(word))
+                && let Some((option, span)) = self.option(options)?
+            {
+                first.push(Chosen {
+                    name: option.name,
+                    span,
+                    given: self.operands(option.parameters, options)?,
+                });
+            }
+        }
         let mut given = self.operands(parameters, options)?;
-        given.options = self.chosen(options)?;
+        given.options = first;
+        given.options.extend(self.chosen(options)?);
         self.end()?;
         Ok(given)
     }
@@ -351,7 +366,7 @@ impl<'a> Reader<'_, 'a> {
                 if !self.sign(b'=') {
                     return Err(self.expected("`=`"));
                 }
-                Operand::Name(self.name(what)?)
+                Operand::Name(self.known_name(what)?)
             }
             Kind::Known(crate::commands::Names::Texture) => {
                 self.sign(b'+');

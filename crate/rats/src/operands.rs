@@ -72,7 +72,10 @@ impl<'a> Reader<'_, 'a> {
             return Ok(number);
         }
         let bounds = if high >= MAX_MAGNITUDE {
-            format!("at least {low}")
+            match low {
+                low if low > 0.0 && low < 1e-6 => String::from("above 0"),
+                low => format!("at least {low}"),
+            }
         } else {
             format!("from {low} to {high} {unit}")
         };

@@ -174,7 +174,9 @@ fn the_thesis_s_models_have_its_numbers_of_elements() {
         let scene = example(name).1.scene;
         let found = [
             count(&scene, |s| matches!(s, Shape::Sphere { .. })),
-            count(&scene, |s| matches!(s, Shape::Cylinder { .. })),
+            count(&scene, |s| {
+                matches!(s, Shape::Cylinder { .. } | Shape::Pipe { .. })
+            }),
             count(&scene, |s| {
                 matches!(s, Shape::Arc { .. } | Shape::Curve { .. })
             }),

@@ -2,7 +2,9 @@
 
 use field::Skeleton;
 use glam::DVec3;
-use scene::{Camera, Element, Fragile, Light, LightKind, Material, Origin, Scene, Shape, wire};
+use scene::{
+    Camera, Element, Fragile, Light, LightKind, Material, Origin, Quadric, Scene, Shape, wire,
+};
 
 fn soft(name: &str, radius: f64) -> Material {
     Material {
@@ -253,4 +255,119 @@ fn limbs_are_cut_without_a_trace() {
             }
         }
     }
+}
+
+/// The field of one element of a material, at some places.
+fn values(shape: Shape, material: Material) -> Vec<f64> {
+    let mut scene = Scene {
+        materials: vec![material],
+        ..Scene::default()
+    };
+    scene.settings.fragile = Fragile {
+        cylinder: true,
+        pipe: true,
+        ..Fragile::default()
+    };
+    scene.elements = vec![element(shape, 0)];
+    let field = scene.soft_surface().field;
+    let at = |i: u32| {
+        let t = f64::from(i);
+        let p = DVec3::new(libm::sin(t), libm::cos(1.7 * t), 0.3 * libm::sin(2.3 * t));
+        field.jet(p).value
+    };
+    (0..20).map(at).collect()
+}
+
+#[test]
+fn a_soft_cone_is_a_limb_that_tapers() {
+    let (base, apex) = (DVec3::new(-0.5, 0.1, 0.0), DVec3::new(0.6, 0.3, 0.2));
+    for (from, to) in [(0.4, 0.1), (0.2, 0.2), (0.3, 0.0), (0.0, 0.3)] {
+        let cone = Shape::Cone {
+            base,
+            base_radius: from,
+            apex,
+            apex_radius: to,
+        };
+        // What the material says of radii does not count.
+        let of_cone = values(cone, soft("flesh", 7.0));
+        let limb = Material {
+            end_radius: Some(to),
+            ..soft("flesh", from)
+        };
+        let radius = 1.0;
+        let of_limb = values(Shape::Cylinder { base, apex, radius }, limb);
+        assert!(of_cone[0] > 0.0);
+        for (a, b) in of_cone.iter().zip(&of_limb) {
+            assert!((a - b).abs() < 1e-9 * a.max(1.0), "{from} {to}: {a} {b}");
+        }
+    }
+    let mut scene = Scene {
+        materials: vec![soft("flesh", 7.0)],
+        ..Scene::default()
+    };
+    scene.settings.fragile = Fragile::ALL;
+    let long = |apex: DVec3, apex_radius: f64| {
+        let base = DVec3::ZERO;
+        let base_radius = 1.0;
+        let shape = Shape::Cone {
+            base,
+            base_radius,
+            apex,
+            apex_radius,
+        };
+        element(shape, 0)
+    };
+    assert_eq!(scene.radius(&long(DVec3::X, 2.0)), 2.0, "the larger one");
+    assert!(scene.is_too_long(&long(DVec3::X * 1e6, 0.5)));
+    assert!(!scene.is_too_long(&long(DVec3::X * 1e6, 1.0)), "one width");
+}
+
+#[test]
+fn pipes_and_patches_have_the_skeletons_of_their_kin() {
+    let (base, apex, radius) = (DVec3::NEG_X, DVec3::Y, 0.3);
+    for given in [0.0, 0.5] {
+        let cylinder = Shape::Cylinder { base, apex, radius };
+        let pipe = Shape::Pipe { base, apex, radius };
+        let flesh = soft("flesh", given);
+        assert_eq!(values(pipe, flesh.clone()), values(cylinder, flesh));
+    }
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let normals = [DVec3::Z; 3];
+    let flat = Shape::Triangle {
+        corners,
+        radius: 0.0,
+    };
+    let patch = Shape::Patch { corners, normals };
+    let flesh = soft("flesh", 0.2);
+    assert_eq!(values(patch.clone(), flesh.clone()), values(flat, flesh));
+    // As an offset surface it is a prism; without flesh, itself.
+    assert!(matches!(patch.parts(0.2)[..], [Shape::Triangle { radius, .. }] if radius == 0.2));
+    assert_eq!(patch.parts(0.0), [patch]);
+}
+
+#[test]
+fn what_has_no_skeleton_stays_hard() {
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    let quadric = Quadric {
+        square: glam::DMat3::IDENTITY,
+        linear: DVec3::ZERO,
+        constant: -0.5,
+        center: DVec3::ZERO,
+        axes,
+    };
+    let mut scene = Scene {
+        materials: vec![soft("flesh", 0.5)],
+        ..Scene::default()
+    };
+    let center = DVec3::ZERO;
+    scene.elements = vec![
+        element(Shape::Box { center, axes }, 0),
+        element(Shape::Quadric(Box::new(quadric)), 0),
+    ];
+    for element in &scene.elements {
+        assert!(!scene.is_soft(element) && scene.radius(element) == 0.0);
+    }
+    assert!(scene.soft_surface().field.primitives.is_empty());
+    let bytes = wire::pack(&scene).expect("packs");
+    assert_eq!(wire::unpack(&bytes).expect("unpacks"), scene);
 }

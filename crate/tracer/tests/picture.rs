@@ -34,6 +34,12 @@ fn mixed(seed: u64) -> Scene {
         let shape = n.shape(kind);
         scene.elements.push(element(shape, 3));
     }
+    for kind in 0..10 {
+        // Hard, and with a blobbiness.
+        let material = if kind < 5 { 3 } else { 0 };
+        let shape = n.solid(kind);
+        scene.elements.push(element(shape, material));
+    }
     scene.settings.samples = 3;
     scene
 }

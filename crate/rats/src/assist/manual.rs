@@ -3,7 +3,8 @@
 use super::complete::hex;
 use super::grammar::{Grammar, Param};
 use crate::commands::{self, CommandSpec, GROUPS, Group, Kind, OptionSpec};
-use crate::{colours, functions, manual};
+use crate::link::{self, Shared};
+use crate::{File, Project, colours, functions, manual};
 use std::fmt::Write;
 
 /// The manual page of a command as plain text; `None` if there is no such command.
@@ -157,8 +158,24 @@ fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
     }
     if !spec.example.is_empty() {
         let _ = writeln!(page, "<pre>{}</pre>", escape(spec.example));
+        if let Some(link) = link_to(spec) {
+            let _ = writeln!(page, "<p><a href=\"./#{link}\">Try it</a></p>");
+        }
     }
     page.push_str("</section>\n");
+}
+
+/// The fragment that opens a command's example in the page.
+fn link_to(spec: &CommandSpec) -> Option<String> {
+    let file = File {
+        name: format!("{}-example.rat", spec.name),
+        text: format!("{}\n", spec.example),
+    };
+    let shared = Shared {
+        project: Project { files: vec![file] },
+        camera: None,
+    };
+    link::encode(&shared).ok()
 }
 
 fn row(page: &mut String, parameter: &Param<'_>) {

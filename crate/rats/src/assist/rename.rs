@@ -22,7 +22,8 @@ pub struct Edit {
 ///
 /// # Errors
 /// A sentence that says why not: if there is no name at the byte, or the new one is not allowed, is taken,
-/// or would be read as something else somewhere.
+/// or would be read as something else somewhere; or if a text has a mistake of form, such as a block that
+/// is not closed, since names could be overlooked in it.
 pub fn rename(
     project: &Project,
     file: usize,
@@ -43,12 +44,19 @@ pub fn rename(
         return Ok(Vec::new());
     }
     check_name(kind, name, new_name)?;
+    let line = |file: usize, byte: usize| {
+        let file = &project.files[file];
+        let line = file.text[..byte].matches('\n').count() + 1;
+        format!("line {line} of {}", file.name)
+    };
+    if let Some((file, byte, message)) = &index.mistake {
+        // A block that the parser leaves out could hold the name.
+        return Err(format!("first mend {}: {message}", line(*file, *byte)));
+    }
     if let Some(place) = index.clash(occurrence, new_name) {
-        let text = &project.files[place.file].text;
-        let line = text[..place.span.start].matches('\n').count() + 1;
-        let of_file = &project.files[place.file].name;
         return Err(format!(
-            "`{new_name}` is taken: line {line} of {of_file} makes a {} of that name",
+            "`{new_name}` is taken: {} makes a {} of that name",
+            line(place.file, place.span.start),
             kind.word()
         ));
     }

@@ -139,6 +139,9 @@ pub struct Index<'p> {
     /// All places of names, in the order of files and places.
     occurrences: Vec<Occurrence>,
     pub(super) here: Option<Here<'p>>,
+    /// The first mistake of form: its file, its byte and what is wrong. What is in a block that is not
+    /// closed is not indexed.
+    pub(super) mistake: Option<(usize, usize, String)>,
 }
 
 impl<'p> Index<'p> {
@@ -158,7 +161,12 @@ impl<'p> Index<'p> {
             .collect();
         let mut walker = Walker::new(project, &syntaxes, &symbols, place);
         walker.run();
-        walker.finish()
+        let mut index = walker.finish();
+        index.mistake = syntaxes.iter().enumerate().find_map(|(file, syntax)| {
+            let problem = syntax.problems.first()?;
+            Some((file, problem.span.start, problem.message.clone()))
+        });
+        index
     }
 
     /// The thing that stands for all that are the same.
@@ -361,7 +369,14 @@ struct Walker<'p, 's> {
     by_name: HashMap<(SymbolKind, &'p str), usize>,
     frames: Vec<Frame<'p>>,
     open: Vec<Open>,
+    /// The commands that have been defined so far.
     defines: HashMap<&'p str, Rc<Own<'p>>>,
+    /// All commands that are defined anywhere, by file and byte; those that are called before they are
+    /// defined in the text, by name.
+    all_defines: HashMap<(usize, usize), Rc<Own<'p>>>,
+    later: HashMap<&'p str, Rc<Own<'p>>>,
+    /// The parameters of all commands, by the names of both.
+    parameters: HashMap<(&'p str, &'p str), usize>,
     /// What the commands of the table take, with and without a material.
     grammars: HashMap<(&'static str, bool), Rc<Grammar<'p>>>,
     /// Names used in defined commands without being set there.
@@ -370,6 +385,8 @@ struct Walker<'p, 's> {
     leaky: Vec<(&'p str, usize)>,
     /// Things that are the same if the project has a variable of this name.
     same_as_global: Vec<(usize, &'p str)>,
+    /// Parameters that stand for names in files, where something else may have that name.
+    stand_ins: HashSet<(usize, SymbolKind, &'p str)>,
     /// The variables that a file's text uses, for when it is read again.
     used_by_file: Vec<HashSet<(&'p str, usize)>>,
     /// The number of frames where the present file begins.
@@ -407,10 +424,14 @@ impl<'p, 's> Walker<'p, 's> {
             frames: vec![Frame::default()],
             open: Vec::new(),
             defines: HashMap::new(),
+            all_defines: HashMap::new(),
+            later: HashMap::new(),
+            parameters: HashMap::new(),
             grammars: HashMap::new(),
             free_in_defines: HashSet::new(),
             leaky: Vec::new(),
             same_as_global: Vec::new(),
+            stand_ins: HashSet::new(),
             used_by_file: vec![HashSet::new(); syntaxes.len()],
             base: 1,
             read: vec![false; syntaxes.len()],
@@ -422,6 +443,7 @@ impl<'p, 's> Walker<'p, 's> {
             let entity = walker.named(SymbolKind::File, &file.name);
             walker.note(entity, index, 0..0, 0..0, true);
         }
+        walker.collect_defines();
         walker
     }
 
@@ -588,8 +610,48 @@ impl<'p, 's> Walker<'p, 's> {
         }
     }
 
+    /// Finds all commands that the texts define, since they can be called further up.
+    fn collect_defines(&mut self) {
+        let syntaxes: &'s [Syntax] = self.syntaxes;
+        for (file, syntax) in syntaxes.iter().enumerate() {
+            for event in walk::events(&syntax.block) {
+                let Event::Define(node) = event else { continue };
+                let name = self.symbols.word(node.name);
+                let mut parameters = Vec::new();
+                for formal in &node.parameters {
+                    let parameter = self.symbols.word(formal.name);
+                    let entity = self.entity(SymbolKind::Parameter, parameter);
+                    self.entities[entity].value = taken(formal.takes);
+                    // A call by name can mean each of several commands of one name.
+                    let known = self.parameters.entry((name, parameter));
+                    let first = *known.or_insert(entity);
+                    self.unite(first, entity);
+                    parameters.push((parameter, entity));
+                }
+                let grammar = Grammar::own(node, syntax, self.text(file), self.symbols);
+                let own = Rc::new(Own {
+                    in_chain: Rc::new(grammar.clone().in_chain()),
+                    grammar: Rc::new(grammar),
+                    parameters,
+                    place: Place {
+                        file,
+                        span: syntax.items[node.head.items.start].span(),
+                    },
+                });
+                let place = (file, node.head.span.start);
+                self.all_defines.insert(place, own.clone());
+                self.later.insert(name, own);
+            }
+        }
+    }
+
+    /// What the texts define under a name: so far, else further down.
+    fn own(&self, name: &str) -> Option<&Rc<Own<'p>>> {
+        self.defines.get(name).or_else(|| self.later.get(name))
+    }
+
     fn begin_define(&mut self, file: usize, node: &'s Define) {
-        let text = self.text(file);
+        self.open.push(Open::Define);
         let name = self.symbols.word(node.name);
         let head = &node.head;
         let syntaxes: &'s [Syntax] = self.syntaxes;
@@ -603,19 +665,14 @@ impl<'p, 's> Walker<'p, 's> {
             owner: Some(owner),
             ..Frame::default()
         };
-        let mut parameters = Vec::new();
-        for formal in &node.parameters {
-            let name = self.symbols.word(formal.name);
-            let value = match formal.takes {
-                Takes::Number => Type::Number,
-                Takes::Triple => Type::Triple,
-                Takes::Surface => Type::Name,
-            };
-            let entity = self.entity(SymbolKind::Parameter, name);
-            self.entities[entity].owner = Some(owner);
-            self.entities[entity].value = value;
-            parameters.push((name, entity));
-            self.note(entity, file, formal.span.clone(), head.span.clone(), true);
+        let Some(own) = self.all_defines.get(&(file, head.span.start)).cloned() else {
+            self.frames.push(frame);
+            return;
+        };
+        for (formal, (name, entity)) in node.parameters.iter().zip(&own.parameters) {
+            let value = taken(formal.takes);
+            self.entities[*entity].owner = Some(owner);
+            self.note(*entity, file, formal.span.clone(), head.span.clone(), true);
             // A default may use the parameters before it.
             self.frames.push(std::mem::take(&mut frame));
             self.default(file, head, formal.default.clone());
@@ -624,32 +681,20 @@ impl<'p, 's> Walker<'p, 's> {
             frame.locals.insert(
                 name,
                 Local {
-                    entity,
+                    entity: *entity,
                     sure: true,
                     depth: 0,
                 },
             );
         }
-        let place = Place {
-            file,
-            span: name_span,
-        };
         if self.is_here(file, head) {
             let grammar = head
                 .spec
                 .map_or_else(Rc::default, |spec| self.table(spec, false));
             self.look(file, head, &grammar);
         }
-        let grammar = Grammar::own(node, &syntaxes[file], text, self.symbols);
-        let own = Own {
-            in_chain: Rc::new(grammar.clone().in_chain()),
-            grammar: Rc::new(grammar),
-            parameters,
-            place,
-        };
-        self.defines.insert(name, Rc::new(own));
+        self.defines.insert(name, own);
         self.frames.push(frame);
-        self.open.push(Open::Define);
     }
 
     /// The names in the default of a parameter.
@@ -695,7 +740,7 @@ impl<'p, 's> Walker<'p, 's> {
         let word = self.symbols.word(command.word);
         let own = match command.spec {
             Some(spec) if !spec.is_library() => None,
-            _ => self.defines.get(word).cloned(),
+            _ => self.own(word).cloned(),
         };
         let mut grammar = match (&own, command.spec) {
             (Some(own), _) => own.grammar.clone(),
@@ -752,10 +797,7 @@ impl<'p, 's> Walker<'p, 's> {
                 }
                 What::Named => {
                     let name = &text[span.clone()];
-                    let parameter = own
-                        .as_ref()
-                        .and_then(|own| own.parameters.iter().find(|(known, _)| *known == name));
-                    if let Some(&(_, entity)) = parameter {
+                    if let Some(&entity) = self.parameters.get(&(word, name)) {
                         self.note(entity, file, span, command.span.clone(), false);
                     }
                 }
@@ -837,6 +879,10 @@ impl<'p, 's> Walker<'p, 's> {
         }
         // A parameter may stand for the name.
         if kind == SymbolKind::Variable || self.type_of(name) == Some(Type::Name) {
+            // A file may be read where there is no such parameter, too.
+            if self.base > 1 && self.frames.len() == self.base {
+                self.stands_for(name, kind);
+            }
             return self.use_variable(file, span, command.span.clone());
         }
         let entity = self.named(kind, name);
@@ -990,6 +1036,25 @@ impl<'p, 's> Walker<'p, 's> {
             };
             self.unite(entity, other);
         }
+        let types = self.frame().types.iter();
+        let names = types.filter(|(_, value)| **value == Type::Name);
+        let names: Vec<&'p str> = names.map(|(name, _)| *name).collect();
+        for name in names {
+            for kind in [
+                SymbolKind::Material,
+                SymbolKind::Texture,
+                SymbolKind::Object,
+            ] {
+                self.stands_for(name, kind);
+            }
+        }
+    }
+
+    /// A parameter that stands for a name, and what has that name itself, count as one.
+    fn stands_for(&mut self, name: &'p str, kind: SymbolKind) {
+        if let Some(parameter) = self.bound(name) {
+            self.stand_ins.insert((parameter, kind, name));
+        }
     }
 
     /// Keeps what the editor asks about the command at its place.
@@ -1019,7 +1084,7 @@ impl<'p, 's> Walker<'p, 's> {
         let word = self.symbols.word(command.word);
         let own = match command.spec {
             Some(spec) if !spec.is_library() => None,
-            _ => self.defines.get(word).map(|own| own.place.clone()),
+            _ => self.own(word).map(|own| own.place.clone()),
         };
         self.here = Some(Here {
             file,
@@ -1097,6 +1162,11 @@ impl<'p, 's> Walker<'p, 's> {
                 self.unite(entity, global);
             }
         }
+        for (entity, kind, name) in std::mem::take(&mut self.stand_ins) {
+            if let Some(&named) = self.by_name.get(&(kind, name)) {
+                self.unite(entity, named);
+            }
+        }
         // The parent of every thing becomes its root; what is defined anywhere is defined for all.
         let mut defined = vec![false; self.entities.len()];
         for entity in 0..self.entities.len() {
@@ -1109,6 +1179,7 @@ impl<'p, 's> Walker<'p, 's> {
             entities: self.entities,
             occurrences: self.occurrences,
             here: self.here,
+            mistake: None,
         };
         let entities = &index.entities;
         index
@@ -1118,6 +1189,14 @@ impl<'p, 's> Walker<'p, 's> {
             .occurrences
             .sort_by_key(|o| (o.place.file, o.place.span.start, o.place.span.end));
         index
+    }
+}
+
+fn taken(takes: Takes) -> Type {
+    match takes {
+        Takes::Number => Type::Number,
+        Takes::Triple => Type::Triple,
+        Takes::Surface => Type::Name,
     }
 }
 
@@ -1148,4 +1227,88 @@ fn reach(text: &str, command: &Command) -> usize {
     let end = command.span.end;
     let rest = &text[end..];
     end + rest.find(['\n', '#', '{', '}']).unwrap_or(rest.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{File, compile, library};
+
+    /// The operands of a text's commands that the static reader has no use for.
+    fn extras(text: &str) -> Vec<String> {
+        let project = Project {
+            files: vec![File {
+                name: String::from("main.rat"),
+                text: text.to_owned(),
+            }],
+        };
+        let mut symbols = Symbols::default();
+        let syntax = parse(text, &mut symbols);
+        let mut starts = Vec::new();
+        walk::commands(&syntax.block, &mut |command| {
+            starts.push(command.word_span.start);
+        });
+        let mut extras = Vec::new();
+        for start in starts {
+            let index = Index::at(&project, Some((0, start)));
+            let here = index.here.expect("a command");
+            // The head of `define` is read by the parser; what is unknown is not run.
+            let is_known = here.spec.is_some() || here.own.is_some();
+            if here.word == "define" || !is_known {
+                continue;
+            }
+            for (span, slot) in here.operands {
+                let missing = slot.parameter.is_none() && slot.option.is_none();
+                if matches!(slot.what, What::Extra) || missing {
+                    extras.push(format!("{}: {}", here.word, &text[span]));
+                }
+            }
+        }
+        extras
+    }
+
+    /// The static reader reads what the evaluator reads: where there is no error, every operand has
+    /// its use.
+    #[test]
+    fn every_operand_has_a_use() {
+        let mut texts: Vec<String> = commands::all()
+            .map(|spec| spec.example.to_owned())
+            .collect();
+        texts.extend(library::FILES.iter().map(|(_, text)| (*text).to_owned()));
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../www/examples");
+        for entry in std::fs::read_dir(folder).expect("the examples") {
+            let path = entry.expect("an entry").path();
+            if path.extension().is_some_and(|ending| ending == "rat") {
+                let text = std::fs::read_to_string(path).expect("a text");
+                if text.len() < 10_000 {
+                    texts.push(text);
+                }
+            }
+        }
+        let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/diagnostics");
+        for entry in std::fs::read_dir(corpus).expect("the corpus") {
+            let text = std::fs::read_to_string(entry.expect("an entry").path()).expect("a text");
+            for section in text.split("\n### ") {
+                let body = section.split_once('\n').map_or("", |(_, body)| body);
+                if !body.contains("#! error") && !body.contains("#file ") {
+                    texts.push(body.to_owned());
+                }
+            }
+        }
+        assert!(texts.len() > 150, "only {} texts", texts.len());
+        let mut found = Vec::new();
+        for text in texts {
+            let project = Project {
+                files: vec![File {
+                    name: String::from("main.rat"),
+                    text: text.clone(),
+                }],
+            };
+            let errors = compile(&project).diagnostics;
+            if errors.iter().all(|d| d.severity != crate::Severity::Error) {
+                found.extend(extras(&text));
+            }
+        }
+        assert!(found.is_empty(), "{found:#?}");
+    }
 }

@@ -242,6 +242,8 @@ pub fn names_soup(u: &mut Unstructured<'_>) -> Result<String> {
         "define f(a) {",
         "define g(surface s, r = 2) {",
         "define g(surface s, b = 1) {",
+        "define g(surface t, r = a*a) {",
+        "define f(b, i = b) {",
         "f a, P",
         "f b",
         "f a",

@@ -1,8 +1,8 @@
 //! Random scenes for tests.
 #![allow(dead_code)]
 use core::f64::consts::TAU;
-use glam::DVec3;
-use scene::{Camera, Element, Light, LightKind, Material, Origin, Scene, Shape};
+use glam::{DMat3, DVec3};
+use scene::{Camera, Element, Light, LightKind, Material, Origin, Quadric, Scene, Shape};
 
 /// A small deterministic generator, enough for test inputs.
 pub struct Numbers(pub u64);
@@ -62,6 +62,41 @@ impl Numbers {
                 normal: self.vector().normalize(),
                 radius,
             },
+        }
+    }
+}
+
+/// Shapes that are rarely soft, or cannot be.
+impl Numbers {
+    pub fn solid(&mut self, kind: u64) -> Shape {
+        let radius = self.between(0.1, 0.4);
+        match kind % 5 {
+            0 => Shape::Cone {
+                base: self.vector(),
+                base_radius: radius,
+                apex: self.vector(),
+                apex_radius: self.between(0.0, 0.2),
+            },
+            1 => Shape::Pipe {
+                base: self.vector(),
+                apex: self.vector(),
+                radius,
+            },
+            2 => Shape::Box {
+                center: self.vector(),
+                axes: [0, 1, 2].map(|_| self.vector() * 0.5),
+            },
+            3 => Shape::Patch {
+                corners: [0, 1, 2].map(|_| self.vector()),
+                normals: [0, 1, 2].map(|_| DVec3::Z + self.vector()),
+            },
+            _ => Shape::Quadric(Box::new(Quadric {
+                square: DMat3::from_diagonal(DVec3::new(1.0, 1.3, -0.5)),
+                linear: self.vector() * 0.3,
+                constant: -0.3,
+                center: self.vector(),
+                axes: [0, 1, 2].map(|_| self.vector() * 0.5),
+            })),
         }
     }
 }

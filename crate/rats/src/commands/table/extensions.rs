@@ -72,11 +72,11 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         .details("A parameter in CAPITALS takes a triple, one written `surface s` the name of a material, any other a number. `c = 1` may be left out by who calls; calls may name parameters: `leg length=2`. `return` leaves the command.")
         .example(clay!("define leg(surface s, BASE, length = 2) {\n  cylinder s 0.3, BASE, BASE - vec(0, length, 0)\n}\nleg Clay, -1 1 0\nleg Clay, 1 1 0, length=3")),
     library("tree", "a branching tree")
-        .example("surface Bark, diffuse SaddleBrown, radius 0.3, blobbiness -3\nlight White, position 4 8 10\ntree Bark"),
+        .example("surface Bark, diffuse SaddleBrown, radius 0.3, blobbiness -3\nlight White, position 4 -8 10\neyep 0 -6 2\nvrp 0.3 0 1.2\nvup 0 0 1\ntree Bark"),
     library("spikes", "spikes scattered over a sphere")
-        .example(clay!("spikes Clay")),
+        .example(clay!("eyep 0 0 3\nsphere Clay 0.5, 0 0 0\nspikes Clay")),
     library("sphereflake", "the standard procedural database's flake of spheres")
-        .example(clay!("sphereflake Clay, 2")),
+        .example(clay!("eyep 2.1 1.3 1.7\nvup 0 0 1\nsphereflake Clay, 2")),
     library("spiral", "a spiral of spheres")
-        .example(clay!("spiral Clay")),
+        .example(clay!("eyep 1 4 2.5\nvrp 0 0 0.8\nvup 0 0 1\nspiral Clay, turns=4")),
 ];

@@ -71,7 +71,7 @@ pub static TOOLS: &[CommandSpec] = &[
         .details("A polyline of 2 to 256 points. The program draws it as a picture; the page lists it among the notes.")
         .example("table 1 4 9 16 25"),
     library("shell", "a spiral shell of spheres")
-        .example(clay!("shell Clay")),
+        .example(clay!("eyep 1 3 1.5\nvrp -0.1 0 0\nvup 0 0 1\nshell Clay, 5, rise=0.4")),
     library("horn", "a curled horn that tapers")
-        .example(clay!("horn Clay")),
+        .example(clay!("eyep 0.5 4 1.2\nvrp 0.5 0 0.7\nvup 0 0 1\nhorn Clay, length=2.5, curl=200")),
 ];
