@@ -142,7 +142,7 @@ pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
         file.text = once;
     }
     let again = compile(&project);
-    // Places move; hints and related places tell of them.
+    // Places move, and hints tell of them.
     let scene = |compiled: &Compiled| {
         let mut scene = compiled.scene.clone();
         for element in &mut scene.elements {
@@ -153,7 +153,7 @@ pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
     let said = |compiled: &Compiled| -> Vec<_> {
         let messages = compiled.diagnostics.iter();
         messages
-            .map(|message| (message.severity, message.line))
+            .map(|message| (message.severity, message.message.clone()))
             .collect()
     };
     let moves = |compiled: &Compiled| -> Vec<_> {
