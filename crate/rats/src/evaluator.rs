@@ -684,15 +684,20 @@ impl<'a> Evaluator<'a> {
         span: Range<usize>,
         message: impl FnOnce() -> (String, Option<String>),
     ) {
-        let (file, place) = match self.uses.last() {
-            Some((file, place)) if !self.is_own() => (*file, place),
-            _ => (self.file, &span),
-        };
-        if self.report.is_new(file, severity, place) {
+        if self.is_news(severity, &span) {
             let (message, hint) = message();
             let problem = Problem::new(span, message).maybe_hint(hint);
             self.tell(severity, problem);
         }
+    }
+
+    /// Whether a message about this place would be the first, and wanted.
+    fn is_news(&self, severity: Severity, span: &Range<usize>) -> bool {
+        let (file, place) = match self.uses.last() {
+            Some((file, place)) if !self.is_own() => (*file, place),
+            _ => (self.file, span),
+        };
+        self.report.is_new(file, severity, place)
     }
 
     /// As [`Self::say`], about another file.
