@@ -44,6 +44,22 @@ impl App {
                     self.notice = Some(Notice::trouble(refused.to_string()));
                 }
             }
+            Command::Step { file, text } => {
+                session.end_step();
+                if let Err(refused) = session.set_text(file, text, now) {
+                    self.editor.resync(ctx);
+                    self.notice = Some(Notice::trouble(refused.to_string()));
+                }
+                session.end_step();
+            }
+            Command::Edit(edits) => {
+                let project = rats::assist::rename::apply(session.project(), &edits);
+                if let Err(refused) = session.put_files(project.files, now) {
+                    self.notice = Some(Notice::trouble(refused.to_string()));
+                }
+            }
+            Command::Tell(text) => self.notice = Some(Notice::done(text, now)),
+            Command::SetHints(hints) => self.settings.hints = hints,
             Command::Replace { file, range, with } => {
                 if let Err(refused) = session.replace(file, range, &with, now) {
                     self.notice = Some(Notice::trouble(refused.to_string()));
@@ -53,7 +69,11 @@ impl App {
                 Ok(file) => self.editor.jump(file, 0..0),
                 Err(refused) => self.notice = Some(Notice::trouble(refused.to_string())),
             },
-            Command::RenameFile(file, name) => session.rename_file(file, &name, now),
+            Command::RenameFile(file, name) => {
+                if let Err(trouble) = session.rename_file(file, &name, now) {
+                    self.notice = Some(Notice::trouble(trouble));
+                }
+            }
             Command::RemoveFile(file) => session.remove_file(file, now),
             Command::PickFiles => platform::pick_files(&self.parts.requests),
             Command::PutAsset(asset) => match session.put_assets(vec![asset]) {
@@ -83,6 +103,7 @@ impl App {
                 self.tab = Tab::Text;
                 self.editor.jump(file, range);
             }
+            Command::ShowPlace { file, byte } => self.editor.show_place(file, byte),
             Command::SetCamera(camera) => {
                 session.set_camera(camera);
                 self.settings.turned = true;

@@ -17,6 +17,19 @@ pub enum Command {
         /// Its new text.
         text: String,
     },
+    /// Replace the text of a file, as an undo step of its own.
+    Step {
+        /// Index of the file.
+        file: usize,
+        /// Its new text.
+        text: String,
+    },
+    /// Change several places at once, as one undo step.
+    Edit(Vec<rats::assist::Edit>),
+    /// Say something about the text.
+    Tell(String),
+    /// Whether a line at the caret says how its command is written.
+    SetHints(bool),
     /// Replace a piece of a file.
     Replace {
         /// Index of the file.
@@ -52,6 +65,13 @@ pub enum Command {
         file: usize,
         /// Byte range to select.
         range: Range<usize>,
+    },
+    /// Show a place of the text without taking the focus there.
+    ShowPlace {
+        /// Index of the file.
+        file: usize,
+        /// The byte.
+        byte: usize,
     },
     /// See the scene from here; `None`: from where the text says.
     SetCamera(Option<Camera>),

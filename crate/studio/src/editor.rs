@@ -1,19 +1,34 @@
-//! The text editor: colours, line numbers, underlined mistakes, indentation.
+//! The text editor: colours, line numbers, underlined mistakes, indentation, and what it knows about the
+//! language: completions, cards, the line that says how a command is written, definitions, renaming.
+
+mod completion;
+mod hover;
+mod rename;
+mod signature;
 
 use crate::code::Colouring;
 use crate::command::Command;
 use crate::indent::{self, Edited};
 use crate::keyboard::is_brace;
-use crate::marks::Marks;
+use crate::marks::{self, Marks};
 use crate::problems;
 use crate::session::Session;
 use crate::theme::{self, Palette};
+use completion::Keyed;
 use egui::text::{CCursor, CCursorRange};
 use egui::{
-    Align, FontId, Galley, Id, Key, Margin, Modifiers, Pos2, Rect, RichText, ScrollArea,
-    TextBuffer, TextEdit, Ui, pos2,
+    Align, FontId, Galley, Id, Key, Margin, Modifiers, Pos2, Rect, ScrollArea, TextBuffer,
+    TextEdit, Ui, pos2,
 };
+use rats::assist;
 use std::ops::Range;
+
+/// A place between two characters of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub(crate) file: usize,
+    pub(crate) byte: usize,
+}
 
 /// The state of the editor that is not part of the user's work.
 #[derive(Default)]
@@ -32,6 +47,16 @@ pub struct Editor {
     before: Option<CCursorRange>,
     /// The line of the cursor, from 1.
     line: usize,
+    completions: completion::Popup,
+    hover: hover::Hover,
+    signature: signature::Line,
+    rename: Option<rename::Rename>,
+    /// Whether a letter was typed in the last frame, which may open the completions.
+    typed: bool,
+    /// The file and byte of the cursor.
+    caret: Option<(usize, usize)>,
+    /// The bytes of a file behind which there is light: what is chosen in the picture.
+    pub lit: Option<(usize, Range<usize>)>,
 }
 
 /// The id of the text widget, the same at every frame and size.
@@ -67,16 +92,32 @@ impl Editor {
         self.place = Some(byte);
     }
 
+    /// The file and byte of the cursor, once the text had the focus.
+    #[must_use]
+    pub fn caret(&self) -> Option<(usize, usize)> {
+        self.caret
+    }
+
     /// Another piece of work is open: its first file, from the top.
     pub fn reset(&mut self, ctx: &egui::Context) {
         self.open(0);
+        self.completions.close();
+        self.rename = None;
         self.synced = None;
+        self.caret = None;
         self.jump = None;
         ctx.data_mut(|data| data.remove::<egui::text_edit::TextEditState>(id()));
     }
 
     /// Shows the editor in all the space of `ui`.
-    pub fn show(&mut self, ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+    /// `hints` is whether a line at the caret says how its command is written.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        hints: bool,
+        commands: &mut Vec<Command>,
+    ) {
         self.file = self
             .file
             .min(session.project().files.len().saturating_sub(1));
@@ -94,24 +135,178 @@ impl Editor {
         ui.painter().rect_filled(ui.max_rect(), 0.0, palette.paper);
         self.before =
             TextEdit::load_state(ui.ctx(), id()).and_then(|state| state.cursor.char_range());
+        self.offer(ui, session);
+        let taken = self.completions.keys(ui);
+        let mut stepped = self.write(ui, taken);
+        self.questions(ui, session, commands);
         let keyed = self.keys(ui);
         let height = ui.available_height();
         let lines = self.buffer.bytes().filter(|byte| *byte == b'\n').count() + 1;
         let digits = lines.to_string().len().max(2);
         let gutter = digits as f32 * theme::CODE_SIZE * 0.6 + 26.0;
-        let changed = ScrollArea::vertical()
+        let caret = ScrollArea::vertical()
             .id_salt(("editor", self.file))
             .auto_shrink(false)
-            .show(ui, |ui| self.text(ui, palette, session, gutter, height))
+            .show(ui, |ui| {
+                let caret = self.text(ui, palette, session, gutter, height, commands);
+                let focused = ui.memory(|memory| memory.has_focus(id()));
+                if let (Some((caret, place)), true, true) = (caret, focused, hints) {
+                    self.signature.show(ui, session, place, self.line, caret);
+                }
+                caret
+            })
             .inner;
-        if keyed || changed {
-            commands.push(Command::SetText {
+        if let Some((caret, _)) = caret {
+            let taken = self.completions.show(ui, caret);
+            stepped |= self.write(ui, taken);
+            self.show_rename(ui, session, caret, commands);
+        }
+        let (file, text) = (self.file, &self.buffer);
+        if stepped {
+            let text = text.clone();
+            commands.push(Command::Step { file, text });
+        } else if keyed || text != session.text(file) {
+            let text = text.clone();
+            commands.push(Command::SetText { file, text });
+        }
+    }
+
+    fn show_rename(
+        &mut self,
+        ui: &Ui,
+        session: &Session,
+        caret: Rect,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some(rename) = &mut self.rename else {
+            return;
+        };
+        if !rename.show(ui, session, caret, commands) {
+            self.rename = None;
+            ui.memory_mut(|memory| memory.request_focus(id()));
+        }
+    }
+
+    /// Where the caret is.
+    fn place(&self) -> Option<Place> {
+        let caret = self.before?.primary.index.0;
+        Some(Place {
+            file: self.file,
+            byte: to_bytes(&self.buffer, caret),
+        })
+    }
+
+    /// Opens the completions after a typed letter, and closes them when the caret is elsewhere.
+    fn offer(&mut self, ui: &Ui, session: &Session) {
+        let focused = ui.memory(|memory| memory.has_focus(id()));
+        let now = crate::platform::now(ui.ctx());
+        let typed = std::mem::take(&mut self.typed);
+        match self.place() {
+            Some(place) if focused => {
+                if typed {
+                    self.completions.typed(&self.buffer, place, now);
+                }
+                self.completions.update(ui, session, place, now);
+            }
+            // A click into the list takes the focus for a moment.
+            _ if !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) => {
+                self.completions.close();
+            }
+            _ => {}
+        }
+    }
+
+    /// Writes a completion that was taken. Gives whether there was one.
+    fn write(&mut self, ui: &Ui, taken: Keyed) -> bool {
+        let Keyed::Take(item, range) = taken else {
+            return false;
+        };
+        if self.buffer.get(range.clone()).is_none() {
+            return false;
+        }
+        self.buffer.replace_range(range.clone(), &item.insert);
+        self.put_caret(ui.ctx(), range.start + item.insert.len());
+        ui.memory_mut(|memory| memory.request_focus(id()));
+        true
+    }
+
+    fn put_caret(&mut self, ctx: &egui::Context, byte: usize) {
+        let mut state = TextEdit::load_state(ctx, id()).unwrap_or_default();
+        let caret = CCursorRange::one(CCursor::new(to_chars(&self.buffer, byte)));
+        state.cursor.set_char_range(Some(caret));
+        state.store(ctx, id());
+        self.before = Some(caret);
+    }
+
+    /// Keys that ask about the text: completions, manual, definition, renaming, layout.
+    fn questions(&mut self, ui: &Ui, session: &Session, commands: &mut Vec<Command>) {
+        let pressed = |modifiers, key| {
+            let shortcut = egui::KeyboardShortcut::new(modifiers, key);
+            ui.input_mut(|input| input.consume_shortcut(&shortcut))
+        };
+        // The card that the user looks at comes before the caret.
+        if let Some(command) = self.hover.take_command()
+            && pressed(Modifiers::NONE, Key::F1)
+        {
+            commands.push(Command::ShowManual(command.to_owned()));
+            return;
+        }
+        let Some(place) = self.place() else {
+            return;
+        };
+        if !ui.memory(|memory| memory.has_focus(id())) {
+            return;
+        }
+        if pressed(Modifiers::CTRL, Key::Space) || pressed(Modifiers::COMMAND, Key::Space) {
+            self.completions.ask(place);
+            ui.ctx().request_repaint();
+        } else if pressed(Modifiers::NONE, Key::F1) {
+            let card = assist::hover(session.project(), place.file, place.byte);
+            let command = card.and_then(|card| card.command);
+            commands.push(Command::ShowManual(command.unwrap_or_default().to_owned()));
+        } else if pressed(Modifiers::NONE, Key::F12) {
+            self.define(session, place, commands);
+        } else if pressed(Modifiers::NONE, Key::F2) {
+            match rename::Rename::open(session, place) {
+                Ok(field) => self.rename = Some(field),
+                Err(trouble) => commands.push(Command::Tell(trouble)),
+            }
+        } else if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::F) {
+            self.lay_out(session, commands);
+        } else if self.signature.is_open(self.line) && pressed(Modifiers::NONE, Key::Escape) {
+            self.signature.close(self.line);
+        }
+    }
+
+    /// Goes to where the name at a place is made.
+    fn define(&self, session: &Session, place: Place, commands: &mut Vec<Command>) {
+        let found = assist::definition(session.project(), place.file, place.byte);
+        commands.push(match found {
+            Some(found) => Command::Jump {
+                file: found.file,
+                range: found.span,
+            },
+            None => Command::Tell(String::from(
+                "The texts do not make the name at the caret. F12 and Ctrl+click go to where a variable, material, object or command is made.",
+            )),
+        });
+    }
+
+    /// Lays the file out anew; the caret stays in its line.
+    pub fn lay_out(&mut self, session: &Session, commands: &mut Vec<Command>) {
+        let text = session.text(self.file);
+        let neat = assist::format(text);
+        if neat != text {
+            let lines = neat.split_inclusive('\n').take(self.line.saturating_sub(1));
+            self.place = Some(lines.map(str::len).sum());
+            commands.push(Command::Step {
                 file: self.file,
-                text: self.buffer.clone(),
+                text: neat,
             });
         }
     }
 
+    /// Shows the text. Gives the caret's rectangle and place.
     fn text(
         &mut self,
         ui: &mut Ui,
@@ -119,7 +314,8 @@ impl Editor {
         session: &Session,
         gutter: f32,
         height: f32,
-    ) -> bool {
+        commands: &mut Vec<Command>,
+    ) -> Option<(Rect, Place)> {
         let dark = ui.visuals().dark_mode;
         let colouring = &mut self.colouring;
         let mut layouter = |ui: &Ui, text: &dyn TextBuffer, width: f32| {
@@ -132,9 +328,17 @@ impl Editor {
             top: 10,
             bottom: 40,
         };
+        let behind = ui.painter().add(egui::Shape::Noop);
         let output = TextEdit::multiline(&mut self.buffer)
             .id(id())
             .code_editor()
+            // Escape closes what is open, and only then leaves the text.
+            .event_filter(egui::EventFilter {
+                tab: true,
+                horizontal_arrows: true,
+                vertical_arrows: true,
+                escape: self.completions.is_open() || self.signature.is_open(self.line),
+            })
             .frame(egui::Frame::new().inner_margin(margin))
             .desired_width(f32::INFINITY)
             .min_size(egui::vec2(0.0, height))
@@ -142,32 +346,98 @@ impl Editor {
             .layouter(&mut layouter)
             .show(ui);
         let (galley, origin) = (output.galley.clone(), output.galley_pos);
-        let changed = output.response.response.changed();
+        if output.response.response.changed() {
+            let erased = |input: &egui::InputState| input.key_pressed(Key::Backspace);
+            self.typed = ui.input(|input| {
+                input.events.iter().any(writes_letters)
+                    || self.completions.is_open() && erased(input)
+            });
+        }
         let mut state = output.state;
         if let Some(range) = self.jump.take() {
             let start = to_chars(&self.buffer, range.start);
             let end = to_chars(&self.buffer, range.end);
             let selected = CCursorRange::two(CCursor::new(start), CCursor::new(end));
             state.cursor.set_char_range(Some(selected));
-            state.store(ui.ctx(), id());
+            state.clone().store(ui.ctx(), id());
             ui.memory_mut(|memory| memory.request_focus(id()));
             let place = galley.pos_from_cursor(CCursor::new(start));
             ui.scroll_to_rect(place.translate(origin.to_vec2()), Some(Align::Center));
         } else if let Some(byte) = self.place.take() {
             let cursor = CCursor::new(to_chars(&self.buffer, byte));
             state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
-            state.store(ui.ctx(), id());
+            state.clone().store(ui.ctx(), id());
             let place = galley.pos_from_cursor(cursor);
-            ui.scroll_to_rect(place.translate(origin.to_vec2()), None);
+            // With a few rows around it, as what stands there may take several.
+            let around = place
+                .translate(origin.to_vec2())
+                .expand2(egui::vec2(0.0, 70.0));
+            ui.scroll_to_rect(around, None);
         } else if let Some(range) = output.cursor_range {
             let byte = to_bytes(&self.buffer, range.primary.index.0);
+            self.caret = Some((self.file, byte));
             self.line = self.buffer[..byte].matches('\n').count() + 1;
+        }
+        if let Some((file, range)) = &self.lit
+            && *file == self.file
+        {
+            let chars = to_chars(&self.buffer, range.start)..to_chars(&self.buffer, range.end);
+            let light = palette.accent.gamma_multiply(0.22);
+            let rows = marks::rows(&galley, chars).into_iter().map(|row| {
+                let row = row
+                    .translate(origin.to_vec2())
+                    .expand2(egui::vec2(3.0, 0.0));
+                egui::Shape::rect_filled(row, 3.0, light)
+            });
+            ui.painter().set(behind, egui::Shape::Vec(rows.collect()));
         }
         self.marks.paint(ui.painter(), palette, &galley, origin);
         let focused = ui.memory(|memory| memory.has_focus(id()));
         self.line_numbers(ui, palette, &galley, origin, focused);
-        self.tooltip(&output.response.response, session, &galley, origin);
-        changed
+        self.pointed(
+            &output.response.response,
+            session,
+            &galley,
+            origin,
+            commands,
+        );
+        let caret = state.cursor.char_range()?.primary;
+        let rect = galley.pos_from_cursor(caret).translate(origin.to_vec2());
+        let byte = to_bytes(&self.buffer, caret.index.0);
+        let file = self.file;
+        Some((rect, Place { file, byte }))
+    }
+
+    /// What is under the pointer: a card about it, or with Ctrl and a click the way to where it is made.
+    fn pointed(
+        &mut self,
+        response: &egui::Response,
+        session: &Session,
+        galley: &Galley,
+        origin: Pos2,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some(pointer) = response.hover_pos() else {
+            return;
+        };
+        let inside = Rect::from_min_size(origin, galley.size()).expand(4.0);
+        // While a list is open at the caret, nothing else opens beside it.
+        if !inside.contains(pointer) || self.completions.is_open() || self.rename.is_some() {
+            return;
+        }
+        let char = galley.cursor_from_pos(pointer - origin).index.0;
+        let place = Place {
+            file: self.file,
+            byte: to_bytes(&self.buffer, char),
+        };
+        if response.ctx.input(|input| input.modifiers.command) {
+            response.ctx.set_cursor_icon(egui::CursorIcon::PointingHand);
+            if response.clicked() {
+                self.define(session, place, commands);
+            }
+            return;
+        }
+        self.hover.show(response, session, &self.marks, char, place);
     }
 
     /// Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Gives whether it changed.
@@ -249,45 +519,33 @@ impl Editor {
             line += usize::from(starts);
         }
     }
+}
 
-    fn tooltip(&self, response: &egui::Response, session: &Session, galley: &Galley, origin: Pos2) {
-        let Some(pointer) = response.hover_pos() else {
-            return;
-        };
-        let inside = Rect::from_min_size(origin, galley.size()).expand(4.0);
-        if !inside.contains(pointer) {
-            return;
+/// Whether letters were typed, on a keyboard or on a phone's.
+fn writes_letters(event: &egui::Event) -> bool {
+    match event {
+        egui::Event::Text(text) | egui::Event::Ime(egui::ImeEvent::Commit(text)) => {
+            !text.is_empty() && text.chars().all(char::is_alphanumeric)
         }
-        let char = galley.cursor_from_pos(pointer - origin).index.0;
-        let messages: Vec<usize> = self.marks.at(char).take(5).collect();
-        if messages.is_empty() {
-            return;
-        }
-        egui::Tooltip::always_open(
-            response.ctx.clone(),
-            response.layer_id,
-            id().with("tooltip"),
-            egui::PopupAnchor::Pointer,
-        )
-        .gap(14.0)
-        .show(|ui| {
-            let palette = theme::palette(ui.visuals());
-            for index in messages {
-                let Some(diagnostic) = session.diagnostics().get(index) else {
-                    continue;
-                };
-                let colour = problems::colour(palette, diagnostic.severity);
-                ui.label(RichText::new(&diagnostic.message).color(colour));
-                if let Some(hint) = &diagnostic.hint {
-                    ui.label(RichText::new(hint).color(palette.weak));
-                }
-                for related in &diagnostic.related {
-                    let text = format!("line {}: {}", related.line, related.message);
-                    ui.label(RichText::new(text).color(palette.note));
-                }
-            }
-        });
+        _ => false,
     }
+}
+
+/// Selects all of a field's text.
+fn select_all(ctx: &egui::Context, id: Id, text: &str) {
+    let mut state = TextEdit::load_state(ctx, id).unwrap_or_default();
+    let end = CCursor::new(text.chars().count());
+    let all = CCursorRange::two(CCursor::new(0), end);
+    state.cursor.set_char_range(Some(all));
+    state.store(ctx, id);
+}
+
+/// Lets screen readers say a line when it changes.
+fn say(ctx: &egui::Context, id: Id, text: &str) {
+    ctx.accesskit_node_builder(id, |node| {
+        node.set_live(egui::accesskit::Live::Polite);
+        node.set_value(text);
+    });
 }
 
 fn to_bytes(text: &str, char: usize) -> usize {

@@ -50,6 +50,16 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
     on(&window, "hashchange", move || {
         requests.ask(Request::HashChanged);
     })?;
+    // Keys of the editor that the browser would take: help, find, developer tools.
+    let keys = Closure::<dyn Fn(web_sys::KeyboardEvent)>::new(|event: web_sys::KeyboardEvent| {
+        let with_control = event.ctrl_key() || event.meta_key();
+        let lays_out = with_control && event.shift_key() && event.code() == "KeyF";
+        if lays_out || !with_control && matches!(event.key().as_str(), "F1" | "F12") {
+            event.prevent_default();
+        }
+    });
+    window.add_event_listener_with_callback("keydown", keys.as_ref().unchecked_ref())?;
+    keys.forget();
     // A page that goes out of sight may never come back; phones end it without another word.
     for event in ["pagehide", "visibilitychange"] {
         let shelf = parts.shelf.clone();

@@ -60,6 +60,14 @@ pub fn show(
         if pick.clicked() {
             commands.push(Command::PickFiles);
         }
+        if editor.asset.is_none() {
+            let tip = "Lay the text out neatly (Ctrl+Shift+F)";
+            let lay_out = icon::button(ui, Icon::Lines, tip, true);
+            places::note(ui.ctx(), "lay out", lay_out.rect);
+            if lay_out.clicked() {
+                editor.lay_out(session, commands);
+            }
+        }
         if !summary {
             return;
         }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `ready` | promise, resolved when the app runs; rejected with the reason when it cannot start |
 //! | `load(text)`, `load({name: text, …})` | opens texts (the first one is run) like an example: the user's own work is kept; promise, resolved when they are compiled, rejected when they are too long |
+//! | `take({name: text or Uint8Array, …})` | takes in texts, images and meshes as if they were dropped on the page |
 //! | `text()` | the text of the first file |
 //! | `files()` | all texts, as `{name: text, …}` |
 //! | `status()` | the state, see below |
@@ -19,7 +20,8 @@
 //! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null), `remaining`
 //! (seconds or null), `fresh` (whether the picture on the screen is of the present text and camera),
 //! `picture` (`{width, height}` or null), `errors` (how many), `diagnostics` (each `{severity,
-//! message, file, span, line, column, hint, related, command}`), `hot` (names of the sliders), `backend` (`"webgpu"`,
+//! message, file, span, line, column, hint, related, command}`), `hot` (names of the sliders), `assets`
+//! (names of the images and meshes), `frame` (of an animated work, else null), `backend` (`"webgpu"`,
 //! `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`, `timings` (seconds:
 //! `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays, fieldEvaluations}`), `revision`
 //! (rises with each change of the text), `name`, `saved` (whether all changes are in the browser's
@@ -38,6 +40,7 @@
 //! the user chose), and `panic()`, which stops the program as a mistake in it would.
 
 use crate::app::Parts;
+use crate::intake::Taken;
 use crate::picture;
 use crate::platform;
 use crate::request::Request;
@@ -82,6 +85,11 @@ fn texts(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
             p.requests
                 .ask(Request::Load(project.clone(), Box::new(answer)));
         }))
+    })?;
+    let p = parts.clone();
+    method(sinew, "take", move |files, _| {
+        p.requests.ask(Request::Files(taken(&files)?));
+        Ok(JsValue::UNDEFINED)
     })?;
     let p = parts.clone();
     method(sinew, "text", move |_, _| {
@@ -244,6 +252,26 @@ fn project(texts: &JsValue) -> Result<Project, JsValue> {
         return Err(wrong().into());
     }
     Ok(Project { files })
+}
+
+fn taken(files: &JsValue) -> Result<Vec<Taken>, JsValue> {
+    let wrong = || js_sys::TypeError::new("take() takes an object {name: text or Uint8Array, …}");
+    let object = files.dyn_ref::<Object>().ok_or_else(wrong)?;
+    let mut taken = Vec::new();
+    for name in Object::keys(object) {
+        let content = Reflect::get(object, &name)?;
+        let bytes = match (content.as_string(), content.dyn_ref::<js_sys::Uint8Array>()) {
+            (Some(text), _) => text.into_bytes(),
+            (None, Some(bytes)) => bytes.to_vec(),
+            (None, None) => return Err(wrong().into()),
+        };
+        let name = name.as_string().ok_or_else(wrong)?;
+        taken.push(Taken {
+            name,
+            bytes: Ok(bytes),
+        });
+    }
+    Ok(taken)
 }
 
 fn promise(begin: impl FnOnce(Function, Function)) -> JsValue {

@@ -36,13 +36,18 @@ const LANGUAGE: [(&str, &str); 9] = [
     ("# words", "a remark"),
 ];
 
-const KEYS: [(&str, &str); 7] = [
+const KEYS: [(&str, &str); 12] = [
     ("drag", "turn the model"),
     ("shift-drag, right-drag, two fingers", "move it"),
     ("wheel, pinch", "zoom"),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
     ("Ctrl+/", "turn lines into remarks and back"),
     ("Tab, Shift+Tab", "indent"),
+    ("Ctrl+Space", "what can be written here"),
+    ("F1", "the manual of the command at the caret"),
+    ("F12, Ctrl+click", "go to where a name is made"),
+    ("F2", "give a name another one, everywhere"),
+    ("Ctrl+Shift+F", "lay the text out neatly"),
     ("Ctrl+S", "save the picture as PNG"),
 ];
 
@@ -76,14 +81,14 @@ impl Help {
     }
 
     /// Shows the help.
-    pub fn show(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+    pub fn show(&mut self, ui: &mut Ui, hints: bool, commands: &mut Vec<Command>) {
         self.head(ui, commands);
         ui.add_space(6.0);
         ScrollArea::vertical()
             .id_salt(self.page == Page::Words)
             .auto_shrink([false, true])
             .show(ui, |ui| match self.page {
-                Page::Words => words(ui),
+                Page::Words => words(ui, hints, commands),
                 Page::Reference => self.reference.show(ui, commands),
             });
     }
@@ -113,7 +118,7 @@ impl Help {
     }
 }
 
-fn words(ui: &mut Ui) {
+fn words(ui: &mut Ui, mut hints: bool, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     ui.label(
         "A model is a text: a list of shapes made of materials. Soft shapes melt into each \
@@ -139,6 +144,16 @@ fn words(ui: &mut Ui) {
             ui.end_row();
         }
     });
+    ui.add_space(6.0);
+    if ui
+        .checkbox(
+            &mut hints,
+            "While writing, show how the command at the caret is written",
+        )
+        .changed()
+    {
+        commands.push(Command::SetHints(hints));
+    }
     heading(ui, "Yours");
     ui.label(
                 "What you write stays in this browser, under My work in the gallery. A link that \

@@ -26,6 +26,8 @@ pub enum Icon {
     More,
     /// A cross.
     Close,
+    /// Lines with one moved in: lay the text out.
+    Lines,
     /// A triangle to the right.
     Play,
     /// Two bars.
@@ -134,6 +136,12 @@ pub fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
             for x in [-5.0, 0.0, 5.0] {
                 painter.circle_filled(at + vec2(x, 0.0), 1.6, stroke.color);
             }
+        }
+        Icon::Lines => {
+            line(&[(-6.0, -5.0), (6.0, -5.0)]);
+            line(&[(-2.0, -1.5), (6.0, -1.5)]);
+            line(&[(-2.0, 2.0), (3.0, 2.0)]);
+            line(&[(-6.0, 5.5), (1.0, 5.5)]);
         }
         Icon::Play => {
             let corners = [(-4.0, -6.0), (6.5, 0.0), (-4.0, 6.0)];

@@ -107,14 +107,15 @@ fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     Ok(())
 }
 
-/// The name without folders and without blanks, which would end it in `read`.
+/// The name without folders, in letters that a text can name it by.
 fn plain_name(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
-    last.trim()
-        .chars()
-        .filter(|c| !c.is_control())
-        .map(|c| if c.is_whitespace() { '-' } else { c })
-        .collect()
+    let plain = |c: char| match c {
+        '.' | '_' | '-' => c,
+        c if c.is_alphanumeric() => c,
+        _ => '-',
+    };
+    last.trim().chars().map(plain).collect()
 }
 
 /// A text in UTF-8, or in Latin-1 as old datasets are; `None` if it is none.
@@ -146,10 +147,10 @@ mod tests {
         let sorted = sort(vec![
             taken("a/leg.rat", b"sphere a 1, 0 0 0\r\n"),
             taken("body.rat", b"read leg.rat\n"),
-            taken("mö bel.txt", b"# \xe4"),
+            taken("mö (bel).txt", b"# \xe4"),
         ]);
         let names: Vec<&str> = sorted.texts.iter().map(|file| file.name.as_str()).collect();
-        assert_eq!(names[0], "body.rat");
+        assert_eq!(names, ["body.rat", "leg.rat", "mö--bel-.txt"]);
         assert_eq!(sorted.texts[2].text, "# ä");
         assert_eq!(sorted.texts[1].text, "sphere a 1, 0 0 0\n");
         assert_eq!(sorted.refused, Vec::<String>::new());

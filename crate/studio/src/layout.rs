@@ -3,6 +3,7 @@
 
 use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
+use crate::hands::Around;
 use crate::icon::{self, Icon};
 use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery, Show};
@@ -121,7 +122,9 @@ fn text_or_asset(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         None => {
             app.editor.asset = None;
             places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
-            app.editor.show(ui, &app.work.session, commands);
+            let hints = app.settings.hints;
+            app.editor.lit = app.hands.lit(&app.work.session);
+            app.editor.show(ui, &app.work.session, hints, commands);
         }
     }
 }
@@ -319,7 +322,14 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         hint: !app.settings.turned,
         round: if narrow { 0.0 } else { 5.0 },
     };
-    view::show(ui, rect, &scenery, commands);
+    let picture = view::show(ui, rect, &scenery, commands);
+    let around = Around {
+        session,
+        caret: app.editor.caret(),
+        covered: app.dialog.is_some(),
+        touch: app.touch == Some(true),
+    };
+    app.hands.show(ui, rect, &picture, &around, commands);
     if let Some(notice) = &app.notice {
         notice::show(ui, place, notice, commands);
     }
@@ -461,7 +471,7 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
                     app.gallery
                         .show(ui, shelf.opened(), platform::unix_time(), commands);
                 }
-                Dialog::Help => app.help.show(ui, commands),
+                Dialog::Help => app.help.show(ui, app.settings.hints, commands),
             }
         });
     places::note(ctx, "dialog", modal.response.rect);

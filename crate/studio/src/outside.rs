@@ -100,6 +100,7 @@ impl App {
         state.revision = session.revision();
         state.name.clone_from(&self.work.name);
         state.saved = !self.parts.shelf.borrow().is_dirty();
+        state.frame = session.is_animated().then(|| session.film_frame());
         let text = (session.revision(), session.enabled());
         if self.reported != Some(text) {
             self.reported = Some(text);
@@ -108,6 +109,8 @@ impl App {
             state.timings.compile = session.compile_seconds();
             let hot = &session.compiled().hot;
             state.hot = hot.iter().map(|variable| variable.name.clone()).collect();
+            let assets = session.assets().iter();
+            state.assets = assets.map(|asset| asset.name.clone()).collect();
             outbox.project = Rc::new(session.project().clone());
         }
         outbox.chosen = session.chosen_camera();

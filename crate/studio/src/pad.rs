@@ -64,7 +64,7 @@ pub fn show(
     });
     let rail = rail
         .inner
-        .accessible_name(&format!("{name}, z"))
+        .accessible_name(format!("{name}, z"))
         .on_hover_text("z");
     places::note(ui.ctx(), format!("slider {name} z"), rail.rect);
     let mut dragging = square.dragged() || rail.dragged();
@@ -81,7 +81,7 @@ pub fn show(
                     .custom_formatter(|value, _| hot::write(&HotValue::Scalar(value)));
                 let field = ui
                     .add_sized(size, field)
-                    .accessible_name(&format!("{name}, {axis}"))
+                    .accessible_name(format!("{name}, {axis}"))
                     .on_hover_text("Drag sideways, or click to type");
                 dragging |= field.dragged();
             });

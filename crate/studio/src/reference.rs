@@ -170,7 +170,7 @@ fn rows(spec: &CommandSpec) -> Vec<(String, String, bool)> {
         })
         .collect();
     for parameter in library::parameters(spec.name) {
-        let meaning = with_default(&parameter.meaning, &parameter.default);
+        let meaning = with_default(&parameter.meaning, parameter.default);
         rows.push((parameter.name.to_owned(), meaning, false));
     }
     for option in spec.options {

@@ -40,6 +40,10 @@ pub struct Report {
     pub stats: Stats,
     /// Names of the variables marked `hot`.
     pub hot: Vec<String>,
+    /// Names of the images and meshes.
+    pub assets: Vec<String>,
+    /// The frame on show of an animated work.
+    pub frame: Option<u32>,
     /// Rises when the text changes.
     pub revision: u64,
     /// Name of the open work.

@@ -228,19 +228,32 @@ impl Session {
         Ok(self.project.files.len() - 1)
     }
 
-    /// Gives a file another name. A name that is taken, empty or too long is left alone.
-    pub fn rename_file(&mut self, file: usize, name: &str, now: f64) {
+    /// Gives a file another name, also where it is read. One undo step.
+    ///
+    /// # Errors
+    /// Says why not, if the name is taken or cannot be written in a text; then nothing changes.
+    pub fn rename_file(&mut self, file: usize, name: &str, now: f64) -> Result<(), String> {
         let name = name.trim();
-        if file >= self.project.files.len()
-            || name.is_empty()
-            || name.len() > rats::link::MAX_NAME
-            || !self.is_free(name)
-        {
-            return;
+        let Some(present) = self.project.files.get(file) else {
+            return Ok(());
+        };
+        if present.name == name {
+            return Ok(());
         }
+        if name.len() > rats::link::MAX_NAME {
+            return Err(format!(
+                "A file's name has at most {} letters.",
+                rats::link::MAX_NAME
+            ));
+        }
+        let edits = rats::assist::rename_file(&self.project, file, name)?;
+        let mut project = rats::assist::rename::apply(&self.project, &edits);
+        name.clone_into(&mut project.files[file].name);
+        check_size(&project).map_err(|refused| refused.to_string())?;
         self.whole_step(now);
-        name.clone_into(&mut self.project.files[file].name);
+        self.project = project;
         self.changed();
+        Ok(())
     }
 
     /// Removes a file. The first one, which is run, stays.
@@ -341,6 +354,11 @@ impl Session {
         };
         let text = format!("{before}{with}{after}");
         self.set_text(file, text, now)
+    }
+
+    /// The next edit begins an undo step, however soon it comes.
+    pub fn end_step(&mut self) {
+        self.history.close();
     }
 
     /// Begins a gesture, such as dragging a slider, that is one undo step.
@@ -498,6 +516,12 @@ impl Session {
     #[must_use]
     pub fn enabled(&self) -> bool {
         self.enabled
+    }
+
+    /// Whether [`Session::compiled`] is of the present text.
+    #[must_use]
+    pub fn is_compiled(&self) -> bool {
+        self.enabled && !self.stale
     }
 
     /// Compiles from now on.
@@ -673,8 +697,9 @@ mod tests {
     fn files_come_and_go_and_can_be_undone() {
         let mut session = session(TEXT);
         let added = session.add_file(1.0).unwrap();
-        session.rename_file(added, "legs.rat", 1.1);
-        session.rename_file(added, "main.rat", 1.2);
+        session.rename_file(added, "legs.rat", 1.1).unwrap();
+        assert!(session.rename_file(added, "main.rat", 1.2).is_err());
+        assert!(session.rename_file(added, "two words", 1.2).is_err());
         assert_eq!(session.project().files[added].name, "legs.rat");
         session
             .set_text(added, String::from("sphere a 1, 3 0 0\n"), 1.3)
@@ -682,6 +707,12 @@ mod tests {
         edit(&mut session, &format!("{TEXT}read legs.rat\n"), 1.4);
         assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
         assert_eq!(session.scene().unwrap().elements.len(), 2);
+        session.rename_file(added, "feet.rat", 1.45).unwrap();
+        assert!(session.text(0).ends_with("read feet.rat\n"));
+        session.compile();
+        assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
+        session.undo();
+        assert_eq!(session.project().files[added].name, "legs.rat");
         session.remove_file(added, 1.5);
         session.compile();
         assert_eq!(session.errors(), 1);

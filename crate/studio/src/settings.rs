@@ -16,6 +16,8 @@ pub struct Settings {
     pub size: size::Choice,
     /// Share of the width that the text has.
     pub split: f32,
+    /// Whether a line at the caret says how its command is written.
+    pub hints: bool,
     /// Whether the user has turned a picture and needs no hint any more.
     pub turned: bool,
 }
@@ -27,6 +29,7 @@ impl Default for Settings {
             show: Show::Auto,
             size: size::Choice::Fit,
             split: 0.4,
+            hints: true,
             turned: false,
         }
     }

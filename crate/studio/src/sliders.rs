@@ -224,7 +224,7 @@ fn colour_button(ui: &mut Ui, name: &str, colour: [f32; 3]) -> (bool, Option<[f3
     let mut bytes = colour.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
     let button = ui
         .color_edit_button_srgb(&mut bytes)
-        .accessible_name(&format!("Colour {name}"))
+        .accessible_name(format!("Colour {name}"))
         .on_hover_text("Choose a colour");
     places::note(ui.ctx(), format!("colour {name}"), button.rect);
     let changed = button.changed();

@@ -338,12 +338,16 @@ fn a_problem_leads_to_the_manual_and_its_example_opens() {
 
 #[test]
 fn a_related_place_is_a_way_there() {
-    let mut window = Window::with_text(&format!("{TEXT}for i = 1 to 3 {{\n"));
-    let related = window.parts.outbox.borrow().report.diagnostics[0]
-        .related
-        .first()
-        .cloned();
-    let related = related.expect("where the brace was opened");
+    let mut window = Window::with_text(&format!("{TEXT}object a\nclose b\n"));
+    let related = window
+        .parts
+        .outbox
+        .borrow()
+        .report
+        .diagnostics
+        .iter()
+        .find_map(|diagnostic| diagnostic.related.first().cloned());
+    let related = related.expect("where the object begins");
     let label = format!("{}:{} {}", related.line, related.column, related.message);
     window.harness.get_by_label(&label).click();
     window.steps(3);
