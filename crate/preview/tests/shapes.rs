@@ -531,6 +531,7 @@ fn a_mesh_of_patches_has_no_gaps() {
                 target: DVec3::Z * 0.3,
                 up: DVec3::Y,
                 fov,
+                shift: [-0.2, 0.1],
             };
             let mut scene = by_index(&shapes, camera);
             for element in &mut scene.elements {

@@ -14,6 +14,7 @@ pub mod manual;
 mod mend;
 mod place;
 pub mod rename;
+mod resolve;
 pub mod signature;
 mod slots;
 pub mod symbols;

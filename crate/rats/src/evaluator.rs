@@ -18,6 +18,7 @@ pub mod scene_commands;
 pub mod textures;
 pub mod tools;
 pub mod variables;
+pub mod watch;
 
 use crate::commands::{self, Action};
 use crate::compile::{Compiled, HotVariable, Output, Placement};
@@ -93,6 +94,8 @@ pub struct Evaluator<'a> {
     /// The picture that `shoot` took.
     shot: Option<(Scene, Vec<Placement>)>,
     told_after_shot: bool,
+    /// Whether, and for which command, the run is watched.
+    watch: Option<Box<watch::Watch<'a>>>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -132,6 +135,7 @@ impl<'a> Evaluator<'a> {
             repeating: 0,
             shot: None,
             told_after_shot: false,
+            watch: None,
         }
     }
 
@@ -233,6 +237,9 @@ impl<'a> Evaluator<'a> {
 
     fn command(&mut self, command: &'a Command) -> Outcome<Flow> {
         self.scope.step(1, &command.word_span)?;
+        if self.watch.as_ref().is_some_and(|watch| watch.is_done()) {
+            return Ok(Flow::Quit);
+        }
         let Some(spec) = command.spec else {
             return self.call(command, command.word);
         };
@@ -677,15 +684,20 @@ impl<'a> Evaluator<'a> {
         span: Range<usize>,
         message: impl FnOnce() -> (String, Option<String>),
     ) {
-        let (file, place) = match self.uses.last() {
-            Some((file, place)) if !self.is_own() => (*file, place),
-            _ => (self.file, &span),
-        };
-        if self.report.is_new(file, severity, place) {
+        if self.is_news(severity, &span) {
             let (message, hint) = message();
             let problem = Problem::new(span, message).maybe_hint(hint);
             self.tell(severity, problem);
         }
+    }
+
+    /// Whether a message about this place would be the first, and wanted.
+    fn is_news(&self, severity: Severity, span: &Range<usize>) -> bool {
+        let (file, place) = match self.uses.last() {
+            Some((file, place)) if !self.is_own() => (*file, place),
+            _ => (self.file, span),
+        };
+        self.report.is_new(file, severity, place)
     }
 
     /// As [`Self::say`], about another file.

@@ -21,6 +21,7 @@ mod expression;
 mod functions;
 mod geometry;
 mod given;
+pub mod handles;
 pub mod highlight;
 pub mod hot;
 pub mod lexer;

@@ -261,6 +261,17 @@ fn surfaces() {
     assert_eq!(u.ambient, [1.0, 0.0, 0.0]);
 }
 
+/// `surface new = s` copies what the parameter `s` stands for.
+#[test]
+fn a_material_that_was_passed_on_is_copied() {
+    let text = "surface Clay diff Red\ndefine ball(surface s) {\n\
+                surface own = s, rad 2\nsphere own 1, 0 0 0\n}\nball Clay\n";
+    let scene = scene(text);
+    let material = &scene.materials[scene.elements[0].material];
+    assert_eq!(material.diffuse, [1.0, 0.0, 0.0]);
+    assert_eq!(material.radius, 2.0);
+}
+
 #[test]
 fn a_material_made_anew_leaves_older_shapes_alone() {
     let scene = scene(

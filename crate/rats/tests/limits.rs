@@ -305,3 +305,10 @@ fn long_lines_and_words() {
     errors("wibble\n".repeat(100_000));
     errors("🐚".repeat(100_000));
 }
+
+#[test]
+fn a_tiny_weight_takes_no_eye_to_infinity() {
+    fails("cp 1e12 0 5 1e-300", "further away than 1e12");
+    fails("cp 1 0 5 1e-12", "further away than 1e12");
+    assert_eq!(errors("cp 1 0 5 1e-11"), "");
+}

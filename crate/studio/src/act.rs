@@ -103,6 +103,7 @@ impl App {
                 self.tab = Tab::Text;
                 self.editor.jump(file, range);
             }
+            Command::ShowPlace { file, byte } => self.editor.show_place(file, byte),
             Command::SetCamera(camera) => {
                 session.set_camera(camera);
                 self.settings.turned = true;

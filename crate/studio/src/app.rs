@@ -9,6 +9,7 @@ use crate::draft::Draft;
 use crate::editor::Editor;
 use crate::film::Player;
 use crate::gallery::Gallery;
+use crate::hands::Hands;
 use crate::help::Help;
 use crate::keyboard::Keyboard;
 use crate::lab::{Lab, Lesson};
@@ -94,6 +95,7 @@ pub struct App {
     pub(crate) editor: Editor,
     pub(crate) asset_view: AssetView,
     pub(crate) sliders: Sliders,
+    pub(crate) hands: Hands,
     pub(crate) gallery: Gallery,
     pub(crate) help: Help,
     pub(crate) player: Player,
@@ -116,7 +118,7 @@ pub struct App {
     titled: String,
     /// Who waits for the picture to be finished.
     pub(crate) finished: Vec<Box<dyn FnOnce()>>,
-    touch: Option<bool>,
+    pub(crate) touch: Option<bool>,
 }
 
 impl App {
@@ -154,6 +156,7 @@ impl App {
             editor: Editor::default(),
             asset_view: AssetView::default(),
             sliders: Sliders::default(),
+            hands: Hands::default(),
             gallery: Gallery::default(),
             help: Help::default(),
             player: Player::default(),
@@ -319,6 +322,7 @@ impl App {
         }
         self.editor.reset(ctx);
         self.sliders.clear();
+        self.hands.clear();
         self.renderer.clear();
         self.notice = None;
         self.dialog = None;

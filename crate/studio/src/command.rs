@@ -66,6 +66,13 @@ pub enum Command {
         /// Byte range to select.
         range: Range<usize>,
     },
+    /// Show a place of the text without taking the focus there.
+    ShowPlace {
+        /// Index of the file.
+        file: usize,
+        /// The byte.
+        byte: usize,
+    },
     /// See the scene from here; `None`: from where the text says.
     SetCamera(Option<Camera>),
     /// See the whole model.

@@ -10,7 +10,7 @@ use crate::code::Colouring;
 use crate::command::Command;
 use crate::indent::{self, Edited};
 use crate::keyboard::is_brace;
-use crate::marks::Marks;
+use crate::marks::{self, Marks};
 use crate::problems;
 use crate::session::Session;
 use crate::theme::{self, Palette};
@@ -53,6 +53,10 @@ pub struct Editor {
     rename: Option<rename::Rename>,
     /// Whether a letter was typed in the last frame, which may open the completions.
     typed: bool,
+    /// The file and byte of the cursor.
+    caret: Option<(usize, usize)>,
+    /// The bytes of a file behind which there is light: what is chosen in the picture.
+    pub lit: Option<(usize, Range<usize>)>,
 }
 
 /// The id of the text widget, the same at every frame and size.
@@ -88,12 +92,19 @@ impl Editor {
         self.place = Some(byte);
     }
 
+    /// The file and byte of the cursor, once the text had the focus.
+    #[must_use]
+    pub fn caret(&self) -> Option<(usize, usize)> {
+        self.caret
+    }
+
     /// Another piece of work is open: its first file, from the top.
     pub fn reset(&mut self, ctx: &egui::Context) {
         self.open(0);
         self.completions.close();
         self.rename = None;
         self.synced = None;
+        self.caret = None;
         self.jump = None;
         ctx.data_mut(|data| data.remove::<egui::text_edit::TextEditState>(id()));
     }
@@ -317,6 +328,7 @@ impl Editor {
             top: 10,
             bottom: 40,
         };
+        let behind = ui.painter().add(egui::Shape::Noop);
         let output = TextEdit::multiline(&mut self.buffer)
             .id(id())
             .code_editor()
@@ -356,10 +368,28 @@ impl Editor {
             state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
             state.clone().store(ui.ctx(), id());
             let place = galley.pos_from_cursor(cursor);
-            ui.scroll_to_rect(place.translate(origin.to_vec2()), None);
+            // With a few rows around it, as what stands there may take several.
+            let around = place
+                .translate(origin.to_vec2())
+                .expand2(egui::vec2(0.0, 70.0));
+            ui.scroll_to_rect(around, None);
         } else if let Some(range) = output.cursor_range {
             let byte = to_bytes(&self.buffer, range.primary.index.0);
+            self.caret = Some((self.file, byte));
             self.line = self.buffer[..byte].matches('\n').count() + 1;
+        }
+        if let Some((file, range)) = &self.lit
+            && *file == self.file
+        {
+            let chars = to_chars(&self.buffer, range.start)..to_chars(&self.buffer, range.end);
+            let light = palette.accent.gamma_multiply(0.22);
+            let rows = marks::rows(&galley, chars).into_iter().map(|row| {
+                let row = row
+                    .translate(origin.to_vec2())
+                    .expand2(egui::vec2(3.0, 0.0));
+                egui::Shape::rect_filled(row, 3.0, light)
+            });
+            ui.painter().set(behind, egui::Shape::Vec(rows.collect()));
         }
         self.marks.paint(ui.painter(), palette, &galley, origin);
         let focused = ui.memory(|memory| memory.has_focus(id()));

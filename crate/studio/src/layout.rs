@@ -3,6 +3,7 @@
 
 use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
+use crate::hands::Around;
 use crate::icon::{self, Icon};
 use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery, Show};
@@ -122,6 +123,7 @@ fn text_or_asset(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
             app.editor.asset = None;
             places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
             let hints = app.settings.hints;
+            app.editor.lit = app.hands.lit(&app.work.session);
             app.editor.show(ui, &app.work.session, hints, commands);
         }
     }
@@ -320,7 +322,14 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         hint: !app.settings.turned,
         round: if narrow { 0.0 } else { 5.0 },
     };
-    view::show(ui, rect, &scenery, commands);
+    let picture = view::show(ui, rect, &scenery, commands);
+    let around = Around {
+        session,
+        caret: app.editor.caret(),
+        covered: app.dialog.is_some(),
+        touch: app.touch == Some(true),
+    };
+    app.hands.show(ui, rect, &picture, &around, commands);
     if let Some(notice) = &app.notice {
         notice::show(ui, place, notice, commands);
     }

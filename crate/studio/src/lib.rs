@@ -30,6 +30,7 @@ pub mod fonts;
 pub mod gallery;
 #[cfg(target_arch = "wasm32")]
 pub mod handle;
+pub mod hands;
 pub mod help;
 pub mod history;
 pub mod icon;

@@ -134,7 +134,7 @@ impl<'a> Counter<'a> {
 }
 
 /// The rectangles that a range of characters covers, one for each row.
-fn rows(galley: &Galley, chars: Range<usize>) -> Vec<Rect> {
+pub(crate) fn rows(galley: &Galley, chars: Range<usize>) -> Vec<Rect> {
     let start = galley.layout_from_cursor(CCursor::new(chars.start));
     let end = galley.layout_from_cursor(CCursor::new(chars.end));
     let mut rectangles = Vec::new();

@@ -518,6 +518,12 @@ impl Session {
         self.enabled
     }
 
+    /// Whether [`Session::compiled`] is of the present text.
+    #[must_use]
+    pub fn is_compiled(&self) -> bool {
+        self.enabled && !self.stale
+    }
+
     /// Compiles from now on.
     pub fn enable(&mut self) {
         self.enabled = true;

@@ -131,7 +131,7 @@ pub fn show(
             CursorIcon::Grab
         });
     if hint && response.hovered() && !response.dragged() {
-        let text = "drag to turn · shift-drag to move · scroll to zoom";
+        let text = "drag to turn · shift-drag to move · scroll to zoom · click a shape to edit it";
         let at = rect.center_bottom() - vec2(0.0, 16.0);
         let font = egui::FontId::proportional(12.5);
         let galley = painter.layout_no_wrap(text.to_owned(), font, Color32::from_gray(235));

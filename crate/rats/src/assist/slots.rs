@@ -850,3 +850,91 @@ pub fn find_option(options: &'static [OptionSpec], word: &str) -> Option<&'stati
     let mut fitting = options.iter().filter(|option| begins(option.name, word));
     fitting.next().filter(|_| fitting.next().is_none())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assist::Index;
+    use crate::assist::walk;
+    use crate::parser::parse;
+    use crate::symbol::Symbols;
+    use crate::{File, Project, commands, compile, library};
+
+    /// The operands of a text's commands that the static reader has no use for.
+    fn extras(text: &str) -> Vec<String> {
+        let project = Project {
+            files: vec![File {
+                name: String::from("main.rat"),
+                text: text.to_owned(),
+            }],
+        };
+        let mut symbols = Symbols::default();
+        let syntax = parse(text, &mut symbols);
+        let mut starts = Vec::new();
+        walk::commands(&syntax.block, &mut |command| {
+            starts.push(command.word_span.start);
+        });
+        let mut extras = Vec::new();
+        for start in starts {
+            let index = Index::at(&project, Some((0, start)));
+            let here = index.here.expect("a command");
+            // The head of `define` is read by the parser; what is unknown is not run.
+            let is_known = here.spec.is_some() || here.own.is_some();
+            if here.word == "define" || !is_known {
+                continue;
+            }
+            for (span, slot) in here.operands {
+                let missing = slot.parameter.is_none() && slot.option.is_none();
+                if matches!(slot.what, What::Extra) || missing {
+                    extras.push(format!("{}: {}", here.word, &text[span]));
+                }
+            }
+        }
+        extras
+    }
+
+    /// The static reader reads what the evaluator reads: where there is no error, every operand has
+    /// its use.
+    #[test]
+    fn every_operand_has_a_use() {
+        let mut texts: Vec<String> = commands::all()
+            .map(|spec| spec.example.to_owned())
+            .collect();
+        texts.extend(library::FILES.iter().map(|(_, text)| (*text).to_owned()));
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../www/examples");
+        for entry in std::fs::read_dir(folder).expect("the examples") {
+            let path = entry.expect("an entry").path();
+            if path.extension().is_some_and(|ending| ending == "rat") {
+                let text = std::fs::read_to_string(path).expect("a text");
+                if text.len() < 10_000 {
+                    texts.push(text);
+                }
+            }
+        }
+        let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/diagnostics");
+        for entry in std::fs::read_dir(corpus).expect("the corpus") {
+            let text = std::fs::read_to_string(entry.expect("an entry").path()).expect("a text");
+            for section in text.split("\n### ") {
+                let body = section.split_once('\n').map_or("", |(_, body)| body);
+                if !body.contains("#! error") && !body.contains("#file ") {
+                    texts.push(body.to_owned());
+                }
+            }
+        }
+        assert!(texts.len() > 150, "only {} texts", texts.len());
+        let mut found = Vec::new();
+        for text in texts {
+            let project = Project {
+                files: vec![File {
+                    name: String::from("main.rat"),
+                    text: text.clone(),
+                }],
+            };
+            let errors = compile(&project).diagnostics;
+            if errors.iter().all(|d| d.severity != crate::Severity::Error) {
+                found.extend(extras(&text));
+            }
+        }
+        assert!(found.is_empty(), "{found:#?}");
+    }
+}

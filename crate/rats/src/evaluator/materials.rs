@@ -37,6 +37,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let given = run.given(command)?;
     let name = given.name("alias").clone();
     let old = given.maybe_name("= old").cloned();
+    run.watch_material(&name, old.as_ref(), &given);
     let mut surface = match &old {
         Some(old) => run.palette.surfaces[run.material(old)?].clone(),
         None => Surface {

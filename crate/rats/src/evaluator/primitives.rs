@@ -22,6 +22,7 @@ fn operands<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<(Name<
         Some(name) => name,
         None => given.name("sn").clone(),
     };
+    run.watch_shape(command, &name, &given);
     Ok((name, given))
 }
 

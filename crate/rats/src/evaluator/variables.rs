@@ -50,8 +50,10 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
                 .hint(format!("set it first: `var {word} = …`")),
         );
     }
+    let mut place = None;
     if animated.is_none() {
         let (value, literal) = value(&mut read)?;
+        place = literal.clone();
         let mut hot = None;
         loop {
             let here = read.start();
@@ -83,6 +85,7 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     } else {
         read.end()?;
     }
+    run.watch_variable(name, place, animated.is_some());
     if let Some((change, span)) = animated {
         run.animated = true;
         let now = run.scope.get(name).unwrap_or(Value::Scalar(0.0));

@@ -52,6 +52,16 @@ fn awkward() -> Vec<(&'static str, String)> {
             "locals",
             "define f(a) {\n".to_owned() + &fill("if a { var b = a }\n") + "}",
         ),
+        (
+            "many locals",
+            "define f(a) {\n".to_owned()
+                + &(0..30_000)
+                    .map(|i| format!("var a{i} = 1\n"))
+                    .collect::<String>()
+                + &"if a {}\n".repeat(60_000)
+                + "}",
+        ),
+        ("reads", fill("read other.rat\n")),
         ("comments", fill("# a\n")),
         ("empty", fill("\n")),
         ("objects", fill("object A\n")),
@@ -68,7 +78,7 @@ fn speed() {
         let byte = text[..byte].rfind('\n').map_or(byte, |at| at + 1);
         let byte = text[byte..].find(' ').map_or(byte, |at| byte + at + 1);
         let mut project = one_file(&text);
-        project.files.push(file("other.rat", ""));
+        project.files.push(file("other.rat", &long(20_000)));
         let mut time = |name: &str, run: &mut dyn FnMut()| {
             let took = timed(run);
             println!("{what:12} {name:12} {:7.1} ms", took.as_secs_f64() * 1e3);

@@ -1,0 +1,366 @@
+//! Watching a run for one command: from where in the texts each of its numbers comes, so that a hand
+//! that moves the shape knows what to rewrite.
+//!
+//! What a word means depends on the variables at that time, so the text is run up to the command, as
+//! for a picture, and the run notes where variables and the radii of materials were written.
+
+use super::Evaluator;
+use crate::commands::{CommandSpec, Kind, Parameter};
+use crate::given::{Filled, Given};
+use crate::lexer::{TokenKind, lex};
+use crate::reader::{Name, Reader};
+use crate::symbol::Symbol;
+use crate::syntax::Command;
+use crate::value::Value;
+use scene::Origin;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// From where a number comes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// It is written out.
+    Literal {
+        /// The file, an index of the project's.
+        file: usize,
+        /// Its bytes, with the sign.
+        span: Range<usize>,
+        /// Whether a `-` stands before the variable, so that the number has the other sign.
+        negated: bool,
+        /// The variable that stands for it.
+        variable: Option<String>,
+    },
+    /// It cannot be rewritten; the text goes on after "the number".
+    Computed(String),
+}
+
+/// A number of the command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// Its value.
+    pub value: f64,
+    /// From where it comes.
+    pub source: Source,
+}
+
+/// An operand: one number or three.
+#[derive(Clone, Debug)]
+pub struct Operand {
+    /// The parameter's name in the table.
+    pub name: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+    /// Its numbers.
+    pub numbers: Vec<Number>,
+}
+
+/// The command that was watched for.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    /// What is known of the command.
+    pub spec: &'static CommandSpec,
+    /// Its operands that are numbers.
+    pub operands: Vec<Operand>,
+    /// The material's name.
+    pub material: String,
+    /// From where the material's radius comes.
+    pub radius: Number,
+}
+
+/// What a run notes while it is watched.
+#[derive(Debug)]
+pub struct Watch<'a> {
+    target: Origin,
+    /// Where variables of the whole text were set last: the numbers, or why they cannot be moved.
+    variables: HashMap<Symbol, Result<(usize, Vec<Range<usize>>), String>>,
+    radii: HashMap<&'a str, Number>,
+    seen: Option<Seen>,
+}
+
+impl Watch<'_> {
+    /// Whether the command was met, so that the run may end.
+    pub fn is_done(&self) -> bool {
+        self.seen.is_some()
+    }
+}
+
+impl<'a> Evaluator<'a> {
+    /// Runs the first file up to the command with this origin, a shape of the project's own texts.
+    /// `None` if the run does not come there.
+    #[must_use]
+    pub fn watch_for(mut self, target: Origin) -> Option<Seen> {
+        self.watch = Some(Box::new(Watch {
+            target,
+            variables: HashMap::new(),
+            radii: HashMap::new(),
+            seen: None,
+        }));
+        if !self.sources.all.is_empty() {
+            self.run_file(0);
+        }
+        self.watch.and_then(|watch| watch.seen)
+    }
+
+    /// Notes where a variable was set.
+    pub(super) fn watch_variable(
+        &mut self,
+        name: Symbol,
+        literal: Option<Range<usize>>,
+        animated: bool,
+    ) {
+        if self.watch.is_none() {
+            return;
+        }
+        let word = self.scope.symbols.word(name);
+        let text = self.sources.all[self.file].text;
+        let setting = if self.repeating > 0 || !self.is_own() {
+            Err(format!(
+                "comes from `{word}`, which is set in a loop or a defined command"
+            ))
+        } else if animated {
+            Err(format!(
+                "comes from `{word}`, which changes with every frame"
+            ))
+        } else {
+            literal
+                .and_then(|span| written_out(text, span))
+                .map(|spans| (self.file, spans))
+                .ok_or_else(|| format!("comes from `{word}`, which is computed"))
+        };
+        if let Some(watch) = &mut self.watch {
+            watch.variables.insert(name, setting);
+        }
+    }
+
+    /// Notes where the radius of a material was given; a copy takes over that of the old one.
+    pub(super) fn watch_material(
+        &mut self,
+        name: &Name<'a>,
+        old: Option<&Name<'_>>,
+        given: &Given<'_>,
+    ) {
+        if self.watch.is_none() {
+            return;
+        }
+        let own = given.option("radius").and_then(|radius| {
+            let span = radius.given.span("r")?;
+            Some(Number {
+                value: radius.given.number("r"),
+                source: self.source(span, 0),
+            })
+        });
+        let Some(watch) = &mut self.watch else { return };
+        let inherited = || watch.radii.get(old?.text).cloned();
+        let mut radius = own.or_else(inherited).unwrap_or(Number {
+            value: 0.0,
+            source: Source::Computed(String::from("is not given")),
+        });
+        if given
+            .option("depth")
+            .is_some_and(|d| d.given.number("d") > 0.0)
+        {
+            let why = format!("follows from the `depth` of `{}`", name.text);
+            radius.source = Source::Computed(why);
+        }
+        watch.radii.insert(name.text, radius);
+    }
+
+    /// Looks at a shape's command that has just been read.
+    pub(super) fn watch_shape(
+        &mut self,
+        command: &'a Command,
+        material: &Name<'a>,
+        given: &Given<'a>,
+    ) {
+        let Some(watch) = &self.watch else { return };
+        if watch.seen.is_some() || !self.is_own() || self.origin(command) != watch.target {
+            return;
+        }
+        let Some(spec) = command.spec else { return };
+        let radius = watch.radii.get(material.text).cloned();
+        let mut operands = Vec::new();
+        for filled in &given.operands {
+            operands.extend(self.operand(command, spec.parameters, filled));
+        }
+        for chosen in &given.options {
+            let option = spec
+                .options
+                .iter()
+                .find(|option| option.name == chosen.name);
+            for filled in &chosen.given.operands {
+                let parameters = option.map_or(&[][..], |option| option.parameters);
+                operands.extend(self.operand(command, parameters, filled));
+            }
+        }
+        let seen = Seen {
+            spec,
+            operands,
+            material: material.text.to_owned(),
+            radius: radius.unwrap_or(Number {
+                value: 0.0,
+                source: Source::Computed(String::from("is not given")),
+            }),
+        };
+        if let Some(watch) = &mut self.watch {
+            watch.seen = Some(seen);
+        }
+    }
+
+    /// An operand of the command's with the sources of its numbers; `None` if it is no number.
+    fn operand(
+        &mut self,
+        command: &Command,
+        parameters: &'static [Parameter],
+        filled: &Filled<'a>,
+    ) -> Option<Operand> {
+        let parameter = parameters.iter().find(|p| p.name == filled.parameter)?;
+        let values = match filled.operand {
+            crate::given::Operand::Number(number) => vec![number],
+            // A direction was made a unit vector; here it is wanted as it is written.
+            crate::given::Operand::Triple(_) => Vec::new(),
+            _ => return None,
+        };
+        let (values, sources) = if values.is_empty() {
+            self.triple(command, filled.span.clone())?
+        } else {
+            (values, vec![self.source(filled.span.clone(), 0)])
+        };
+        let numbers = values.into_iter().zip(sources);
+        Some(Operand {
+            name: parameter.name,
+            meaning: parameter.meaning,
+            kind: parameter.kind,
+            numbers: numbers
+                .map(|(value, source)| Number { value, source })
+                .collect(),
+        })
+    }
+
+    /// Reads a triple once more, number by number. What `rand` draws on the way does not matter: the
+    /// run ends here.
+    fn triple(&mut self, command: &Command, span: Range<usize>) -> Option<(Vec<f64>, Vec<Source>)> {
+        let source = &self.sources.all[self.file];
+        let items = &source.syntax.items;
+        let at = items[command.items.clone()]
+            .iter()
+            .position(|item| item.start as usize == span.start)?;
+        let mut read = Reader::new(command, items, source.text, &mut self.scope);
+        read.at = at;
+        let mut values = Vec::new();
+        let mut spans = Vec::new();
+        while values.len() < 3 {
+            let start = read.start();
+            match read.value("").ok()? {
+                Value::Scalar(x) => {
+                    values.push(x);
+                    spans.push(read.since(start));
+                }
+                Value::Vector(v) | Value::Colour(v) if values.is_empty() => {
+                    let span = read.since(start);
+                    let sources = (0..3).map(|k| self.source(span.clone(), k)).collect();
+                    return Some((v.to_array().to_vec(), sources));
+                }
+                _ => return None,
+            }
+        }
+        let sources = spans.into_iter().map(|span| self.source(span, 0)).collect();
+        Some((values, sources))
+    }
+
+    /// From where a number of the present file comes that an expression gives; of a triple the one with
+    /// this index.
+    fn source(&self, span: Range<usize>, index: usize) -> Source {
+        let text = self.sources.all[self.file].text;
+        let slice = &text[span.clone()];
+        if let Some([span]) = written_out(text, span.clone()).as_deref() {
+            return Source::Literal {
+                file: self.file,
+                span: span.clone(),
+                negated: false,
+                variable: None,
+            };
+        }
+        let (word, negated) = match slice.strip_prefix(['-', '−']) {
+            Some(rest) => (rest.trim_start(), true),
+            None => (slice, false),
+        };
+        self.variable(word, index, negated)
+            .unwrap_or_else(|| Source::Computed(computed(slice)))
+    }
+
+    /// The source of a number that `word` stands for: a variable, or a part of one.
+    fn variable(&self, word: &str, index: usize, negated: bool) -> Option<Source> {
+        let watch = self.watch.as_ref()?;
+        let known = |word: &str| {
+            let symbol = self.scope.symbols.find(word)?;
+            self.scope.get(symbol)?;
+            watch.variables.get(&symbol)
+        };
+        let (name, index, setting) = match known(word) {
+            Some(setting) => (word, index, setting),
+            None => {
+                let (name, component) = word.rsplit_once('.')?;
+                let index = ["xr", "yg", "zb"]
+                    .iter()
+                    .position(|names| component.len() == 1 && names.contains(component))?;
+                (name, index, known(name)?)
+            }
+        };
+        Some(match setting {
+            Ok((file, spans)) => Source::Literal {
+                file: *file,
+                span: spans.get(index)?.clone(),
+                negated,
+                variable: Some(name.to_owned()),
+            },
+            Err(why) => Source::Computed(why.clone()),
+        })
+    }
+}
+
+/// The places of the numbers in a range of a text, each with its sign, if there is nothing else there but
+/// separators.
+fn written_out(text: &str, range: Range<usize>) -> Option<Vec<Range<usize>>> {
+    let mut spans = Vec::new();
+    let mut sign: Option<usize> = None;
+    for token in lex(text.get(range.clone())?) {
+        let place = range.start + token.start..range.start + token.end;
+        match (token.kind, &text[place.clone()]) {
+            (TokenKind::Number, _) => spans.push(sign.take().unwrap_or(place.start)..place.end),
+            (TokenKind::Space | TokenKind::Newline | TokenKind::Comment, _) => {}
+            (TokenKind::Sign, "," | "<" | ">") if sign.is_none() => {}
+            (TokenKind::Sign, "-" | "−" | "+") if sign.is_none() => sign = Some(place.start),
+            _ => return None,
+        }
+    }
+    sign.is_none().then_some(spans)
+}
+
+/// Says that an expression gives a number.
+fn computed(expression: &str) -> String {
+    const LONGEST: usize = 40;
+    let short = expression.split_whitespace().collect::<Vec<_>>().join(" ");
+    match short.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("is computed: `{} …`", &short[..end]),
+        None => format!("is computed: `{short}`"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_are_written_out() {
+        let spans = |text: &str| written_out(text, 0..text.len());
+        assert_eq!(spans("1"), Some(vec![0..1]));
+        assert_eq!(spans("<1, -2 3>"), Some(vec![1..2, 4..6, 7..8]));
+        assert_eq!(spans("−.5 # half\n 2"), Some(vec![0..5, 14..15]));
+        assert_eq!(spans("a"), None);
+        assert_eq!(spans("2*3"), None);
+        assert_eq!(spans("--3"), None);
+        assert_eq!(spans("3 -"), None);
+    }
+}

@@ -1,0 +1,166 @@
+//! Between places of the world and points of the screen.
+
+use egui::{Pos2, Rect, Vec2, pos2};
+use glam::DVec3;
+use scene::{Camera, Projection};
+
+/// A camera's view of the world in a rectangle of the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight {
+    /// The projection.
+    pub projection: Projection,
+    rect: Rect,
+}
+
+impl Sight {
+    /// The view of a camera that fills a rectangle.
+    #[must_use]
+    pub fn new(camera: &Camera, rect: Rect) -> Self {
+        // Only the proportions count; thousandths of points are exact enough for them.
+        let side = |points: f32| (points.max(1.0) * 1000.0) as u32;
+        Self {
+            projection: camera.projection(side(rect.width()), side(rect.height())),
+            rect,
+        }
+    }
+
+    /// In the camera's axes: to the right, up, and behind the eye.
+    fn view(&self, place: DVec3) -> DVec3 {
+        self.projection.world_from_view.transpose() * (place - self.projection.eye)
+    }
+
+    /// How far in front of the eye a place is; negative behind it.
+    #[must_use]
+    pub fn depth(&self, place: DVec3) -> f64 {
+        -self.view(place).z
+    }
+
+    /// Where a place is seen; `None` if it is not in front of the eye, or too far aside to tell.
+    #[must_use]
+    pub fn screen(&self, place: DVec3) -> Option<Pos2> {
+        let view = self.view(place);
+        let depth = -view.z;
+        if depth.is_nan() || depth <= 1e-9 * view.length() {
+            return None;
+        }
+        let Projection {
+            half_width,
+            half_height,
+            shift,
+            ..
+        } = self.projection;
+        let x = ((view.x / depth - shift[0]) / half_width + 1.0) * 0.5;
+        let y = (1.0 - (view.y / depth - shift[1]) / half_height) * 0.5;
+        let near = |share: f64| share.abs() < 1e4;
+        (near(x) && near(y)).then(|| {
+            pos2(
+                self.rect.left() + x as f32 * self.rect.width(),
+                self.rect.top() + y as f32 * self.rect.height(),
+            )
+        })
+    }
+
+    /// A line between two places as it is seen, cut off where it passes behind the eye.
+    #[must_use]
+    pub fn line(&self, from: DVec3, to: DVec3) -> Option<[Pos2; 2]> {
+        /// The share of the longer end's depth at which lines are cut off.
+        const NEAR: f64 = 1e-3;
+        let (a, b) = (self.depth(from), self.depth(to));
+        let near = NEAR * a.max(b);
+        let cut = |inside: DVec3, outside: DVec3, d: f64, e: f64| {
+            inside.lerp(outside, ((d - near) / (d - e)).clamp(0.0, 1.0))
+        };
+        let (from, to) = match (a > near, b > near) {
+            (true, true) => (from, to),
+            (true, false) => (from, cut(from, to, a, b)),
+            (false, true) => (cut(to, from, b, a), to),
+            (false, false) => return None,
+        };
+        Some([self.screen(from)?, self.screen(to)?])
+    }
+
+    /// The unit direction in which a point of the screen is seen.
+    #[must_use]
+    pub fn direction(&self, at: Pos2) -> DVec3 {
+        let share = (at - self.rect.min) / self.rect.size().max(Vec2::splat(1e-3));
+        self.projection
+            .direction(f64::from(share.x), f64::from(share.y))
+    }
+
+    /// How long a point of the screen is at a place of the world.
+    #[must_use]
+    pub fn point(&self, place: DVec3) -> f64 {
+        let width = f64::from(self.rect.width().max(1.0));
+        self.depth(place).max(1e-9) * 2.0 * self.projection.half_width / width
+    }
+
+    /// Where a place comes that is moved on the screen by so many points, in the plane through it that
+    /// is parallel to the screen; with `deep` moving up takes it further away from the eye.
+    #[must_use]
+    pub fn moved(&self, place: DVec3, by: Vec2, deep: bool) -> DVec3 {
+        let axes = self.projection.world_from_view;
+        let point = self.point(place);
+        let across = axes.x_axis * (f64::from(by.x) * point);
+        if deep {
+            let ray = place - self.projection.eye;
+            // As far as the pointer would have moved it across.
+            let further = (-f64::from(by.y) * point / ray.length().max(1e-9)).clamp(-0.5, 0.5);
+            place + across + ray * further
+        } else {
+            place + across - axes.y_axis * (f64::from(by.y) * point)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::vec2;
+
+    fn sight() -> Sight {
+        let camera = Camera {
+            eye: DVec3::new(1.0, 2.0, 8.0),
+            target: DVec3::new(0.0, 1.0, 0.0),
+            shift: [0.2, -0.1],
+            ..Camera::default()
+        };
+        Sight::new(
+            &camera,
+            Rect::from_min_size(pos2(30.0, 40.0), vec2(300.0, 200.0)),
+        )
+    }
+
+    #[test]
+    fn there_and_back() {
+        let sight = sight();
+        for place in [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), DVec3::NEG_ONE] {
+            let at = sight.screen(place).expect("in front of the eye");
+            let direction = sight.direction(at);
+            let to = (place - sight.projection.eye).normalize();
+            assert!(direction.distance(to) < 1e-5);
+        }
+        assert_eq!(sight.screen(DVec3::new(1.0, 2.0, 9.0)), None);
+    }
+
+    #[test]
+    fn what_is_moved_follows_the_pointer() {
+        let sight = sight();
+        let before = sight.screen(DVec3::ONE).expect("visible");
+        let by = vec2(12.0, -7.0);
+        let after = sight
+            .screen(sight.moved(DVec3::ONE, by, false))
+            .expect("visible");
+        assert!((after - before - by).length() < 1e-2, "{before} {after}");
+        let deep = sight.moved(DVec3::ONE, vec2(0.0, -10.0), true);
+        assert!(sight.depth(deep) > sight.depth(DVec3::ONE));
+        assert!((sight.screen(deep).expect("visible") - before).length() < 1e-2);
+    }
+
+    #[test]
+    fn lines_end_at_the_eye() {
+        let sight = sight();
+        let behind = DVec3::new(1.0, 2.0, 20.0);
+        assert!(sight.line(DVec3::ZERO, behind).is_some());
+        assert!(sight.line(behind, behind + DVec3::X).is_none());
+    }
+}
