@@ -568,6 +568,8 @@ impl<'a> Evaluator<'a> {
         let Some(spec) = command.spec else {
             return Ok(Given::default());
         };
+        self.scope
+            .step(limits::STEPS_PER_OPERANDS, &command.word_span)?;
         let mut parameters = spec.parameters;
         let mut skipped = 0;
         if let Some(first) = parameters.first()

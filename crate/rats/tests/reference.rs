@@ -19,6 +19,10 @@ fn the_page_is_what_the_table_says() {
         path.display()
     );
     for spec in rats::commands::all() {
-        assert!(page.contains(&format!("id=\"{}\"", spec.name)), "{}", spec.name);
+        assert!(
+            page.contains(&format!("id=\"{}\"", spec.name)),
+            "{}",
+            spec.name
+        );
     }
 }

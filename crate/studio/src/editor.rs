@@ -273,7 +273,10 @@ impl Editor {
             }
         } else if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::F) {
             self.lay_out(session, commands);
-        } else if self.signature.is_open(self.line) && pressed(Modifiers::NONE, Key::Escape) {
+        } else if self.signature.is_open(self.line)
+            && ui.input(|input| input.key_pressed(Key::Escape))
+        {
+            // The key goes on: it also lets go of what is chosen in the picture.
             self.signature.close(self.line);
         }
     }

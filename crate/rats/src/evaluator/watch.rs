@@ -69,12 +69,15 @@ pub struct Seen {
     pub radius: Number,
 }
 
+/// Where a variable was set: the file and its numbers' places, or why they cannot be rewritten.
+type Setting = Result<(usize, Vec<Range<usize>>), String>;
+
 /// What a run notes while it is watched.
 #[derive(Debug)]
 pub struct Watch<'a> {
     target: Origin,
-    /// Where variables of the whole text were set last: the numbers, or why they cannot be moved.
-    variables: HashMap<Symbol, Result<(usize, Vec<Range<usize>>), String>>,
+    /// Where variables of the whole text were set last.
+    variables: HashMap<Symbol, Setting>,
     radii: HashMap<&'a str, Number>,
     seen: Option<Seen>,
 }
