@@ -18,5 +18,6 @@ fuzz_target!(|bytes: &[u8]| {
     let compiled = rats::compile(&project);
     check::compiled(&project, &compiled).expect("a sound scene");
     check::repeats(&project, &compiled).expect("the same scene");
+    check::laid_out(&project, &compiled).expect("the same meaning");
     check::sent(&project).expect("the same project");
 });

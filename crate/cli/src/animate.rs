@@ -62,7 +62,7 @@ impl Animate {
         if !loaded.compiled.animated {
             report::to_stderr(&loaded);
             return Err(format!(
-                "nothing of {} changes with the frames; let a variable grow, e.g. `var angle += 5`",
+                "nothing of {} changes with the frames; let a variable grow, e.g. `var angle = 0 += 5`",
                 self.file.display()
             ));
         }

@@ -169,6 +169,9 @@ fn log_name(word: &str) -> Result<PathBuf, String> {
 impl Request {
     fn run_file(&self, file: &Path, said: &mut Said) -> Outcome {
         let mut loaded = files::load(file)?;
+        // Here the jobs are done, and each tells what it did.
+        let diagnostics = &mut loaded.compiled.diagnostics;
+        diagnostics.retain(|diagnostic| diagnostic.message != rats::tool::LISTED);
         if self.echo {
             said.say(echo(&loaded.project.files[0].text).trim_end());
         }

@@ -102,7 +102,11 @@ pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     stays.then(|| folder.join(relative))
 }
 
-fn read(path: &Path) -> Result<String, String> {
+/// A text from disk.
+///
+/// # Errors
+/// If it cannot be read, is too large or no UTF-8.
+pub fn read(path: &Path) -> Result<String, String> {
     let size = std::fs::metadata(path)
         .map_err(|error| format!("cannot open {}: {error}", path.display()))?
         .len();

@@ -8,6 +8,7 @@ mod animate;
 mod check;
 mod classic;
 mod files;
+mod fmt;
 mod probe;
 mod render;
 mod report;
@@ -40,6 +41,8 @@ enum Command {
     Animate(animate::Animate),
     /// Evaluate the field at points, or intersect rays with the surface
     Probe(probe::Probe),
+    /// Lay datasets out: indentation and spaces, nothing that they mean
+    Fmt(fmt::Fmt),
     /// Print the evaluated scene as JSON
     Scene(check::Scene),
     /// Print the link that opens a dataset in the page
@@ -81,6 +84,7 @@ fn run() -> Outcome {
         Command::Check(command) => command.run(),
         Command::Render(command) => command.run(),
         Command::Animate(command) => command.run(),
+        Command::Fmt(command) => command.run(),
         Command::Probe(command) => command.run(),
         Command::Scene(command) => command.run(),
         Command::Share(command) => command.run(),

@@ -353,3 +353,28 @@ fn animate_follows_the_variables() {
     }
     assert!(!folder.0.join("still.png").exists());
 }
+
+#[test]
+fn fmt_lays_out_and_checks() {
+    let folder = Folder::new("fmt");
+    let untidy = "for i=1 to 3 {\nsphere flesh 1   i 0 0\n}\n";
+    let file = folder.write("untidy.rat", untidy);
+    let tidy = folder.write("tidy.rat", "sphere flesh 1 0 0 0\n");
+    let read = || std::fs::read_to_string(&file).expect("there");
+    let output = sinew(&["fmt", "--check", &tidy, &file], "");
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("untidy.rat") && !said.contains("/tidy.rat"),
+        "{said}"
+    );
+    assert_eq!(read(), untidy);
+    assert_eq!(sinew(&["fmt", &tidy, &file], "").status.code(), Some(0));
+    assert_eq!(read(), rats::assist::format(untidy));
+    assert_ne!(read(), untidy);
+    assert_eq!(sinew(&["fmt", "--check", &file], "").status.code(), Some(0));
+    assert_eq!(
+        sinew(&["fmt", "no-such-file.rat"], "").status.code(),
+        Some(2)
+    );
+}

@@ -13,6 +13,8 @@ pub const MAX_FILES: usize = 64;
 pub const MAX_STEPS: u64 = 2_000_000;
 /// What one error costs in steps, so that a loop of errors ends soon too.
 pub const STEPS_PER_ERROR: u64 = 2000;
+/// What reading a command's operands costs in steps, besides one for each: lists are made of them.
+pub const STEPS_PER_OPERANDS: u64 = 2;
 /// Files read from files.
 pub const MAX_NESTED_FILES: usize = 128;
 /// Calls of defined commands inside each other.

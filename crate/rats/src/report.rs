@@ -33,18 +33,16 @@ struct Message {
 impl Report {
     /// Adds a message about a file.
     pub fn add(&mut self, file: usize, severity: Severity, problem: Box<Problem>) {
-        let unwanted = match severity {
-            Severity::Note => self.no_notes,
-            Severity::Warning => self.no_warnings,
-            Severity::Error => false,
-        };
         let place = (
             file,
             problem.span.start,
             problem.span.end,
             severity as usize,
         );
-        if unwanted || problem.quiet || (self.seen.contains(&place) && !problem.fatal) {
+        if self.is_unwanted(severity)
+            || problem.quiet
+            || (self.seen.contains(&place) && !problem.fatal)
+        {
             return;
         }
         let rank = severity as usize;
@@ -65,12 +63,19 @@ impl Report {
         });
     }
 
+    fn is_unwanted(&self, severity: Severity) -> bool {
+        match severity {
+            Severity::Note => self.no_notes,
+            Severity::Warning => self.no_warnings,
+            Severity::Error => false,
+        }
+    }
+
     /// Whether a message of this severity about this place would say something new.
     #[must_use]
     pub fn is_new(&self, file: usize, severity: Severity, span: &Range<usize>) -> bool {
-        !self
-            .seen
-            .contains(&(file, span.start, span.end, severity as usize))
+        let place = (file, span.start, span.end, severity as usize);
+        !self.is_unwanted(severity) && !self.seen.contains(&place)
     }
 
     /// Whether there is an error.

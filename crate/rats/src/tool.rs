@@ -6,6 +6,9 @@
 //!
 //! All names of files are as the text gives them: not checked, possibly leading anywhere.
 
+/// What the compiler notes about each job. Whoever carries the jobs out need not repeat it.
+pub const LISTED: &str = "the program carries this out on files; in the page it is only listed";
+
 /// A job on pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Tool {

@@ -1,6 +1,7 @@
 //! The text editor: colours, line numbers, underlined mistakes, indentation, and what it knows about the
 //! language: completions, cards, the line that says how a command is written, definitions, renaming.
 
+mod answers;
 mod completion;
 mod hover;
 mod rename;
@@ -14,13 +15,11 @@ use crate::marks::{self, Marks};
 use crate::problems;
 use crate::session::Session;
 use crate::theme::{self, Palette};
-use completion::Keyed;
 use egui::text::{CCursor, CCursorRange};
 use egui::{
     Align, FontId, Galley, Id, Key, Margin, Modifiers, Pos2, Rect, ScrollArea, TextBuffer,
     TextEdit, Ui, pos2,
 };
-use rats::assist;
 use std::ops::Range;
 
 /// A place between two characters of a file.
@@ -47,16 +46,16 @@ pub struct Editor {
     before: Option<CCursorRange>,
     /// The line of the cursor, from 1.
     line: usize,
-    /// The file and byte of the cursor.
-    caret: Option<(usize, usize)>,
-    /// The bytes of a file behind which there is light: what is chosen in the picture.
-    pub lit: Option<(usize, Range<usize>)>,
     completions: completion::Popup,
     hover: hover::Hover,
     signature: signature::Line,
     rename: Option<rename::Rename>,
     /// Whether a letter was typed in the last frame, which may open the completions.
     typed: bool,
+    /// The file and byte of the cursor.
+    caret: Option<(usize, usize)>,
+    /// The bytes of a file behind which there is light: what is chosen in the picture.
+    pub lit: Option<(usize, Range<usize>)>,
 }
 
 /// The id of the text widget, the same at every frame and size.
@@ -171,141 +170,6 @@ impl Editor {
         }
     }
 
-    fn show_rename(
-        &mut self,
-        ui: &Ui,
-        session: &Session,
-        caret: Rect,
-        commands: &mut Vec<Command>,
-    ) {
-        let Some(rename) = &mut self.rename else {
-            return;
-        };
-        if !rename.show(ui, session, caret, commands) {
-            self.rename = None;
-            ui.memory_mut(|memory| memory.request_focus(id()));
-        }
-    }
-
-    /// Where the caret is.
-    fn place(&self) -> Option<Place> {
-        let caret = self.before?.primary.index.0;
-        Some(Place {
-            file: self.file,
-            byte: to_bytes(&self.buffer, caret),
-        })
-    }
-
-    /// Opens the completions after a typed letter, and closes them when the caret is elsewhere.
-    fn offer(&mut self, ui: &Ui, session: &Session) {
-        let focused = ui.memory(|memory| memory.has_focus(id()));
-        let now = crate::platform::now(ui.ctx());
-        let typed = std::mem::take(&mut self.typed);
-        match self.place() {
-            Some(place) if focused => {
-                if typed {
-                    self.completions.typed(&self.buffer, place, now);
-                }
-                self.completions.update(ui, session, place, now);
-            }
-            // A click into the list takes the focus for a moment.
-            _ if !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) => {
-                self.completions.close();
-            }
-            _ => {}
-        }
-    }
-
-    /// Writes a completion that was taken. Gives whether there was one.
-    fn write(&mut self, ui: &Ui, taken: Keyed) -> bool {
-        let Keyed::Take(item, range) = taken else {
-            return false;
-        };
-        if self.buffer.get(range.clone()).is_none() {
-            return false;
-        }
-        self.buffer.replace_range(range.clone(), &item.insert);
-        self.put_caret(ui.ctx(), range.start + item.insert.len());
-        ui.memory_mut(|memory| memory.request_focus(id()));
-        true
-    }
-
-    fn put_caret(&mut self, ctx: &egui::Context, byte: usize) {
-        let mut state = TextEdit::load_state(ctx, id()).unwrap_or_default();
-        let caret = CCursorRange::one(CCursor::new(to_chars(&self.buffer, byte)));
-        state.cursor.set_char_range(Some(caret));
-        state.store(ctx, id());
-        self.before = Some(caret);
-    }
-
-    /// Keys that ask about the text: completions, manual, definition, renaming, layout.
-    fn questions(&mut self, ui: &Ui, session: &Session, commands: &mut Vec<Command>) {
-        let pressed = |modifiers, key| {
-            let shortcut = egui::KeyboardShortcut::new(modifiers, key);
-            ui.input_mut(|input| input.consume_shortcut(&shortcut))
-        };
-        // The card that the user looks at comes before the caret.
-        if let Some(command) = self.hover.take_command()
-            && pressed(Modifiers::NONE, Key::F1)
-        {
-            commands.push(Command::ShowManual(command.to_owned()));
-            return;
-        }
-        let Some(place) = self.place() else {
-            return;
-        };
-        if !ui.memory(|memory| memory.has_focus(id())) {
-            return;
-        }
-        if pressed(Modifiers::CTRL, Key::Space) || pressed(Modifiers::COMMAND, Key::Space) {
-            self.completions.ask(place);
-            ui.ctx().request_repaint();
-        } else if pressed(Modifiers::NONE, Key::F1) {
-            let card = assist::hover(session.project(), place.file, place.byte);
-            let command = card.and_then(|card| card.command);
-            commands.push(Command::ShowManual(command.unwrap_or_default().to_owned()));
-        } else if pressed(Modifiers::NONE, Key::F12) {
-            self.define(session, place, commands);
-        } else if pressed(Modifiers::NONE, Key::F2) {
-            match rename::Rename::open(session, place) {
-                Ok(field) => self.rename = Some(field),
-                Err(trouble) => commands.push(Command::Tell(trouble)),
-            }
-        } else if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::F) {
-            self.lay_out(session, commands);
-        } else if self.signature.is_open(self.line) && pressed(Modifiers::NONE, Key::Escape) {
-            self.signature.close(self.line);
-        }
-    }
-
-    /// Goes to where the name at a place is made.
-    fn define(&self, session: &Session, place: Place, commands: &mut Vec<Command>) {
-        let found = assist::definition(session.project(), place.file, place.byte);
-        commands.push(match found {
-            Some(found) => Command::Jump {
-                file: found.file,
-                range: found.span,
-            },
-            None => Command::Tell(String::from(
-                "The texts do not make the name at the caret. F12 and Ctrl+click go to where a variable, material, object or command is made.",
-            )),
-        });
-    }
-
-    /// Lays the file out anew; the caret stays in its line.
-    pub fn lay_out(&mut self, session: &Session, commands: &mut Vec<Command>) {
-        let text = session.text(self.file);
-        let neat = assist::format(text);
-        if neat != text {
-            let lines = neat.split_inclusive('\n').take(self.line.saturating_sub(1));
-            self.place = Some(lines.map(str::len).sum());
-            commands.push(Command::Step {
-                file: self.file,
-                text: neat,
-            });
-        }
-    }
-
     /// Shows the text. Gives the caret's rectangle and place.
     fn text(
         &mut self,
@@ -406,38 +270,6 @@ impl Editor {
         let byte = to_bytes(&self.buffer, caret.index.0);
         let file = self.file;
         Some((rect, Place { file, byte }))
-    }
-
-    /// What is under the pointer: a card about it, or with Ctrl and a click the way to where it is made.
-    fn pointed(
-        &mut self,
-        response: &egui::Response,
-        session: &Session,
-        galley: &Galley,
-        origin: Pos2,
-        commands: &mut Vec<Command>,
-    ) {
-        let Some(pointer) = response.hover_pos() else {
-            return;
-        };
-        let inside = Rect::from_min_size(origin, galley.size()).expand(4.0);
-        // While a list is open at the caret, nothing else opens beside it.
-        if !inside.contains(pointer) || self.completions.is_open() || self.rename.is_some() {
-            return;
-        }
-        let char = galley.cursor_from_pos(pointer - origin).index.0;
-        let place = Place {
-            file: self.file,
-            byte: to_bytes(&self.buffer, char),
-        };
-        if response.ctx.input(|input| input.modifiers.command) {
-            response.ctx.set_cursor_icon(egui::CursorIcon::PointingHand);
-            if response.clicked() {
-                self.define(session, place, commands);
-            }
-            return;
-        }
-        self.hover.show(response, session, &self.marks, char, place);
     }
 
     /// Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Gives whether it changed.

@@ -122,8 +122,8 @@ fn text_or_asset(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         None => {
             app.editor.asset = None;
             places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
-            app.editor.lit = app.hands.lit(&app.work.session);
             let hints = app.settings.hints;
+            app.editor.lit = app.hands.lit(&app.work.session);
             app.editor.show(ui, &app.work.session, hints, commands);
         }
     }

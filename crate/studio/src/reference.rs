@@ -78,10 +78,11 @@ impl Reference {
                 }
             }
         }
+        ui.add_space(10.0);
         if found == 0 {
-            ui.add_space(8.0);
             ui.weak("No command has this word in its name, its options or its meaning.");
         }
+        ui.hyperlink_to("The whole reference as a page", "reference.html");
     }
 }
 

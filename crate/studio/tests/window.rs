@@ -210,7 +210,10 @@ fn the_gallery_opens_examples() {
     let examples = window.place("examples").center();
     window.click(examples);
     window.steps(3);
-    window.harness.get_by_label("Open T-shape").click();
+    window
+        .harness
+        .get_by_label("Open T-shape")
+        .click_accesskit();
     window.steps(3);
     assert!(window.text().contains("object TEE"));
 }

@@ -1,7 +1,9 @@
 //! What must hold for every text and every link, whatever they contain.
 
+use rats::assist::format;
 use rats::link::{self, Shared};
 use rats::{Compiled, File, Project, compile, highlight};
+use scene::Origin;
 
 /// Elements of the largest scene that is looked through for numbers that are none, which takes long.
 const LOOKED_THROUGH: usize = 5000;
@@ -124,6 +126,53 @@ pub fn repeats(project: &Project, first: &Compiled) -> Result<(), String> {
             "compiled again, the text means something else",
         ))
     }
+}
+
+/// A text that is laid out must mean the same, and be left alone when it is laid out again.
+///
+/// # Errors
+/// Says what does not hold.
+pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
+    let mut project = project.clone();
+    for file in &mut project.files {
+        let once = format(&file.text);
+        if format(&once) != once {
+            return Err(format!("laid out again, {} changes", file.name));
+        }
+        file.text = once;
+    }
+    let again = compile(&project);
+    // Places move, and hints tell of them.
+    let scene = |compiled: &Compiled| {
+        let mut scene = compiled.scene.clone();
+        for element in &mut scene.elements {
+            element.origin = Origin::default();
+        }
+        scene
+    };
+    let said = |compiled: &Compiled| -> Vec<_> {
+        let messages = compiled.diagnostics.iter();
+        messages
+            .map(|message| (message.severity, message.message.clone()))
+            .collect()
+    };
+    let moves = |compiled: &Compiled| -> Vec<_> {
+        let hot = compiled.hot.iter();
+        hot.map(|hot| (hot.name.clone(), hot.value.clone()))
+            .collect()
+    };
+    let differs = if scene(&again) != scene(first) {
+        "another scene"
+    } else if moves(&again) != moves(first) {
+        "other sliders"
+    } else if said(&again) != said(first) {
+        "other messages"
+    } else if again.tools != first.tools || again.output != first.output {
+        "other work"
+    } else {
+        return Ok(());
+    };
+    Err(format!("laid out, the text gives {differs}"))
 }
 
 /// Opens a link, and what opens must survive being sent on.

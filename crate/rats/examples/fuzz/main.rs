@@ -1,8 +1,8 @@
 //! Runs random texts and links through the compiler for a given time, and tells what was found.
 //!
-//! `cargo run --profile fuzz -p rats --example fuzz -- [SECONDS [SEED]]`
+//! `cargo run --profile fuzz -p rats --example fuzz -- [SECONDS [SEED] | FILE.rat]`
 //!
-//! SECONDS are of processor time. What is checked stands in `check.rs`; besides, no compile may take more
+//! SECONDS are of processor time; a FILE is a finding to be run again. What is checked stands in `check.rs`; besides, no compile may take more
 //! than [`SLOW`] or need more than [`MEMORY`], and none may panic or overflow the stack of a browser's
 //! worker. A finding is made smaller and written to a file. The text that is being run always stands in
 //! `sinew-fuzz-case.rat` in the folder for temporary files, for the case that the program is killed.
@@ -25,26 +25,48 @@ const SLOW: Duration = Duration::from_millis(100);
 /// What a finding is called whose compile took longer than [`SLOW`].
 const SLOWNESS: &str = "slow";
 /// How many slow texts are made smaller.
-const MAX_SLOW: usize = 12;
+const MAX_SLOW: usize = 5;
+/// How long a finding is made smaller.
+const PATIENCE: Duration = Duration::from_secs(15);
 /// Most memory for one compile, kilobytes, over what the program needs anyway.
 const MEMORY: u64 = 256 * 1024;
 /// The stack that a browser gives to a worker.
 const STACK: usize = 1024 * 1024;
 
 fn main() {
-    let mut arguments = std::env::args().skip(1);
-    let mut number = |otherwise| {
-        let word = arguments.next();
-        word.map_or(otherwise, |word| word.parse().expect("a whole number"))
-    };
-    let (seconds, seed) = (number(60), number(0));
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
     let worker = std::thread::Builder::new().stack_size(STACK);
     let found = worker
-        .spawn(move || Fuzzer::new(seed).run(Duration::from_secs(seconds)))
+        .spawn(move || match arguments.first() {
+            Some(path) if path.ends_with(".rat") => again(path),
+            _ => {
+                let number = |index: usize, otherwise| {
+                    let word = arguments.get(index);
+                    word.map_or(otherwise, |word| word.parse().expect("a whole number"))
+                };
+                Fuzzer::new(number(1, 0)).run(Duration::from_secs(number(0, 60)))
+            }
+        })
         .expect("a thread")
         .join()
         .expect("the fuzzer itself holds");
     std::process::exit(i32::from(found));
+}
+
+/// Runs one text, e.g. a finding, five times. True if something is wrong with it.
+fn again(path: &str) -> bool {
+    let text = std::fs::read_to_string(path).expect("a text");
+    let mut found = false;
+    for _ in 0..5 {
+        let before = forget_peak();
+        let (outcome, took) = try_text(&text, true);
+        println!(
+            "{took:?}, {} kB: {outcome:?}",
+            peak().saturating_sub(before)
+        );
+        found |= outcome.is_err();
+    }
+    found
 }
 
 /// A generator of bytes (splitmix64): a run can be repeated from its seed.
@@ -218,7 +240,7 @@ impl Fuzzer {
         // Written first, since a stack that overflows leaves no time.
         let _ = std::fs::write(&self.case, text);
         let before = forget_peak();
-        let (outcome, took) = try_text(text, self.random.below(16) == 0);
+        let (outcome, took) = try_text(text, self.random.below(4) == 0);
         let memory = peak().saturating_sub(before);
         if took > self.longest.0 {
             self.longest = (took, text.to_owned());
@@ -274,6 +296,7 @@ fn try_text(text: &str, thorough: bool) -> (Result<(), String>, Duration) {
         check::compiled(&project, &compiled)?;
         check::unrun(text)?;
         if thorough {
+            check::laid_out(&project, &compiled)?;
             check::repeats(&project, &compiled)?;
             check::sent(&project)?;
         }
@@ -309,11 +332,11 @@ fn smaller(text: &str, key: &str) -> String {
     let mut text = text.to_owned();
     for by in [|c: char| c == '\n', |c: char| c == ' ' || c == '\n'] {
         let mut size = text.split_inclusive(by).count() / 2;
-        while size > 0 && begun.elapsed() < Duration::from_secs(30) {
+        while size > 0 && begun.elapsed() < PATIENCE {
             let mut at = 0;
             loop {
                 let parts: Vec<&str> = text.split_inclusive(by).collect();
-                if at >= parts.len() || begun.elapsed() > Duration::from_secs(30) {
+                if at >= parts.len() || begun.elapsed() > PATIENCE {
                     break;
                 }
                 let end = (at + size).min(parts.len());

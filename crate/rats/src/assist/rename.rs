@@ -18,7 +18,7 @@ pub struct Edit {
 }
 
 /// The changes that rename what the name at a byte stands for, through all files, in the order of files
-/// and places. For a file's name see [`rename_file`].
+/// and places. Files are renamed with [`rename_file`].
 ///
 /// # Errors
 /// A sentence that says why not: if there is no name at the byte, or the new one is not allowed, is taken,
@@ -37,8 +37,10 @@ pub fn rename(
     let kind = index.kind(occurrence);
     let name = index.name(occurrence);
     if kind == SymbolKind::File {
-        let renamed = project.files.iter().position(|f| f.name == name);
-        return rename_file(project, renamed.unwrap_or(usize::MAX), new_name);
+        // Changes of texts alone would leave the file with its old name.
+        return Err(format!(
+            "`{name}` is a file: rename the file itself, and what reads it follows"
+        ));
     }
     if name == new_name {
         return Ok(Vec::new());

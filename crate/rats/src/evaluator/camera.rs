@@ -2,6 +2,7 @@
 
 use super::{Evaluator, Flow};
 use crate::Severity;
+use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use glam::DVec3;
@@ -93,6 +94,13 @@ pub fn cp<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
         .hint("put the eye far away and make the window's angle small"));
     }
     let point = DVec3::new(given.number("x"), given.number("y"), given.number("z")) / weight;
+    if !(point.is_finite() && point.abs().max_element() <= MAX_MAGNITUDE) {
+        return Err(Problem::new(
+            command.span.clone(),
+            format!("divided by the weight, the centre of projection is further away than {MAX_MAGNITUDE:e}"),
+        )
+        .hint("leave the weight out: it is 1 then"));
+    }
     if point.z <= 0.0 {
         return Err(Problem::new(
             command.span.clone(),

@@ -146,19 +146,20 @@ pub fn colors<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 /// `help [command]`
 pub fn help<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
-    let text = match given.maybe_name("command") {
-        Some(name) => manual::summary(find_command(name)?),
-        None => manual::list(),
-    };
-    run.say(Severity::Note, command.span.clone(), || (text, None));
+    let spec = given.maybe_name("command").map(find_command).transpose()?;
+    run.say(Severity::Note, command.span.clone(), || {
+        (spec.map_or_else(manual::list, manual::summary), None)
+    });
     Ok(Flow::Next)
 }
 
 /// `man command`
 pub fn man<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
-    let text = manual::page(find_command(given.name("command"))?);
-    run.say(Severity::Note, command.span.clone(), || (text, None));
+    let spec = find_command(given.name("command"))?;
+    run.say(Severity::Note, command.span.clone(), || {
+        (manual::page(spec), None)
+    });
     Ok(Flow::Next)
 }
 

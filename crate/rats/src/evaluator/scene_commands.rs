@@ -88,6 +88,9 @@ pub fn report<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     };
     run.scope
         .step(1 + run.model.parts.len() as u64 / 16, &command.word_span)?;
+    if !run.is_news(Severity::Note, &command.span) {
+        return Ok(Flow::Next);
+    }
     let parts = run.model.parts.iter().filter(|part| !part.removed).count();
     let (camera, settings) = (run.camera, run.settings);
     let mut lines = Vec::new();

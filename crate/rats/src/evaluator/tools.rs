@@ -8,7 +8,7 @@ use crate::given::Given;
 use crate::limits::MAX_TOOLS;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
-use crate::tool::{Playback, Shown, Tool};
+use crate::tool::{LISTED, Playback, Shown, Tool};
 
 /// Lists a job.
 fn job<'a>(
@@ -26,10 +26,7 @@ fn job<'a>(
     }
     run.tools.push(tool);
     run.say(Severity::Note, command.word_span.clone(), || {
-        (
-            String::from("the program carries this out on files; in the page it is only listed"),
-            None,
-        )
+        (LISTED.to_owned(), None)
     });
     Ok(Flow::Next)
 }

@@ -242,7 +242,12 @@ fn renaming_files() {
         apply(&project, &edits).files[0].text,
         "read sub/c-2.rat, ./sub/c-2.rat\nread b.rat\n"
     );
-    assert_eq!(edits, rename(&project, 0, 6, "sub/c-2.rat").expect("edits"));
+    assert_eq!(
+        rename(&project, 0, 6, "sub/c-2.rat"),
+        Err(String::from(
+            "`a.rat` is a file: rename the file itself, and what reads it follows"
+        ))
+    );
     for name in ["", "b.rat", "a b", "a,b", "x#", "🐚", "./a"] {
         assert!(rename_file(&project, 1, name).is_err(), "{name}");
     }
