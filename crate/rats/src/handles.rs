@@ -256,6 +256,11 @@ fn why_repeated(project: &Project, origin: Origin) -> String {
                         && let Some(spec) = command.spec.filter(|spec| spec.is_library())
                     {
                         why = Some(format!("is made by the library's `{}`", spec.name));
+                    } else if command.span.start == at
+                        && let Some(spec) = command.spec
+                        && matches!(spec.name, "mesh" | "terra")
+                    {
+                        why = Some(format!("is made by `{}` from a file", spec.name));
                     } else if command.span.start == at && command.spec.is_none() {
                         why = Some(String::from("is made by a defined command"));
                     }

@@ -176,6 +176,21 @@ fn what_cannot_be_moved_says_why() {
 }
 
 #[test]
+fn a_mesh_has_no_numbers() {
+    let project = project("surface s, diffuse Red\nmesh s corner.obj\n");
+    let assets = [rats::Asset {
+        name: String::from("corner.obj"),
+        bytes: b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".as_slice().into(),
+    }];
+    let compiled = rats::compile_at(&project, &assets, 0);
+    let handles = handles::handles(&project, &assets, 0, &compiled, 0, &DMat3::IDENTITY);
+    assert_eq!(
+        why(labelled(&handles, "a corner")),
+        "is made by `mesh` from a file"
+    );
+}
+
+#[test]
 fn a_file_that_is_read_twice_makes_fixed_shapes() {
     let mut project = project(&format!("{MATERIAL}read b.rat\nread b.rat\n"));
     project.files.push(File {
