@@ -4,9 +4,12 @@
 mod driver;
 
 use driver::Window;
-use egui::{Key, Modifiers, Pos2, TextEdit, vec2};
+use egui::{Key, Modifiers, Pos2, Rect, TextEdit, vec2};
 use egui_kittest::kittest::Queryable;
-use studio::places;
+use rats::handles::Editable;
+use std::time::Instant;
+use studio::hands::{Picker, Sight};
+use studio::{examples, places};
 
 /// A ball on the left, which is written out, and three on the right, which a loop makes.
 const TEXT: &str = "\
@@ -179,4 +182,47 @@ fn a_phone_has_knobs_for_fingers() {
     let to = seen(&window, -1.0, -0.5);
     window.drag(knob.center(), to);
     assert!(!window.text().contains("<-2 0 0>"));
+}
+
+#[test]
+fn every_example_has_shapes_to_pick_with_handles() {
+    for example in examples::ALL {
+        let project = example.project();
+        let compiled = rats::compile(&project);
+        let scene = &compiled.scene;
+        let begin = Instant::now();
+        let picker = Picker::new(scene);
+        let prepared = begin.elapsed();
+        let [width, height] = scene.settings.frame.map(|side| side as f32);
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(width, height));
+        let sight = Sight::new(&scene.camera, rect);
+        let eye = sight.projection.eye;
+        let mut met = Vec::new();
+        let begin = Instant::now();
+        for i in 0..9 {
+            for j in 0..9 {
+                let at = rect.lerp_inside(vec2(i as f32 + 0.5, j as f32 + 0.5) / 9.0);
+                met.extend(picker.pick(eye, sight.direction(at)));
+            }
+        }
+        let picked = begin.elapsed() / 81;
+        assert!(!met.is_empty(), "{}", example.title);
+        let mut movable = 0;
+        let begin = Instant::now();
+        for met in met.iter().take(6) {
+            let view = &sight.projection.world_from_view;
+            let handles = rats::handles::handles(&project, &[], 0, &compiled, met.element, view);
+            assert!(!handles.is_empty(), "{}", example.title);
+            movable += handles
+                .iter()
+                .filter(|handle| matches!(handle.edit, Editable::Literal { .. }))
+                .count();
+        }
+        let handled = begin.elapsed() / met.len().min(6) as u32;
+        println!(
+            "{}: ready in {prepared:?}, a click {picked:?}, its handles {handled:?}, {movable} to move",
+            example.title
+        );
+        assert!(picked.as_secs_f64() < 1.0 && prepared.as_secs_f64() < 5.0);
+    }
 }
