@@ -301,6 +301,7 @@ impl<'a> Evaluator<'a> {
         // A last value that rounding puts just beyond the end still counts.
         let last = ((to - from) / step + 1e-9).floor();
         let before = self.scope.get(name);
+        self.watch_loop(name);
         self.enter(&node.head.word_span)?;
         self.repeating += 1;
         let mut flow = Flow::Next;

@@ -135,16 +135,11 @@ pub fn handles(
     ) else {
         return Vec::new();
     };
-    let why = if placement.repeated {
-        Some(why_repeated(project, shape.origin))
-    } else {
-        None
+    let why = match placement.repeated {
+        true => why_repeated(project, shape.origin),
+        false => None,
     };
-    let seen = match &why {
-        Some(_) => None,
-        None => watch(project, assets, frame, shape.origin),
-    };
-    let Some(seen) = seen else {
+    let Some(seen) = watch(project, assets, frame, shape.origin) else {
         let why = why.unwrap_or_else(|| String::from("has no numbers of its own in the text"));
         return plain(&shape.shape, &why);
     };
@@ -153,17 +148,22 @@ pub fn handles(
         .iter()
         .filter(|e| e.origin == shape.origin)
         .count();
-    if siblings > parts(&seen) {
-        return plain(&shape.shape, "is in a file that is read more than once");
-    }
-    let handles = Maker {
+    let maker = Maker {
         scene,
         element: shape,
         placement,
         view,
         seen: &seen,
+    };
+    if let Some(why) = why {
+        let mut handles = plain(&shape.shape, &why);
+        handles.extend(maker.shared_radius());
+        return handles;
     }
-    .handles();
+    if !placement.repeated && siblings > parts(&seen) {
+        return plain(&shape.shape, "is in a file that is read more than once");
+    }
+    let handles = maker.handles();
     if handles.is_empty() {
         return plain(&shape.shape, "follows from numbers that have no place");
     }
@@ -235,14 +235,10 @@ fn plain(shape: &Shape, why: &str) -> Vec<Handle> {
     places.into_iter().map(handle).collect()
 }
 
-/// Why a command that made an element may have made others too.
-fn why_repeated(project: &Project, origin: Origin) -> String {
-    let copied = || {
-        String::from("belongs to a shape that `instance` copies, or to a file that is read again")
-    };
-    let Some(file) = project.files.get(origin.file as usize) else {
-        return copied();
-    };
+/// Why the numbers of a command that made an element differ from one element to the next, if they may.
+/// Copies by `instance` share theirs.
+fn why_repeated(project: &Project, origin: Origin) -> Option<String> {
+    let file = project.files.get(origin.file as usize)?;
     let mut symbols = Symbols::default();
     let syntax = parse(&file.text, &mut symbols);
     let mut block = &syntax.block;
@@ -291,7 +287,7 @@ fn why_repeated(project: &Project, origin: Origin) -> String {
                 continue 'inner;
             }
         }
-        return why.unwrap_or_else(copied);
+        return why;
     }
 }
 
@@ -347,6 +343,23 @@ impl Maker<'_> {
         }
         handles.retain(|handle| handle.place.is_finite());
         handles
+    }
+
+    /// The knob of the radius of a shape that a loop or a defined command makes, if the number is written
+    /// out or is a variable from outside: then all that is made so follows it.
+    fn shared_radius(&self) -> Option<Handle> {
+        let mut handle = self.handles().into_iter().find(|handle| {
+            let is_radius = handle.label.contains("radius") && !handle.label.contains("sweep");
+            handle.kind == Kind::Length && is_radius
+        })?;
+        let radius = handle.numbers.first()?.value * self.placement.growth;
+        let shown = self.scene.radius(self.element);
+        let same = (radius - shown).abs() <= 1e-9 * shown.abs();
+        if !same || matches!(handle.edit, Editable::Fixed { .. }) {
+            return None;
+        }
+        handle.label += "; of all that are made here";
+        Some(handle)
     }
 
     fn point(&self, operand: &Operand, label: String) -> Handle {

@@ -165,14 +165,48 @@ fn what_cannot_be_moved_says_why() {
         ),
         "is made by the defined command `ball`"
     );
-    assert_eq!(
-        fixed(
-            "object o\nsphere s 1 0 0 0\nclose\ninstance o",
-            "the centre"
-        ),
-        "belongs to a shape that `instance` copies, or to a file that is read again"
-    );
     assert!(fixed("shell s", "the centre").starts_with("is made by the library's `shell`"));
+}
+
+#[test]
+fn copies_follow_and_loops_share_a_radius() {
+    // The copy is dragged; it lies 2 to the right of the first.
+    let mut project = project(&format!(
+        "{MATERIAL}object o\nsphere s 1 0 0 0\nclose\ninstance o p\ntranslate 2 0 0 p\n"
+    ));
+    let handles = of(&project, 1);
+    let handle = labelled(&handles, "the centre");
+    assert_eq!(handle.place, DVec3::X * 2.0);
+    let edits = handles::drag(handle, DVec3::new(2.0, 0.5, 0.0), 0.1);
+    handles::apply(&mut project, &edits);
+    assert!(project.files[0].text.contains("sphere s 1 0 0.5 0"));
+    let shared = |text: &str, to: f64| {
+        let mut project = self::project(&format!("{MATERIAL}{text}"));
+        let handles = of(&project, 2);
+        let handle = handles.iter().find(|h| h.kind == Kind::Length)?;
+        let edits = handles::drag(handle, handle.place + DVec3::X * to, 0.01);
+        handles::apply(&mut project, &edits);
+        Some(project.files[0].text[MATERIAL.len()..].to_owned())
+    };
+    assert_eq!(
+        shared("var r = 0.3\nfor i = 1 to 3 {\n sphere s r i 0 0\n}\n", 0.2).as_deref(),
+        Some("var r = 0.5\nfor i = 1 to 3 {\n sphere s r i 0 0\n}\n")
+    );
+    assert_eq!(
+        shared("for i = 1 to 3 {\n sphere s 0.3 i 0 0\n}\n", 0.2).as_deref(),
+        Some("for i = 1 to 3 {\n sphere s 0.5 i 0 0\n}\n")
+    );
+    assert_eq!(
+        shared("var i = 3\nfor i = 1 to 3 {\n sphere s i i 0 0\n}\n", 0.2),
+        None
+    );
+    assert_eq!(
+        shared(
+            "var r = 3\ndefine b(r) {\n sphere s r 0 0 0\n}\nb 1\nb 2\nb 3\n",
+            0.2
+        ),
+        None
+    );
 }
 
 #[test]

@@ -53,11 +53,12 @@ fn a_click_finds_the_line_and_a_click_beside_lets_go() {
     window.click(ball);
     assert_eq!(line(&window), 5);
     assert_eq!(knobs(&window), ["hand the centre", "hand the radius"]);
-    // A shape of a loop cannot be moved, and its knob says why.
+    // A shape of a loop cannot be moved alone, and its knob says why; all can be made wider.
     let ball = seen(&window, 2.0, 1.0);
     window.click(ball);
     assert_eq!(line(&window), 7);
-    assert_eq!(knobs(&window), ["hand the centre"]);
+    let shared = "hand the radius; of all that are made here";
+    assert_eq!(knobs(&window), ["hand the centre", shared]);
     window.harness.get_by_label("the centre: is made in a loop");
     let nothing = seen(&window, 0.0, 2.0);
     window.click(nothing);

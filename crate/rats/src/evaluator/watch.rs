@@ -106,6 +106,13 @@ impl<'a> Evaluator<'a> {
         self.watch.and_then(|watch| watch.seen)
     }
 
+    /// Notes that a loop sets a variable.
+    pub(super) fn watch_loop(&mut self, name: Symbol) {
+        if let Some(watch) = &mut self.watch {
+            watch.variables.remove(&name);
+        }
+    }
+
     /// Notes where a variable was set.
     pub(super) fn watch_variable(
         &mut self,
@@ -296,6 +303,10 @@ impl<'a> Evaluator<'a> {
     /// The source of a number that `word` stands for: a variable, or a part of one.
     fn variable(&self, word: &str, index: usize, negated: bool) -> Option<Source> {
         let watch = self.watch.as_ref()?;
+        // In a call, parameters may hide them.
+        if self.scope.calls() > 0 {
+            return None;
+        }
         let known = |word: &str| {
             let symbol = self.scope.symbols.find(word)?;
             self.scope.get(symbol)?;
