@@ -44,6 +44,26 @@ pub fn terra(asset: &Asset, size: DVec3) -> Made {
     })
 }
 
+/// What making something of a file costs in steps. It may have been made before, but what a text means
+/// must not depend on that.
+#[must_use]
+pub fn cost(asset: &Asset) -> u64 {
+    let bytes = &asset.bytes;
+    let pixels = match bytes.get(..24) {
+        // A PNG file tells its width and height first, and a short one can hold many pixels.
+        Some(head) if head.starts_with(b"\x89PNG") => {
+            let side = |at: usize| {
+                head[at..at + 4]
+                    .iter()
+                    .fold(0, |n, &b| n << 8 | u64::from(b))
+            };
+            (side(16) * side(20)).min(mesh::limits::MAX_PIXELS as u64)
+        }
+        _ => 0,
+    };
+    1 + bytes.len() as u64 / 100 + pixels / 64
+}
+
 fn make(
     asset: &Asset,
     how: (String, Option<DVec3>),

@@ -1,12 +1,15 @@
 //! Runs the commands of the parsed files, top to bottom, and builds the scene.
 //!
-//! This file holds the machine: files, blocks, loops, choices and calls. What the commands do is in the
-//! modules below, one for each group of the table in [`crate::commands`].
+//! This file holds the machine: files, blocks, loops and choices. Calls of defined commands are in `call`,
+//! what is said of the text in `messages`, and what the commands do in the modules below, one for each
+//! group of the table in [`crate::commands`].
 
+mod call;
 pub mod camera;
 mod later;
 mod lints;
 pub mod materials;
+mod messages;
 pub mod model;
 pub mod objects;
 pub mod options;
@@ -30,7 +33,7 @@ use crate::report::Report;
 use crate::scope::Scope;
 use crate::sources::Sources;
 use crate::symbol::Symbol;
-use crate::syntax::{Command, Datum, Define, For, Formal, If, Node, Takes};
+use crate::syntax::{Command, Datum, Define, For, If, Node};
 use crate::value::Value;
 use crate::{Asset, Project, Severity, Tool};
 use model::Model;
@@ -331,206 +334,6 @@ impl<'a> Evaluator<'a> {
         Ok(flow)
     }
 
-    /// Runs a command of the library, which is read when it is used for the first time. A command of the
-    /// same name that the text defines hides it.
-    fn call_library(&mut self, command: &'a Command, name: &'static str) -> Outcome<Flow> {
-        if self.definitions.contains_key(&command.word) {
-            return self.call(command, command.word);
-        }
-        let symbol = self.scope.symbols.find(name);
-        let is_known = |run: &Self| symbol.is_some_and(|s| run.definitions.contains_key(&s));
-        if !is_known(self)
-            && let Some(file) = self.sources.find_built_in(&format!("{name}.rat"))
-        {
-            self.enter(&command.word_span)?;
-            self.uses.push((self.file, command.span.clone()));
-            self.run_file(file);
-            self.uses.pop();
-            self.depth -= 1;
-        }
-        match symbol.filter(|_| is_known(self)) {
-            Some(symbol) => self.call(command, symbol),
-            None => Err(self.unknown(command)),
-        }
-    }
-
-    /// Runs a command that a text defines, under the name `symbol`.
-    fn call(&mut self, command: &'a Command, symbol: Symbol) -> Outcome<Flow> {
-        let Some(&(file, define)) = self.definitions.get(&symbol) else {
-            return Err(self.unknown(command));
-        };
-        let values = self.arguments(command, define)?;
-        if self.scope.calls() >= limits::MAX_NESTED_CALLS {
-            return Err(Problem::new(
-                command.word_span.clone(),
-                format!(
-                    "stopped here: commands call each other more than {} deep",
-                    limits::MAX_NESTED_CALLS
-                ),
-            )
-            .hint("give a command that calls itself an `if` that ends it")
-            .fatal());
-        }
-        self.enter(&command.word_span)?;
-        self.repeating += 1;
-        let from_own = self.file < self.sources.own;
-        if from_own {
-            self.uses.push((self.file, command.span.clone()));
-        }
-        let frame = self.scope.enter(
-            values
-                .iter()
-                .filter_map(|(name, value)| Some((*name, (*value)?))),
-        );
-        let outer = std::mem::replace(&mut self.file, file);
-        let flow = self
-            .defaults(define, &values)
-            .map(|()| self.block(&define.body));
-        self.file = outer;
-        self.scope.leave(frame);
-        if from_own {
-            self.uses.pop();
-        }
-        self.repeating -= 1;
-        self.depth -= 1;
-        Ok(if flow? == Flow::Quit {
-            Flow::Quit
-        } else {
-            Flow::Next
-        })
-    }
-
-    /// What a call gives for each parameter; `None` where the default is to be taken.
-    fn arguments(
-        &mut self,
-        command: &'a Command,
-        define: &'a Define,
-    ) -> Outcome<Vec<(Symbol, Option<Value>)>> {
-        let mut values: Vec<(Symbol, Option<Value>)> =
-            define.parameters.iter().map(|p| (p.name, None)).collect();
-        let chain = self.model.chain.clone();
-        let mut usage = self.scope.symbols.word(define.name).to_owned();
-        for parameter in &define.parameters {
-            usage.push(' ');
-            let word = self.scope.symbols.word(parameter.name);
-            if parameter.default.is_empty() {
-                usage += word;
-            } else {
-                usage += &format!("[{word}]");
-            }
-        }
-        let usage = format!("it is written `{usage}`");
-        let mut next = 0;
-        // In a chain its material is known already.
-        if let Some(chain) = chain
-            && let Some(first) = define.parameters.first()
-            && first.takes == Takes::Surface
-            && let Some(symbol) = self.scope.symbols.find(chain.text)
-        {
-            values[0].1 = Some(Value::Name(symbol));
-            next = 1;
-        }
-        let mut read = self.reader(command);
-        if next == 1
-            && let Some((symbol, _)) = read.peek_word()
-            && matches!(read.scope.get(symbol), Some(Value::Name(_)))
-        {
-            read.at += 1;
-        }
-        let mut surfaces = Vec::new();
-        let mut named = false;
-        while read.more() {
-            let start = read.start();
-            let index = match read.named_argument() {
-                Some((symbol, word)) => {
-                    named = true;
-                    let index = define.parameters.iter().position(|p| p.name == symbol);
-                    let Some(index) = index else {
-                        let names = define
-                            .parameters
-                            .iter()
-                            .map(|p| read.scope.symbols.word(p.name));
-                        let hint = crate::suggest::hint(word, names).unwrap_or(usage.clone());
-                        let name = read.scope.symbols.word(define.name);
-                        return Err(Problem::new(
-                            start..start + word.len(),
-                            format!("`{name}` has no parameter `{word}`"),
-                        )
-                        .hint(hint));
-                    };
-                    if values[index].1.is_some() {
-                        return Err(Problem::new(
-                            start..start + word.len(),
-                            format!("`{word}` is given twice"),
-                        ));
-                    }
-                    read.at += 2;
-                    index
-                }
-                None if named => {
-                    return Err(Problem::new(
-                        read.here(),
-                        "what follows a named parameter must be named too",
-                    )
-                    .hint(usage.clone()));
-                }
-                None => {
-                    let Some(_) = define.parameters.get(next) else {
-                        read.end()
-                            .map_err(|problem| problem.maybe_hint(Some(usage.clone())))?;
-                        break;
-                    };
-                    next += 1;
-                    next - 1
-                }
-            };
-            let start = read.start();
-            let value = argument(&mut read, &define.parameters[index]);
-            let value = value.map_err(|problem| match problem.hint {
-                None => problem.hint(usage.clone()),
-                Some(_) => problem,
-            })?;
-            // Better refuse a material here than where the command uses it.
-            if let Value::Name(symbol) = value {
-                surfaces.push(Name {
-                    text: read.scope.symbols.word(symbol),
-                    span: read.since(start),
-                });
-            }
-            values[index].1 = Some(value);
-        }
-        for (parameter, (name, value)) in define.parameters.iter().zip(&values) {
-            if value.is_none() && parameter.default.is_empty() {
-                let word = read.scope.symbols.word(*name);
-                let what = match parameter.takes {
-                    Takes::Surface => format!("the material's name (`{word}`)"),
-                    _ => format!("`{word}`"),
-                };
-                return Err(read.expected(&what).maybe_hint(Some(usage)));
-            }
-        }
-        for name in surfaces {
-            self.material(&name)?;
-        }
-        Ok(values)
-    }
-
-    /// Sets the parameters that a call left out, in the call's own scope.
-    fn defaults(&mut self, define: &'a Define, values: &[(Symbol, Option<Value>)]) -> Outcome<()> {
-        for (parameter, (name, value)) in define.parameters.iter().zip(values) {
-            if value.is_some() {
-                continue;
-            }
-            let mut command = define.head.clone();
-            command.items = parameter.default.clone();
-            command.span = parameter.span.clone();
-            let mut read = self.reader(&command).unlisted();
-            let value = argument(&mut read, parameter)?;
-            self.scope.set(*name, value);
-        }
-        Ok(())
-    }
-
     fn unknown(&self, command: &Command) -> Box<Problem> {
         let word = self.scope.symbols.word(command.word);
         let problem = Problem::new(
@@ -651,103 +454,6 @@ impl<'a> Evaluator<'a> {
         Reader::new(command, &source.syntax.items, source.text, &mut self.scope)
     }
 
-    /// Whether the text that is being run is one of the user's.
-    fn is_own(&self) -> bool {
-        self.file < self.sources.own
-    }
-
-    /// Adds a message about the present file. One about the library goes to where it was used.
-    fn tell(&mut self, severity: Severity, mut problem: Box<Problem>) {
-        if self.is_own() {
-            // An error in a defined command: say also who called it.
-            if severity == Severity::Error
-                && let Some((file, span)) = self.uses.last()
-                && self.scope.calls() > 0
-            {
-                problem = problem.related(Some(*file), span.clone(), "called here");
-            }
-            self.report.add(self.file, severity, problem);
-        } else if let Some((file, span)) = self.uses.last() {
-            let name = &self.sources.all[self.file].name;
-            problem.message = format!("in {name}: {}", problem.message);
-            problem.span = span.clone();
-            if problem.fatal {
-                problem.hint = Some(String::from("ask for less: smaller counts or depths"));
-            }
-            problem.related.clear();
-            self.report.add(*file, severity, problem);
-        }
-    }
-
-    /// Adds a message that is no error; it is made only if it is the first about its place.
-    fn say(
-        &mut self,
-        severity: Severity,
-        span: Range<usize>,
-        message: impl FnOnce() -> (String, Option<String>),
-    ) {
-        if self.is_news(severity, &span) {
-            let (message, hint) = message();
-            let problem = Problem::new(span, message).maybe_hint(hint);
-            self.tell(severity, problem);
-        }
-    }
-
-    /// Whether a message about this place would be the first, and wanted.
-    fn is_news(&self, severity: Severity, span: &Range<usize>) -> bool {
-        let (file, place) = match self.uses.last() {
-            Some((file, place)) if !self.is_own() => (*file, place),
-            _ => (self.file, span),
-        };
-        self.report.is_new(file, severity, place)
-    }
-
-    /// As [`Self::say`], about another file.
-    fn say_at(
-        &mut self,
-        file: usize,
-        severity: Severity,
-        span: Range<usize>,
-        message: impl FnOnce() -> (String, Option<String>),
-    ) {
-        let before = std::mem::replace(&mut self.file, file);
-        self.say(severity, span, message);
-        self.file = before;
-    }
-
-    /// Warns that something is known but not done.
-    fn not_carried_out(&mut self, span: Range<usize>, what: &str) {
-        self.say(Severity::Warning, span, || {
-            (
-                format!("{what} is understood but not carried out in this version"),
-                None,
-            )
-        });
-    }
-
-    fn tell_after_shot(&mut self, command: &Command) {
-        use commands::Group;
-        if self.shot.is_none() || self.told_after_shot {
-            return;
-        }
-        let Some(spec) = command.spec else { return };
-        let changes = matches!(
-            spec.group(),
-            Group::Camera | Group::Materials | Group::Primitives | Group::Objects
-        ) || matches!(spec.name, "light" | "background" | "shoot");
-        if changes {
-            self.told_after_shot = true;
-            self.say(Severity::Warning, command.word_span.clone(), || {
-                (
-                    String::from(
-                        "what follows the first `shoot` is not in the picture in this version",
-                    ),
-                    Some(String::from("put `shoot` last")),
-                )
-            });
-        }
-    }
-
     /// Where an element of this command comes from: in the user's text, even if the library makes it.
     fn origin(&self, command: &Command) -> Origin {
         let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
@@ -759,31 +465,6 @@ impl<'a> Evaluator<'a> {
             file: small(file),
             start: small(span.start),
             end: small(span.end),
-        }
-    }
-}
-
-/// One argument of a call.
-fn argument(read: &mut Reader<'_, '_>, parameter: &Formal) -> Outcome<Value> {
-    let what = format!("`{}`", read.scope.symbols.word(parameter.name));
-    match parameter.takes {
-        Takes::Number => Ok(Value::Scalar(read.number(&what)?)),
-        Takes::Triple => read.triple(&what),
-        Takes::Surface => {
-            let what = format!("the material's name ({what})");
-            let name = read.known_name(&what)?;
-            match read.scope.symbols.find(name.text) {
-                Some(symbol) => Ok(Value::Name(symbol)),
-                None if name.text.parse::<f64>().is_ok() => Err(Problem::new(
-                    name.span,
-                    format!("expected {what}, found `{}`", name.text),
-                )),
-                None => Err(Problem::new(
-                    name.span,
-                    format!("`{}` cannot be a material's name here", name.text),
-                )
-                .hint("a name with `^` cannot be handed on")),
-            }
         }
     }
 }

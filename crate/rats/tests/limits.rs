@@ -312,3 +312,53 @@ fn a_tiny_weight_takes_no_eye_to_infinity() {
     fails("cp 1 0 5 1e-12", "further away than 1e12");
     assert_eq!(errors("cp 1 0 5 1e-11"), "");
 }
+
+/// A PNG file of gray pixels, all black, that is cut off before its end.
+fn cut_image(side: u32) -> Vec<u8> {
+    let crc = |bytes: &[u8]| {
+        !bytes.iter().fold(!0_u32, |crc, &byte| {
+            (0..8).fold(crc ^ u32::from(byte), |crc, _| {
+                (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg())
+            })
+        })
+    };
+    let mut png = b"\x89PNG\r\n\x1a\n".to_vec();
+    let mut chunk = |name: &[u8], data: &[u8]| {
+        let body = [name, data].concat();
+        png.extend((data.len() as u32).to_be_bytes());
+        png.extend(&body);
+        png.extend(crc(&body).to_be_bytes());
+    };
+    let size = [side.to_be_bytes(), side.to_be_bytes()].concat();
+    chunk(b"IHDR", &[&size[..], &[8, 0, 0, 0, 0]].concat());
+    let rows = vec![0; (side as usize + 1) * side as usize];
+    let mut data = miniz_oxide::deflate::compress_to_vec_zlib(&rows, 6);
+    data.truncate(data.len() - 40);
+    chunk(b"IDAT", &data);
+    png
+}
+
+/// Each size is another height field, so none is kept, and a mistake is not either.
+#[test]
+fn a_large_image_in_a_loop() {
+    let text = "surface s diff Red\nfor i = 1 to 1e6 { terra s big.png 0 0 0 i 1 1 }";
+    let project = Project {
+        files: vec![File {
+            name: String::from("main.rat"),
+            text: String::from(text),
+        }],
+    };
+    let asset = rats::Asset {
+        name: String::from("big.png"),
+        bytes: cut_image(4096).into(),
+    };
+    let begin = Instant::now();
+    let compiled = rats::compile_at(&project, &[asset], 0);
+    assert!(
+        begin.elapsed() < Duration::from_secs(20),
+        "{:?}",
+        begin.elapsed()
+    );
+    let said: Vec<_> = compiled.diagnostics.iter().map(|d| &d.message).collect();
+    assert!(said.iter().any(|m| m.contains("steps")), "{said:?}");
+}

@@ -408,6 +408,7 @@ pub fn quadric<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
 pub fn terra<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let (name, given) = operands(run, command)?;
     let asset = run.asset(given.name("fn"))?;
+    run.scope.step(assets::cost(asset), &command.word_span)?;
     let (one, other) = (given.vector("PMIN"), given.vector("PMAX"));
     let (low, size) = (one.min(other), (other - one).abs());
     let mesh = assets::terra(asset, size)
@@ -420,6 +421,7 @@ pub fn terra<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let (name, given) = operands(run, command)?;
     let asset = run.asset(given.name("fn"))?;
+    run.scope.step(assets::cost(asset), &command.word_span)?;
     let mesh = assets::mesh(asset)
         .map_err(|error| Problem::new(given.name("fn").span.clone(), error.to_string()))?;
     add_mesh(run, command, &name, &mesh, None)

@@ -358,7 +358,7 @@ mod tests {
     #[test]
     fn numbers_that_are_written_out() {
         let spans = |text: &str| written_out(text, 0..text.len());
-        assert_eq!(spans("1"), Some(vec![0..1]));
+        assert_eq!(spans("1 2"), Some(vec![0..1, 2..3]));
         assert_eq!(spans("<1, -2 3>"), Some(vec![1..2, 4..6, 7..8]));
         assert_eq!(spans("−.5 # half\n 2"), Some(vec![0..5, 14..15]));
         assert_eq!(spans("a"), None);

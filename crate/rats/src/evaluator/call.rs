@@ -1,0 +1,241 @@
+//! Calls of commands that a text or the library defines: their arguments, defaults, and the run of
+//! their bodies.
+
+use super::{Evaluator, Flow};
+use crate::limits;
+use crate::problem::{Outcome, Problem};
+use crate::reader::{Name, Reader};
+use crate::symbol::Symbol;
+use crate::syntax::{Command, Define, Formal, Takes};
+use crate::value::Value;
+
+impl<'a> Evaluator<'a> {
+    /// Runs a command of the library, which is read when it is used for the first time. A command of the
+    /// same name that the text defines hides it.
+    pub(super) fn call_library(
+        &mut self,
+        command: &'a Command,
+        name: &'static str,
+    ) -> Outcome<Flow> {
+        if self.definitions.contains_key(&command.word) {
+            return self.call(command, command.word);
+        }
+        let symbol = self.scope.symbols.find(name);
+        let is_known = |run: &Self| symbol.is_some_and(|s| run.definitions.contains_key(&s));
+        if !is_known(self)
+            && let Some(file) = self.sources.find_built_in(&format!("{name}.rat"))
+        {
+            self.enter(&command.word_span)?;
+            self.uses.push((self.file, command.span.clone()));
+            self.run_file(file);
+            self.uses.pop();
+            self.depth -= 1;
+        }
+        match symbol.filter(|_| is_known(self)) {
+            Some(symbol) => self.call(command, symbol),
+            None => Err(self.unknown(command)),
+        }
+    }
+
+    /// Runs a command that a text defines, under the name `symbol`.
+    pub(super) fn call(&mut self, command: &'a Command, symbol: Symbol) -> Outcome<Flow> {
+        let Some(&(file, define)) = self.definitions.get(&symbol) else {
+            return Err(self.unknown(command));
+        };
+        let values = self.arguments(command, define)?;
+        if self.scope.calls() >= limits::MAX_NESTED_CALLS {
+            return Err(Problem::new(
+                command.word_span.clone(),
+                format!(
+                    "stopped here: commands call each other more than {} deep",
+                    limits::MAX_NESTED_CALLS
+                ),
+            )
+            .hint("give a command that calls itself an `if` that ends it")
+            .fatal());
+        }
+        self.enter(&command.word_span)?;
+        self.repeating += 1;
+        let from_own = self.file < self.sources.own;
+        if from_own {
+            self.uses.push((self.file, command.span.clone()));
+        }
+        let frame = self.scope.enter(
+            values
+                .iter()
+                .filter_map(|(name, value)| Some((*name, (*value)?))),
+        );
+        let outer = std::mem::replace(&mut self.file, file);
+        let flow = self
+            .defaults(define, &values)
+            .map(|()| self.block(&define.body));
+        self.file = outer;
+        self.scope.leave(frame);
+        if from_own {
+            self.uses.pop();
+        }
+        self.repeating -= 1;
+        self.depth -= 1;
+        Ok(if flow? == Flow::Quit {
+            Flow::Quit
+        } else {
+            Flow::Next
+        })
+    }
+
+    /// What a call gives for each parameter; `None` where the default is to be taken.
+    fn arguments(
+        &mut self,
+        command: &'a Command,
+        define: &'a Define,
+    ) -> Outcome<Vec<(Symbol, Option<Value>)>> {
+        let mut values: Vec<(Symbol, Option<Value>)> =
+            define.parameters.iter().map(|p| (p.name, None)).collect();
+        let chain = self.model.chain.clone();
+        let mut usage = self.scope.symbols.word(define.name).to_owned();
+        for parameter in &define.parameters {
+            usage.push(' ');
+            let word = self.scope.symbols.word(parameter.name);
+            if parameter.default.is_empty() {
+                usage += word;
+            } else {
+                usage += &format!("[{word}]");
+            }
+        }
+        let usage = format!("it is written `{usage}`");
+        let mut next = 0;
+        // In a chain its material is known already.
+        if let Some(chain) = chain
+            && let Some(first) = define.parameters.first()
+            && first.takes == Takes::Surface
+            && let Some(symbol) = self.scope.symbols.find(chain.text)
+        {
+            values[0].1 = Some(Value::Name(symbol));
+            next = 1;
+        }
+        let mut read = self.reader(command);
+        if next == 1
+            && let Some((symbol, _)) = read.peek_word()
+            && matches!(read.scope.get(symbol), Some(Value::Name(_)))
+        {
+            read.at += 1;
+        }
+        let mut surfaces = Vec::new();
+        let mut named = false;
+        while read.more() {
+            let start = read.start();
+            let index = match read.named_argument() {
+                Some((symbol, word)) => {
+                    named = true;
+                    let index = define.parameters.iter().position(|p| p.name == symbol);
+                    let Some(index) = index else {
+                        let names = define
+                            .parameters
+                            .iter()
+                            .map(|p| read.scope.symbols.word(p.name));
+                        let hint = crate::suggest::hint(word, names).unwrap_or(usage.clone());
+                        let name = read.scope.symbols.word(define.name);
+                        return Err(Problem::new(
+                            start..start + word.len(),
+                            format!("`{name}` has no parameter `{word}`"),
+                        )
+                        .hint(hint));
+                    };
+                    if values[index].1.is_some() {
+                        return Err(Problem::new(
+                            start..start + word.len(),
+                            format!("`{word}` is given twice"),
+                        ));
+                    }
+                    read.at += 2;
+                    index
+                }
+                None if named => {
+                    return Err(Problem::new(
+                        read.here(),
+                        "what follows a named parameter must be named too",
+                    )
+                    .hint(usage.clone()));
+                }
+                None => {
+                    let Some(_) = define.parameters.get(next) else {
+                        read.end()
+                            .map_err(|problem| problem.maybe_hint(Some(usage.clone())))?;
+                        break;
+                    };
+                    next += 1;
+                    next - 1
+                }
+            };
+            let start = read.start();
+            let value = argument(&mut read, &define.parameters[index]);
+            let value = value.map_err(|problem| match problem.hint {
+                None => problem.hint(usage.clone()),
+                Some(_) => problem,
+            })?;
+            // Better refuse a material here than where the command uses it.
+            if let Value::Name(symbol) = value {
+                surfaces.push(Name {
+                    text: read.scope.symbols.word(symbol),
+                    span: read.since(start),
+                });
+            }
+            values[index].1 = Some(value);
+        }
+        for (parameter, (name, value)) in define.parameters.iter().zip(&values) {
+            if value.is_none() && parameter.default.is_empty() {
+                let word = read.scope.symbols.word(*name);
+                let what = match parameter.takes {
+                    Takes::Surface => format!("the material's name (`{word}`)"),
+                    _ => format!("`{word}`"),
+                };
+                return Err(read.expected(&what).maybe_hint(Some(usage)));
+            }
+        }
+        for name in surfaces {
+            self.material(&name)?;
+        }
+        Ok(values)
+    }
+
+    /// Sets the parameters that a call left out, in the call's own scope.
+    fn defaults(&mut self, define: &'a Define, values: &[(Symbol, Option<Value>)]) -> Outcome<()> {
+        for (parameter, (name, value)) in define.parameters.iter().zip(values) {
+            if value.is_some() {
+                continue;
+            }
+            let mut command = define.head.clone();
+            command.items = parameter.default.clone();
+            command.span = parameter.span.clone();
+            let mut read = self.reader(&command).unlisted();
+            let value = argument(&mut read, parameter)?;
+            self.scope.set(*name, value);
+        }
+        Ok(())
+    }
+}
+
+/// One argument of a call.
+fn argument(read: &mut Reader<'_, '_>, parameter: &Formal) -> Outcome<Value> {
+    let what = format!("`{}`", read.scope.symbols.word(parameter.name));
+    match parameter.takes {
+        Takes::Number => Ok(Value::Scalar(read.number(&what)?)),
+        Takes::Triple => read.triple(&what),
+        Takes::Surface => {
+            let what = format!("the material's name ({what})");
+            let name = read.known_name(&what)?;
+            match read.scope.symbols.find(name.text) {
+                Some(symbol) => Ok(Value::Name(symbol)),
+                None if name.text.parse::<f64>().is_ok() => Err(Problem::new(
+                    name.span,
+                    format!("expected {what}, found `{}`", name.text),
+                )),
+                None => Err(Problem::new(
+                    name.span,
+                    format!("`{}` cannot be a material's name here", name.text),
+                )
+                .hint("a name with `^` cannot be handed on")),
+            }
+        }
+    }
+}
