@@ -36,10 +36,18 @@ const LANGUAGE: [(&str, &str); 9] = [
     ("# words", "a remark"),
 ];
 
-const KEYS: [(&str, &str); 12] = [
+const KEYS: [(&str, &str); 14] = [
     ("drag", "turn the model"),
     ("shift-drag, right-drag, two fingers", "move it"),
     ("wheel, pinch", "zoom"),
+    (
+        "click a shape",
+        "find it in the text; its knobs move its numbers",
+    ),
+    (
+        "Shift with a knob, Page Up and Page Down",
+        "move it away from you and back",
+    ),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
     ("Ctrl+/", "turn lines into remarks and back"),
     ("Tab, Shift+Tab", "indent"),

@@ -327,6 +327,7 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         session,
         caret: app.editor.caret(),
         covered: app.dialog.is_some(),
+        draft: draft.is_some(),
         touch: app.touch == Some(true),
     };
     app.hands.show(ui, rect, &picture, &around, commands);

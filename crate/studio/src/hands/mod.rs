@@ -39,8 +39,8 @@ pub struct Hands {
     handles: Vec<Handle>,
     /// What the handles were made from: revision, frame of the film, element; and the camera.
     made: Option<((u64, u32, usize), Camera)>,
-    /// The scene of a revision and frame, ready for clicks.
-    picker: Option<((u64, u32), Picker)>,
+    /// The scene of a revision and frame, as the draft shows it or not, ready for clicks.
+    picker: Option<((u64, u32, bool), Picker)>,
     drag: Option<Drag>,
 }
 
@@ -59,6 +59,8 @@ pub struct Around<'a> {
     pub caret: Option<(usize, usize)>,
     /// Whether something lies over the page.
     pub covered: bool,
+    /// Whether the draft is on show, in which shapes have not melted together.
+    pub draft: bool,
     /// Whether fingers are likely.
     pub touch: bool,
 }
@@ -123,7 +125,7 @@ impl Hands {
         if picture.clicked()
             && let Some(at) = picture.interact_pointer_pos()
         {
-            self.click(session, &sight, at, around.touch, commands);
+            self.click(around, &sight, at, commands);
         }
         let Some(chosen) = self.chosen.filter(|chosen| *chosen < self.count) else {
             return;
@@ -177,16 +179,23 @@ impl Hands {
     /// Chooses what is seen at a point of the picture.
     fn click(
         &mut self,
-        session: &Session,
+        around: &Around<'_>,
         sight: &Sight,
         at: egui::Pos2,
-        touch: bool,
         commands: &mut Vec<Command>,
     ) {
+        let session = around.session;
         let scene = &session.compiled().scene;
-        let key = (session.revision(), session.film_frame());
+        let key = (session.revision(), session.film_frame(), around.draft);
         if self.picker.as_ref().is_none_or(|(made, _)| *made != key) {
-            self.picker = Some((key, Picker::new(scene)));
+            let picker = if around.draft {
+                let mut hard = scene.clone();
+                hard.settings.soft = false;
+                Picker::new(&hard)
+            } else {
+                Picker::new(scene)
+            };
+            self.picker = Some((key, picker));
         }
         let Some((_, picker)) = &self.picker else {
             return;
@@ -194,11 +203,11 @@ impl Hands {
         let eye = sight.projection.eye;
         let met = |at| picker.pick(eye, sight.direction(at));
         // A finger, or a hand that is not quite still, may mean what is next to the point.
-        let reach = if touch { 12.0 } else { 4.0 };
-        let around =
+        let reach = if around.touch { 12.0 } else { 4.0 };
+        let nearby =
             (0..8).map(|i| at + reach * egui::Vec2::angled(i as f32 * std::f32::consts::FRAC_PI_4));
         let found = met(at).or_else(|| {
-            around
+            nearby
                 .filter_map(met)
                 .min_by(|a, b| a.distance.total_cmp(&b.distance))
         });
