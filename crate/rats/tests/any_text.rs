@@ -287,7 +287,9 @@ fn any_nearly_right_text() {
         let text = generate::dataset(u)?;
         let project = checks::project(&text, "sphere m0 1 0 0 0\n");
         let compiled = compile(&project);
+        let byte = u.int_in_range(0..=text.len() + 2)?;
         let sound = checks::compiled(&project, &compiled)
+            .and_then(|()| checks::helped(&project, &compiled, byte))
             .and_then(|()| checks::unrun(&text))
             .and_then(|()| checks::repeats(&project, &compiled))
             .and_then(|()| checks::laid_out(&project, &compiled))

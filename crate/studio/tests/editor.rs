@@ -248,6 +248,17 @@ fn a_card_comes_when_the_pointer_rests_and_the_manual_with_f1() {
     window.steps(14);
     window.harness.get_by_label_contains("F1: manual");
     window.edit();
+    // Who writes wants no card, wherever the pointer was left.
+    window.write("# ");
+    window.steps(14);
+    assert!(
+        window
+            .harness
+            .query_by_label_contains("F1: manual")
+            .is_none()
+    );
+    window.key(Modifiers::COMMAND, Key::Z);
+    window.key(Modifiers::COMMAND, Key::Home);
     window.key(Modifiers::NONE, Key::F1);
     window.steps(4);
     assert!(window.place("search commands").width() > 100.0);

@@ -38,9 +38,15 @@ fn a_pad_moves_a_vector_and_one_undo_takes_the_drag_back() {
         assert!((x + 0.5).abs() < 0.03 && (y + 0.5).abs() < 0.03, "{x} {y}");
         assert_eq!((z, window.errors()), (0.0, 0));
 
+        window.steps(4);
         let rail = window.place("slider C z");
         window.drag(rail.center(), rail.center_top());
-        assert!(vector(&window)[2] > 0.5, "{:?}", vector(&window));
+        assert!(
+            vector(&window)[2] > 0.5,
+            "{size:?} {rail:?} {:?} {:?}",
+            vector(&window),
+            window.parts.outbox.borrow().report.diagnostics
+        );
         window.key(Modifiers::COMMAND, Key::Z);
         assert_eq!(vector(&window)[2], 0.0);
         window.key(Modifiers::COMMAND, Key::Z);

@@ -1,8 +1,8 @@
 //! What must hold for every text and every link, whatever they contain.
 
-use rats::assist::format;
+use rats::assist::{self, format};
 use rats::link::{self, Shared};
-use rats::{Compiled, File, Project, compile, highlight};
+use rats::{Compiled, File, Project, Severity, compile, highlight};
 use scene::Origin;
 
 /// Elements of the largest scene that is looked through for numbers that are none, which takes long.
@@ -173,6 +173,53 @@ pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
         return Ok(());
     };
     Err(format!("laid out, the text gives {differs}"))
+}
+
+/// What the editor asks about a place, which may lie between the bytes of a letter or behind the end, must be
+/// answered; and a name that is changed everywhere changes nothing else.
+///
+/// # Errors
+/// Says what does not hold.
+pub fn helped(project: &Project, first: &Compiled, byte: usize) -> Result<(), String> {
+    let _ = assist::complete(project, 0, byte);
+    let _ = assist::hover(project, 0, byte);
+    let _ = assist::signature(project, 0, byte);
+    let _ = assist::folds(&project.files[0].text);
+    let definition = assist::definition(project, 0, byte);
+    for place in assist::references(project, 0, byte)
+        .iter()
+        .chain(&definition)
+    {
+        let text = project.files.get(place.file).map(|file| file.text.as_str());
+        if text.is_some_and(|text| text.get(place.span.clone()).is_none()) {
+            return Err(format!("a reference outside its text: {place:?}"));
+        }
+    }
+    let has_errors = |compiled: &Compiled| {
+        let mut messages = compiled.diagnostics.iter();
+        messages.any(|message| message.severity == Severity::Error)
+    };
+    // With mistakes nobody knows what a name means.
+    if has_errors(first) {
+        return Ok(());
+    }
+    let Ok(edits) = assist::rename(project, 0, byte, "another_name") else {
+        return Ok(());
+    };
+    let again = compile(&assist::rename::apply(project, &edits));
+    let shapes = |compiled: &Compiled| -> Vec<_> {
+        let elements = compiled.scene.elements.iter();
+        elements
+            .map(|element| (element.shape.clone(), element.material))
+            .collect()
+    };
+    if has_errors(&again) {
+        return Err(String::from("renamed, the text has mistakes"));
+    }
+    if shapes(&again) != shapes(first) {
+        return Err(String::from("renamed, the text gives another scene"));
+    }
+    Ok(())
 }
 
 /// Opens a link, and what opens must survive being sent on.

@@ -180,7 +180,7 @@ impl Fuzzer {
     /// A text of the page with a few slips of the hand.
     fn slips(&mut self) -> String {
         let mut text = self.examples[self.random.below(self.examples.len())].clone();
-        for _ in 0..=self.random.below(6) {
+        for _ in 0..self.random.below(6) {
             let at = text.floor_char_boundary(self.random.below(text.len()));
             match self.random.below(4) {
                 0 => text.truncate(at),
@@ -297,6 +297,10 @@ fn try_text(text: &str, thorough: bool) -> (Result<(), String>, Duration) {
         check::unrun(text)?;
         if thorough {
             check::laid_out(&project, &compiled)?;
+            // Places all over the text, the same ones when the text is run again.
+            for part in 0..8 {
+                check::helped(&project, &compiled, text.len() * part / 7 + 2 * (part / 7))?;
+            }
             check::repeats(&project, &compiled)?;
             check::sent(&project)?;
         }

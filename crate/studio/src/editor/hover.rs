@@ -16,6 +16,11 @@ pub struct Hover {
     card: Option<(Place, u64, Option<Card>)>,
     /// The command that the card on show is about.
     command: Option<&'static str>,
+    /// The text that was shown last, and whether the pointer has lain still since it changed: who
+    /// writes wants no card.
+    revision: u64,
+    still: bool,
+    pointer: Option<egui::Pos2>,
 }
 
 impl Hover {
@@ -35,6 +40,11 @@ impl Hover {
     ) {
         let ctx = &response.ctx;
         let messages: Vec<usize> = marks.at(char).take(5).collect();
+        self.still |= self.revision != session.revision();
+        self.revision = session.revision();
+        let pointer = response.hover_pos();
+        self.still &= self.pointer == pointer;
+        self.pointer = pointer;
         let rested = ctx.input(|input| {
             let pointer = &input.pointer;
             if pointer.any_down() {
@@ -47,7 +57,9 @@ impl Hover {
         });
         let key = (place, session.revision());
         let known = |card: &&(Place, u64, Option<Card>)| (card.0, card.1) == key;
-        if rested < REST {
+        if self.still {
+            self.card = None;
+        } else if rested < REST {
             if self.card.as_ref().filter(known).is_none() {
                 ctx.request_repaint_after_secs(REST - rested + 0.01);
             }
