@@ -148,7 +148,9 @@ impl<'a> Evaluator<'a> {
         if !self.sources.all.is_empty() {
             self.run_file(0);
         }
-        self.check_open_objects();
+        if !self.report.is_cut_off() {
+            self.check_open_objects();
+        }
         self.check_camera();
         let (scene, placements) = match self.shot.take() {
             Some(shot) => shot,

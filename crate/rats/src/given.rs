@@ -315,14 +315,16 @@ impl<'a> Reader<'_, 'a> {
     }
 
     /// Whether the next word is one of these or the beginning of one.
-    fn is_option_next(&mut self, options: &[OptionSpec]) -> bool {
-        self.peek_word().is_some_and(|(_, word)| {
-            options.iter().any(|option| {
-                option
-                    .name
-                    .get(..word.len())
-                    .is_some_and(|start| start.eq_ignore_ascii_case(word))
-            })
+    pub(crate) fn is_option_next(&mut self, options: &[OptionSpec]) -> bool {
+        let Some((symbol, word)) = self.peek_word() else {
+            return false;
+        };
+        // A variable is meant where its name is short for an option, but not where it is the option.
+        let is_variable = self.scope.get(symbol).is_some();
+        options.iter().any(|option| {
+            let start = option.name.get(..word.len());
+            let fits = start.is_some_and(|start| start.eq_ignore_ascii_case(word));
+            fits && !(is_variable && word.len() < option.name.len())
         })
     }
 

@@ -10,7 +10,7 @@ pub const MAX_TEXT: usize = 1024 * 1024;
 pub const MAX_FILES: usize = 64;
 /// Commands run plus operands evaluated, with heavier work charged more. Long before this a person
 /// would have given up waiting; a few tenths of a second at most.
-pub const MAX_STEPS: u64 = 2_000_000;
+pub const MAX_STEPS: u64 = 1_500_000;
 /// What one error costs in steps, so that a loop of errors ends soon too.
 pub const STEPS_PER_ERROR: u64 = 2000;
 /// What reading a command's operands costs in steps, besides one for each: lists are made of them.

@@ -50,12 +50,8 @@ impl<'a> Reader<'_, 'a> {
         match self.datum() {
             Some(Datum::Number(_) | Datum::Sign(b'-' | b'+' | b'(')) => true,
             Some(Datum::Word(symbol)) => {
-                let word = self.scope.symbols.word(symbol);
-                let is_option = options.iter().any(|option| {
-                    let start = option.name.get(..word.len());
-                    start.is_some_and(|start| start.eq_ignore_ascii_case(word))
-                });
-                !is_option && matches!(self.scope.get(symbol), Some(Value::Scalar(_)))
+                !self.is_option_next(options)
+                    && matches!(self.scope.get(symbol), Some(Value::Scalar(_)))
             }
             _ => false,
         }
@@ -277,7 +273,8 @@ impl<'a> Reader<'_, 'a> {
         if self.scope.is_broken(symbol) {
             return Err(Problem::follow_up(span));
         }
-        let mut known: Vec<&'a str> = self.scope.names().collect();
+        // More than the hint will look at need not be gathered.
+        let mut known: Vec<&'a str> = self.scope.names().take(2001).collect();
         known.extend(functions::FUNCTIONS.iter().map(|f| -> &'a str { f.name }));
         known.extend(colours::names().map(|name| -> &'a str { name }));
         let suggestion = suggest::hint(word, known);

@@ -299,7 +299,8 @@ impl<'a> Parser<'a, '_, '_> {
         if is_triple(text) {
             formal.takes = Takes::Triple;
         }
-        if ["surface", "material"].contains(&text)
+        let is_kind = |kind: &&str| kind.eq_ignore_ascii_case(text);
+        if ["surface", "material"].iter().any(is_kind)
             && let Some(Item {
                 datum: Datum::Word(name),
                 start,

@@ -78,6 +78,12 @@ impl Report {
         !self.is_unwanted(severity) && !self.seen.contains(&place)
     }
 
+    /// Whether the run was stopped before its end.
+    #[must_use]
+    pub fn is_cut_off(&self) -> bool {
+        self.messages.iter().any(|message| message.problem.fatal)
+    }
+
     /// Whether there is an error.
     #[must_use]
     pub fn has_errors(&self) -> bool {

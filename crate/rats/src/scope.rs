@@ -5,6 +5,7 @@ use crate::problem::{Outcome, Problem};
 use crate::random::Random;
 use crate::symbol::{Symbol, Symbols};
 use crate::value::Value;
+use std::cell::Cell;
 use std::ops::Range;
 
 /// A variable's slot.
@@ -31,7 +32,7 @@ pub struct Scope<'a> {
     locals: Vec<(Symbol, Value)>,
     frame: usize,
     calls: usize,
-    steps: u64,
+    steps: Cell<u64>,
 }
 
 /// What to restore when a call ends.
@@ -52,7 +53,7 @@ impl<'a> Scope<'a> {
             locals: Vec::new(),
             frame: 0,
             calls: 0,
-            steps: 0,
+            steps: Cell::new(0),
         }
     }
 
@@ -61,8 +62,8 @@ impl<'a> Scope<'a> {
     /// # Errors
     /// Fatally, when the text has done more than [`limits::MAX_STEPS`].
     pub fn step(&mut self, cost: u64, span: &Range<usize>) -> Outcome<()> {
-        self.steps += cost;
-        if self.steps <= limits::MAX_STEPS {
+        self.charge(cost);
+        if self.steps.get() <= limits::MAX_STEPS {
             return Ok(());
         }
         Err(Problem::new(
@@ -76,9 +77,20 @@ impl<'a> Scope<'a> {
         .fatal())
     }
 
+    /// Counts work that the next [`Self::step`] may refuse to go on from.
+    fn charge(&self, cost: u64) {
+        self.steps.set(self.steps.get().saturating_add(cost));
+    }
+
+    /// Looking through the variables of a call takes time where there are many.
+    fn charge_locals(&self) {
+        self.charge((self.locals.len() - self.frame) as u64 / 16);
+    }
+
     /// The value of a variable: of the running call, else of the whole text.
     #[must_use]
     pub fn get(&self, name: Symbol) -> Option<Value> {
+        self.charge_locals();
         if let Some((_, value)) = self.locals[self.frame..]
             .iter()
             .rev()
@@ -100,6 +112,7 @@ impl<'a> Scope<'a> {
 
     /// Sets a variable: of the running call if there is one, else of the whole text.
     pub fn set(&mut self, name: Symbol, value: Value) {
+        self.charge_locals();
         if self.calls == 0 {
             if let Some(slot) = self.globals.get_mut(name.index()) {
                 *slot = Slot::Full(value);
@@ -138,6 +151,7 @@ impl<'a> Scope<'a> {
 
     /// Forgets the variables of the whole text.
     pub fn clear(&mut self) {
+        self.charge(self.globals.len() as u64 / 16);
         self.globals.fill(Slot::Empty);
     }
 

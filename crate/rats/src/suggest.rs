@@ -2,12 +2,18 @@
 
 /// Longer words are no typing slips, and comparing them would cost time.
 const MAX_WORD: usize = 40;
+/// Among more names than these no hint is looked for: a text can have many thousands, and as many slips.
+const MAX_CANDIDATES: usize = 2000;
 
 /// The candidate that is nearest to a mistyped word, ignoring case, if it is near enough to be what was
 /// meant: at most one slip in three letters. Of several equally near the first of the alphabet.
 #[must_use]
 pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     if word.len() > MAX_WORD {
+        return None;
+    }
+    let candidates: Vec<&str> = candidates.into_iter().take(MAX_CANDIDATES + 1).collect();
+    if candidates.len() > MAX_CANDIDATES {
         return None;
     }
     let allowed = (word.chars().count() / 3).max(1);

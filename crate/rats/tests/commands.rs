@@ -609,7 +609,10 @@ fn every_command_has_an_etude_and_a_manual() {
                 .map(|e| e.shape.clone())
                 .collect::<Vec<_>>()
         };
-        assert_eq!(shapes(&etude), shapes(&direct), "{}", spec.name);
+        // Those that would end or undo the run are only shown.
+        if !matches!(spec.name, "quit" | "reset" | "shoot") {
+            assert_eq!(shapes(&etude), shapes(&direct), "{}", spec.name);
+        }
         for element in &etude.scene.elements {
             assert_eq!(
                 (element.origin.file, element.origin.start),

@@ -12,8 +12,9 @@ pub struct Example {
     pub name: &'static str,
     /// Its text.
     pub text: &'static str,
-    /// Its thumbnail, a PNG file.
-    pub thumbnail: &'static [u8],
+    /// Where its thumbnail is, a PNG file beside the page: fetched when the gallery is opened, as few
+    /// visits open it.
+    pub thumbnail: &'static str,
 }
 
 impl Example {
@@ -36,7 +37,7 @@ macro_rules! example {
             about: $about,
             name: concat!($name, ".rat"),
             text: include_str!(concat!("../../../www/examples/", $name, ".rat")),
-            thumbnail: include_bytes!(concat!("../../../www/examples/", $name, ".png")),
+            thumbnail: concat!("examples/", $name, ".png"),
         }
     };
 }
@@ -131,7 +132,8 @@ mod tests {
             let compiled = rats::compile(&example.project());
             assert_eq!(compiled.diagnostics, [], "{}", example.title);
             assert!(!compiled.scene.elements.is_empty(), "{}", example.title);
-            let thumbnail = decode(example.thumbnail).expect(example.title);
+            let bytes = crate::platform::read(example.thumbnail).expect(example.title);
+            let thumbnail = decode(&bytes).expect(example.title);
             let largest = thumbnail.size[0].max(thumbnail.size[1]);
             assert!(largest >= 200, "{}", example.title);
         }

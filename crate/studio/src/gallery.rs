@@ -1,22 +1,65 @@
 //! The gallery: examples, and the user's own works.
 
 use crate::command::Command;
-use crate::examples;
 use crate::storage::Entry;
 use crate::theme;
+use crate::{examples, platform};
 use egui::{
     Align2, Button, Color32, ColorImage, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense,
     TextureHandle, TextureOptions, Ui, Vec2, vec2,
 };
+use std::cell::RefCell;
+use std::rc::Rc;
 
-/// The gallery's thumbnails, decoded when it is first opened.
+/// The gallery's thumbnails, fetched when it is first opened, and the works.
 #[derive(Default)]
 pub struct Gallery {
-    thumbnails: Vec<Option<(TextureHandle, Color32)>>,
+    thumbnails: Vec<Thumbnail>,
     /// The saved works, read when the gallery opens.
     entries: Vec<Entry>,
     /// The work whose deletion waits for a second click.
     doomed: Option<String>,
+}
+
+/// The picture of an example on its way.
+enum Thumbnail {
+    /// Asked for.
+    Coming(Rc<RefCell<Option<Vec<u8>>>>),
+    /// Here, with the colour of its background.
+    Here(TextureHandle, Color32),
+    /// It came, but is no picture.
+    Broken,
+}
+
+impl Thumbnail {
+    fn fetch(ui: &Ui, path: &'static str) -> Self {
+        let inbox = Rc::new(RefCell::new(None));
+        let (letter, ctx) = (inbox.clone(), ui.ctx().clone());
+        // One that does not come leaves its card without a picture.
+        platform::fetch(path, move |bytes| {
+            *letter.borrow_mut() = bytes;
+            ctx.request_repaint();
+        });
+        Self::Coming(inbox)
+    }
+
+    fn arrive(&mut self, ui: &Ui) {
+        let Self::Coming(inbox) = self else { return };
+        let Some(bytes) = inbox.borrow_mut().take() else {
+            return;
+        };
+        *self = Self::show(ui, &bytes).unwrap_or(Self::Broken);
+    }
+
+    fn show(ui: &Ui, bytes: &[u8]) -> Option<Self> {
+        let image = examples::decode(bytes)?;
+        let size = image.size.map(|side| side as usize);
+        let pixels = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
+        // A corner of the picture shows its background.
+        let background = *pixels.pixels.first()?;
+        let texture = ui.load_texture("thumbnail", pixels, TextureOptions::LINEAR);
+        Some(Self::Here(texture, background))
+    }
 }
 
 impl Gallery {
@@ -60,18 +103,11 @@ impl Gallery {
 
     fn examples(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         if self.thumbnails.is_empty() {
-            self.thumbnails = examples::ALL
-                .iter()
-                .map(|example| {
-                    let image = examples::decode(example.thumbnail)?;
-                    let size = image.size.map(|side| side as usize);
-                    let pixels = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
-                    // A corner of the picture shows its background.
-                    let background = *pixels.pixels.first()?;
-                    let options = TextureOptions::LINEAR;
-                    Some((ui.load_texture(example.name, pixels, options), background))
-                })
-                .collect();
+            let fetch = |example: &examples::Example| Thumbnail::fetch(ui, example.thumbnail);
+            self.thumbnails = examples::ALL.iter().map(fetch).collect();
+        }
+        for thumbnail in &mut self.thumbnails {
+            thumbnail.arrive(ui);
         }
         let gap = 12.0;
         let columns = ((ui.available_width() + gap) / (190.0 + gap))
@@ -104,7 +140,7 @@ impl Gallery {
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 8.0, if hot { palette.hover } else { palette.button });
         let place = Rect::from_min_size(rect.min, picture);
-        if let Some(Some((texture, background))) = self.thumbnails.get(index) {
+        if let Some(Thumbnail::Here(texture, background)) = self.thumbnails.get(index) {
             let round = CornerRadius {
                 nw: 8,
                 ne: 8,

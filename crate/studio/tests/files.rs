@@ -96,7 +96,7 @@ fn images_and_meshes_are_tabs_that_show_them_and_are_kept_but_not_shared() {
     window.load(TEXT);
     window.edit();
     window.write("# mine\n");
-    let png = examples::ALL[0].thumbnail;
+    let png: &[u8] = include_bytes!("../../../www/examples/cowrie.png");
     take_in(&mut window, &[("wood.png", png), ("tri.obj", OBJ)]);
     window.harness.get_by_label_contains("3 corners, 1 faces");
     let tab = window.place("tab wood.png").center();

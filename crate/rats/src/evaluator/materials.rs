@@ -82,7 +82,7 @@ fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>)
                 fields.not_drawn.push((name, span));
             }
         }
-        // These say how light that is let through bends; `transparent` has warned already.
+        // These say how light bends that is let through: without `transparent`, which warns, none is.
         "index" | "dispersion" => {}
         "shine" => material.shine = given.number("p") as f32,
         "radius" => {

@@ -89,10 +89,16 @@ impl Evaluator<'_> {
             return;
         }
         let Some(spec) = command.spec else { return };
-        let changes = matches!(
-            spec.group(),
-            Group::Camera | Group::Materials | Group::Primitives | Group::Objects
-        ) || matches!(spec.name, "light" | "background" | "shoot");
+        let changes = match spec.group() {
+            Group::Run | Group::Tools => spec.is_library() || spec.name == "test",
+            Group::Options => matches!(
+                spec.name,
+                "soft" | "gamma" | "framesize" | "contrast" | "fragile" | "sample" | "mesh"
+            ),
+            Group::Scene => spec.name != "report",
+            Group::Extensions => spec.name != "seed",
+            _ => true,
+        };
         if changes {
             self.told_after_shot = true;
             self.say(Severity::Warning, command.word_span.clone(), || {

@@ -57,6 +57,8 @@ struct Object<'a> {
 pub struct Model<'a> {
     /// All shapes.
     pub parts: Vec<Part>,
+    /// Objects and chains that could not be begun, whose `close` is still to come.
+    pub refused: usize,
     open: Vec<Object<'a>>,
     closed: HashMap<&'a str, Range<usize>>,
     count: usize,
@@ -204,6 +206,8 @@ impl<'a> Model<'a> {
 
     /// Removes shapes.
     pub fn remove(&mut self, range: Range<usize>) {
+        self.closed
+            .retain(|_, object| object.start < range.start || object.end > range.end);
         for part in &mut self.parts[range] {
             part.removed = true;
         }

@@ -12,26 +12,35 @@ use std::ops::Range;
 
 /// `chain sn, name`
 pub fn chain<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let material = given.name("material");
-    run.material(material)?;
-    let file = run.file;
-    run.model
-        .open(file, given.name("name"), Some(material.clone()))?;
+    let opened = run.given(command).and_then(|given| {
+        let material = given.name("material");
+        run.material(material)?;
+        let file = run.file;
+        run.model
+            .open(file, given.name("name"), Some(material.clone()))
+    });
+    opened.inspect_err(|_| run.model.refused += 1)?;
     Ok(Flow::Next)
 }
 
 /// `object name`
 pub fn object<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let file = run.file;
-    run.model.open(file, given.name("name"), None)?;
+    let opened = run.given(command).and_then(|given| {
+        let file = run.file;
+        run.model.open(file, given.name("name"), None)
+    });
+    // Its `close` will come all the same.
+    opened.inspect_err(|_| run.model.refused += 1)?;
     Ok(Flow::Next)
 }
 
 /// `close [name]`
 pub fn close<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
+    if run.model.refused > 0 {
+        run.model.refused -= 1;
+        return Ok(Flow::Next);
+    }
     if let (Some(name), Some((innermost, (file, span)))) =
         (given.maybe_name("name"), run.model.innermost())
         && name.text != innermost

@@ -136,7 +136,9 @@ pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
         MESH.iter()
             .any(|control| control.name.eq_ignore_ascii_case(word))
     });
-    if !is_control {
+    // A material may be called so: then a file follows.
+    let alone = read.items.len() == read.at + 1;
+    if !is_control || !alone {
         return super::primitives::mesh(run, command);
     }
     read.at += 1;

@@ -72,9 +72,14 @@ fn find_file(run: &Evaluator<'_>, name: &Name<'_>) -> Outcome<usize> {
 pub fn test<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
     let spec = find_command(given.name("command"))?;
-    if given.word("print").is_some() {
+    // These would end or undo the run that they are shown in.
+    let would_harm = matches!(spec.name, "quit" | "reset" | "shoot");
+    if given.word("print").is_some() || would_harm {
         run.say(Severity::Note, command.span.clone(), || {
-            (spec.example.to_owned(), None)
+            let hint = would_harm.then(|| {
+                String::from("it is only shown, as running it would end or undo what is here")
+            });
+            (spec.example.to_owned(), hint)
         });
         return Ok(Flow::Next);
     }
@@ -116,6 +121,7 @@ pub fn quit<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 
 /// `info`
 pub fn info<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.given(command)?;
     run.say(Severity::Note, command.word_span.clone(), || {
         let version = env!("CARGO_PKG_VERSION");
         (format!("Sinew {version}, the language of RATS 7.31"), None)
@@ -125,6 +131,7 @@ pub fn info<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 
 /// `rats`
 pub fn rats<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.given(command)?;
     run.say(Severity::Note, command.word_span.clone(), || {
         (String::from("squeak"), None)
     });
@@ -133,6 +140,7 @@ pub fn rats<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 
 /// `colors`
 pub fn colors<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.given(command)?;
     run.say(Severity::Note, command.word_span.clone(), || {
         let names: Vec<_> = colours::names().collect();
         (

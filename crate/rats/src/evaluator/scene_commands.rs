@@ -18,7 +18,10 @@ pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         match chosen.name {
             "point" => is_distant = false,
             "distant" => is_distant = true,
-            "spot" | "extended" => as_point = Some((chosen.name, chosen.span.clone())),
+            "spot" | "extended" => {
+                is_distant = false;
+                as_point = Some((chosen.name, chosen.span.clone()));
+            }
             _ => {}
         }
     }
@@ -44,6 +47,25 @@ pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         })?;
         LightKind::Point { position }
     };
+    // What says nothing about this kind of light is not passed over in silence.
+    for chosen in &given.options {
+        let counts = match chosen.name {
+            "direction" => is_distant || as_point.is_some(),
+            "position" => !is_distant || direction.is_none(),
+            "angle" => matches!(as_point, Some(("spot", _))),
+            "radius" => matches!(as_point, Some(("extended", _))),
+            _ => true,
+        };
+        if !counts {
+            let name = chosen.name;
+            run.say(Severity::Warning, chosen.span.clone(), || {
+                (
+                    format!("`{name}` says nothing about this kind of light"),
+                    None,
+                )
+            });
+        }
+    }
     if run.lights.len() >= MAX_LIGHTS {
         return Err(Problem::new(
             command.span.clone(),
@@ -163,11 +185,14 @@ pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         }
         if is("cameras") {
             run.camera = Camera::default();
+            run.aimed_at = (run.file, command.span.clone());
             run.vertical = None;
             run.view_plane = super::camera::ViewPlane::default();
         }
         if is("options") {
             run.settings = Settings::default();
+            run.report.no_warnings = false;
+            run.report.no_notes = false;
             run.output = crate::compile::Output::default();
         }
         if is("var") {

@@ -76,8 +76,10 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         restriction: 0.0,
     };
     let mut ignored = Vec::new();
+    let mut of_waves = Vec::new();
     for Chosen { name, span, given } in options {
         match name {
+            "scale" | "times" | "bounds" if method.is_none() => of_waves.push((name, span)),
             "scale" => profile.scale = [given.vector("XYZ").x, given.vector("XYZ").y],
             // A strength is one number: the first of the three.
             "times" => profile.times = given.vector("RGB").x,
@@ -92,7 +94,11 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     }
     let mut texture = run.palette.layers(&layers)?;
     match method {
-        None => {}
+        None => {
+            for (what, span) in ignored.into_iter().chain(of_waves) {
+                not_drawn(run, span, format!("`{what}` of layers"));
+            }
+        }
         Some(Method::Waves(waves)) if target.name == "strength" => {
             texture.layers += 1;
             texture.profile = Some(Profile { waves, ..profile });

@@ -157,6 +157,12 @@ pub fn xor<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
 pub fn show<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let source = &run.sources.all[run.file];
     job(run, command, |given| {
+        if let [_, second, ..] = &given.options[..] {
+            return Err(Problem::new(
+                second.span.clone(),
+                "`show` shows one thing at a time",
+            ));
+        }
         let Some(chosen) = given.options.first() else {
             return Err(
                 Problem::new(command.span.clone(), "`show` needs something to show")

@@ -120,3 +120,15 @@ pub fn has_storage() -> bool {
 
 /// Says in the browser's tab what is open.
 pub fn set_title(_name: &str) {}
+
+/// Reads a file of the page.
+#[must_use]
+pub fn read(path: &str) -> Option<Vec<u8>> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../www");
+    std::fs::read(folder.join(path)).ok()
+}
+
+/// Fetches a file of the page.
+pub fn fetch(path: &str, done: impl FnOnce(Option<Vec<u8>>) + 'static) {
+    done(read(path));
+}

@@ -232,3 +232,20 @@ pub fn set_title(name: &str) {
         document.set_title(&format!("{name} – Sinew"));
     }
 }
+
+/// Fetches a file of the page, and calls back when it is there or cannot be had.
+pub fn fetch(path: &'static str, done: impl FnOnce(Option<Vec<u8>>) + 'static) {
+    wasm_bindgen_futures::spawn_local(async move {
+        done(bytes_of(path).await.ok());
+    });
+}
+
+async fn bytes_of(path: &str) -> Result<Vec<u8>, JsValue> {
+    let response = JsFuture::from(window().fetch_with_str(path)).await?;
+    let response: web_sys::Response = response.unchecked_into();
+    if !response.ok() {
+        return Err(JsValue::from(response.status()));
+    }
+    let buffer = JsFuture::from(response.array_buffer()?).await?;
+    Ok(js_sys::Uint8Array::new(&buffer).to_vec())
+}

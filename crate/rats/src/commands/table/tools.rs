@@ -23,7 +23,6 @@ pub static TOOLS: &[CommandSpec] = &[
         .example("animate one.png two.png loop"),
     row("play", "play a film", does(tools::play))
         .takes(&[FILE])
-        .options(o::ANIMATE)
         .details(WORK)
         .example("play film.gif"),
     row("split", "split a film into pictures", does(tools::split))
