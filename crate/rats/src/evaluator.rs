@@ -22,6 +22,7 @@ pub mod textures;
 pub mod tools;
 pub mod variables;
 pub mod watch;
+mod words;
 
 use crate::commands::{self, Action};
 use crate::compile::{Compiled, HotVariable, Output, Placement};
@@ -152,6 +153,7 @@ impl<'a> Evaluator<'a> {
             self.check_open_objects();
         }
         self.check_camera();
+        self.check_words();
         let (scene, placements) = match self.shot.take() {
             Some(shot) => shot,
             None => self.picture(),
@@ -384,24 +386,27 @@ impl<'a> Evaluator<'a> {
             let in_chain = self.model.chain.is_some();
             let mut read = self.reader(command);
             read.more();
-            let at = read.at;
-            match read.datum() {
-                // A parameter of a defined command that stands for the material.
-                Some(Datum::Word(symbol))
-                    if in_chain && matches!(read.scope.get(symbol), Some(Value::Name(_))) =>
-                {
-                    skipped = at + 1;
-                }
-                // `sphere 1 0 0 0`: better say this than that a coordinate is missing at the end.
-                Some(Datum::Number(_)) if !in_chain => {
-                    let (here, found) = (read.here(), read.found().unwrap_or_default());
-                    if !self.palette.has(found) {
+            let (at, datum, here) = (read.at, read.datum(), read.here());
+            let found = read.found().unwrap_or_default();
+            match datum {
+                Some(Datum::Word(symbol)) if in_chain => match self.scope.get(symbol) {
+                    // A parameter of a defined command that stands for the material.
+                    Some(Value::Name(_)) => skipped = at + 1,
+                    None if self.palette.has(self.scope.symbols.word(symbol)) => {
                         return Err(Problem::new(
                             here,
-                            format!("expected the material's name, found `{found}`"),
-                        )
-                        .hint(spec.usage()));
+                            "shapes of a chain leave out the material's name: the chain gives it",
+                        ));
                     }
+                    _ => {}
+                },
+                // `sphere 1 0 0 0`: better say this than that a coordinate is missing at the end.
+                Some(Datum::Number(_)) if !in_chain && !self.palette.has(found) => {
+                    return Err(Problem::new(
+                        here,
+                        format!("expected the material's name, found `{found}`"),
+                    )
+                    .hint(spec.usage()));
                 }
                 _ => {}
             }

@@ -78,7 +78,13 @@ impl Reader<'_, '_> {
         }
         let value = self.binary(0, "a condition")?;
         if self.at < self.items.len() {
-            return Err(self.expected("`{` after the condition"));
+            let problem = self.expected("`{` after the condition");
+            return Err(match self.datum() {
+                Some(Datum::Sign(b'=' | b'<' | b'>' | b'!')) => {
+                    problem.hint("comparisons are ==, !=, <, <=, > and >=")
+                }
+                _ => problem,
+            });
         }
         match value {
             Value::Scalar(number) => Ok(number != 0.0),

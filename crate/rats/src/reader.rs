@@ -12,6 +12,9 @@ use crate::syntax::{Command, Datum, Item};
 use crate::value::Value;
 use std::ops::Range;
 
+/// Bytes of a text that a message quotes.
+const LONGEST_QUOTE: usize = 60;
+
 /// A user's name: of a material, an object, a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name<'a> {
@@ -117,7 +120,9 @@ impl<'e, 'a> Reader<'e, 'a> {
 
     /// The text of the next item.
     pub(crate) fn found(&self) -> Option<&'a str> {
-        self.items.get(self.at).map(|item| &self.text[item.span()])
+        let text = &self.text[self.items.get(self.at)?.span()];
+        // A word can be as long as the text.
+        Some(&text[..text.floor_char_boundary(LONGEST_QUOTE)])
     }
 
     /// The problem that `what` is missing or something else stands there.

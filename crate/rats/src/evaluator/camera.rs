@@ -24,7 +24,17 @@ pub struct ViewPlane {
 /// `eyep XYZ`
 pub fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     run.camera.eye = run.given(command)?.vector("XYZ");
-    run.view_plane = ViewPlane::default();
+    let before = std::mem::take(&mut run.view_plane);
+    if before.cp.is_some() || before.normal.is_some() || before.window.is_some() {
+        run.say(Severity::Note, command.word_span.clone(), || {
+            (
+                String::from("`cp`, `vpn` and `window` from before do not count any more"),
+                Some(String::from(
+                    "there are two kinds of camera; the last one counts",
+                )),
+            )
+        });
+    }
     run.aimed_at = (run.file, command.span.clone());
     Ok(Flow::Next)
 }

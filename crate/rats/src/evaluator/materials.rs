@@ -1,6 +1,6 @@
 //! `surface` and its synonym `material`.
 
-use super::palette::Surface;
+use super::palette::{Colours, Surface};
 use super::{Evaluator, Flow};
 use crate::Severity;
 use crate::given::Chosen;
@@ -22,13 +22,9 @@ pub fn surface<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
     Ok(Flow::Next)
 }
 
-/// The fields as the text gives them; per cents refer to fields that may come later.
+/// What the fields say besides the material itself.
 #[derive(Debug, Default)]
 struct Fields<'a> {
-    body: Option<Rgb>,
-    ambient: Option<Share>,
-    diffuse: Option<Share>,
-    specular: Option<Share>,
     textures: Vec<Name<'a>>,
     not_drawn: Vec<(&'static str, Range<usize>)>,
 }
@@ -42,6 +38,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         Some(old) => run.palette.surfaces[run.material(old)?].clone(),
         None => Surface {
             material: Material::default(),
+            colours: Colours::default(),
             origin: (0, 0..0),
             used: false,
         },
@@ -52,7 +49,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     for chosen in given.options {
         field(chosen, &mut surface, &mut fields)?;
     }
-    settle_colours(&mut surface.material, &fields, old.is_some());
+    settle_colours(&mut surface.material, &surface.colours);
     surface.material.name = name.text.to_owned();
     if !fields.textures.is_empty() {
         let layers = run.palette.layers(&fields.textures)?;
@@ -70,10 +67,10 @@ fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>)
     let Chosen { name, span, given } = chosen;
     let material = &mut surface.material;
     match name {
-        "body" => fields.body = Some(given.colour("RGB")),
-        "ambient" => fields.ambient = Some(given.share()),
-        "diffuse" => fields.diffuse = Some(given.share()),
-        "specular" => fields.specular = Some(given.share()),
+        "body" => surface.colours.body = Some(given.colour("RGB")),
+        "ambient" => surface.colours.ambient = Some(given.share()),
+        "diffuse" => surface.colours.diffuse = Some(given.share()),
+        "specular" => surface.colours.specular = Some(given.share()),
         "reflective" | "transparent" => {
             if !matches!(
                 given.share(),
@@ -112,29 +109,29 @@ fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>)
     Ok(())
 }
 
-/// The colours that follow from the fields given. A copy keeps those that are not given.
-fn settle_colours(material: &mut Material, fields: &Fields<'_>, is_copy: bool) {
+/// The colours that follow from those the text gives.
+fn settle_colours(material: &mut Material, colours: &Colours) {
     let scaled = |colour: Rgb, share: f32| colour.map(|c| c * share);
-    let diffuse = match fields.diffuse {
-        Some(Share::Colour(colour)) => Some(colour),
-        Some(Share::Percent(share)) => Some(scaled(fields.body.unwrap_or(material.diffuse), share)),
-        None => fields.body,
-    };
-    if let Some(diffuse) = diffuse {
-        material.diffuse = diffuse;
-    }
-    let body = fields.body.unwrap_or(material.diffuse);
-    material.ambient = match fields.ambient {
+    let own = Material::default();
+    let body = colours.body.unwrap_or(match colours.diffuse {
+        Some(Share::Colour(colour)) => colour,
+        _ => own.diffuse,
+    });
+    material.diffuse = match colours.diffuse {
         Some(Share::Colour(colour)) => colour,
         Some(Share::Percent(share)) => scaled(body, share),
-        None if is_copy && diffuse.is_none() => material.ambient,
+        None => body,
+    };
+    material.ambient = match colours.ambient {
+        Some(Share::Colour(colour)) => colour,
+        Some(Share::Percent(share)) => scaled(body, share),
         None => scaled(material.diffuse, Material::AMBIENT_SHARE),
     };
-    match fields.specular {
-        Some(Share::Colour(colour)) => material.specular = colour,
-        Some(Share::Percent(share)) => material.specular = [share; 3],
-        None => {}
-    }
+    material.specular = match colours.specular {
+        Some(Share::Colour(colour)) => colour,
+        Some(Share::Percent(share)) => [share; 3],
+        None => own.specular,
+    };
 }
 
 impl Evaluator<'_> {

@@ -4,11 +4,12 @@
 //! dataset can vary one material along a row of shapes.
 
 use crate::limits::{MAX_LAYERS, MAX_MATERIALS};
+use crate::operands::Share;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
 use field::Profile;
-use scene::Material;
+use scene::{Material, Rgb};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -17,10 +18,25 @@ use std::ops::Range;
 pub struct Surface {
     /// The material.
     pub material: Material,
+    /// The colours it was made with, which a copy goes on from.
+    pub colours: Colours,
     /// The file and place of its name.
     pub origin: (usize, Range<usize>),
     /// Whether a shape is made of it.
     pub used: bool,
+}
+
+/// The colours of a material as the text gives them; shares refer to others.
+#[derive(Clone, Debug, Default)]
+pub struct Colours {
+    /// `body`
+    pub body: Option<Rgb>,
+    /// `ambient`
+    pub ambient: Option<Share>,
+    /// `diffuse`
+    pub diffuse: Option<Share>,
+    /// `specular`
+    pub specular: Option<Share>,
 }
 
 /// A texture, as far as this version draws it.

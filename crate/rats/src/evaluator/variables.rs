@@ -61,6 +61,12 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
                 let numbers = slider(&mut read)?;
                 hot = Some((read.since(here), numbers));
             } else if let Some(change) = per_frame(&mut read)? {
+                if animated.is_some() {
+                    return Err(Problem::new(
+                        change.1,
+                        "a variable changes in one way with every frame",
+                    ));
+                }
                 animated = Some(change);
             } else {
                 break;
@@ -89,6 +95,13 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     if let Some((change, span)) = animated {
         run.animated = true;
         let now = run.scope.get(name).unwrap_or(Value::Scalar(0.0));
+        if let (Value::Scalar(_), Change::Add(Value::Vector(_) | Value::Colour(_))) = (now, change)
+        {
+            return Err(Problem::new(
+                span,
+                format!("`{word}` is a number, so its change with every frame must be one"),
+            ));
+        }
         let value = moved(now, change, run.frame);
         if !value.all(|x| x.abs() <= MAX_MAGNITUDE) {
             return Err(Problem::new(
