@@ -9,7 +9,6 @@ use rats::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use studio::app::Parts;
-use studio::examples;
 use studio::intake::Taken;
 use studio::request::Request;
 use studio::{platform, share, storage};

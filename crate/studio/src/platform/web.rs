@@ -5,6 +5,7 @@ use crate::request::{Request, Requests};
 use crate::storage::Store;
 use std::collections::BTreeMap;
 use wasm_bindgen::{JsCast, JsValue, closure::Closure};
+use wasm_bindgen_futures::JsFuture;
 
 fn window() -> web_sys::Window {
     web_sys::window().expect("the app runs in a page, not in a worker")
