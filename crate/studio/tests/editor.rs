@@ -285,16 +285,14 @@ fn typing_in_a_long_text_does_not_wait_for_answers() {
     at_end(&mut window);
     window.steps(10);
     // A remark has neither completions nor a line at the caret.
-    let mut without = frames(&mut window, "# sphere");
+    let without = frames(&mut window, "# sphere");
     window.key(Modifiers::NONE, Key::Enter);
-    let mut with = frames(&mut window, "sphere fl");
+    let with = frames(&mut window, "sphere fl");
     window.steps(2);
     assert!(window.text() == format!("{text}# sphere\nsphere fl"));
-    let median = |times: &mut Vec<f64>| {
-        times.sort_by(f64::total_cmp);
-        times[times.len() / 2]
-    };
-    let (without, with) = (median(&mut without), median(&mut with));
+    // The quickest frame is the one that least was taken from by others.
+    let quickest = |times: Vec<f64>| times.into_iter().fold(f64::INFINITY, f64::min);
+    let (without, with) = (quickest(without), quickest(with));
     let compile = window.parts.outbox.borrow().report.timings.compile;
     println!(
         "a frame: {without:.3} s in a remark, {with:.3} s in a command, {compile:.3} s of it for compiling"
