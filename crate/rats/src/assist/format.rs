@@ -1,9 +1,10 @@
-//! Lays a text out: indentation, one space between operands, spaces around `=`.
+//! Lays a text out: indentation, space around `=` and after commas, two spaces before remarks.
 //!
-//! Lines stay lines, so the writer's own grouping is kept. In this language a space can mean something
-//! (`1 -2` is two operands, `1 - 2` is one; `a ^b` is not the name `a^b`), so where there was space there
-//! is one, and where there was none there is none, but for a few places where the parser does not look:
-//! after commas, at braces, around the `=` of an assignment and around comparisons.
+//! Lines stay lines and columns stay columns, so the writer's own grouping is kept. In this language a
+//! space can mean something (`1 -2` is two operands, `1 - 2` is one; `a ^b` is not the name `a^b`), so
+//! where there was space there is as much, and where there was none there is none, but for a few places
+//! where the parser does not look: after commas, at braces, around the `=` of an assignment and around
+//! comparisons.
 
 use super::walk;
 use crate::lexer::{Token, TokenKind, lex};
@@ -213,8 +214,8 @@ struct Page {
     fresh_line: bool,
     /// Whether an empty line comes before the next one.
     blank: bool,
-    /// Whether there was space before the next token.
-    gap: bool,
+    /// How wide the space before the next token was.
+    gap: usize,
     /// The last token written.
     last: Option<usize>,
 }
@@ -226,7 +227,7 @@ impl Default for Page {
             levels: Vec::new(),
             fresh_line: true,
             blank: false,
-            gap: false,
+            gap: 0,
             last: None,
         }
     }
@@ -241,7 +242,12 @@ impl Page {
             return;
         }
         match token.kind {
-            TokenKind::Space => self.gap = true,
+            TokenKind::Space => {
+                let space = &text[token.range()];
+                // Only spaces make columns that look alike everywhere.
+                let is_column = space.bytes().all(|byte| byte == b' ');
+                self.gap = if is_column { space.len() } else { 1 };
+            }
             TokenKind::Newline => {
                 if self.fresh_line {
                     self.blank = !self.out.is_empty();
@@ -249,7 +255,7 @@ impl Page {
                     self.out.push('\n');
                 }
                 self.fresh_line = true;
-                self.gap = false;
+                self.gap = 0;
             }
             _ => {
                 if self.fresh_line {
@@ -258,7 +264,7 @@ impl Page {
                     let gap = self.space_before(text, tokens, marks, index);
                     self.out.extend(std::iter::repeat_n(' ', gap));
                 }
-                self.gap = false;
+                self.gap = 0;
                 self.out += text[token.range()].trim_end();
                 self.last = Some(index);
                 self.change_level(text, token, mark);
@@ -299,19 +305,19 @@ impl Page {
         let there = &text[before.range()];
         let is_operand = |token: Token| matches!(token.kind, TokenKind::Word | TokenKind::Number);
         if token.kind == TokenKind::Comment {
-            return 2;
+            return self.gap.max(2);
         }
         if marks.0[last].verbatim {
-            return usize::from(self.gap || here == "}");
+            return usize::from(self.gap > 0 || here == "}");
         }
         let wanted = match (there, here) {
             ("{", "}") => false,
             ("{" | "}" | ",", _) | (_, "{" | "}") => true,
             (")" | ">", ",") => false,
             (_, ",") if is_operand(before) => false,
-            _ => self.gap || marks.0[last].after || marks.0[index].before,
+            _ => self.gap > 0 || marks.0[last].after || marks.0[index].before,
         };
-        usize::from(wanted)
+        if wanted { self.gap.max(1) } else { 0 }
     }
 
     fn change_level(&mut self, text: &str, token: Token, mark: Mark) {

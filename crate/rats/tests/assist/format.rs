@@ -41,12 +41,13 @@ fn levels() {
 fn spaces() {
     check(
         "var  a=1 ,-2,3   hot   # x  ",
-        "var a = 1, -2, 3 hot  # x\n",
+        "var  a = 1, -2, 3   hot   # x\n",
     );
     check("var a=1 *=2", "var a = 1 *= 2\n");
     check("var a += 1", "var a += 1\n");
     check("var a = -b+2 * c", "var a = -b+2 * c\n");
-    check("sphere s 1   1 -2 - 3  4", "sphere s 1 1 -2 - 3 4\n");
+    check("sphere s 1   1 -2 - 3  4", "sphere s 1   1 -2 - 3  4\n");
+    check("sphere s 1\t1 0 0 # x", "sphere s 1 1 0 0  # x\n");
     check("surface s=t,diff Red", "surface s = t, diff Red\n");
     check(
         "texture t pigment a=b.png plain",
@@ -66,6 +67,20 @@ fn spaces() {
     check("\u{feff}quit\r\n\r\n\r\n\r\n# a\t \r\n", "quit\n\n# a\n");
     check("\n\n\n", "");
     check("", "");
+}
+
+/// What we give to read is laid out as we lay it out.
+#[test]
+fn examples_and_library() {
+    let texts = examples()
+        .into_iter()
+        .map(|project| project.files[0].text.clone());
+    let library = rats::library::FILES
+        .iter()
+        .map(|(_, text)| (*text).to_owned());
+    for text in texts.chain(library) {
+        assert_eq!(format(&text), text);
+    }
 }
 
 #[test]
