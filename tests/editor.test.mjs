@@ -2,7 +2,7 @@
 // editing by hand in the picture.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { launch, PATIENCE } from './page.mjs';
+import { launch } from './page.mjs';
 
 const TEXT = `framesize 200 160
 eyep 0 0 8
@@ -43,7 +43,7 @@ async function onScreen([x, y, z]) {
 }
 
 const written = (wanted) =>
-  sinew.page.waitForFunction((wanted) => sinew.text().includes(wanted), wanted, { timeout: PATIENCE });
+  sinew.page.waitForFunction((wanted) => sinew.text().includes(wanted), wanted, { timeout: 30_000 });
 
 test('a command is completed as it is typed', async () => {
   await toTheEnd();
@@ -52,11 +52,10 @@ test('a command is completed as it is typed', async () => {
   await sinew.keep('completions');
   await sinew.page.keyboard.press('Enter');
   await written('\ntorus');
-  await sinew.page.keyboard.type('Cl');
+  await sinew.page.keyboard.type(' Cl');
   await sinew.place('completions');
   await sinew.page.keyboard.press('Tab');
   await written('torus Clay');
-  await sinew.page.keyboard.press('Escape');
   await sinew.page.keyboard.type(' 2, 0.2, 0 0 0, ');
   await sinew.place('signature');
   await sinew.keep('signature');
@@ -94,7 +93,7 @@ test('a click on the surface goes to its line, and its handle moves the numbers'
   await sinew.page.waitForFunction(
     () => Object.keys(sinew.debug.rects()).some((name) => name.startsWith('hand ')),
     undefined,
-    { timeout: PATIENCE },
+    { timeout: 30_000 },
   );
   await sinew.keep('chosen');
   const centre = (await handles()).find((name) => name.includes('centre'));
@@ -106,7 +105,7 @@ test('a click on the surface goes to its line, and its handle moves the numbers'
   await sinew.page.mouse.move(x + w / 2, y + h / 2 - 40, { steps: 8 });
   await sinew.keep('dragging');
   await sinew.page.mouse.up();
-  await sinew.page.waitForFunction((text) => sinew.text() !== text, TEXT, { timeout: PATIENCE });
+  await sinew.page.waitForFunction((text) => sinew.text() !== text, TEXT, { timeout: 30_000 });
   const moved = await sinew.text();
   const line = moved.split('\n')[5];
   const numbers = /^sphere Clay 0.8, (\S+) (\S+) (\S+)   # the second one$/.exec(line);
@@ -115,7 +114,7 @@ test('a click on the surface goes to its line, and its handle moves the numbers'
   assert.ok(Number(numbers[2]) > 0.2, line);
   assert.equal(moved.split('\n').toSpliced(5, 1).join(), TEXT.split('\n').toSpliced(5, 1).join(), 'nothing else changed');
   await sinew.page.keyboard.press('Control+Z');
-  await sinew.page.waitForFunction((text) => sinew.text() === text, TEXT, { timeout: PATIENCE });
+  await sinew.page.waitForFunction((text) => sinew.text() === text, TEXT, { timeout: 30_000 });
 });
 
 test('the text is laid out anew', async () => {
