@@ -3,6 +3,7 @@
 
 mod answers;
 mod completion;
+mod folding;
 mod hover;
 mod rename;
 mod signature;
@@ -39,6 +40,7 @@ pub struct Editor {
     buffer: String,
     synced: Option<(u64, usize)>,
     colouring: Colouring,
+    folding: folding::Folding,
     marks: Marks,
     jump: Option<Range<usize>>,
     place: Option<usize>,
@@ -101,6 +103,7 @@ impl Editor {
     pub fn reset(&mut self, ctx: &egui::Context) {
         self.open(0);
         self.completions.close();
+        self.folding.clear();
         self.rename = None;
         self.synced = None;
         self.caret = None;
@@ -181,9 +184,15 @@ impl Editor {
         commands: &mut Vec<Command>,
     ) -> Option<(Rect, Place)> {
         let dark = ui.visuals().dark_mode;
-        let colouring = &mut self.colouring;
+        let wanted = self.jump.as_ref().map(|range| range.start).or(self.place);
+        if let Some(byte) = wanted {
+            let line = line_of(&self.buffer, byte);
+            self.folding.reveal(self.file, line);
+        }
+        let (colouring, folding, file) = (&mut self.colouring, &mut self.folding, self.file);
         let mut layouter = |ui: &Ui, text: &dyn TextBuffer, width: f32| {
             let job = colouring.job(text.as_str(), palette, dark, width);
+            let job = folding::hide(job, &folding.update(file, text.as_str()));
             ui.fonts_mut(|fonts| fonts.layout_job(job))
         };
         let margin = Margin {
@@ -239,8 +248,9 @@ impl Editor {
             ui.scroll_to_rect(around, None);
         } else if let Some(range) = output.cursor_range {
             let byte = to_bytes(&self.buffer, range.primary.index.0);
+            let byte = self.out_of_folds(ui, byte, &mut state);
             self.caret = Some((self.file, byte));
-            self.line = self.buffer[..byte].matches('\n').count() + 1;
+            self.line = line_of(&self.buffer, byte) + 1;
         }
         if let Some((file, range)) = &self.lit
             && *file == self.file
@@ -257,7 +267,11 @@ impl Editor {
         }
         self.marks.paint(ui.painter(), palette, &galley, origin);
         let focused = ui.memory(|memory| memory.has_focus(id()));
-        self.line_numbers(ui, palette, &galley, origin, focused);
+        let rows = self.line_numbers(ui, palette, &galley, origin, focused);
+        let x = origin.x - gutter.min(120.0) + 9.0;
+        if let Some(line) = self.folding.show(ui, palette, self.file, &rows, x) {
+            self.fold(ui, line);
+        }
         self.pointed(
             &output.response.response,
             session,
@@ -276,6 +290,10 @@ impl Editor {
     fn keys(&mut self, ui: &Ui) -> bool {
         if !ui.memory(|memory| memory.has_focus(id())) {
             return false;
+        }
+        let folds = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F8));
+        if let (true, Some((_, byte))) = (folds, self.caret) {
+            self.fold(ui, line_of(&self.buffer, byte));
         }
         let Some(mut state) = TextEdit::load_state(ui.ctx(), id()) else {
             return false;
@@ -321,7 +339,8 @@ impl Editor {
         galley: &Galley,
         origin: Pos2,
         focused: bool,
-    ) {
+    ) -> Vec<(usize, Rect)> {
+        let mut rows = Vec::new();
         let painter = ui.painter();
         let clip = painter.clip_rect();
         let font = FontId::monospace(11.5);
@@ -329,7 +348,10 @@ impl Editor {
         let mut starts = true;
         for row in &galley.rows {
             let rect = row.rect().translate(origin.to_vec2());
-            if starts && rect.bottom() >= clip.top() && rect.top() <= clip.bottom() {
+            // Folded lines have no height.
+            let is_seen = rect.bottom() >= clip.top() && rect.top() <= clip.bottom();
+            if starts && is_seen && rect.height() > 2.0 {
+                rows.push((line - 1, rect));
                 let here = focused && line == self.line;
                 let colour = if here { palette.text } else { palette.comment };
                 painter.text(
@@ -350,7 +372,70 @@ impl Editor {
             starts = row.ends_with_newline;
             line += usize::from(starts);
         }
+        rows
     }
+
+    /// Folds or unfolds what is around a line, and takes the caret out of what is folded.
+    fn fold(&mut self, ui: &Ui, line: usize) {
+        let shut = self.folding.toggle(self.file, line);
+        if let (Some(shut), Some((_, byte))) = (shut, self.caret)
+            && (shut.start + 1..shut.end).contains(&line_of(&self.buffer, byte))
+        {
+            self.place = Some(end_of_line(&self.buffer, shut.start));
+        }
+        ui.ctx().request_repaint();
+    }
+
+    /// The caret's place, which no arrow key puts into folded lines; any other way there opens them.
+    fn out_of_folds(
+        &mut self,
+        ui: &Ui,
+        byte: usize,
+        state: &mut egui::text_edit::TextEditState,
+    ) -> usize {
+        let line = line_of(&self.buffer, byte);
+        let Some(fold) = self.folding.hiding(self.file, line) else {
+            return byte;
+        };
+        let arrows = [
+            Key::ArrowUp,
+            Key::ArrowDown,
+            Key::ArrowLeft,
+            Key::ArrowRight,
+        ];
+        if !ui.input(|input| arrows.iter().any(|key| input.key_pressed(*key))) {
+            self.folding.reveal(self.file, line);
+            ui.ctx().request_repaint();
+            return byte;
+        }
+        let lines = self.buffer.matches('\n').count() + 1;
+        let went_down = self.line <= fold.start + 1;
+        let target = if went_down && fold.end < lines {
+            fold.end
+        } else {
+            fold.start
+        };
+        let byte = if went_down && target == fold.end {
+            end_of_line(&self.buffer, target - 1) + 1
+        } else {
+            end_of_line(&self.buffer, target)
+        };
+        let cursor = CCursor::new(to_chars(&self.buffer, byte));
+        state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
+        state.clone().store(ui.ctx(), id());
+        byte
+    }
+}
+
+/// The line of a byte, from 0.
+fn line_of(text: &str, byte: usize) -> usize {
+    text[..text.floor_char_boundary(byte)].matches('\n').count()
+}
+
+/// The byte at the end of a line, before its line end.
+fn end_of_line(text: &str, line: usize) -> usize {
+    let ends = text.match_indices('\n').map(|(at, _)| at);
+    ends.skip(line).chain([text.len()]).next().unwrap_or(0)
 }
 
 /// Whether letters were typed, on a keyboard or on a phone's.

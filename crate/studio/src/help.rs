@@ -36,7 +36,7 @@ const LANGUAGE: [(&str, &str); 9] = [
     ("# words", "a remark"),
 ];
 
-const KEYS: [(&str, &str); 14] = [
+const KEYS: [(&str, &str); 15] = [
     ("drag", "turn the model"),
     ("shift-drag, right-drag, two fingers", "move it"),
     ("wheel, pinch", "zoom"),
@@ -55,6 +55,7 @@ const KEYS: [(&str, &str); 14] = [
     ("F1", "the manual of the command at the caret"),
     ("F12, Ctrl+click", "go to where a name is made"),
     ("F2", "give a name another one, everywhere"),
+    ("F8", "fold the block at the caret, or unfold it"),
     ("Ctrl+Shift+F", "lay the text out neatly"),
     ("Ctrl+S", "save the picture as PNG"),
 ];

@@ -303,3 +303,33 @@ fn typing_in_a_long_text_does_not_wait_for_answers() {
         "{with} s, {without} s in a remark"
     );
 }
+
+#[test]
+fn blocks_fold_with_f8_and_with_their_triangles() {
+    let text = "surface flesh diffuse Red\nobject A\n  sphere flesh 1 0 0 0\n  sphere flesh 1 1 0 0\nclose\ninfo\n";
+    let mut window = Window::with_text(text);
+    at_end(&mut window);
+    window.key(Modifiers::CTRL, Key::Home);
+    window.key(Modifiers::NONE, Key::ArrowDown);
+    window.steps(2);
+    window.harness.get_by_label("Fold line 2");
+    window.key(Modifiers::NONE, Key::F8);
+    window.steps(2);
+    window.harness.get_by_label("Unfold line 2");
+    // What is typed goes to the line that is seen, and nothing is lost.
+    window.key(Modifiers::NONE, Key::ArrowDown);
+    window.key(Modifiers::NONE, Key::Home);
+    window.write("# ");
+    assert_eq!(window.text(), text.replace("info", "# info"));
+    window.key(Modifiers::NONE, Key::ArrowUp);
+    window.key(Modifiers::NONE, Key::End);
+    window.write("B");
+    assert_eq!(
+        window.text(),
+        text.replace("info", "# info")
+            .replace("object A", "object AB")
+    );
+    window.harness.get_by_label("Unfold line 2").click();
+    window.steps(2);
+    window.harness.get_by_label("Fold line 2");
+}
