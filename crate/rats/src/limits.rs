@@ -11,8 +11,10 @@ pub const MAX_FILES: usize = 64;
 /// Commands run plus operands evaluated, with heavier work charged more. Long before this a person
 /// would have given up waiting; a few tenths of a second at most.
 pub const MAX_STEPS: u64 = 1_500_000;
+/// What the call of a defined command costs in steps, besides its arguments and its body.
+pub const STEPS_PER_CALL: u64 = 12;
 /// What one error costs in steps, so that a loop of errors ends soon too.
-pub const STEPS_PER_ERROR: u64 = 2000;
+pub const STEPS_PER_ERROR: u64 = 4000;
 /// What reading a command's operands costs in steps, besides one for each: lists are made of them.
 pub const STEPS_PER_OPERANDS: u64 = 2;
 /// Files read from files.
