@@ -10,7 +10,7 @@ pub const MAX_TEXT: usize = 1024 * 1024;
 pub const MAX_FILES: usize = 64;
 /// Commands run plus operands evaluated, with heavier work charged more. Long before this a person
 /// would have given up waiting; a few tenths of a second at most.
-pub const MAX_STEPS: u64 = 1_500_000;
+pub const MAX_STEPS: u64 = 1_250_000;
 /// What the call of a defined command costs in steps, besides its arguments and its body.
 pub const STEPS_PER_CALL: u64 = 12;
 /// What one error costs in steps, so that a loop of errors ends soon too.
@@ -36,7 +36,7 @@ pub const MAX_CORNERS: usize = 800;
 /// As how many shapes a curve counts, or a limb that tapers: it is integrated piece by piece.
 pub const CURVE_WEIGHT: usize = 64;
 /// Objects and chains in a scene.
-pub const MAX_OBJECTS: usize = 200_000;
+pub const MAX_OBJECTS: usize = 100_000;
 /// Objects inside each other.
 pub const MAX_NESTED_OBJECTS: usize = 16;
 /// Materials in a scene.
