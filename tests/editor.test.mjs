@@ -118,7 +118,7 @@ test('a click on the surface goes to its line, and its handle moves the numbers'
 });
 
 test('the text is laid out anew', async () => {
-  await sinew.load('object A\nsphere  Clay 1,0 0 0\nclose\n');
+  await sinew.load('object A\nsphere Clay 1,0 0 0\nclose\n');
   await sinew.click('lay out');
   await written('  sphere Clay 1, 0 0 0');
 });

@@ -76,8 +76,10 @@ fn is_ours(event: &Event) -> bool {
         return false;
     };
     match key {
-        Key::Enter | Key::Tab => true,
-        Key::Z | Key::Y | Key::S | Key::Slash => {
+        Key::Enter | Key::Tab | Key::Escape => true,
+        // What they are about stands where the arrow keys before them went.
+        Key::F1 | Key::F2 | Key::F8 | Key::F12 => true,
+        Key::Z | Key::Y | Key::S | Key::F | Key::Slash | Key::Space => {
             modifiers.contains(Modifiers::COMMAND) || modifiers.command || modifiers.ctrl
         }
         _ => false,
