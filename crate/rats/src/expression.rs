@@ -324,6 +324,10 @@ impl Reader<'_, '_> {
         if arguments.is_empty() && matches!(function.run, Run::Random) {
             return Ok(Value::Scalar(self.scope.random.draw()));
         }
+        if matches!(function.run, Run::Noise) {
+            // It draws two dozen random numbers.
+            self.scope.step(12, &self.here())?;
+        }
         functions::apply(function, &arguments)
             .map_err(|message| Problem::new(self.since(start), message).hint(function.meaning))
     }
