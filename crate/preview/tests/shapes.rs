@@ -83,7 +83,8 @@ fn compare_pixels(gpu: &Gpu, what: &str, shapes: &[Shape], camera: Camera) -> u3
     }
     let name = &gpu.name;
     // The cells of a quadric are flat, so its outlines are off by a small part of a pixel; where two
-    // of them nearly touch, a pixel that is uniform in the reference may see between them.
+    // of them nearly touch, a pixel that is uniform in the reference may see between them, and at the
+    // rim of its box the normals of a sliver's corners lie far apart.
     let has_cells = shapes.iter().any(|s| matches!(s, Shape::Quadric(_)));
     let (few, share) = if has_cells { (2, 0.04) } else { (0, 0.02) };
     assert!(
@@ -97,7 +98,7 @@ fn compare_pixels(gpu: &Gpu, what: &str, shapes: &[Shape], camera: Camera) -> u3
         "{what} on {name}: {edge_wrong} of {edges} edge pixels differ"
     );
     assert!(
-        turned.is_empty(),
+        turned.len() <= few,
         "{what} on {name}: {} normals, {:?}",
         turned.len(),
         &turned[..turned.len().min(5)]
