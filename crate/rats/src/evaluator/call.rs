@@ -42,7 +42,8 @@ impl<'a> Evaluator<'a> {
         let Some(&(file, define)) = self.definitions.get(&symbol) else {
             return Err(self.unknown(command));
         };
-        self.scope.step(limits::STEPS_PER_CALL, &command.word_span)?;
+        self.scope
+            .step(limits::STEPS_PER_CALL, &command.word_span)?;
         let values = self.arguments(command, define)?;
         if self.scope.calls() >= limits::MAX_NESTED_CALLS {
             return Err(Problem::new(

@@ -182,6 +182,21 @@ impl Evaluator<'_> {
                 (0.5 * (left + rightmost) - cp.x) / half,
                 (0.5 * (low + high) - cp.y) / half,
             ];
+            // Beyond this a picture shows nothing but rays side by side.
+            if !camera.shift.iter().all(|shift| shift.abs() <= 1e3) {
+                camera.shift = [0.0; 2];
+                let (file, span) = plane.place.clone();
+                self.say_at(file, Severity::Error, span, || {
+                    (
+                        String::from(
+                            "the window is too small, or too far from the centre of projection",
+                        ),
+                        Some(String::from(
+                            "put the middle of the window nearer to `cp`'s x and y",
+                        )),
+                    )
+                });
+            }
             let [width, height] = self.settings.frame.map(f64::from);
             let shown = (rightmost - left) * height / width;
             if (shown / (high - low) - 1.0).abs() > 0.05 {

@@ -275,7 +275,8 @@ mod tests {
             Color32::RED,
             100.0,
         );
-        let job = hide(job, &[4..8]);
+        let hidden = 4..8;
+        let job = hide(job, std::slice::from_ref(&hidden));
         let sizes: Vec<_> = job
             .sections
             .iter()
