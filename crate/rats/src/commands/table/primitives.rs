@@ -100,7 +100,7 @@ pub static PRIMITIVES: &[CommandSpec] = &[
         ])
         .details("Phong's shading: the normal varies between the corners. Soft: a triangle.")
         .example(clay!("patch Clay, <-2 -1.5 0> <-1 0 1>, <2 -1.5 0> <1 0 1>, <0 2 0> <0 1 1>")),
-    row("torus", "torus", run(primitives::torus))
+    row("torus", "ring of a round tube", run(primitives::torus))
         .takes(&[
             SN,
             length("a", "the sweep radius"),
