@@ -648,3 +648,25 @@ fn a_file_called_like_one_of_the_library() {
         scene("surface s diff Red\ndefine sphereflake(n) { sphere s n 0 0 0 }\nsphereflake 2");
     assert_eq!(own.elements.len(), 1);
 }
+
+/// `+=` and `*=` change a variable with every frame.
+#[test]
+fn variables_change_with_every_frame() {
+    let text = "surface s diff Red\nvar x = 1 += 0.5\nvar r = 2\nvar r *= 0.5\nvar P = 0 0 0 += 0 0 1\n\
+        sphere s r x P.y P.z";
+    let at = |frame| {
+        let files = vec![File {
+            name: String::from("main.rat"),
+            text: text.to_owned(),
+        }];
+        let compiled = rats::compile_at(&Project { files }, &[], frame);
+        assert!(compiled.animated);
+        match compiled.scene.elements[0].shape {
+            Shape::Sphere { center, radius } => (center, radius),
+            ref other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(at(0), (v(1.0, 0.0, 0.0), 2.0));
+    assert_eq!(at(4), (v(3.0, 0.0, 4.0), 0.125));
+    assert!(!run("var x = 1").animated);
+}
