@@ -125,6 +125,7 @@ fn images_and_meshes_are_tabs_that_show_them_and_are_kept_but_not_shared() {
     window.harness.get_by_label("Remove").click();
     window.steps(3);
     assert!(!studio::places::all(&window.harness.ctx).contains_key("tab tri.obj"));
+    window.finish();
     window.harness.get_by_label("Put it back").click();
     window.steps(3);
     window.place("tab tri.obj");
