@@ -31,6 +31,7 @@
 
 mod area;
 mod beam;
+mod digger;
 pub mod hard;
 mod hierarchy;
 mod lanes;

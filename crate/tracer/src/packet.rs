@@ -12,22 +12,22 @@ use glam::{DVec3, Vec3};
 
 /// Where a ray hits, and what it hits.
 #[derive(Clone, Copy, Debug)]
-struct Hit {
-    t: f64,
-    position: DVec3,
+pub(crate) struct Hit {
+    pub t: f64,
+    pub position: DVec3,
     /// Unit, towards the eye's side.
-    normal: DVec3,
+    pub normal: DVec3,
     /// How far rays to the lights must start above the surface.
-    lift: f64,
-    finish: Finish,
+    pub lift: f64,
+    pub finish: Finish,
     /// 1 for the soft surface, 2 and up for hard elements.
-    thing: u32,
+    pub thing: u32,
 }
 
 /// Working space of one thread.
 #[derive(Default)]
 pub struct Workspace {
-    scratch: Scratch,
+    pub(crate) scratch: Scratch,
     crossings: Vec<Crossing>,
 }
 
@@ -43,8 +43,11 @@ impl Picture {
         stats: &mut Stats,
     ) -> [Sample; PACKET] {
         work.scratch.evaluations = 0;
+        work.scratch.alone = [0; PACKET];
         let mut hits = rays.map(|ray| self.hard_hit(&ray, work));
-        if let Some((slabs, base)) = slabs {
+        if let Some(digger) = &self.digger {
+            self.dug_hits(&**digger, rays, work, &mut hits);
+        } else if let Some((slabs, base)) = slabs {
             self.soft_hits(rays, number, slabs, *base, work, &mut hits);
         }
         let across = rays[0].direction.distance(rays[PACKET - 1].direction);
@@ -225,6 +228,9 @@ impl Picture {
         limits: &[f64; PACKET],
         work: &mut Workspace,
     ) -> u32 {
+        if let Some(digger) = &self.digger {
+            return self.dug_shadows(&**digger, rays, limits, work);
+        }
         let alive: Vec<Ray> = rays.iter().flatten().copied().collect();
         let Some(beam) = Beam::around(&alive) else {
             return 0;

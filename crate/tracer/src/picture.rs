@@ -1,6 +1,7 @@
 //! A scene made ready for tracing.
 use crate::area::{Area, Samples};
 use crate::beam::Beam;
+use crate::digger::{self, Digger};
 use crate::hard::Crossing;
 use crate::packet::Workspace;
 use crate::ray::Ray;
@@ -39,7 +40,7 @@ pub struct Hit {
 /// A scene made ready for tracing at one size.
 pub struct Picture {
     pub(crate) size: [u32; 2],
-    unit: Unit,
+    pub(crate) unit: Unit,
     pub(crate) projection: Projection,
     pub(crate) soft: Soft,
     pub(crate) solids: Solids,
@@ -49,6 +50,8 @@ pub struct Picture {
     pub(crate) samples: u32,
     pub(crate) contrast: Vec3,
     gamma: f32,
+    /// What finds the soft surface, if it is not the picture's own certified digger.
+    pub(crate) digger: Option<Box<dyn Digger>>,
 }
 
 /// Blocks of pixels that share a beam. Blocks and packets are laid out from the picture's corner,
@@ -78,6 +81,10 @@ impl Picture {
             samples: scene.settings.samples.clamp(1, Settings::MAX_SAMPLES),
             contrast: Vec3::from(scene.settings.contrast),
             gamma: scene.settings.gamma,
+            digger: match scene.settings.digger {
+                scene::Digger::Hermite => None,
+                other => Some(digger::of(other)),
+            },
         }
     }
 
@@ -226,7 +233,7 @@ impl Picture {
     /// The slabs of the beam through a rectangle of pixels, divided into columns and rows (powers of
     /// two) of packets.
     pub(crate) fn slabs(&self, area: Area, packets: [u32; 2]) -> Option<(Slabs<'_>, f64)> {
-        if self.soft.is_empty() {
+        if self.soft.is_empty() || self.digger.is_some() {
             return None;
         }
         let divide = || {
