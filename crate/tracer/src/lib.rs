@@ -35,6 +35,7 @@ mod digger;
 pub mod hard;
 mod hierarchy;
 mod lanes;
+mod map;
 mod packet;
 pub mod picture;
 mod ray;

@@ -1,6 +1,7 @@
 //! Tracing a packet of rays: hits, shadows, colours.
 use crate::beam::Beam;
 use crate::hard::Crossing;
+use crate::map;
 use crate::picture::{Picture, Stats};
 use crate::ray::Ray;
 use crate::sample::Sample;
@@ -53,6 +54,7 @@ impl Picture {
         let across = rays[0].direction.distance(rays[PACKET - 1].direction);
         let mut colours = [self.background; PACKET];
         let mut keys = [0u32; PACKET];
+        let mut cast = [1u32; PACKET];
         for i in 0..PACKET {
             if let Some(hit) = &hits[i] {
                 colours[i] = hit.finish.glow();
@@ -72,6 +74,9 @@ impl Picture {
             }
             if light.shadow && lit != 0 {
                 stats.shadow_rays += u64::from(lit.count_ones());
+                for (i, cast) in cast.iter_mut().enumerate() {
+                    *cast += lit >> i & 1;
+                }
                 lit &= !self.shadowed(&hits, &way, lit, across, work);
             }
             for i in 0..PACKET {
@@ -87,10 +92,12 @@ impl Picture {
             }
         }
         stats.field_evaluations += work.scratch.evaluations;
+        let cost = map::costs(cast, work.scratch.evaluations, &work.scratch.alone);
         core::array::from_fn(|i| Sample {
             colour: colours[i].max(Vec3::ZERO).min(Vec3::ONE),
             key: keys[i],
             depth: hits[i].map_or(f32::INFINITY, |h| h.t as f32),
+            cost: cost[i],
         })
     }
 

@@ -203,3 +203,55 @@ fn rays_along_the_surface_come_to_an_end() {
         assert_eq!(picture.first(DVec3::ZERO, DVec3::ZERO), None);
     }
 }
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn a_map_shows_costs_and_does_not_depend_on_tiles() {
+    for digger in [Digger::Hermite, Digger::Lg] {
+        let mut scene = easy();
+        scene.settings.digger = digger;
+        scene.settings.map = Some(1.0);
+        scene.settings.samples = 2;
+        let size = [70, 50];
+        let whole = |scene: &Scene, side: u32| {
+            let picture = Picture::new(scene, size);
+            let mut pixels = vec![0; 4 * 70 * 50];
+            for tile in tracer::tiles(size[0], size[1], side) {
+                let stats = &mut Stats::default();
+                let part = picture.trace(tile, Pass::Smooth, &|| false, stats).unwrap();
+                let row = 4 * tile.width as usize;
+                for (y, line) in (tile.y..).zip(part.chunks_exact(row)) {
+                    let at = 4 * (y * size[0] + tile.x) as usize;
+                    pixels[at..at + row].copy_from_slice(line);
+                }
+            }
+            pixels
+        };
+        let once = whole(&scene, 128);
+        assert!(once == whole(&scene, 16) && once == whole(&scene, 11));
+        assert!(
+            once.chunks_exact(4)
+                .all(|p| p[0] == p[1] && p[1] == p[2] && p[3] == 255)
+        );
+        // The corner is cheap, the middle is not, and the dearest of the sample is white.
+        let grey = |x: usize, y: usize| once[4 * (y * 70 + x)];
+        assert!(grey(1, 1) < 20 && grey(35, 25) > 60, "{digger:?}");
+        assert!(once.chunks_exact(4).any(|p| p[0] == 255));
+        // A gamma lifts what is dark.
+        scene.settings.map = Some(2.0);
+        let lifted = whole(&scene, 128);
+        assert!(once.iter().zip(&lifted).all(|(a, b)| a <= b));
+        assert!(lifted != once);
+        // Asked to stop, it stops, and has not learnt anything wrong.
+        let picture = Picture::new(&scene, size);
+        let tile = Tile {
+            x: 0,
+            y: 0,
+            width: 70,
+            height: 50,
+        };
+        let stats = &mut Stats::default();
+        assert!(picture.trace(tile, Pass::Full, &|| true, stats).is_none());
+        assert!(picture.trace(tile, Pass::Smooth, &|| false, stats) == Some(lifted));
+    }
+}
