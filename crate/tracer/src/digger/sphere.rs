@@ -8,8 +8,9 @@ use crate::walk::Quest;
 
 /// The shortest step: a hit is this near to the surface, and nothing longer is missed.
 const SHORTEST: f64 = 1e-6;
-/// After so many steps a ray that creeps along the surface is taken to have met it.
-const MOST_STEPS: usize = 10_000;
+/// After so many looks at a primitive, or 64 times the ray's primitives, a ray that creeps along the
+/// surface is taken to have met it.
+const MOST: usize = 1 << 16;
 
 pub(super) struct Sphere;
 
@@ -19,7 +20,8 @@ impl Single for Sphere {
         let mut ahead = (to - at) / 16.0;
         let mut side = Side::unknown(quest);
         let mut list: Vec<u32> = Vec::new();
-        for _ in 0..MOST_STEPS {
+        let (mut looks, most) = (0, MOST.max(64 * sight.terms.len()));
+        while looks < most {
             if at >= to {
                 return None;
             }
@@ -31,6 +33,7 @@ impl Single for Sphere {
                     .filter(|(_, term)| term.meets(at, end))
                     .map(|(i, _)| i as u32),
             );
+            looks += 1 + list.len();
             let value = sight.excess_of(&list, at).0;
             if side.arrive(value > 0.0) {
                 return Some(at);
