@@ -255,3 +255,29 @@ fn a_map_shows_costs_and_does_not_depend_on_tiles() {
         assert!(picture.trace(tile, Pass::Smooth, &|| false, stats) == Some(lifted));
     }
 }
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn a_ray_through_very_many_primitives_comes_to_an_end() {
+    let mut scene = empty();
+    // So weak that all together they never reach T, and all of them are met.
+    scene.materials = vec![soft(-1.0, 2e-5)];
+    scene.settings.influence = 1e-9;
+    let mut n = Numbers(1);
+    for _ in 0..20_000 {
+        let center = n.vector() * 0.3;
+        let radius = 0.25;
+        let ball = Shape::Sphere { center, radius };
+        scene.elements.push(element(ball, 0));
+    }
+    for digger in ALL {
+        let mut scene = scene.clone();
+        scene.settings.digger = digger;
+        let (_, stats) = traced(&scene, [2, 1]);
+        // Eight rays are followed, and none needs to look at everything a thousand times.
+        assert!(
+            stats.field_evaluations < 8 * 20_000 * 200,
+            "{digger:?}: {stats:?}"
+        );
+    }
+}

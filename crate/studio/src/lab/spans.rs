@@ -11,8 +11,8 @@ use super::slice::shade;
 use super::tools::{Stage, choice, heading, reading, remark, slider};
 use crate::{platform, theme};
 use egui::{
-    Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2,
-    vec2,
+    Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui,
+    pos2, vec2,
 };
 use field::Kernel;
 use rats::{File, Project};

@@ -11,6 +11,10 @@ use crate::walk::Quest;
 use field::THRESHOLD;
 use scene::Settings;
 
+/// Most spans added up on a ray, or 64 times its primitives; what lies behind the place where that many
+/// have been is not seen.
+const MOST: usize = 1 << 18;
+
 /// How many spans each primitive gets.
 pub(super) struct Spans(u32);
 
@@ -83,6 +87,7 @@ impl Single for Spans {
 
         let mut side = Side::unknown(quest);
         let (mut active, mut next) = (Vec::new(), 0);
+        let mut left = MOST.max(64 * sight.terms.len());
         for slab in cuts.windows(2) {
             let (from, to) = (slab[0], slab[1]);
             if from == to {
@@ -93,6 +98,7 @@ impl Single for Spans {
                 next += 1;
             }
             active.retain(|&i: &usize| pieces[i].to > from);
+            left = left.checked_sub(active.len())?;
             let mut sum = [-THRESHOLD, 0.0, 0.0, 0.0];
             for &i in &active {
                 for (total, part) in sum.iter_mut().zip(pieces[i].shifted(from)) {

@@ -7,8 +7,11 @@ use crate::walk::Quest;
 /// Steps in the length on which the sharpest kernel changes. A surface may be missed where the ray is
 /// inside it for less than a step.
 const STEPS: f64 = 8.0;
-/// Most steps on a ray.
-const MOST: f64 = 4096.0;
+/// Most steps on a ray: so many, but fewer where it meets very many primitives, so that it looks at
+/// no more than about [`MOST_LOOKS`] of them, or 64 times at each.
+const MOST: usize = 4096;
+/// See [`MOST`].
+const MOST_LOOKS: usize = 1 << 18;
 /// How exactly roots are refined.
 pub(super) const TOLERANCE: f64 = 1e-9;
 /// Most evaluations while refining a root.
@@ -17,7 +20,8 @@ pub(super) const MOST_REFINING: usize = 100;
 /// The length of a step.
 pub(super) fn step(sight: &Sight<'_>) -> f64 {
     let [from, to] = sight.range;
-    (sight.finest() / STEPS).max((to - from) / MOST)
+    let most = (MOST_LOOKS / sight.terms.len().max(1)).clamp(64, MOST);
+    (sight.finest() / STEPS).max((to - from) / most as f64)
 }
 
 /// The ends of an interval and the values there, which have different signs.

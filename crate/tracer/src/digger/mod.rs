@@ -15,7 +15,8 @@
 //! | [`lg`] | intervals where the field is monotone, by its Lipschitz constants | nothing longer than 10⁻⁷ |
 //! | [`sphere`] | the surface, by safe steps towards it | nothing longer than 10⁻⁶ |
 //!
-//! Lengths are in units of the scene's size.
+//! Lengths are in units of the scene's size. What one ray may cost is limited for each of them, so that
+//! no scene takes unlimited time; the limits are far above what pictures need.
 
 mod brent;
 mod hermite;
