@@ -95,13 +95,22 @@ struct Map {
 }
 
 impl Map {
-    /// The largest distance, in radii.
+    /// The distances where both hit, in radii.
+    fn distances(&self) -> impl Iterator<Item = f64> {
+        self.pixels.iter().filter_map(|pixel| match pixel {
+            Pixel::Off(distance) => Some(f64::from(*distance)),
+            _ => None,
+        })
+    }
+
+    /// The largest of them.
     fn worst(&self) -> f64 {
-        let off = |pixel: &Pixel| match pixel {
-            Pixel::Off(distance) => *distance,
-            _ => 0.0,
-        };
-        f64::from(self.pixels.iter().map(off).fold(0.0, f32::max))
+        self.distances().fold(0.0, f64::max)
+    }
+
+    /// Their mean.
+    fn mean(&self) -> f64 {
+        self.distances().sum::<f64>() / self.distances().count().max(1) as f64
     }
 
     /// Pixels that only one of them hits.
@@ -207,7 +216,7 @@ impl Default for Spans {
         Self {
             key: Key {
                 view: View::Side,
-                kernel: Kernel::Cauchy,
+                kernel: Kernel::Gauss,
                 blobbiness: 1.0,
             },
             study: None,
@@ -220,7 +229,7 @@ impl Spans {
     /// Shows the lesson.
     pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         self.work(ui);
-        let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.92);
+        let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.74);
         self.table(ui, &stage, bench);
         let controls = &mut stage.controls;
         heading(controls, "The cross is seen");
@@ -233,8 +242,14 @@ impl Spans {
         choice(
             controls,
             &mut self.key.kernel,
-            &[(Kernel::Cauchy, "cauchy"), (Kernel::Gauss, "gauss")],
+            &[(Kernel::Gauss, "gauss"), (Kernel::Cauchy, "cauchy")],
         );
+        if self.key.kernel == Kernel::Cauchy {
+            remark(
+                controls,
+                "It reaches further, so that its spans are longer.",
+            );
+        }
         slider(
             controls,
             "Blobbiness |B|",
@@ -242,16 +257,18 @@ impl Spans {
             0.3..=6.0,
             "",
         );
-        heading(controls, "Furthest from where the surface is");
+        heading(controls, "Distance from the surface: mean, worst");
         let strong = theme::palette(controls.visuals()).strong;
         if let Some(study) = &self.study {
             for ((title, _, name), map) in COLUMNS.iter().zip(&study.maps) {
-                reading(controls, title, &percent(map.worst()), strong);
+                let value = format!("{}, {}", percent(map.mean()), percent(map.worst()));
+                reading(controls, title, &value, strong);
                 bench.readings.insert(name, map.worst());
             }
             let alone = |i: usize| study.maps[i].alone();
             let text = format!(
-                "of the radius, along the ray. Red: only one of the two hits; that is so in {}, {} and {} pixels.",
+                "In parts of the bars' radius, along the ray. Red: there is a hit where there should be none, or none where \
+                 there should be one; that is so in {}, {} and {} pixels.",
                 alone(0),
                 alone(1),
                 alone(2)
@@ -350,6 +367,9 @@ fn named(ui: &Ui, place: Rect, name: &str) {
 
 /// A number of radii in words.
 fn percent(radii: f64) -> String {
+    if radii < LEAST {
+        return String::from("< 0.01 %");
+    }
     format!("{} %", number(100.0 * radii))
 }
 
@@ -396,10 +416,9 @@ mod tests {
             }
             let [two, four, certified] = study.maps.each_ref().map(Map::worst);
             let alone = study.maps.each_ref().map(Map::alone);
-            println!("{view:?} {two} {four} {certified} {alone:?}");
             assert!(two > 0.1 && four < two, "{two} {four}");
             assert!(certified < 0.01, "{certified}");
-            assert!(alone[2] < 20 && alone[2] < alone[0], "{alone:?}");
+            assert!(alone[2] < 20 && alone[2] <= alone[0], "{alone:?}");
             // The cross is in the picture.
             let hits = |map: &Map| map.pixels.iter().filter(|p| **p != Pixel::Empty).count();
             let part = hits(&study.maps[2]) as f64 / (SIDE * SIDE) as f64;
