@@ -6,7 +6,6 @@
 
 use super::Bench;
 use super::grid::refused;
-use super::plot::number;
 use super::slice::shade;
 use super::tools::{Stage, choice, heading, reading, remark, slider};
 use crate::{platform, theme};
@@ -370,7 +369,12 @@ fn percent(radii: f64) -> String {
     if radii < LEAST {
         return String::from("< 0.01 %");
     }
-    format!("{} %", number(100.0 * radii))
+    let value = 100.0 * radii;
+    match value {
+        10.0.. => format!("{value:.0} %"),
+        1.0.. => format!("{value:.1} %"),
+        _ => format!("{value:.2} %"),
+    }
 }
 
 /// The colours and what they stand for.

@@ -12,7 +12,8 @@ impl Single for Brent {
     }
 }
 
-fn refine(f: &mut dyn FnMut(f64) -> f64, bracket: Bracket) -> f64 {
+/// The root in a bracket.
+pub(super) fn refine(f: &mut dyn FnMut(f64) -> f64, bracket: Bracket) -> f64 {
     // The best place so far, the one before it, and the far end of the bracket.
     let [mut before, mut best] = bracket.ends;
     let [mut f_before, mut f_best] = bracket.values;

@@ -57,3 +57,59 @@ pub(super) fn march(
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{brent, regula_falsi, ridder};
+    use super::*;
+
+    type Refine = fn(&mut dyn FnMut(f64) -> f64, Bracket) -> f64;
+    type Function = fn(f64) -> f64;
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn roots_in_brackets_are_refined_whatever_the_function() {
+        // Functions, what is between 0 and 1 the place where they change sign, and how near a method
+        // that stops when it hardly moves can be asked to come.
+        let functions: [(Function, f64, f64); 8] = [
+            (|t| t - 0.3, 0.3, 1e-8),
+            (|t| 0.3 - t, 0.3, 1e-8),
+            (|t| t * t * t - 0.125, 0.5, 1e-8),
+            // The chord's root is the middle, the function's is not.
+            (|t| if t < 0.8 { t - 0.8 } else { 4.0 * t - 3.2 }, 0.8, 1e-8),
+            (|t| libm::exp(20.0 * t) - libm::exp(14.0), 0.7, 1e-7),
+            (|t| libm::tanh(1e3 * (t - 0.9)), 0.9, 1e-7),
+            // Flat at its root, where it says little.
+            (|t| (t - 0.4) * (t - 0.4) * (t - 0.4), 0.4, 1e-3),
+            // Infinite at one end, as at a pole.
+            (
+                |t| if t >= 1.0 { f64::INFINITY } else { t - 0.6 },
+                0.6,
+                1e-8,
+            ),
+        ];
+        let methods: [(&str, Refine); 3] = [
+            ("brent", brent::refine),
+            ("ridder", ridder::refine),
+            ("RF", regula_falsi::refine),
+        ];
+        for (name, refine) in methods {
+            for (i, (f, root, near)) in functions.into_iter().enumerate() {
+                let mut evaluations = 0;
+                let bracket = Bracket {
+                    ends: [0.0, 1.0],
+                    values: [f(0.0), f(1.0)],
+                };
+                let found = refine(
+                    &mut |t| {
+                        evaluations += 1;
+                        f(t)
+                    },
+                    bracket,
+                );
+                assert!((found - root).abs() <= near, "{name} {i}: {found}");
+                assert!(evaluations <= MOST_REFINING, "{name} {i}: {evaluations}");
+            }
+        }
+    }
+}

@@ -18,7 +18,7 @@ pub(super) fn refine(f: &mut dyn FnMut(f64) -> f64, bracket: Bracket) -> f64 {
     let [mut a, mut b] = bracket.ends;
     let [mut fa, mut fb] = bracket.values;
     let mut stayed = 0_i32;
-    let mut root = 0.5 * (a + b);
+    let mut root = f64::INFINITY;
     for _ in 0..MOST_REFINING {
         let chord = b - fb * (b - a) / (fb - fa);
         // Infinite values, near poles, have no chord.

@@ -13,10 +13,11 @@ impl Single for Ridder {
     }
 }
 
-fn refine(f: &mut dyn FnMut(f64) -> f64, bracket: Bracket) -> f64 {
+/// The root in a bracket.
+pub(super) fn refine(f: &mut dyn FnMut(f64) -> f64, bracket: Bracket) -> f64 {
     let [mut a, mut b] = bracket.ends;
     let [mut fa, mut fb] = bracket.values;
-    let mut root = 0.5 * (a + b);
+    let mut root = f64::INFINITY;
     for _ in 0..MOST_REFINING / 2 {
         let middle = 0.5 * (a + b);
         let value = f(middle);
