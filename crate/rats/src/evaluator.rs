@@ -156,7 +156,10 @@ impl<'a> Evaluator<'a> {
         self.check_words();
         let (scene, placements) = match self.shot.take() {
             Some(shot) => shot,
-            None => self.picture(),
+            None => {
+                let parts = std::mem::take(&mut self.model.parts);
+                self.picture(parts)
+            }
         };
         self.note_unused_materials();
         self.lint(&scene);
@@ -202,7 +205,8 @@ impl<'a> Evaluator<'a> {
                 let cost = if problem.quiet {
                     20
                 } else {
-                    limits::STEPS_PER_ERROR
+                    let text = self.sources.all[self.file].text.len();
+                    limits::STEPS_PER_ERROR + (text / limits::BYTES_PER_STEP) as u64
                 };
                 if let Node::Command(command) = node
                     && let Some(spec) = command.spec
@@ -272,7 +276,7 @@ impl<'a> Evaluator<'a> {
                 if given.is_off() {
                     return Ok(Flow::Next);
                 }
-                self.not_carried_out(command.word_span.clone(), &format!("`{}`", spec.name));
+                self.not_carried_out(command.word_span.clone(), format_args!("`{}`", spec.name));
                 Ok(Flow::Next)
             }
         }
@@ -312,7 +316,9 @@ impl<'a> Evaluator<'a> {
         let mut index = 0.0;
         let mut result = Ok(());
         while index <= last && flow == Flow::Next {
-            result = self.scope.step(1, &node.head.word_span);
+            result = self
+                .scope
+                .step(limits::STEPS_PER_TURN, &node.head.word_span);
             if result.is_err() {
                 break;
             }

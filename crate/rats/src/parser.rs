@@ -289,6 +289,7 @@ impl<'a> Parser<'a, '_, '_> {
         let text = self.symbols.word(word);
         let mut formal = Formal {
             name: word,
+            shown: String::new(),
             takes: Takes::Number,
             default: 0..0,
             span,
@@ -330,6 +331,11 @@ impl<'a> Parser<'a, '_, '_> {
             formal.default = head.items.start + first..head.items.start + end;
             *at = end;
         }
+        let word = self.symbols.word(formal.name);
+        formal.shown = match formal.takes {
+            Takes::Surface => format!("the material's name (`{word}`)"),
+            _ => format!("`{word}`"),
+        };
         formal
     }
 

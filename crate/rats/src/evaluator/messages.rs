@@ -6,6 +6,7 @@ use crate::Severity;
 use crate::commands;
 use crate::problem::Problem;
 use crate::syntax::Command;
+use std::fmt::Display;
 use std::ops::Range;
 
 impl Evaluator<'_> {
@@ -74,7 +75,7 @@ impl Evaluator<'_> {
     }
 
     /// Warns that something is known but not done.
-    pub(super) fn not_carried_out(&mut self, span: Range<usize>, what: &str) {
+    pub(super) fn not_carried_out(&mut self, span: Range<usize>, what: impl Display) {
         self.say(Severity::Warning, span, || {
             (
                 format!("{what} is understood but not carried out in this version"),

@@ -2,7 +2,7 @@
 
 use super::{Evaluator, Flow};
 use crate::commands::{self, CommandSpec};
-use crate::limits::MAX_NESTED_FILES;
+use crate::limits::{MAX_NESTED_FILES, STEPS_PER_LOOKUP};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
@@ -71,7 +71,7 @@ fn find_file(run: &Evaluator<'_>, name: &Name<'_>) -> Outcome<usize> {
 /// `test command [print]`
 pub fn test<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
-    let spec = find_command(given.name("command"))?;
+    let spec = find_command(run, given.name("command"))?;
     // These would end or undo the run that they are shown in.
     let would_harm = matches!(spec.name, "quit" | "reset" | "shoot");
     if given.word("print").is_some() || would_harm {
@@ -154,7 +154,10 @@ pub fn colors<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 /// `help [command]`
 pub fn help<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
-    let spec = given.maybe_name("command").map(find_command).transpose()?;
+    let spec = match given.maybe_name("command") {
+        Some(name) => Some(find_command(run, name)?),
+        None => None,
+    };
     run.say(Severity::Note, command.span.clone(), || {
         (spec.map_or_else(manual::list, manual::summary), None)
     });
@@ -164,14 +167,15 @@ pub fn help<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 /// `man command`
 pub fn man<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
-    let spec = find_command(given.name("command"))?;
+    let spec = find_command(run, given.name("command"))?;
     run.say(Severity::Note, command.span.clone(), || {
         (manual::page(spec), None)
     });
     Ok(Flow::Next)
 }
 
-fn find_command(name: &Name<'_>) -> Outcome<&'static CommandSpec> {
+fn find_command(run: &mut Evaluator<'_>, name: &Name<'_>) -> Outcome<&'static CommandSpec> {
+    run.scope.step(STEPS_PER_LOOKUP, &name.span)?;
     commands::find(name.text).ok_or_else(|| {
         Problem::new(
             name.span.clone(),
