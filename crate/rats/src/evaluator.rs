@@ -276,7 +276,9 @@ impl<'a> Evaluator<'a> {
                 if given.is_off() {
                     return Ok(Flow::Next);
                 }
-                self.not_carried_out(command.word_span.clone(), format_args!("`{}`", spec.name));
+                if self.is_news(Severity::Warning, &command.word_span) {
+                    self.not_carried_out(command.word_span.clone(), &format!("`{}`", spec.name));
+                }
                 Ok(Flow::Next)
             }
         }

@@ -81,7 +81,7 @@ fn zero_only<'a>(
 ) -> Outcome<Flow> {
     if run.given(command)?.number(parameter) != 0.0 {
         let name = run.scope.symbols.word(command.word);
-        run.not_carried_out(command.word_span.clone(), format_args!("`{name}`"));
+        run.not_carried_out(command.word_span.clone(), &format!("`{name}`"));
     }
     Ok(Flow::Next)
 }

@@ -6,7 +6,6 @@ use crate::Severity;
 use crate::commands;
 use crate::problem::Problem;
 use crate::syntax::Command;
-use std::fmt::Display;
 use std::ops::Range;
 
 impl Evaluator<'_> {
@@ -75,7 +74,7 @@ impl Evaluator<'_> {
     }
 
     /// Warns that something is known but not done.
-    pub(super) fn not_carried_out(&mut self, span: Range<usize>, what: impl Display) {
+    pub(super) fn not_carried_out(&mut self, span: Range<usize>, what: &str) {
         self.say(Severity::Warning, span, || {
             (
                 format!("{what} is understood but not carried out in this version"),
