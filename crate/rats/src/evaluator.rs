@@ -205,8 +205,8 @@ impl<'a> Evaluator<'a> {
                 let cost = if problem.quiet {
                     20
                 } else {
-                    let text = self.sources.all[self.file].text.len();
-                    limits::STEPS_PER_ERROR + (text / limits::BYTES_PER_STEP) as u64
+                    let size = self.sources.all[self.file].syntax.items.len();
+                    limits::STEPS_PER_ERROR + (size / limits::OPERANDS_PER_STEP) as u64
                 };
                 if let Node::Command(command) = node
                     && let Some(spec) = command.spec
@@ -431,8 +431,12 @@ impl<'a> Evaluator<'a> {
     fn asset(&self, name: &Name<'_>) -> Outcome<&'a Asset> {
         let assets: &'a [Asset] = self.assets;
         let bare = name.text.strip_prefix("./").unwrap_or(name.text);
-        let mut all = assets.iter().chain(crate::library::assets());
-        all.find(|asset| asset.name == bare).ok_or_else(|| {
+        let find = |place: &String| {
+            let mut all = assets.iter().chain(crate::library::assets());
+            all.find(|asset| asset.name == *place)
+        };
+        let places = crate::places(&self.sources.all[self.file].name, name.text);
+        places.iter().find_map(find).ok_or_else(|| {
             let known: Vec<_> = assets.iter().map(|asset| asset.name.as_str()).collect();
             let hint = if known.is_empty() {
                 String::from("drop the file onto the page, or put it beside the dataset")

@@ -242,6 +242,17 @@ impl<'a> Parser<'a, '_, '_> {
             )
             .hint("choose another name"));
         }
+        if let [_, hyphen, last, ..] = items
+            && hyphen.datum == Datum::Sign(b'-')
+            && !hyphen.spaced
+            && !last.spaced
+        {
+            return Err(Problem::new(
+                items[0].span().start..last.span().end,
+                "a command's name cannot hold a hyphen: it is a minus",
+            )
+            .hint(format!("begin it with `{word}_`")));
+        }
         let mut parameters: Vec<Formal> = Vec::new();
         let mut at = 1;
         while let Some(item) = items.get(at) {

@@ -6,7 +6,7 @@ use crate::limits::{MAX_NESTED_FILES, STEPS_PER_LOOKUP};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
-use crate::{Severity, colours, library, manual, suggest};
+use crate::{Severity, colours, library, manual, places, suggest};
 
 /// `read fn1 [fn2 …]`
 pub fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
@@ -50,15 +50,16 @@ fn run_inner<'a>(run: &mut Evaluator<'a>, command: &'a Command, file: usize) -> 
 }
 
 fn find_file(run: &Evaluator<'_>, name: &Name<'_>) -> Outcome<usize> {
-    let bare = name.text.strip_prefix("./").unwrap_or(name.text);
-    run.sources.find(bare).ok_or_else(|| {
+    let places = places(&run.sources.all[run.file].name, name.text);
+    let found = places.iter().find_map(|place| run.sources.find(place));
+    found.ok_or_else(|| {
         let own = run.sources.all[..run.sources.own]
             .iter()
             .map(|source| source.name.as_str());
         let known: Vec<&str> = own
             .chain(library::FILES.iter().map(|file| file.0))
             .collect();
-        let hint = suggest::hint(bare, known.iter().copied())
+        let hint = suggest::hint(name.text, known.iter().copied())
             .unwrap_or_else(|| format!("the files are {}", known.join(", ")));
         Problem::new(
             name.span.clone(),
