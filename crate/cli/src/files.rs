@@ -46,21 +46,26 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
     // Every text is looked at once for the names it reads.
     let mut next = 0;
     while next < project.files.len() && project.files.len() < MAX_FILES {
-        for wanted in rats::reads(&project.files[next].text) {
-            let known = project.files.iter().any(|file| file.name == wanted);
-            if !known && let Some(text) = inside(&folder, &wanted).and_then(|path| read(&path).ok())
+        let reader = &project.files[next];
+        let wanted = rats::reads(&reader.text).into_iter();
+        let places: Vec<_> = wanted
+            .map(|name| rats::places(&reader.name, &name))
+            .collect();
+        for place in places.into_iter().flatten() {
+            let known = project.files.iter().any(|file| file.name == place);
+            if !known && let Some(text) = inside(&folder, &place).and_then(|path| read(&path).ok())
             {
-                project.files.push(File { name: wanted, text });
+                project.files.push(File { name: place, text });
             }
         }
         next += 1;
     }
     let mut assets: Vec<Asset> = Vec::new();
-    for wanted in project
-        .files
-        .iter()
-        .flat_map(|f| rats::asset_names(&f.text))
-    {
+    let places = |file: &File, name: &str| rats::places(&file.name, name);
+    for wanted in project.files.iter().flat_map(|file| {
+        let names = rats::asset_names(&file.text).into_iter();
+        names.flat_map(move |name| places(file, &name))
+    }) {
         let known = assets.iter().any(|asset| asset.name == wanted);
         if !known && let Some(bytes) = inside(&folder, &wanted).and_then(|path| bytes(&path)) {
             let bytes = bytes.into();
