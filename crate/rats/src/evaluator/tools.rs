@@ -172,11 +172,15 @@ pub fn show<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
         let what = match chosen.name {
             "file" => Shown::File(file(&chosen.given, "fn")),
             "color" => {
-                let span = chosen.given.span("Color").unwrap_or(0..0);
-                Shown::Colour {
-                    name: source.text[span].to_owned(),
-                    rgb: chosen.given.colour("Color"),
-                }
+                let written = &source.text[chosen.given.span("Color").unwrap_or(0..0)];
+                let rgb = chosen.given.colour("Color");
+                // How a text is laid out must not matter, so only a word is kept as it is written.
+                let name = if written.chars().all(char::is_alphanumeric) {
+                    written.to_owned()
+                } else {
+                    rgb.map(|share| share.to_string()).join(" ")
+                };
+                Shown::Colour { name, rgb }
             }
             _ => Shown::Palette(colours::names().filter_map(colours::find).collect()),
         };
