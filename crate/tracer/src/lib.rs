@@ -15,7 +15,8 @@
 //! whole beam which primitive needs Hermite spans of which length (`field::Bound` knows how large a field
 //! and the error of a span can be), and `walk` follows single packets through the slabs, adds up
 //! their spans' cubics (`spans`) and takes their roots (`roots`). `walk` is the only part that knows
-//! how crossings are found: given slabs and rays it returns crossings.
+//! how crossings are found: given slabs and rays it returns crossings. Other ways of finding them,
+//! for comparison, are in `digger`; `map` shows what a picture costs.
 //!
 //! # Limits
 //!
@@ -31,9 +32,11 @@
 
 mod area;
 mod beam;
+mod digger;
 pub mod hard;
 mod hierarchy;
 mod lanes;
+mod map;
 mod packet;
 pub mod picture;
 mod ray;
