@@ -31,12 +31,14 @@
 
 mod area;
 mod beam;
+mod cast;
 pub mod hard;
 mod hierarchy;
 mod lanes;
 mod packet;
 pub mod picture;
 mod ray;
+pub mod reference;
 mod refine;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
@@ -55,6 +57,7 @@ mod walk;
 
 pub use picture::{Hit, Picture, Stats};
 pub use ray::Ray;
+pub use reference::Reference;
 #[cfg(not(target_arch = "wasm32"))]
 pub use render::render;
 pub use tile::{Pass, Tile, tiles};

@@ -39,7 +39,7 @@ pub struct Hit {
 /// A scene made ready for tracing at one size.
 pub struct Picture {
     pub(crate) size: [u32; 2],
-    unit: Unit,
+    pub(crate) unit: Unit,
     pub(crate) projection: Projection,
     pub(crate) soft: Soft,
     pub(crate) solids: Solids,
