@@ -12,6 +12,8 @@
 //! the resolution) is said to be undecided.
 mod pieces;
 mod shell;
+#[cfg(test)]
+mod tests;
 mod waves;
 
 use crate::ray::Ray;

@@ -68,7 +68,7 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
                 curvature: curvature(g1(p), g1(q), bent(at(POLE2 / 2.0))),
             }
         }
-        _ if p >= 1.0 => Largest::default(),
+        _ if p > 1.0 => Largest::default(),
         Kernel::Metaballs => {
             let inner = 1.0 / 9.0;
             let value = |q: f64| {
