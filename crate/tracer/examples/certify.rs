@@ -1,16 +1,19 @@
 //! Holds pictures against the true surface on very many rays, and prints a table.
 //!
-//! `cargo run --release -p tracer --example certify -- [RAYS [THREADS [KERNEL KIND SEED]]]`
+//! `cargo run --release -p tracer --example certify -- [--exact] [RAYS [THREADS [KERNEL KIND SEED]]]`
 //!
-//! With a kernel, a kind and a seed only that scene is looked at. Faults go to standard error.
+//! With a kernel, a kind and a seed only that scene is looked at. Faults go to standard error. With
+//! `--exact` before them the crossings that picking uses are judged instead of those of pictures.
 #[path = "../tests/common/mod.rs"]
 mod common;
 #[path = "../tests/common/trials.rs"]
 mod trials;
 
 use field::Kernel;
+use glam::DVec3;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use tracer::{Hit, Picture};
 use trials::{KINDS, Kind, Row, check};
 
 /// Packets of eight rays in each scene; fewer where there are hundreds of primitives.
@@ -18,8 +21,19 @@ fn packets(kind: Kind) -> usize {
     if kind == Kind::Cluster { 3 } else { 8 }
 }
 
+fn first_of_all(picture: &Picture, rays: &[(DVec3, DVec3)]) -> Vec<Option<Hit>> {
+    let first =
+        |&(origin, direction): &(DVec3, DVec3)| picture.hits(origin, direction).first().copied();
+    rays.iter().map(first).collect()
+}
+
 fn main() {
-    let args: Vec<String> = std::env::args().skip(1).collect();
+    let mut args: Vec<String> = std::env::args().skip(1).collect();
+    let exact = args.first().is_some_and(|a| a == "--exact");
+    if exact {
+        args.remove(0);
+    }
+    let cast = if exact { first_of_all } else { Picture::cast };
     let number =
         |i: usize, default: usize| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(default);
     let (rays, threads) = (number(0, 1_000_000), number(1, 1));
@@ -29,14 +43,7 @@ fn main() {
         let kind = *KINDS.iter().find(named).expect("a kind");
         let mut told = String::new();
         let seed = number(4, 0) as u64;
-        let row = check(
-            kernel,
-            kind,
-            seed,
-            packets(kind),
-            &|p, r| p.cast(r),
-            &mut told,
-        );
+        let row = check(kernel, kind, seed, packets(kind), &cast, &mut told);
         println!("{told}{row:?}");
         return;
     }
@@ -59,14 +66,7 @@ fn main() {
                     }
                     let (kernel, kind) = cells[cell];
                     let mut told = String::new();
-                    let row = check(
-                        kernel,
-                        kind,
-                        seed as u64,
-                        packets(kind),
-                        &|p, r| p.cast(r),
-                        &mut told,
-                    );
+                    let row = check(kernel, kind, seed as u64, packets(kind), &cast, &mut told);
                     eprint!("{told}");
                     if let Ok(mut rows) = rows.lock() {
                         rows[cell].add(&row);

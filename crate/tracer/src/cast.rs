@@ -7,6 +7,10 @@ use crate::soft::{PACKET, Scratch};
 use crate::walk::{Bundle, Quest};
 use glam::DVec3;
 
+/// Rays whose directions differ by more than this, or whose origins by more than this part of half the scene's
+/// size, are not followed together.
+const WIDEST: f64 = 0.15;
+
 impl Picture {
     /// What each ray (origin, direction) hits first at t > 0, with the arithmetic and the
     /// tolerance of pictures. Neighbouring rays of the list make packets: the nearer together they
@@ -16,7 +20,12 @@ impl Picture {
         let mut scratch = Scratch::default();
         let mut crossings = Vec::new();
         let mut hits = vec![None; rays.len()];
-        for (rays, hits) in rays.chunks(PACKET).zip(hits.chunks_mut(PACKET)) {
+        let mut done = 0;
+        while done < rays.len() {
+            let count = self.together(&rays[done..]);
+            let range = done..done + count;
+            done += count;
+            let (rays, hits) = (&rays[range.clone()], &mut hits[range]);
             let unit: Vec<Option<Ray>> = rays.iter().map(|r| self.into_unit(r)).collect();
             let alive: Vec<Ray> = unit.iter().flatten().copied().collect();
             let Some(beam) = Beam::around(&alive) else {
@@ -81,6 +90,20 @@ impl Picture {
         let scene = self.unit.length(2.0);
         let pixel = 2.0 * self.projection.half_width / f64::from(self.size[0]);
         (0.2 * pixel * t).clamp(1e-6 * scene, 1e-4 * scene)
+    }
+
+    /// How many of the first rays make a packet: as in pictures, a beam around them is narrow.
+    fn together(&self, rays: &[(DVec3, DVec3)]) -> usize {
+        let Some(first) = rays.first().and_then(|r| self.into_unit(r)) else {
+            return 1;
+        };
+        let near = |r: &&(DVec3, DVec3)| {
+            self.into_unit(r).is_some_and(|ray| {
+                ray.direction.distance(first.direction) <= WIDEST
+                    && ray.origin.distance(first.origin) <= WIDEST
+            })
+        };
+        rays.iter().take(PACKET).take_while(near).count().max(1)
     }
 
     fn into_unit(&self, (origin, direction): &(DVec3, DVec3)) -> Option<Ray> {
