@@ -14,17 +14,21 @@ use glam::DVec3;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tracer::{Hit, Picture};
-use trials::{KINDS, Kind, Row, check};
+use trials::{KINDS, Kind, Row, Trial, check};
 
 /// Packets of eight rays in each scene; fewer where there are hundreds of primitives.
 fn packets(kind: Kind) -> usize {
     if kind == Kind::Cluster { 3 } else { 8 }
 }
 
-fn first_of_all(picture: &Picture, rays: &[(DVec3, DVec3)]) -> Vec<Option<Hit>> {
+fn as_pictures(trial: &Trial, picture: &Picture) -> Vec<Option<Hit>> {
+    picture.cast(&trial.rays)
+}
+
+fn as_picking(trial: &Trial, picture: &Picture) -> Vec<Option<Hit>> {
     let first =
         |&(origin, direction): &(DVec3, DVec3)| picture.hits(origin, direction).first().copied();
-    rays.iter().map(first).collect()
+    trial.rays.iter().map(first).collect()
 }
 
 fn main() {
@@ -33,7 +37,7 @@ fn main() {
     if exact {
         args.remove(0);
     }
-    let cast = if exact { first_of_all } else { Picture::cast };
+    let cast = if exact { as_picking } else { as_pictures };
     let number =
         |i: usize, default: usize| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(default);
     let (rays, threads) = (number(0, 1_000_000), number(1, 1));

@@ -26,7 +26,7 @@ impl Picture {
             let range = done..done + count;
             done += count;
             let (rays, hits) = (&rays[range.clone()], &mut hits[range]);
-            let unit: Vec<Option<Ray>> = rays.iter().map(|r| self.into_unit(r)).collect();
+            let unit: Vec<Option<Ray>> = rays.iter().map(|r| self.unit_ray(r)).collect();
             let alive: Vec<Ray> = unit.iter().flatten().copied().collect();
             let Some(beam) = Beam::around(&alive) else {
                 continue;
@@ -94,11 +94,11 @@ impl Picture {
 
     /// How many of the first rays make a packet: as in pictures, a beam around them is narrow.
     fn together(&self, rays: &[(DVec3, DVec3)]) -> usize {
-        let Some(first) = rays.first().and_then(|r| self.into_unit(r)) else {
+        let Some(first) = rays.first().and_then(|r| self.unit_ray(r)) else {
             return 1;
         };
         let near = |r: &&(DVec3, DVec3)| {
-            self.into_unit(r).is_some_and(|ray| {
+            self.unit_ray(r).is_some_and(|ray| {
                 ray.direction.distance(first.direction) <= WIDEST
                     && ray.origin.distance(first.origin) <= WIDEST
             })
@@ -106,7 +106,7 @@ impl Picture {
         rays.iter().take(PACKET).take_while(near).count().max(1)
     }
 
-    fn into_unit(&self, (origin, direction): &(DVec3, DVec3)) -> Option<Ray> {
+    fn unit_ray(&self, (origin, direction): &(DVec3, DVec3)) -> Option<Ray> {
         let ray = Ray {
             origin: self.unit.map(*origin),
             direction: direction.try_normalize()?,

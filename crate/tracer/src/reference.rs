@@ -31,6 +31,8 @@ pub struct Reference {
     kinks: Vec<(DVec3, DVec3)>,
     /// Evaluations of the whole field so far.
     pub evaluations: u64,
+    /// Intervals looked at along one ray before it is given up. Most rays want a hundred.
+    pub patience: u32,
 }
 
 /// A crossing of the surface.
@@ -54,7 +56,7 @@ pub struct Crossings {
     /// Intervals no longer than the resolution (or some that touch) in which the ray comes so near to the
     /// surface that two more crossings cannot be excluded.
     pub undecided: Vec<[f64; 2]>,
-    /// Whether the search went all the way; else it was given up after [`MOST_STEPS`].
+    /// Whether the search went all the way; else it was given up for want of [`patience`](Reference::patience).
     pub complete: bool,
 }
 
@@ -96,8 +98,8 @@ pub struct Verdict {
     pub certain: bool,
 }
 
-/// Intervals looked at along one ray.
-pub const MOST_STEPS: u32 = 40_000;
+/// See [`Reference::patience`]. A ray that runs far along something flat wants very many.
+const PATIENCE: u32 = 40_000;
 /// Cells looked at around one point.
 const MOST_CELLS: u32 = 4_000;
 /// Relative error of the terms of the field, and of coordinates.
@@ -125,6 +127,7 @@ impl Reference {
                 .collect(),
             primitives,
             evaluations: 0,
+            patience: PATIENCE,
         }
     }
 
@@ -169,7 +172,7 @@ impl Reference {
             complete: true,
             ..Crossings::default()
         };
-        let mut steps = MOST_STEPS;
+        let mut steps = self.patience;
         let mut from = 0.0;
         for kink in self.kinks_along(&ray, to) {
             // The two sides of it, near enough to one another and far enough for rounding.
