@@ -231,7 +231,9 @@ impl Reference {
             let point = ray.at(middle);
             let rounding = ULP * (point.abs().max_element() + middle);
             let around = half + rounding;
-            let extent = self.pieces.extent(&self.primitives, point, around);
+            let extent = self
+                .pieces
+                .extent(&self.primitives, point, around, Some(ray.direction));
             if extent.above < THRESHOLD {
                 continue;
             }
@@ -348,7 +350,7 @@ impl Reference {
             }
             let curvature = self
                 .pieces
-                .extent(&self.primitives, center, radius)
+                .extent(&self.primitives, center, radius, None)
                 .curvature;
             let change = here.gradient.length() + here.slope_noise + 0.5 * curvature * radius;
             if here.excess.abs() > change * radius + here.noise {

@@ -42,7 +42,7 @@ fn run(
 fn pictures_are_within_the_tolerance_of_the_true_surface() {
     let (total, told) = run(&KINDS, 3, 4, &|trial, picture| picture.cast(&trial.rays));
     assert!(total.rays > 8_000 && total.hits > 5_000, "{total:?}");
-    assert!(total.uncertain * 100 < total.rays, "{total:?}");
+    assert!(total.uncertain * 1000 < total.rays, "{total:?}");
     assert!(total.faults() == 0, "{total:?}\n{told}");
 }
 

@@ -74,6 +74,8 @@ struct Body {
     skeleton: Skeleton,
     /// Its first piece; none of a plane.
     root: Option<u32>,
+    /// Of a triangle or a polygon: its normal and the first pieces of its edges.
+    rim: Option<(DVec3, Vec<u32>)>,
     primitive: usize,
 }
 
@@ -123,30 +125,50 @@ impl Pieces {
                 taper: p.tapered,
                 skeleton: p.skeleton.clone(),
                 root: None,
+                rim: None,
                 primitive: number,
             };
             if let Some(piece) = piece {
                 let (widths, height) = ([p.width; 2], p.height.abs());
                 let node = body.node(piece, [0.0, 1.0], 0, widths, height);
-                body.root = Some(pieces.nodes.len() as u32);
-                pieces.nodes.push(node);
+                body.root = Some(pieces.keep(node));
+                body.rim = flat(&p.skeleton).map(|(normal, edges)| {
+                    let edge = |(a, b)| body.node(Piece::Line(a, b), [0.0, 1.0], 0, widths, height);
+                    let nodes = edges.into_iter().map(edge);
+                    (normal, nodes.map(|node| pieces.keep(node)).collect())
+                });
             }
             pieces.bodies.push(body);
         }
         pieces
     }
 
-    /// Bounds of the whole field in a ball.
-    pub fn extent(&mut self, primitives: &[Primitive], center: DVec3, radius: f64) -> Extent {
+    fn keep(&mut self, node: Node) -> u32 {
+        self.nodes.push(node);
+        self.nodes.len() as u32 - 1
+    }
+
+    /// Bounds of the whole field in a ball; of its second derivative along a unit vector, if one is
+    /// given, else in any direction.
+    pub fn extent(
+        &mut self,
+        primitives: &[Primitive],
+        center: DVec3,
+        radius: f64,
+        along: Option<DVec3>,
+    ) -> Extent {
         let mut sum = Extent::default();
         for number in 0..self.bodies.len() {
-            let most = match self.bodies[number].root {
+            let mut most = match self.bodies[number].root {
                 Some(root) => self.gather(number, root, center, radius),
                 None => {
                     let body = &self.bodies[number];
-                    plane(&primitives[body.primitive], center, radius)
+                    plane(&primitives[body.primitive], center, radius, along)
                 }
             };
+            if let Some(along) = along {
+                most[2] = most[2].min(self.over_flat(number, center, radius, along, most[2]));
+            }
             let body = &self.bodies[number];
             let [size, slope, bend] = body.factor.largest;
             let value = size * most[0] * SLACK;
@@ -160,6 +182,32 @@ impl Pieces {
             sum.curvature += SLACK * (size * most[2] + 2.0 * slope * most[1] + bend * most[0]);
         }
         sum
+    }
+
+    /// The second derivative of a flat bone's term along a vector with the cosine c to its normal: in
+    /// its plane derivatives are integrals of first derivatives over the rim alone (Gauss' theorem), so
+    /// that it is at most `c²·curvature + (2c+1)·(slopes over the rim)`. Rays along a face want that.
+    fn over_flat(
+        &mut self,
+        number: usize,
+        center: DVec3,
+        radius: f64,
+        along: DVec3,
+        curvature: f64,
+    ) -> f64 {
+        let Some((normal, edges)) = &self.bodies[number].rim else {
+            return curvature;
+        };
+        let cosine = normal.dot(along).abs() + 1e-9;
+        if cosine > 0.3 {
+            return curvature;
+        }
+        let edges = edges.clone();
+        let rim = edges
+            .into_iter()
+            .map(|edge| self.gather(number, edge, center, radius)[1]);
+        let rim: f64 = rim.sum();
+        cosine * cosine * curvature + (2.0 * cosine + 1.0) * rim
     }
 
     /// Magnitude, slope and curvature of one term, before its factor.
@@ -397,12 +445,33 @@ fn around(rings: &[Vec<DVec3>]) -> Piece {
     Piece::Cell(origin + x * cx + y * cy, [x * hx, y * hy], false)
 }
 
+/// Normal and edges of a flat bone that has some.
+fn flat(skeleton: &Skeleton) -> Option<(DVec3, Vec<(DVec3, DVec3)>)> {
+    match skeleton {
+        Skeleton::Triangle { corners: [a, b, c] } => {
+            let normal = (*b - *a).cross(*c - *a).try_normalize()?;
+            Some((normal, vec![(*a, *b), (*b, *c), (*c, *a)]))
+        }
+        Skeleton::Polygon { rings } => {
+            let Piece::Cell(_, [x, y], _) = around(rings) else {
+                return None;
+            };
+            Some((x.cross(y).try_normalize()?, edges(rings).collect()))
+        }
+        _ => None,
+    }
+}
+
+/// A polygon's edges.
+fn edges(rings: &[Vec<DVec3>]) -> impl Iterator<Item = (DVec3, DVec3)> {
+    rings
+        .iter()
+        .flat_map(|ring| (0..ring.len()).map(move |i| (ring[i], ring[(i + 1) % ring.len()])))
+}
+
 /// Distance of a point from a polygon's edges.
 fn edge_distance(rings: &[Vec<DVec3>], point: DVec3) -> f64 {
-    let edges = rings
-        .iter()
-        .flat_map(|ring| (0..ring.len()).map(move |i| (ring[i], ring[(i + 1) % ring.len()])));
-    edges
+    edges(rings)
         .map(|(a, b)| {
             let d = b - a;
             let along = (point - a).dot(d) / d.length_squared().max(f64::MIN_POSITIVE);
@@ -449,8 +518,9 @@ fn range(
 }
 
 /// Magnitude, slope and curvature of a plane's term in a ball. With `P(z) = π∫G` from z² on, the slope
-/// is `2πzG` and the curvature at most `2πG + 4πz²|G′|`.
-fn plane(primitive: &Primitive, center: DVec3, radius: f64) -> [f64; 3] {
+/// is `2πzG` and the curvature at most `2πG + 4πz²|G′|`; along a vector that is not its normal by the
+/// cosine and its square less.
+fn plane(primitive: &Primitive, center: DVec3, radius: f64, along: Option<DVec3>) -> [f64; 3] {
     let Skeleton::Plane { point, normal } = primitive.skeleton else {
         return [f64::INFINITY; 3];
     };
@@ -469,10 +539,11 @@ fn plane(primitive: &Primitive, center: DVec3, radius: f64) -> [f64; 3] {
         0.0
     };
     let most = largest(primitive.kernel, near * s, far * s);
-    let pi = core::f64::consts::PI;
+    let cosine = along.map_or(1.0, |v| v.dot(n).abs() + 1e-12);
+    let round = core::f64::consts::TAU * height;
     [
         value * (1.0 + 1e-6),
-        height / s * 2.0 * pi * far * s * most.value,
-        height * 2.0 * pi * (most.value + far * s * most.slope),
+        cosine * round * far * most.value,
+        cosine * cosine * round * (most.value + far * s * most.slope),
     ]
 }
