@@ -17,6 +17,10 @@
 //! their spans' cubics (`spans`) and takes their roots (`roots`). `walk` is the only part that knows
 //! how crossings are found: given slabs and rays it returns crossings.
 //!
+//! What pictures show is held against [`mod@reference`], which looks for the surface by bisection with
+//! bounds of its own (`tests/certified.rs`, `examples/certify.rs`); `cast` follows single rays in the way of
+//! pictures.
+//!
 //! # Limits
 //!
 //! - The soft surface of a picture is that of a field within 5·10⁻⁴·T of the true one, cut off at

@@ -20,15 +20,15 @@ use crate::ray::Ray;
 use field::{Primitive, THRESHOLD};
 use glam::DVec3;
 use pieces::Pieces;
-use waves::Factor;
+use waves::{Factor, Kink};
 
 /// The field of some primitives, ready to be searched.
 #[derive(Clone, Debug)]
 pub struct Reference {
     primitives: Vec<Primitive>,
     pieces: Pieces,
-    /// Planes (a point, a normal) across which the field is not smooth.
-    kinks: Vec<(DVec3, DVec3)>,
+    /// Where the field is not smooth.
+    kinks: Vec<Kink>,
     /// Evaluations of the whole field so far.
     pub evaluations: u64,
     /// Intervals looked at along one ray before it is given up. Most rays want a hundred.
@@ -200,7 +200,7 @@ impl Reference {
 
     /// Where a ray crosses planes on which the field is not smooth, in order.
     fn kinks_along(&self, ray: &Ray, to: f64) -> Vec<f64> {
-        let crossing = |&(p, n): &(DVec3, DVec3)| n.dot(p - ray.origin) / n.dot(ray.direction);
+        let crossing = |k: &Kink| k.normal.dot(k.point - ray.origin) / k.normal.dot(ray.direction);
         let mut found: Vec<f64> = self
             .kinks
             .iter()
@@ -348,15 +348,24 @@ impl Reference {
             if here.excess * start.excess <= 0.0 && away <= reach {
                 return Near::Within(away);
             }
-            let curvature = self
-                .pieces
-                .extent(&self.primitives, center, radius, None)
-                .curvature;
-            let change = here.gradient.length() + here.slope_noise + 0.5 * curvature * radius;
-            if here.excess.abs() > change * radius + here.noise {
+            let extent = self.pieces.extent(&self.primitives, center, radius, None);
+            // What a kink has in its ball is known less well.
+            let (mut kinked, mut jumps) = (false, false);
+            for kink in &self.kinks {
+                if kink.normal.dot(center - kink.point).abs() <= radius * (1.0 + 1e-9) {
+                    kinked = true;
+                    jumps |= kink.jumps;
+                }
+            }
+            let change = if kinked {
+                extent.slope
+            } else {
+                here.gradient.length() + here.slope_noise + 0.5 * extent.curvature * radius
+            };
+            if !jumps && here.excess.abs() > change * radius + here.noise {
                 continue;
             }
-            if half < 1e-3 * reach {
+            if half < if jumps { 0.05 } else { 1e-3 } * reach {
                 unknown = true;
                 continue;
             }

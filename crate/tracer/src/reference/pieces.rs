@@ -17,7 +17,9 @@ pub struct Extent {
     pub above: f64,
     /// What the terms that carve can take away at most.
     pub below: f64,
-    /// The second derivative in any direction (where the profile is smooth).
+    /// The first derivative in any direction (where no profile jumps).
+    pub slope: f64,
+    /// The second derivative in any direction (where all profiles are smooth).
     pub curvature: f64,
 }
 
@@ -179,6 +181,7 @@ impl Pieces {
             if !body.adds || body.factor.turns {
                 sum.below += value;
             }
+            sum.slope += SLACK * (size * most[1] + slope * most[0]);
             sum.curvature += SLACK * (size * most[2] + 2.0 * slope * most[1] + bend * most[0]);
         }
         sum

@@ -138,7 +138,7 @@ fn slopes_change_no_faster_than_the_bound() {
                     if reference
                         .kinks
                         .iter()
-                        .any(|(k, n)| (a - *k).dot(*n) * (b - *k).dot(*n) <= 0.0)
+                        .any(|k| (a - k.point).dot(k.normal) * (b - k.point).dot(k.normal) <= 0.0)
                     {
                         continue;
                     }
@@ -148,6 +148,10 @@ fn slopes_change_no_faster_than_the_bound() {
                         change <= extent.curvature + noise + 1e-15,
                         "{kernel:?} {seed} {center} {radius}: {change} > {}",
                         extent.curvature
+                    );
+                    assert!(
+                        (q.excess - p.excess).abs()
+                            <= extent.slope * a.distance(b) + p.noise + q.noise
                     );
                     assert!(p.excess + 1.0 <= extent.above + p.noise);
                     assert!(-p.excess - 1.0 <= extent.below + p.noise);

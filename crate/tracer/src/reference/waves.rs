@@ -13,8 +13,29 @@ pub struct Factor {
     pub largest: [f64; 3],
     /// Whether it may be negative.
     pub turns: bool,
-    /// Planes (a point, a normal) on which it is not smooth.
-    pub kinks: Vec<(DVec3, DVec3)>,
+    /// Where it is not smooth.
+    pub kinks: Vec<Kink>,
+}
+
+/// A plane on which a factor is not smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kink {
+    /// A point of the plane.
+    pub point: DVec3,
+    /// Its unit normal.
+    pub normal: DVec3,
+    /// Whether the factor itself may jump there, not only its slope.
+    pub jumps: bool,
+}
+
+impl Kink {
+    fn new(point: DVec3, normal: DVec3, jumps: bool) -> Self {
+        Self {
+            point,
+            normal: normal.normalize_or_zero(),
+            jumps,
+        }
+    }
 }
 
 /// Kinks of one wave along a bone; waves finer than that have no reference.
@@ -49,12 +70,13 @@ impl Factor {
             let p = (profile.scale[i] * rate).abs();
             (a * p, b * p * p)
         };
+        let jumps = |i: usize| matches!(profile.waves[i], Wave::Saw | Wave::Step);
         match &primitive.skeleton {
             Skeleton::Segment { base, apex } => {
                 let axis = *apex - *base;
                 (first, second) = steep(0, 1.0 / axis.length());
                 for u in breaks(profile.waves[0], profile.scale[0]) {
-                    kinks.push((*base + axis * u, axis));
+                    kinks.push(Kink::new(*base + axis * u, axis, jumps(0)));
                 }
             }
             Skeleton::Triangle { corners: [a, b, c] } => {
@@ -71,11 +93,11 @@ impl Factor {
                 second = u2 + v2 + 2.0 * u1 * v1;
                 for (i, gradient, edge) in [(0, by_u, e1), (1, by_v, e2)] {
                     for u in breaks(profile.waves[i], profile.scale[i]) {
-                        kinks.push((*a + edge * u, gradient));
+                        kinks.push(Kink::new(*a + edge * u, gradient, jumps(i)));
                     }
                 }
                 if profile.restriction != 0.0 {
-                    kinks.push((*b, by_u + by_v));
+                    kinks.push(Kink::new(*b, by_u + by_v, false));
                     let r = 27.0 * profile.restriction.abs();
                     restricted = [0.75 * r * rate, 6.0 * r * rate * rate];
                 }
@@ -97,14 +119,14 @@ impl Factor {
                 let i = 1.0 / radius;
                 first = (1.3 * w1 + 1.8) * i;
                 second = (4.0 * (w2 + w1) + 16.0 * w1 + 8.0) * i * i;
-                let mut at = |azimuth: f64| {
+                let mut at = |azimuth: f64, jumps: bool| {
                     let (sine, cosine) = libm::sincos(azimuth);
-                    kinks.push((*center, y * cosine - x * sine));
+                    kinks.push(Kink::new(*center, y * cosine - x * sine, jumps));
                 };
                 // In the middle of the gap the parameter jumps from end to end.
-                at(0.5 * angle + core::f64::consts::PI);
+                at(0.5 * angle + core::f64::consts::PI, true);
                 for u in breaks(profile.waves[0], profile.scale[0]) {
-                    at(u * angle);
+                    at(u * angle, jumps(0));
                 }
             }
             // These have no parameters.
