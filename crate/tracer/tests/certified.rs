@@ -7,7 +7,7 @@ mod common;
 mod trials;
 
 use field::Kernel;
-use tracer::{Hit, Picture};
+use tracer::{Hit, Pass, Picture, Stats, Tile};
 use trials::{KINDS, Kind, Row, Trial, check};
 
 /// Judges some scenes of each kernel and kind.
@@ -95,4 +95,43 @@ fn a_primitive_that_is_left_out_is_told() {
         Picture::new(&scene, size).cast(&trial.rays)
     });
     assert!(total.faults() * 20 > total.rays, "{total:?}");
+}
+
+/// Else the check would be of something else than pictures.
+#[test]
+fn what_is_cast_is_what_pictures_show() {
+    const SIDE: u32 = 48;
+    let (mut shown, mut differ) = (0, 0);
+    for seed in 0..16 {
+        let mut scene = common::blend(seed, 5);
+        scene.background = [0.0, 0.0, 1.0];
+        for material in &mut scene.materials {
+            material.ambient = [0.5, 0.5, 0.0];
+        }
+        scene.lights.clear();
+        let picture = Picture::new(&scene, [SIDE; 2]);
+        let whole = Tile {
+            x: 0,
+            y: 0,
+            width: SIDE,
+            height: SIDE,
+        };
+        let pixels = picture
+            .trace(whole, Pass::Full, &|| false, &mut Stats::default())
+            .expect("nobody asked to stop");
+        let projection = scene.camera.projection(SIDE, SIDE);
+        let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE);
+        let rays: Vec<_> = (0..SIDE * SIDE)
+            .map(|i| {
+                let direction = projection.direction(middle(i % SIDE), middle(i / SIDE));
+                (projection.eye, direction)
+            })
+            .collect();
+        for (pixel, hit) in pixels.chunks(4).zip(picture.cast(&rays)) {
+            shown += u32::from(hit.is_some());
+            differ += u32::from(hit.is_some() != (pixel[2] == 0));
+        }
+    }
+    assert!(shown > 5_000, "{shown}");
+    assert!(differ <= 8, "{differ} of {shown}");
 }
