@@ -49,13 +49,14 @@ pub fn measure() -> Result<Piece> {
         )?;
         let ratio = soft.best() / hard.best();
         ratios.push(ratio);
-        writeln!(
-            page,
-            "| {title} | {elements} | {} | {} | {} | {thesis} |",
+        let row = format!(
+            "| {title} | {elements} | {} | {} | {} | {thesis} |\n",
             hard.text(),
             soft.text(),
             short(ratio)
-        )?;
+        );
+        print!("{row}");
+        page += &row;
     }
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     writeln!(page, "| mean | | | | {} | 3.26 |\n", short(mean))?;

@@ -121,23 +121,18 @@ fn against_povray(
         };
         std::fs::write(&file, text)?;
 
-        // An isosurface takes long, and so does an anti-aliased one more so.
-        let rounds = match case.pov {
-            Pov::Isosurface if smooth => 1,
-            Pov::Isosurface => 3,
-            Pov::Blob(_) if smooth => 3,
-            Pov::Blob(_) => ROUNDS,
-        };
-        let mut pov_rays = f64::NAN;
         let mut arguments = vec![dataset];
-        if smooth && installed {
-            // The picture without timing tells how many rays ours should have.
-            pov_rays = povray::time(&file, true)?.rays;
-            arguments.push(format!("--rays={pov_rays}"));
-        }
+        let mut probe = None;
         if smooth {
             arguments.push(String::from("--pass=smooth"));
+            if installed {
+                // One run before the others tells how many rays ours should have.
+                let cost = povray::time(&file, true)?;
+                arguments.push(format!("--rays={}", cost.rays));
+                probe = Some(cost);
+            }
         }
+        let mut pov_rays = f64::NAN;
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
         let mut our_rays = f64::NAN;
         let mut our = || {
@@ -146,9 +141,17 @@ fn against_povray(
             Ok(cost.seconds)
         };
         let mut pov = || {
-            let cost = povray::time(&file, smooth)?;
+            // An isosurface takes long, with anti-aliasing so long that once is enough.
+            let cost = match (case.pov, probe) {
+                (Pov::Isosurface, Some(probe)) => probe,
+                _ => povray::time(&file, smooth)?,
+            };
             pov_rays = cost.rays;
             Ok(cost.seconds)
+        };
+        let rounds = match case.pov {
+            Pov::Blob(_) if !smooth => ROUNDS,
+            _ => 3,
         };
         let (us, them) = if installed {
             let [us, them] = alternate(rounds, [&mut our, &mut pov])?;
@@ -160,8 +163,7 @@ fn against_povray(
         let ratio = them
             .as_ref()
             .map(|them| (them.best() / pov_rays) / (us.best() / our_rays));
-        writeln!(
-            page,
+        let row = format!(
             "| {} | {} | {} | {} | {our_rays:.0} | {} | {} | {} |",
             case.title,
             case.peer,
@@ -171,7 +173,10 @@ fn against_povray(
                 .map_or("–".into(), |_| format!("{pov_rays:.0}")),
             ratio.map_or("–".into(), short),
             case.goal.map_or("–".into(), |goal| format!("≥ {goal}")),
-        )?;
+        );
+        println!("{row}");
+        *page += &row;
+        page.push('\n');
         if !smooth {
             best.insert(case.scene.into(), us.best());
             if let Some(them) = &them {
@@ -237,13 +242,14 @@ fn diggers(scenes: &Scenes, goals: &mut Vec<Goal>, page: &mut String) -> Result<
         let [hermite, lg] = alternate(3, [&mut hermite, &mut lg])?;
         let ratio = lg.best() / hermite.best();
         worst = worst.map(|worst| worst.min(ratio));
-        writeln!(
-            rows,
-            "| {balls} | {} | {} | {} |",
+        let row = format!(
+            "| {balls} | {} | {} | {} |\n",
             hermite.text(),
             lg.text(),
             short(ratio)
-        )?;
+        );
+        print!("{row}");
+        rows += &row;
     }
     if let Err(reason) = &worst {
         writeln!(page, "Not measured: {reason}.\n")?;
