@@ -15,6 +15,7 @@ mod report;
 mod share;
 mod tools;
 mod trace;
+mod whole;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;

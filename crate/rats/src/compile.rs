@@ -47,6 +47,16 @@ pub struct Output {
     pub name: String,
     /// `format`; `None` if the text does not say.
     pub format: Option<&'static str>,
+    /// Whether the picture is to be saved at all, which `nosave on` denies.
+    pub saved: bool,
+}
+
+impl Output {
+    /// The whole name of the picture's file: a PNG file where the text does not say.
+    #[must_use]
+    pub fn file(&self) -> String {
+        format!("{}.{}", self.name, self.format.unwrap_or("png"))
+    }
 }
 
 impl Default for Output {
@@ -54,6 +64,7 @@ impl Default for Output {
         Self {
             name: String::from("scene"),
             format: None,
+            saved: true,
         }
     }
 }
