@@ -285,11 +285,13 @@ fn join(
     let left = remains(&joined);
     let [width, height] = joined.size();
     let all = u64::from(width) * u64::from(height);
-    let mut done = Done::default();
-    done.said = format!(
-        "{verb} of {a} and {b}: {} of {all} pixels are not black, the largest value is {}",
-        left.pixels, left.largest
-    );
+    let mut done = Done {
+        said: format!(
+            "{verb} of {a} and {b}: {} of {all} pixels are not black, the largest value is {}",
+            left.pixels, left.largest
+        ),
+        files: Vec::new(),
+    };
     if let Some(to) = save {
         let said = write(shelf, to, &joined)?;
         done.said = format!("{}; {said}", done.said);

@@ -7,7 +7,7 @@ use crate::sources::Sources;
 use crate::symbol::Symbols;
 use crate::{Asset, Diagnostic, Project, Severity, Tool};
 use glam::DAffine3;
-use scene::Scene;
+use scene::{Origin, Scene};
 
 /// What a text means.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,6 +22,8 @@ pub struct Compiled {
     pub hot: Vec<HotVariable>,
     /// The work on files that the text asks for, in order.
     pub tools: Vec<Tool>,
+    /// Where each of [`Self::tools`] stands in the texts.
+    pub tool_origins: Vec<Origin>,
     /// Under what name the picture is to be saved.
     pub output: Output,
     /// Whether a variable changes with every frame.

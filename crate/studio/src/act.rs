@@ -141,6 +141,14 @@ impl App {
             }
             Command::SaveResult(index) => self.save_result(index, now),
             Command::KeepResult(index) => self.keep_result(ctx, index, now),
+            Command::FindResult(index) => {
+                if let Some((file, range)) = self.tray.place_of(index, session) {
+                    self.dialog = None;
+                    self.tab = Tab::Text;
+                    self.editor.asset = None;
+                    self.editor.jump(file, range);
+                }
+            }
             Command::FoldTray(folded) => self.tray.folded = folded,
             Command::SavePng => self.save_png(now),
             Command::Share => self.share(ctx, now),

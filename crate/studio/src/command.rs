@@ -101,6 +101,8 @@ pub enum Command {
     ShowResult(usize),
     /// Write a result to a file.
     SaveResult(usize),
+    /// Go to the command that made a result.
+    FindResult(usize),
     /// Make a result an image of the work.
     KeepResult(usize),
     /// Show only the head of the tray, or all of it.

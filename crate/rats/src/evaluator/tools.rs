@@ -24,6 +24,7 @@ fn job<'a>(
         ));
     }
     run.tools.push(tool);
+    run.tool_origins.push(run.origin(command));
     Ok(Flow::Next)
 }
 

@@ -14,6 +14,8 @@ const THUMBNAIL: u32 = 256;
 
 /// One thing on the tray.
 pub struct Item {
+    /// Which of the text's jobs made it.
+    pub job: usize,
     /// The command that made it.
     pub command: &'static str,
     /// What the job says.

@@ -19,6 +19,31 @@ const SHORTEST: f64 = 0.02;
 /// Height of all that is not the picture, points.
 const REST: f32 = 148.0;
 
+/// Least height of the place for the picture, points.
+const LEAST: f32 = 120.0;
+
+/// A button that leads to the command.
+fn find(ui: &mut Ui) -> bool {
+    let button = ui.button("Show in the text");
+    places::note(ui.ctx(), "find result", button.rect);
+    button
+        .on_hover_text("Go to the command that made it")
+        .clicked()
+}
+
+/// A button that makes the result a file of the work.
+fn keep(ui: &mut Ui, film: &Film, kept: &[Asset]) -> bool {
+    let same = |asset: &Asset| asset.name == film.name && asset.bytes == film.bytes;
+    if kept.iter().any(same) {
+        ui.add_enabled(false, Button::new("Kept as a file"));
+        return false;
+    }
+    let button = ui.button("Keep as a file");
+    places::note(ui.ctx(), "keep result", button.rect);
+    let tip = "Put it beside the text, as if it had been dropped on the page";
+    button.on_hover_text(tip).clicked()
+}
+
 /// The result that was opened.
 #[derive(Default)]
 pub struct Large {
@@ -135,8 +160,13 @@ impl Large {
                 _ => palette.text,
             };
             ScrollArea::vertical().show(ui, |ui| {
+                ui.set_max_height((size.y - REST).max(80.0));
                 ui.label(RichText::new(&item.said).color(colour));
             });
+            ui.add_space(8.0);
+            if find(ui) {
+                commands.push(Command::FindResult(self.open));
+            }
             return;
         };
         self.picture(ui, vec2(size.x, (size.y - REST).max(80.0)), film, now);
@@ -154,19 +184,11 @@ impl Large {
             if save.on_hover_text("Write it to a file").clicked() {
                 commands.push(Command::SaveResult(self.open));
             }
-            if asset::kind(&film.name) != Some(Kind::Image) {
-                return;
-            }
-            let same = |asset: &Asset| asset.name == film.name && asset.bytes == film.bytes;
-            if kept.iter().any(same) {
-                ui.add_enabled(false, Button::new("Kept as a file of the work"));
-                return;
-            }
-            let keep = ui.button("Keep as a file of the work");
-            places::note(ui.ctx(), "keep result", keep.rect);
-            let tip = "Put it beside the text, as if it had been dropped on the page";
-            if keep.on_hover_text(tip).clicked() {
+            if asset::kind(&film.name) == Some(Kind::Image) && keep(ui, film, kept) {
                 commands.push(Command::KeepResult(self.open));
+            }
+            if find(ui) {
+                commands.push(Command::FindResult(self.open));
             }
         });
     }
@@ -181,6 +203,12 @@ impl Large {
             return;
         };
         view.play(ui, film, now);
+        // No taller than the picture needs.
+        let shown = view.texture.as_ref().map_or(Vec2::splat(LEAST), |texture| {
+            let texture = texture.size_vec2();
+            texture * (2.0_f32).min((size.x - 16.0) / texture.x.max(1.0))
+        });
+        let size = vec2(size.x, (shown.y + 16.0).clamp(LEAST, size.y.max(LEAST)));
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         response.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Picture {}", film.name))

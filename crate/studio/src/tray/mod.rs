@@ -20,6 +20,7 @@ use egui::{Context, Ui, Vec2};
 use item::{Content, Film, Item};
 use large::Large;
 use rats::Tool;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Seconds of work in one frame of the page, after which what was begun is still finished.
@@ -128,6 +129,19 @@ impl Tray {
         self.large.show(ui, size, items, kept, now, commands);
     }
 
+    /// Where the command stands that made a result, if the text is still the one that it was made of.
+    #[must_use]
+    pub fn place_of(&self, index: usize, session: &Session) -> Option<(usize, Range<usize>)> {
+        let compiled = session.compiled();
+        let item = self.items().get(index)?;
+        let origin = compiled.tool_origins.get(item.job)?;
+        let same = session.is_compiled() && compiled.tools == self.order.tools;
+        same.then_some((
+            origin.file as usize,
+            origin.start as usize..origin.end as usize,
+        ))
+    }
+
     /// What goes on, in a few words; empty when all is done.
     #[must_use]
     pub fn state(&self) -> String {
@@ -217,9 +231,9 @@ impl Run {
                     self.waits = true;
                     return true;
                 }
-                let command = tool.command();
+                let (job, command) = (self.bench.finished(), tool.command());
                 if let Some(Step::Finished(finished)) = self.bench.step() {
-                    self.take(command, finished);
+                    self.take(job, command, finished);
                 }
             }
             if platform::stopwatch() - start > SPELL {
@@ -229,8 +243,9 @@ impl Run {
     }
 
     /// Puts what a job came to on the tray.
-    fn take(&mut self, command: &'static str, finished: Result<Done, String>) {
+    fn take(&mut self, job: usize, command: &'static str, finished: Result<Done, String>) {
         let item = |said: String, content| Item {
+            job,
             command,
             said,
             content,

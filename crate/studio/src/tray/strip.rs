@@ -61,6 +61,8 @@ pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>)
     let measures = if narrow { &NARROW } else { &WIDE };
     let all = ui.available_rect_before_wrap();
     let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(all));
+    // A wheel, too, goes along the strip.
+    ui.style_mut().always_scroll_the_only_direction = true;
     ScrollArea::horizontal()
         .id_salt("results")
         .auto_shrink(false)
@@ -70,7 +72,7 @@ pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>)
             }
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = measures.gap;
-                ui.add_space(2.0);
+                ui.add_space(12.0);
                 for (index, item) in tray.items().iter().enumerate() {
                     if card(ui, item, measures) {
                         commands.push(Command::ShowResult(index));
@@ -81,7 +83,7 @@ pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>)
                     let palette = theme::palette(ui.visuals());
                     ui.label(RichText::new(state).size(12.5).color(palette.weak));
                 }
-                ui.add_space(2.0);
+                ui.add_space(4.0);
             });
         });
 }

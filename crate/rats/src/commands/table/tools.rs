@@ -6,7 +6,6 @@ use crate::commands::options as o;
 use crate::commands::parameter::{Kind, Parameter, Unit, number, parameter, whole};
 use crate::evaluator::{run, tools};
 
-const WINDOWS: &str = "there are no windows here";
 const FILE: Parameter = parameter("fn", Kind::File, "a picture's name");
 const OTHER: Parameter = parameter("fn2", Kind::File, "another picture's name");
 const WINDOW: Parameter = parameter("w", Kind::Text, "a window").optional("");
@@ -60,9 +59,9 @@ pub static TOOLS: &[CommandSpec] = &[
         .options(o::SHOW)
         .details(WORK)
         .example("show color OrangeRed"),
-    row("kill", "close windows", idle(WINDOWS)).takes(&[WINDOW]).example("kill"),
-    row("refresh", "draw windows again", idle(WINDOWS)).takes(&[WINDOW]).example("refresh"),
-    row("tile", "arrange windows", idle(WINDOWS)).takes(&[WINDOW]).example("tile"),
+    row("kill", "close windows", idle("results go when the commands that made them go")).takes(&[WINDOW]).example("kill"),
+    row("refresh", "draw windows again", idle("results are made again when the text or its pictures change")).takes(&[WINDOW]).example("refresh"),
+    row("tile", "arrange windows", idle("results lie side by side anyway")).takes(&[WINDOW]).example("tile"),
     row("colors", "list the colours by name", does(run::colors)).example("colors"),
     row("rats", "small talk", does(run::rats)).example("rats"),
     row("table", "plot numbers", does(tools::table))
