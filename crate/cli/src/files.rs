@@ -6,8 +6,6 @@
 use rats::{Asset, Compiled, File, Project};
 use std::path::{Path, PathBuf};
 
-/// Endings of the names of datasets, which nothing is written over.
-pub const DATASETS: [&str; 4] = ["rat", "art", "ice", "dat"];
 /// Largest text accepted from disk, bytes.
 const MAX_TEXT: u64 = 4 * 1024 * 1024;
 /// Largest image or mesh accepted from disk, bytes.
@@ -97,14 +95,7 @@ fn bytes(path: &Path) -> Option<Vec<u8>> {
 /// The path of a file named in a dataset; names that lead out of the dataset's folder are refused,
 /// because a dataset may come from a stranger.
 pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
-    let relative = Path::new(name);
-    let stays = relative.components().all(|part| {
-        matches!(
-            part,
-            std::path::Component::Normal(_) | std::path::Component::CurDir
-        )
-    });
-    stays.then(|| folder.join(relative))
+    darkroom::name::stays_inside(name).then(|| folder.join(name))
 }
 
 /// A text from disk.

@@ -79,6 +79,7 @@ pub struct Evaluator<'a> {
     definitions: HashMap<Symbol, (usize, &'a Define)>,
     hot: Vec<HotVariable>,
     tools: Vec<Tool>,
+    tool_origins: Vec<Origin>,
     output: Output,
     /// Whether a variable changes with every frame.
     animated: bool,
@@ -129,6 +130,7 @@ impl<'a> Evaluator<'a> {
             definitions: HashMap::new(),
             hot: Vec::new(),
             tools: Vec::new(),
+            tool_origins: Vec::new(),
             output: Output::default(),
             animated: false,
             file: 0,
@@ -169,6 +171,7 @@ impl<'a> Evaluator<'a> {
             diagnostics: self.report.finish(project),
             hot: self.hot,
             tools: self.tools,
+            tool_origins: self.tool_origins,
             output: self.output,
             animated: self.animated,
         }

@@ -1,14 +1,13 @@
 //! TOOLS: work on pictures. The compiler touches no files, so each command becomes a [`Tool`] in the
-//! result, which the program carries out; a note says so.
+//! result, for the program and the page to carry out.
 
 use super::{Evaluator, Flow};
-use crate::Severity;
 use crate::colours;
 use crate::given::Given;
 use crate::limits::MAX_TOOLS;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
-use crate::tool::{LISTED, Playback, Shown, Tool};
+use crate::tool::{Playback, Shown, Tool};
 
 /// Lists a job.
 fn job<'a>(
@@ -25,9 +24,7 @@ fn job<'a>(
         ));
     }
     run.tools.push(tool);
-    run.say(Severity::Note, command.word_span.clone(), || {
-        (LISTED.to_owned(), None)
-    });
+    run.tool_origins.push(run.origin(command));
     Ok(Flow::Next)
 }
 
