@@ -35,6 +35,7 @@ export async function launch(kind) {
   const server = await serve(setting('SINEW_PAGE'));
   return {
     kind,
+    version: () => browser.version(),
     /** Opens the page in a new profile. `fragment` ends the address; `before` may prepare the tab. */
     async open({ fragment = '', before, viewport = { width: 1200, height: 760 }, ...options } = {}) {
       const context = await browser.newContext({

@@ -13,8 +13,10 @@ mod probe;
 mod render;
 mod report;
 mod share;
+mod time;
 mod tools;
 mod trace;
+mod whole;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
@@ -49,6 +51,9 @@ enum Command {
     Share(share::Share),
     /// Take a link apart: print or write the texts it carries
     Open(share::Open),
+    /// Time the tracer on one thread (for `cargo xtask bench`)
+    #[command(hide = true)]
+    Time(time::Time),
 }
 
 /// What a subcommand came to: `Ok(true)` all well, `Ok(false)` the dataset has errors, `Err` a
@@ -89,5 +94,6 @@ fn run() -> Outcome {
         Command::Scene(command) => command.run(),
         Command::Share(command) => command.run(),
         Command::Open(command) => command.run(),
+        Command::Time(command) => command.run(),
     }
 }

@@ -24,7 +24,7 @@ mod problem;
 mod resize;
 mod swatches;
 
-pub use collage::collage;
+pub use collage::{collage, collage_at_most};
 pub use file::Format;
 pub use picture::Picture;
 pub use plot::plot;

@@ -1,6 +1,6 @@
 //! The format of Mark VandeWettering's ray tracer: a line `width height`, then three bytes a pixel.
 
-use crate::picture::check_size;
+use crate::picture::check_room;
 use crate::{Picture, Problem};
 use std::iter;
 
@@ -26,10 +26,7 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
             "its first line is not `width height`",
         )));
     };
-    let count = check_size(width, height)?;
-    if count > max_pixels {
-        return Err(Problem::Size(width.into(), height.into()));
-    }
+    let count = check_room(width, height, max_pixels)?;
     let needed = 3 * count;
     let Some(rgb) = usize::try_from(needed).ok().and_then(|n| rest.get(..n)) else {
         return Err(damaged(format!(

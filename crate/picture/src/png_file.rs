@@ -1,7 +1,7 @@
 //! PNG files of one picture, and animated ones.
 
 use crate::animation::Timing;
-use crate::picture::check_size;
+use crate::picture::check_room;
 use crate::{Picture, Problem};
 use std::io::{Cursor, Write};
 
@@ -21,9 +21,7 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
         .read_header_info()
         .map_err(|error| damaged(&error))?;
     let (width, height) = (header.width, header.height);
-    if check_size(width, height)? > max_pixels {
-        return Err(Problem::Size(width.into(), height.into()));
-    }
+    check_room(width, height, max_pixels)?;
     let mut reader = decoder.read_info().map_err(|error| damaged(&error))?;
     let size = reader
         .output_buffer_size()

@@ -113,7 +113,10 @@ fn size_is_checked_before_memory_is_set_aside() {
         assert!(decode_at_most(&bytes, format, 1200).is_ok());
         assert_eq!(
             decode_at_most(&bytes, format, 1199),
-            Err(Problem::Size(40, 30)),
+            Err(Problem::NoRoom {
+                size: [40, 30],
+                most: 1199
+            }),
             "{format:?}"
         );
     }

@@ -18,6 +18,10 @@
 //! how crossings are found: given slabs and rays it returns crossings. Other ways of finding them,
 //! for comparison, are in `digger`; `map` shows what a picture costs.
 //!
+//! What pictures show is held against [`mod@reference`], which looks for the surface by bisection with
+//! bounds of its own (`tests/certified.rs`, `examples/certify.rs`); `cast` follows single rays in the way of
+//! pictures.
+//!
 //! # Limits
 //!
 //! - The soft surface of a picture is that of a field within 5·10⁻⁴·T of the true one, cut off at
@@ -32,6 +36,7 @@
 
 mod area;
 mod beam;
+mod cast;
 mod digger;
 pub mod hard;
 mod hierarchy;
@@ -40,6 +45,7 @@ mod map;
 mod packet;
 pub mod picture;
 mod ray;
+pub mod reference;
 mod refine;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
@@ -58,6 +64,7 @@ mod walk;
 
 pub use picture::{Hit, Picture, Stats};
 pub use ray::Ray;
+pub use reference::Reference;
 #[cfg(not(target_arch = "wasm32"))]
 pub use render::render;
 pub use tile::{Pass, Tile, tiles};

@@ -41,8 +41,11 @@ enum Command {
         /// Only this part.
         part: Option<check::Part>,
     },
-    /// Measure, and write BENCHMARKS.md.
-    Bench,
+    /// Measure, and write BENCHMARKS.md; or measure one part and print it.
+    Bench {
+        /// Only this part.
+        part: Option<bench::Part>,
+    },
     /// Draw the thumbnails of the examples, www/examples/*.png, with our own renderer.
     Examples,
 }
@@ -52,7 +55,7 @@ fn main() -> ExitCode {
         Command::Serve { port, release } => serve::serve(port, release),
         Command::Dist => dist::dist().map(|_| ()),
         Command::Test { part } => check::test(part),
-        Command::Bench => bench::bench(),
+        Command::Bench { part } => bench::bench(part),
         Command::Examples => examples::draw(),
     };
     match done {

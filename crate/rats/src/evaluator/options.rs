@@ -71,6 +71,12 @@ pub fn format<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     Ok(Flow::Next)
 }
 
+/// `nosave on|off`
+pub fn nosave<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.output.saved = !run.given(command)?.switch();
+    Ok(Flow::Next)
+}
+
 /// `sample n`
 pub fn sample<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;

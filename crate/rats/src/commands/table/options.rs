@@ -51,7 +51,9 @@ pub static OPTIONS: &[CommandSpec] = &[
         .example(flesh!("map on 1.5\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
     switch("penumbra", "soft shadows", later(), "off").example("penumbra off"),
     switch("noview", "do not display the picture", idle(WINDOWS), "off").example("noview on"),
-    switch("nosave", "do not save the picture", idle(SAVING), "off").example("nosave on"),
+    switch("nosave", "do not save the picture", run(options::nosave), "off")
+        .details("The program that runs the dataset then neither traces nor writes the picture, unless it is told a name for it with `-o`. In the page, tools do not find the picture among the files; you can still save it by hand.")
+        .example("nosave on"),
     row("gamma", "gamma correction", run(options::gamma))
         .takes(&[number("value", "gamma").from(0.1, 10.0)])
         .default("1")
@@ -66,7 +68,7 @@ pub static OPTIONS: &[CommandSpec] = &[
     row("filename", "name of the saved picture", run(options::filename))
         .takes(&[parameter("name", Kind::NewFile, "the picture's name")])
         .default("scene")
-        .details("The program saves the picture under this name, and the page offers it.")
+        .details("The program saves the picture under this name, and tools such as `collage` know it by this name and its `format`: `shell.png`.")
         .example("filename shell"),
     row("format", "format of the saved picture", run(options::format))
         .takes(&[word("format", o::FORMATS, "a format, such as `tif`")])

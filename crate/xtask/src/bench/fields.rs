@@ -1,8 +1,8 @@
-//! `cargo xtask bench`: measures, and writes BENCHMARKS.md. Nothing in that file is written by hand.
+//! Figures of the field's chart: values a second and rounding errors, natively and as wasm.
 
-use crate::shell::{cargo, find, read, root, run_and_read};
+use crate::shell::{cargo, run_and_read};
 use crate::tools;
-use anyhow::{Context, Result, bail};
+use anyhow::Result;
 use std::fmt::Write;
 use std::process::Command;
 
@@ -30,11 +30,8 @@ const THESIS: [(&str, f64); 5] = [
     ("plane", 1.02),
 ];
 
-/// Measures everything and writes the file.
-pub fn bench() -> Result<()> {
-    if find("node").is_none() {
-        bail!("Node.js is missing. Install Node.js 20 or newer (https://nodejs.org).");
-    }
+/// Measures, and gives the tables.
+pub fn measure() -> Result<String> {
     tools::wasm_target()?;
     let runner = tools::wasm_test_runner()?;
     let native = figures(cargo(&["test"]).args(["--release"]))?;
@@ -43,10 +40,7 @@ pub fn bench() -> Result<()> {
             .args(["--release", "--target", tools::WASM])
             .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER", &runner),
     )?;
-    let path = root().join("BENCHMARKS.md");
-    std::fs::write(&path, page(&native, &wasm)?).context("BENCHMARKS.md cannot be written")?;
-    println!("wrote {}", path.display());
-    Ok(())
+    page(&native, &wasm)
 }
 
 /// Runs the measurement of the field's chart, ignored tests and all, and gives its lines.
@@ -99,16 +93,6 @@ fn table(out: &mut String, of: impl Fn(&str, &str) -> String) -> Result<()> {
 
 fn page(native: &[Vec<String>], wasm: &[Vec<String>]) -> Result<String> {
     let mut out = String::new();
-    let rustc = read(Command::new("rustc").arg("--version")).unwrap_or_default();
-    let node = read(Command::new("node").arg("--version")).unwrap_or_default();
-    writeln!(
-        out,
-        "# Benchmarks\n\nWritten by `cargo xtask bench`, which makes all figures anew; none is written by \
-         hand. Absolute figures are those of one machine and drift with what else it does: compare \
-         ratios within a table. {rustc}; node {node}; {} {}.\n",
-        std::env::consts::OS,
-        std::env::consts::ARCH
-    )?;
     writeln!(
         out,
         "## Fields: million values with gradients a second\n\nOne thread, a skeleton about five radii \

@@ -1,0 +1,159 @@
+//! `sinew time`: what tracing a picture costs on one thread, for `cargo xtask bench`.
+//!
+//! Nothing is written to a file. The figures go to the standard output as one line of JSON.
+
+mod balls;
+mod machine;
+
+use crate::{Outcome, files, report};
+use clap::{Args, ValueEnum};
+use scene::Scene;
+use serde_json::json;
+use std::path::PathBuf;
+use std::time::Instant;
+use tracer::{Pass, Picture};
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Switch {
+    On,
+    Off,
+}
+
+/// How finely the picture is traced.
+#[derive(Clone, Copy, ValueEnum)]
+enum Fineness {
+    /// One ray for every block of 8×8 pixels.
+    Coarse,
+    /// One ray a pixel.
+    Full,
+    /// More where neighbouring pixels differ.
+    Smooth,
+}
+
+/// `sinew time FILE | --balls N [--pass P] [--size W H] [--soft on|off] [--rays N] [--no-far]`.
+#[derive(Args)]
+pub struct Time {
+    /// The dataset
+    #[arg(required_unless_present = "balls")]
+    file: Option<PathBuf>,
+    /// Instead of a dataset: so many Gaussian balls spread evenly through a cube
+    #[arg(long, value_name = "N", conflicts_with = "file")]
+    balls: Option<u32>,
+    /// How finely
+    #[arg(long, default_value = "full")]
+    pass: Fineness,
+    /// Width and height in pixels, instead of the dataset's `framesize`
+    #[arg(long, num_args = 2, value_names = ["W", "H"])]
+    size: Option<Vec<u32>>,
+    /// Draw the convolution surface, or the offset surfaces of its elements
+    #[arg(long)]
+    soft: Option<Switch>,
+    /// Instead of the dataset's `contrast`, the one with which about so many rays are sent from the
+    /// eye (with `--pass smooth`)
+    #[arg(long, value_name = "N")]
+    rays: Option<u64>,
+    /// Sum far fields element by element instead of by groups
+    #[arg(long)]
+    no_far: bool,
+}
+
+impl Time {
+    /// Traces the picture and prints what it cost; false if the dataset has errors.
+    pub fn run(&self) -> Outcome {
+        if self.no_far {
+            return Err(String::from(
+                "--no-far: this build has no hierarchy of far fields that could be left out",
+            ));
+        }
+        let (mut scene, clean) = match (&self.file, self.balls) {
+            (Some(file), _) => {
+                let loaded = files::load(file)?;
+                let clean = report::to_stderr(&loaded);
+                (loaded.compiled.scene, clean)
+            }
+            (None, count) => (balls::scene(count.unwrap_or(1)), true),
+        };
+        if let Some(soft) = self.soft {
+            scene.settings.soft = matches!(soft, Switch::On);
+        }
+        let wishes = crate::trace::Wishes {
+            size: self.size.as_ref().map(|size| [size[0], size[1]]),
+            ..Default::default()
+        };
+        wishes.apply(&mut scene)?;
+        let size = scene.settings.frame;
+        let pass = match self.pass {
+            Fineness::Coarse => Pass::Coarse,
+            Fineness::Full => Pass::Full,
+            Fineness::Smooth => Pass::Smooth,
+        };
+        let trace = |scene: &Scene| tracer::render(scene, size, 1, pass, &|_| ()).1;
+        if let Some(rays) = self.rays {
+            choose_contrast(&mut scene, rays, |scene| trace(scene).primary_rays);
+        }
+
+        let (start, busy) = (Instant::now(), machine::thread_seconds());
+        let stats = trace(&scene);
+        let busy = machine::thread_seconds() - busy;
+        let seconds = start.elapsed().as_secs_f64();
+        let before = machine::thread_seconds();
+        drop(Picture::new(&scene, size));
+        let prepare = machine::thread_seconds() - before;
+        println!(
+            "{}",
+            json!({
+                "elements": scene.elements.len(),
+                "contrast": scene.settings.contrast[0],
+                "seconds": { "wall": seconds, "busy": busy, "prepare": prepare },
+                "memory": machine::peak_memory(),
+                "stats": stats,
+            })
+        );
+        Ok(clean)
+    }
+}
+
+/// Sets the contrast with which `rays_of` the scene come nearest to `rays`: fewer with a higher one.
+fn choose_contrast(scene: &mut Scene, rays: u64, rays_of: impl Fn(&Scene) -> u64) {
+    let mut best = (u64::MAX, 0.0);
+    // Exponents of two.
+    let (mut low, mut high) = (-12.0_f64, 1.0_f64);
+    for _ in 0..9 {
+        let middle = 0.5 * (low + high);
+        let contrast = libm::exp2(middle) as f32;
+        scene.settings.contrast = [contrast; 3];
+        let sent = rays_of(scene);
+        let off = sent.abs_diff(rays);
+        if off < best.0 {
+            best = (off, contrast);
+        }
+        if sent > rays {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    scene.settings.contrast = [best.1; 3];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_contrast_with_the_wanted_number_of_rays_is_found() {
+        let mut scene = Scene::default();
+        let rays_of = |scene: &Scene| (1000.0 / scene.settings.contrast[0]) as u64;
+        choose_contrast(&mut scene, 8000, rays_of);
+        let rays = rays_of(&scene);
+        assert!(rays.abs_diff(8000) < 200, "{rays}");
+    }
+
+    #[test]
+    fn balls_are_as_many_as_asked_for_and_apart() {
+        let scene = balls::scene(1000);
+        assert_eq!(scene.elements.len(), 1000);
+        let surface = scene.soft_surface();
+        assert_eq!(surface.field.primitives.len(), 1000);
+    }
+}

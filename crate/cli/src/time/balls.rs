@@ -1,0 +1,46 @@
+//! A scene of very many elements, more than a dataset may have.
+
+use field::Kernel;
+use glam::DVec3;
+use scene::{Camera, Element, Light, LightKind, Material, Origin, Scene, Shape};
+
+/// Gaussian balls spread evenly through a cube of side 2, by the additive sequence of the three
+/// powers of 1/φ₃, φ₃ ≈ 1.2207 being the root of x⁴ = x + 1. Their radius is a third of their mean
+/// distance, so that many touch and melt together.
+pub fn scene(count: u32) -> Scene {
+    const PHI: f64 = 1.220_744_084_605_759_5;
+    let step = DVec3::new(1.0 / PHI, 1.0 / (PHI * PHI), 1.0 / (PHI * PHI * PHI));
+    let radius = 2.0 / libm::cbrt(f64::from(count)) / 3.0;
+    let mut scene = Scene::default();
+    scene.materials[0] = Material {
+        blobbiness: -4.0,
+        ..Material::default()
+    };
+    scene.elements = (0..count)
+        .map(|i| Element {
+            shape: Shape::Sphere {
+                center: (step * f64::from(i)).fract() * 2.0 - 1.0,
+                radius,
+            },
+            material: 0,
+            kernel: Kernel::Gauss,
+            origin: Origin::default(),
+        })
+        .collect();
+    scene.camera = Camera {
+        eye: DVec3::new(4.0, 2.4, 3.2),
+        target: DVec3::ZERO,
+        up: DVec3::Z,
+        fov: 45.0,
+        shift: [0.0; 2],
+    };
+    scene.lights.push(Light {
+        kind: LightKind::Point {
+            position: DVec3::new(4.0, 3.0, 5.0),
+        },
+        colour: [1.0; 3],
+        shadow: false,
+    });
+    scene.settings.frame = [512, 512];
+    scene
+}

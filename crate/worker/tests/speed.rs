@@ -1,0 +1,136 @@
+//! What the worker's engine takes for the scenes of `tests/bench/`, natively and as wasm. A measurement:
+//! `cargo xtask bench wasm` runs it. That it ends with a picture is a test.
+
+use rats::{File, Project};
+use scene::Scene;
+use tracer::{Pass, tiles};
+use worker::{Answer, Engine, Order, Request, Step};
+
+/// Side of the tiles that the page asks for.
+const TILE: u32 = 32;
+/// Pictures of each scene, of which the quickest counts.
+const PICTURES: usize = 3;
+
+const FLAKE: &str = include_str!("../../../tests/bench/flake.rat");
+const SCENES: [(&str, &str); 7] = [
+    (
+        "flake-10",
+        include_str!("../../../tests/bench/flake-10.rat"),
+    ),
+    (
+        "flake-820",
+        include_str!("../../../tests/bench/flake-820.rat"),
+    ),
+    (
+        "flake-7381",
+        include_str!("../../../tests/bench/flake-7381.rat"),
+    ),
+    (
+        "flake-820-cauchy",
+        include_str!("../../../tests/bench/flake-820-cauchy.rat"),
+    ),
+    ("coral", include_str!("../../../tests/bench/coral.rat")),
+    (
+        "seahorse",
+        include_str!("../../../tests/bench/seahorse.rat"),
+    ),
+    ("tee", include_str!("../../../tests/bench/tee.rat")),
+];
+
+fn compile(text: &str) -> Scene {
+    let file = |name: &str, text: &str| File {
+        name: name.into(),
+        text: text.into(),
+    };
+    let project = Project {
+        files: vec![file("main.rat", text), file("flake.rat", FLAKE)],
+    };
+    let compiled = rats::compile(&project);
+    assert_eq!(compiled.diagnostics, []);
+    compiled.scene
+}
+
+/// Traces a picture as the page has it traced, and gives the seconds that it took and how many
+/// pixels are not of the background.
+fn picture(scene: &Scene, size: [u32; 2]) -> (f64, usize) {
+    let mut engine = Engine::default();
+    let start = now();
+    engine.accept(Request::Begin {
+        generation: 1,
+        scene: Box::new(scene.clone()),
+        size,
+    });
+    let order = |tile| Order {
+        generation: 1,
+        tile,
+        pass: Pass::Full,
+    };
+    let orders = tiles(size[0], size[1], TILE).into_iter().map(order);
+    engine.accept(Request::Trace(orders.collect()));
+    let mut drawn = 0;
+    loop {
+        match engine.step(&|| false, &|| 0.0) {
+            Step::Idle => break,
+            Step::Answer(Answer::Traced { pixels, .. }) => {
+                // The background is the darkest there is.
+                drawn += pixels.chunks_exact(4).filter(|p| p[0] > 40).count();
+            }
+            _ => {}
+        }
+    }
+    (now() - start, drawn)
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn every_scene_shows_something() {
+    for (name, text) in SCENES {
+        let (_, drawn) = picture(&compile(text), [32, 32]);
+        assert!((20..1000).contains(&drawn), "{name}: {drawn} pixels");
+    }
+}
+
+/// Lines `speed SCENE SECONDS`.
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[ignore = "a measurement, for optimised builds"]
+fn speed() {
+    for (name, text) in SCENES {
+        let scene = compile(text);
+        let best = (0..PICTURES)
+            .map(|_| picture(&scene, scene.settings.frame).0)
+            .fold(f64::INFINITY, f64::min);
+        say(&format!("speed {name} {best:.4}"));
+    }
+}
+
+/// Seconds.
+#[cfg(not(target_arch = "wasm32"))]
+fn now() -> f64 {
+    use std::sync::LazyLock;
+    use std::time::Instant;
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    START.elapsed().as_secs_f64()
+}
+
+/// Seconds.
+#[cfg(target_arch = "wasm32")]
+fn now() -> f64 {
+    use wasm_bindgen::prelude::*;
+    #[wasm_bindgen]
+    extern "C" {
+        #[wasm_bindgen(js_namespace = performance)]
+        fn now() -> f64;
+    }
+    now() / 1000.0
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn say(line: &str) {
+    println!("{line}");
+}
+
+#[cfg(target_arch = "wasm32")]
+fn say(line: &str) {
+    wasm_bindgen_test::console_log!("{line}");
+}

@@ -1,0 +1,100 @@
+//! The page in a real browser, by its own clock: `tests/speed.test.mjs`.
+
+use super::Piece;
+use super::goal::{Goal, Wanted, short};
+use crate::shell::{command, root, run, target};
+use crate::{dist, tools};
+use anyhow::{Context, Result};
+use serde_json::Value;
+use std::fmt::Write;
+
+/// Milliseconds from a keystroke to the coarse picture and to the full one that we want.
+const COARSE: f64 = 100.0;
+const FULL: f64 = 1000.0;
+
+/// Builds the page, opens it and measures.
+pub fn measure() -> Result<Piece> {
+    tools::node_packages()?;
+    let chromium = tools::chromium()?;
+    let page = dist::dist()?;
+    let folder = target().join("bench");
+    std::fs::create_dir_all(&folder)?;
+    let file = folder.join("browser.json");
+    run(command("node", &["--test", "speed.test.mjs"])
+        .current_dir(root().join("tests"))
+        .env("CHROMIUM", chromium)
+        .env("SINEW_PAGE", page)
+        .env("SINEW_SCREENSHOTS", &folder)
+        .env("SINEW_FIGURES", &file))?;
+    let figures: Value = serde_json::from_str(&std::fs::read_to_string(&file)?)?;
+    tables(&figures).context("the page told too few figures")
+}
+
+fn tables(figures: &Value) -> Option<Piece> {
+    let mut goals = Vec::new();
+    let mut page = format!(
+        "From a keystroke to the traced picture of 512×512 pixels on the screen, milliseconds by the page's own \
+         clock, with a pause in typing waited for and the text compiled; the quickest of {} keystrokes \
+         (`tests/speed.test.mjs`, {}).\n\n\
+         | model | workers | coarse | full | smooth | of that, compiling |\n|---|--:|--:|--:|--:|--:|\n",
+        figures["rounds"],
+        figures["browser"].as_str()?,
+    );
+    for model in figures["models"].as_array()? {
+        let name = model["name"].as_str()?;
+        let mut tracing = Vec::new();
+        for run in model["runs"].as_array()? {
+            let of = |key: &str| run[key].as_f64();
+            let workers = of("workers")?;
+            // Writing to a string never fails.
+            let _ = writeln!(
+                page,
+                "| {name} | {workers} | {:.0} | {:.0} | {:.0} | {:.1} |",
+                of("coarse")?,
+                of("full")?,
+                of("smooth")?,
+                of("compile")?
+            );
+            tracing.push((workers, of("tracing")?));
+            if workers == 2.0 {
+                for (what, key, most) in [("coarse", "coarse", COARSE), ("full", "full", FULL)] {
+                    goals.push(Goal {
+                        what: format!("{name}, keystroke to the {what} picture"),
+                        against: "2 workers, in the browser".into(),
+                        wanted: Wanted::AtMost(most),
+                        unit: " ms",
+                        measured: of(key).ok_or_else(String::new),
+                    });
+                }
+            }
+        }
+        let of = |count: f64| {
+            let found = tracing.iter().find(|(workers, _)| *workers == count);
+            found.map(|(_, seconds)| *seconds)
+        };
+        goals.push(Goal {
+            what: format!("{name}, 2 workers"),
+            against: "1 worker, in the browser".into(),
+            wanted: Wanted::AtLeast(1.8),
+            unit: "×",
+            measured: Ok(of(1.0)? / of(2.0)?),
+        });
+    }
+    let ratios: Vec<String> = goals
+        .iter()
+        .filter(|goal| goal.unit == "×")
+        .filter_map(|goal| {
+            Some(format!(
+                "{} {}",
+                goal.what,
+                short(*goal.measured.as_ref().ok()?)
+            ))
+        })
+        .collect();
+    let _ = writeln!(
+        page,
+        "\nTimes quicker than with one worker, from the start of the picture to its end: {}.\n",
+        ratios.join("; ")
+    );
+    Some((goals, page))
+}

@@ -1,0 +1,97 @@
+//! Goals and whether they are met.
+
+use std::fmt::Write;
+
+/// What a ratio should be.
+#[derive(Clone, Copy, Debug)]
+pub enum Wanted {
+    /// This or more.
+    AtLeast(f64),
+    /// This or less.
+    AtMost(f64),
+}
+
+impl Wanted {
+    fn met(self, ratio: f64) -> bool {
+        match self {
+            Self::AtLeast(least) => ratio >= least,
+            Self::AtMost(most) => ratio <= most,
+        }
+    }
+}
+
+/// A row of the table of goals.
+pub struct Goal {
+    /// What is measured.
+    pub what: String,
+    /// With what it is compared.
+    pub against: String,
+    /// What it should be.
+    pub wanted: Wanted,
+    /// What stands behind the numbers: `×`, ` ms`, ….
+    pub unit: &'static str,
+    /// What it is, or why that is not known.
+    pub measured: Result<f64, String>,
+}
+
+/// A number with two or three digits that count.
+pub fn short(number: f64) -> String {
+    match number.abs() {
+        size if size >= 100.0 => format!("{number:.0}"),
+        size if size >= 10.0 => format!("{number:.1}"),
+        _ => format!("{number:.2}"),
+    }
+}
+
+/// The table; nothing if there are no goals.
+pub fn table(goals: &[Goal]) -> String {
+    if goals.is_empty() {
+        return String::new();
+    }
+    let mut out =
+        String::from("## Goals\n\n| what | against | goal | measured | |\n|---|---|--:|--:|---|\n");
+    for goal in goals {
+        let unit = goal.unit;
+        let wanted = match goal.wanted {
+            Wanted::AtLeast(least) => format!("≥ {least}{unit}"),
+            Wanted::AtMost(most) => format!("≤ {most}{unit}"),
+        };
+        let (measured, met) = match &goal.measured {
+            Ok(ratio) if goal.wanted.met(*ratio) => (short(*ratio) + unit, "met"),
+            Ok(ratio) => (short(*ratio) + unit, "**not met**"),
+            Err(reason) => (String::from("–"), reason.as_str()),
+        };
+        // Writing to a string never fails.
+        let _ = writeln!(
+            out,
+            "| {} | {} | {wanted} | {measured} | {met} |",
+            goal.what, goal.against
+        );
+    }
+    out.push('\n');
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_goal_is_met_missed_or_not_measured() {
+        let goal = |wanted, measured| Goal {
+            what: String::from("a"),
+            against: String::from("b"),
+            wanted,
+            unit: "×",
+            measured,
+        };
+        let table = table(&[
+            goal(Wanted::AtLeast(4.0), Ok(4.125)),
+            goal(Wanted::AtMost(1.5), Ok(16.04)),
+            goal(Wanted::AtMost(1.5), Err(String::from("no b here"))),
+        ]);
+        assert!(table.contains("| a | b | ≥ 4× | 4.12× | met |"), "{table}");
+        assert!(table.contains("| a | b | ≤ 1.5× | 16.0× | **not met** |"));
+        assert!(table.contains("| a | b | ≤ 1.5× | – | no b here |"));
+    }
+}

@@ -1,0 +1,101 @@
+//! The worker's engine as wasm in node against the same natively on one thread: `crate/worker/tests/speed.rs`.
+
+use super::Piece;
+use super::goal::{Goal, Wanted, short};
+use super::series::Runs;
+use crate::shell::{cargo, run_and_read};
+use crate::tools;
+use anyhow::{Context, Result};
+use std::fmt::Write;
+use std::process::Command;
+
+/// Rounds of both in turn; each takes the quickest of several pictures.
+const ROUNDS: usize = 3;
+
+/// Measures all scenes.
+pub fn measure() -> Result<Piece> {
+    tools::wasm_target()?;
+    let runner = tools::wasm_test_runner()?;
+    let mut scenes: Vec<(String, [Runs; 2])> = Vec::new();
+    for _ in 0..ROUNDS {
+        for (which, figures) in [
+            figures(cargo(&["test"]).args(["--release"]))?,
+            figures(
+                cargo(&["test"])
+                    .args(["--release", "--target", tools::WASM])
+                    .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER", &runner),
+            )?,
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            for (scene, seconds) in figures {
+                let at = scenes.iter().position(|(name, _)| *name == scene);
+                let at = at.unwrap_or_else(|| {
+                    scenes.push((scene, Default::default()));
+                    scenes.len() - 1
+                });
+                scenes[at].1[which].add(seconds);
+            }
+        }
+    }
+    let mut page = String::from(
+        "The worker's engine, tile by tile as the page asks for them, one ray a pixel: natively on one \
+         thread, and as wasm with simd128 in node (`crate/worker/tests/speed.rs`); seconds, the quickest of \
+         all runs.\n\n| scene | native | wasm | wasm ÷ native |\n|---|--:|--:|--:|\n",
+    );
+    let mut ratios = Vec::new();
+    for (scene, [native, wasm]) in &scenes {
+        let ratio = wasm.best() / native.best();
+        ratios.push(ratio);
+        writeln!(
+            page,
+            "| {scene} | {} | {} | {} |",
+            native.text(),
+            wasm.text(),
+            short(ratio)
+        )?;
+    }
+    page.push('\n');
+    let worst = ratios.iter().copied().reduce(f64::max);
+    let goal = Goal {
+        what: "wasm ÷ native, the largest of the ratios".into(),
+        against: "one worker, one thread".into(),
+        wanted: Wanted::AtMost(1.7),
+        unit: "×",
+        measured: Ok(worst.context("the measurement gave no figures")?),
+    };
+    Ok((vec![goal], page))
+}
+
+/// Runs the measurement and gives seconds by scene.
+fn figures(command: &mut Command) -> Result<Vec<(String, f64)>> {
+    let test = ["--package", "worker", "--test", "speed", "--"];
+    let output = run_and_read(
+        command
+            .args(test)
+            .args(["--include-ignored", "--nocapture"]),
+    )?;
+    Ok(output.lines().filter_map(figure).collect())
+}
+
+/// A line `speed SCENE SECONDS`.
+fn figure(line: &str) -> Option<(String, f64)> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    match words[..] {
+        ["speed", scene, seconds] => Some((scene.to_owned(), seconds.parse().ok()?)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn figures_are_told_from_other_lines() {
+        assert_eq!(
+            super::figure("    speed tee 0.25"),
+            Some((String::from("tee"), 0.25))
+        );
+        assert_eq!(super::figure("test speed ... ok"), None);
+    }
+}

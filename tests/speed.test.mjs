@@ -1,0 +1,106 @@
+// How long a person waits for the picture after a keystroke, by the page's own clock, with one worker
+// and with two. What is asserted holds on any machine; with SINEW_FIGURES set the figures are
+// written to that file as JSON (`cargo xtask bench browser`).
+import assert from 'node:assert/strict';
+import { writeFile } from 'node:fs/promises';
+import { after, before, test } from 'node:test';
+import { example, launch } from './page.mjs';
+
+/** The kind of browser: with a GPU interface, as nearly all have, but drawn by software here. */
+const KIND = 'webgl2';
+const SIZE = [512, 512];
+const MODELS = ['seahorse', 'cowrie'];
+/** Keystrokes of which the quickest counts. One is enough to see that it works. */
+const ROUNDS = process.env.SINEW_FIGURES ? 7 : 1;
+
+let browser;
+before(async () => {
+  browser = await launch(KIND);
+});
+after(() => browser?.close());
+
+/** A page that believes the machine to have so many cores. */
+function open(cores) {
+  const pretend = (cores) =>
+    Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => cores });
+  return browser.open({ before: (page) => page.addInitScript(pretend, cores) });
+}
+
+/** Types a key and gives the milliseconds until each pass is on the screen. */
+async function keystroke(sinew, key) {
+  const times = sinew.page.evaluate(() => {
+    const { revision } = sinew.status();
+    return new Promise((resolve, reject) => {
+      let pressed;
+      const press = () => {
+        pressed = performance.now();
+      };
+      addEventListener('keydown', press, { capture: true, once: true });
+      const times = {};
+      const look = () => {
+        const status = sinew.status();
+        const since = performance.now() - pressed;
+        if (since > 120_000) reject(new Error(`no picture: ${JSON.stringify(status)}`));
+        if (status.revision > revision && status.fresh) {
+          times.coarse ??= since;
+          if (status.pass === 'smooth' || status.phase === 'done') times.full ??= since;
+          if (status.phase === 'done') {
+            times.smooth = since;
+            times.compile = 1000 * status.timings.compile;
+            times.tracing = 1000 * status.timings.done;
+            resolve(times);
+            return;
+          }
+        }
+        requestAnimationFrame(look);
+      };
+      requestAnimationFrame(look);
+    });
+  });
+  // The page must be looking before the key comes.
+  await sinew.page.evaluate(() => new Promise(requestAnimationFrame));
+  await sinew.page.keyboard.press(key);
+  return times;
+}
+
+const figures = [];
+for (const name of MODELS) {
+  test(`${name}: from a keystroke to the picture`, async () => {
+    const runs = [];
+    for (const workers of [1, 2]) {
+      const sinew = await open(workers);
+      // Digits behind it change the picture a little.
+      await sinew.load(`${await example(name)}\ngamma 1.0`);
+      await sinew.resize(...SIZE);
+      assert.equal((await sinew.status()).workers, workers);
+      const editor = await sinew.place('editor');
+      await sinew.page.mouse.click(editor.x + editor.w / 2, editor.y + editor.h / 2);
+      await sinew.page.keyboard.press('Control+End');
+      const best = { workers };
+      for (let round = 0; round < ROUNDS; round++) {
+        const times = await keystroke(sinew, '1');
+        assert.ok(times.coarse <= times.full && times.full <= times.smooth, JSON.stringify(times));
+        assert.ok(times.tracing <= times.smooth, JSON.stringify(times));
+        for (const [key, time] of Object.entries(times)) {
+          best[key] = Math.min(best[key] ?? Infinity, time);
+        }
+      }
+      const image = await sinew.image();
+      assert.deepEqual([image.width, image.height], SIZE);
+      assert.deepEqual(sinew.troubles, []);
+      await sinew.close();
+      runs.push(best);
+    }
+    const [one, two] = runs;
+    console.log(`${name}: ${JSON.stringify(runs)}, 2 workers ${(one.tracing / two.tracing).toFixed(2)} times as quick`);
+    figures.push({ name, runs });
+  });
+}
+
+test('the figures are kept', async (t) => {
+  if (!process.env.SINEW_FIGURES) return t.skip('SINEW_FIGURES is not set');
+  assert.equal(figures.length, MODELS.length);
+  const version = await browser.version();
+  const kept = { browser: `Chromium ${version}, ${KIND}`, rounds: ROUNDS, models: figures };
+  await writeFile(process.env.SINEW_FIGURES, JSON.stringify(kept, null, 1));
+});
