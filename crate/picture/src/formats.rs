@@ -1,7 +1,7 @@
 //! The formats that the `image` library reads and writes for us.
 
 use crate::limits::{MAX_ANIMATION, MAX_FRAMES, MAX_SIDE};
-use crate::picture::check_room;
+use crate::picture::{check_room, check_size};
 use crate::{Format, Picture, Problem};
 use color_quant::NeuQuant;
 use image::codecs::gif::{GifDecoder, GifEncoder, Repeat};
@@ -45,6 +45,15 @@ fn damaged(format: Format, error: &ImageError) -> Problem {
 
 fn not_written(format: Format, error: &ImageError) -> Problem {
     Problem::NotWritten(format.name(), error.to_string())
+}
+
+/// Width and height that the head of a file tells.
+pub fn size(bytes: &[u8], format: Format) -> Result<[u32; 2], Problem> {
+    let (width, height) = ImageReader::with_format(Cursor::new(bytes), library_format(format))
+        .into_dimensions()
+        .map_err(|error| damaged(format, &error))?;
+    check_size(width, height)?;
+    Ok([width, height])
 }
 
 /// Reads a picture.

@@ -191,10 +191,14 @@ fn animations_are_played_in_the_large_view() {
     // It goes round and round without an end.
     window.steps(40);
     window.place("result");
-    assert!(
-        window.harness.query_by_label("Keep as a file").is_none(),
-        "a GIF is no image that a work takes"
-    );
+    // It can be kept, and has a tab as a picture that was dropped.
+    window.harness.get_by_label("Keep as a file").click();
+    window.steps(3);
+    window.key(Modifiers::NONE, Key::Escape);
+    let tab = window.place("tab fli.gif").center();
+    window.click(tab);
+    window.harness.get_by_label_contains("40 × 30 pixels, ");
+    assert!(window.place("asset image").width() > 30.0);
 }
 
 #[test]
