@@ -1,10 +1,10 @@
 //! Single rays by the way that pictures are traced: for whoever asks what a picture would show, and for
 //! checking it.
-use crate::beam::Beam;
+use crate::digger::{Hermite, Packet};
 use crate::picture::{Hit, Picture};
 use crate::ray::Ray;
 use crate::soft::{PACKET, Scratch};
-use crate::walk::{Bundle, Quest};
+use crate::walk::Quest;
 use glam::DVec3;
 
 /// Rays whose directions differ by more than this, or whose origins by more than this part of half the scene's
@@ -12,11 +12,12 @@ use glam::DVec3;
 const WIDEST: f64 = 0.15;
 
 impl Picture {
-    /// What each ray (origin, direction) hits first at t > 0, with the arithmetic and the
-    /// tolerance of pictures. Neighbouring rays of the list make packets: the nearer together they
+    /// What each ray (origin, direction) hits first at t > 0, as the scene's digger finds it, with the
+    /// arithmetic and the tolerance of pictures. Neighbouring rays of the list make packets: the nearer together they
     /// are, the faster it goes.
     #[must_use]
     pub fn cast(&self, rays: &[(DVec3, DVec3)]) -> Vec<Option<Hit>> {
+        let digger = self.digger.as_deref().unwrap_or(&Hermite);
         let mut scratch = Scratch::default();
         let mut crossings = Vec::new();
         let mut hits = vec![None; rays.len()];
@@ -27,8 +28,7 @@ impl Picture {
             done += count;
             let (rays, hits) = (&rays[range.clone()], &mut hits[range]);
             let unit: Vec<Option<Ray>> = rays.iter().map(|r| self.unit_ray(r)).collect();
-            let alive: Vec<Ray> = unit.iter().flatten().copied().collect();
-            let Some(beam) = Beam::around(&alive) else {
+            let Some(any) = unit.iter().flatten().next() else {
                 continue;
             };
             let mut found: [Option<(f64, DVec3)>; PACKET] = [None; PACKET];
@@ -38,31 +38,16 @@ impl Picture {
                     Some((c.t, c.normal))
                 });
             }
-            if let Some((mut slabs, base)) = self.soft.slabs(beam, Vec::new, f64::INFINITY) {
-                let based: [Ray; PACKET] = core::array::from_fn(|i| {
-                    let ray = unit.get(i).copied().flatten().unwrap_or(alive[0]);
-                    Ray {
-                        origin: ray.at(base),
-                        direction: ray.direction,
-                    }
-                });
-                let limits: [f64; PACKET] =
-                    core::array::from_fn(|i| found[i].map_or(f64::INFINITY, |(t, _)| t - base));
-                let bundle = Bundle {
-                    rays: &based,
-                    limits: &limits,
-                    alive: (0..unit.len()).fold(0, |m, i| m | u32::from(unit[i].is_some()) << i),
-                    number: 0,
-                };
-                let soft = self
-                    .soft
-                    .walk(&mut slabs, bundle, Quest::First, &mut scratch);
-                if !soft.is_empty() {
-                    let flesh = self.soft.flesh(&slabs, &based, &soft, &mut scratch);
-                    for hit in &soft {
-                        let normal = -flesh.gradient[hit.lane];
-                        found[hit.lane] = Some((base + flesh.t[hit.lane], normal));
-                    }
+            let lane = |i: usize| unit.get(i).copied().flatten();
+            let packet = Packet {
+                rays: &core::array::from_fn(|i| lane(i).unwrap_or(*any)),
+                limits: &found.map(|hit| hit.map_or(f64::INFINITY, |(t, _)| t)),
+                alive: (0..PACKET).fold(0, |m, i| m | u32::from(lane(i).is_some()) << i),
+            };
+            let soft = digger.dig(&self.soft, &packet, Quest::First, &mut scratch);
+            for ((found, t), ray) in found.iter_mut().zip(soft).zip(packet.rays) {
+                if let Some(t) = t {
+                    *found = Some((t, -self.gradient(ray, t)));
                 }
             }
             for ((ray, found), hit) in unit.iter().zip(found).zip(hits.iter_mut().zip(rays)) {
@@ -79,6 +64,16 @@ impl Picture {
             }
         }
         hits
+    }
+
+    /// The gradient of the field where a ray is at t.
+    fn gradient(&self, ray: &Ray, t: f64) -> DVec3 {
+        let point = ray.at(t).to_array();
+        let mut gradient = DVec3::ZERO;
+        self.soft.along(ray, |primitive, _, _| {
+            gradient += DVec3::from_array(primitive.jet(point).gradient);
+        });
+        gradient
     }
 
     /// The largest distance that a hit at `t` may have from the true surface, and the greatest

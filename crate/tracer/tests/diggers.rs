@@ -35,6 +35,11 @@ fn dug(scene: &Scene, digger: Digger) -> Picture {
     Picture::new(&scene, [16, 16])
 }
 
+/// Where a ray first meets the surface, as the picture's digger finds it.
+fn meets(picture: &Picture, origin: DVec3, direction: DVec3) -> Option<f64> {
+    picture.cast(&[(origin, direction)])[0].map(|hit| hit.t)
+}
+
 /// Two crossed bars and a ball, cut off where no digger can notice.
 fn easy() -> Scene {
     let mut scene = empty();
@@ -87,7 +92,7 @@ fn all_diggers_agree_on_an_easy_scene() {
             if steep < 0.3 || thick < 0.2 {
                 continue;
             }
-            let found = picture.first(origin, direction);
+            let found = meets(&picture, origin, direction);
             let t = found.unwrap_or_else(|| panic!("{digger:?} misses a hit at {}", first.t));
             worst = worst.max((t - first.t).abs() * steep);
             met += 1;
@@ -117,7 +122,7 @@ fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
                 let origin = n.vector() * if case % 2 == 0 { 4.0 } else { 0.8 };
                 let direction = (n.vector() * 0.8 - origin).normalize();
                 let hits = exact.hits(origin, direction);
-                let found = picture.first(origin, direction);
+                let found = meets(&picture, origin, direction);
                 // The field is this near to T all along what was missed or invented.
                 let grazes = |from: f64, to: f64| {
                     (0..=100).all(|i| {
@@ -197,10 +202,10 @@ fn rays_along_the_surface_come_to_an_end() {
     for digger in ALL {
         let picture = dug(&scene, digger);
         for y in [0.25, 0.25 + 1e-13, 0.25 - 1e-13, 0.0] {
-            let _ = picture.first(DVec3::new(-3.0, y, 0.0), DVec3::X);
+            let _ = meets(&picture, DVec3::new(-3.0, y, 0.0), DVec3::X);
         }
-        assert_eq!(picture.first(DVec3::NAN, DVec3::X), None);
-        assert_eq!(picture.first(DVec3::ZERO, DVec3::ZERO), None);
+        assert_eq!(meets(&picture, DVec3::NAN, DVec3::X), None);
+        assert_eq!(meets(&picture, DVec3::ZERO, DVec3::ZERO), None);
     }
 }
 

@@ -20,6 +20,8 @@ use tracer::Picture;
 
 /// Pixels of a map, across and down.
 const SIDE: usize = 96;
+/// Pixels that are traced together.
+const TOGETHER: usize = 8;
 /// The bars' radius.
 const RADIUS: f64 = 0.3;
 /// Least and most seconds of tracing in one frame, and its share of a frame.
@@ -171,29 +173,36 @@ impl Study {
         self.maps[0].pixels.len() >= SIDE * SIDE
     }
 
-    /// The next pixel of all maps.
-    fn one(&mut self) {
-        let index = self.maps[0].pixels.len();
+    /// The next pixels of all maps.
+    fn some(&mut self) {
+        let first = self.maps[0].pixels.len();
         let middle = |i: usize| (i as f64 + 0.5) / SIDE as f64;
-        let (x, y) = (middle(index % SIDE), middle(index / SIDE));
-        let (eye, way) = (self.projection.eye, self.projection.direction(x, y));
-        let exact = self.exact.hits(eye, way).first().map(|hit| hit.t);
+        let ray = |index: usize| {
+            let (x, y) = (middle(index % SIDE), middle(index / SIDE));
+            (self.projection.eye, self.projection.direction(x, y))
+        };
+        let rays: Vec<_> = (first..(first + TOGETHER).min(SIDE * SIDE))
+            .map(ray)
+            .collect();
+        let exact = |(eye, way)| self.exact.hits(eye, way).first().map(|hit| hit.t);
+        let exact: Vec<Option<f64>> = rays.iter().copied().map(exact).collect();
         for map in &mut self.maps {
-            let pixel = match (map.picture.first(eye, way), exact) {
-                (None, None) => Pixel::Empty,
-                (Some(t), Some(exact)) => Pixel::Off(((t - exact).abs() / RADIUS) as f32),
-                _ => Pixel::Alone,
-            };
-            map.pixels.push(pixel);
+            for (hit, exact) in map.picture.cast(&rays).into_iter().zip(&exact) {
+                map.pixels.push(match (hit, exact) {
+                    (None, None) => Pixel::Empty,
+                    (Some(hit), Some(exact)) => Pixel::Off(((hit.t - exact).abs() / RADIUS) as f32),
+                    _ => Pixel::Alone,
+                });
+            }
         }
     }
 
-    /// Goes on until all is done or `enough` says so, which it is asked after each pixel. Gives
+    /// Goes on until all is done or `enough` says so, which it is asked now and then. Gives
     /// whether anything is new.
     fn go_on(&mut self, mut enough: impl FnMut() -> bool) -> bool {
         let before = self.maps[0].pixels.len();
         while !self.is_full() {
-            self.one();
+            self.some();
             if enough() {
                 break;
             }

@@ -8,7 +8,7 @@ use crate::ray::Ray;
 use crate::soft::{PACKET, Scratch, Soft};
 use crate::walk::{Bundle, Quest};
 
-pub(super) struct Hermite;
+pub(crate) struct Hermite;
 
 impl Digger for Hermite {
     fn dig(

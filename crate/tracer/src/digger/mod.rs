@@ -33,6 +33,7 @@ mod sphere;
 use crate::ray::Ray;
 use crate::soft::{PACKET, Scratch, Soft};
 use crate::walk::Quest;
+pub(crate) use hermite::Hermite;
 pub(crate) use sight::Sight;
 
 /// Some rays to follow.
@@ -91,7 +92,7 @@ impl<D: Single> Digger for D {
 /// The digger of this name.
 pub(crate) fn of(name: scene::Digger) -> Box<dyn Digger> {
     match name {
-        scene::Digger::Hermite => Box::new(hermite::Hermite),
+        scene::Digger::Hermite => Box::new(Hermite),
         scene::Digger::Spans(spans) => Box::new(hermite2::Spans::new(spans)),
         scene::Digger::Lagrange => Box::new(lagrange::Lagrange),
         scene::Digger::Brent => Box::new(brent::Brent),

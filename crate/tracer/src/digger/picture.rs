@@ -91,35 +91,4 @@ impl Picture {
         let found = digger.dig(&self.soft, &packet, Quest::Entry, &mut work.scratch);
         lanes(&|i| found[i].is_some())
     }
-
-    /// Where a ray first crosses the soft surface, into it or out of it, as the scene's digger finds
-    /// it: the distance from the origin along the direction. Hard elements are not looked at.
-    ///
-    /// [`Picture::hits`] tells where the surface really is.
-    #[must_use]
-    pub fn first(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
-        let ray = Ray {
-            origin: self.unit.map(origin),
-            direction: direction.try_normalize()?,
-        };
-        if !ray.origin.is_finite() {
-            return None;
-        }
-        let packet = Packet {
-            rays: &[ray; PACKET],
-            limits: &[f64::INFINITY; PACKET],
-            alive: 1,
-        };
-        let mut scratch = Scratch::default();
-        let found = match &self.digger {
-            Some(digger) => digger.dig(&self.soft, &packet, Quest::First, &mut scratch),
-            None => super::of(scene::Digger::Hermite).dig(
-                &self.soft,
-                &packet,
-                Quest::First,
-                &mut scratch,
-            ),
-        };
-        found[0].map(|t| self.unit.length(t))
-    }
 }
