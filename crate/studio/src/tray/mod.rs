@@ -23,6 +23,8 @@ use rats::Tool;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// Seconds of quiet after an edit before its jobs begin, so that no half-written name is looked for.
+const QUIET: f64 = 0.3;
 /// Seconds of work in one frame of the page, after which what was begun is still finished.
 const SPELL: f64 = 0.008;
 
@@ -67,6 +69,8 @@ type Drawn = (u64, [u32; 2]);
 pub struct Tray {
     /// The state of the work that was looked at last: the text's revision and the frame of the film.
     seen: Option<(u64, u32)>,
+    /// When the jobs of what was seen may begin.
+    due: Option<f64>,
     order: Order,
     /// The traced picture that the results are of, if the jobs read it.
     drawn: Option<Drawn>,
@@ -152,14 +156,33 @@ impl Tray {
         }
     }
 
+    /// Seconds until [`Self::tick`] has something to do, if it waits for a time.
+    #[must_use]
+    pub fn wait(&self, now: f64) -> Option<f64> {
+        Some((self.due? - now).max(0.0))
+    }
+
     /// Goes on with the jobs. `picture` is the traced picture if it is finished, with the session's
     /// generation.
-    pub fn tick(&mut self, ctx: &Context, session: &Session, picture: Option<(u64, &Image)>) {
+    pub fn tick(
+        &mut self,
+        ctx: &Context,
+        session: &Session,
+        picture: Option<(u64, &Image)>,
+        now: f64,
+    ) {
         if !session.is_compiled() {
             return;
         }
         let seen = (session.revision(), session.film_frame());
-        if self.seen.replace(seen) != Some(seen) {
+        if self.seen != Some(seen) {
+            // Another work that was just opened is not being written.
+            let quiet = if self.seen.is_some() { QUIET } else { 0.0 };
+            self.seen = Some(seen);
+            self.due = Some(now + quiet);
+        }
+        if self.due.is_some_and(|due| now >= due) {
+            self.due = None;
             let first = self.run.is_none() && self.items.is_empty();
             // While a mistake is being mended the results stay, as the picture does.
             if session.errors() == 0 || first {
