@@ -126,6 +126,7 @@ impl Tray {
         now: f64,
         commands: &mut Vec<Command>,
     ) {
+        // As `items`, which would borrow all of the tray.
         let items = match &self.run {
             Some(run) if self.items.is_empty() => &run.items,
             _ => &self.items,
@@ -139,8 +140,10 @@ impl Tray {
         let compiled = session.compiled();
         let item = self.items().get(index)?;
         let origin = compiled.tool_origins.get(item.job)?;
+        // What lies there while others are made may be of an older text.
+        let present = self.run.is_none() || self.items.is_empty();
         let same = session.is_compiled() && compiled.tools == self.order.tools;
-        same.then_some((
+        (present && same).then_some((
             origin.file as usize,
             origin.start as usize..origin.end as usize,
         ))
