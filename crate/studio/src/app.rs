@@ -267,7 +267,7 @@ impl App {
             let finished = self.is_finished().then(|| self.renderer.image()).flatten();
             let session = &self.work.session;
             let picture = finished.map(|image| (session.generation(), image));
-            self.tray.tick(ctx, session, picture);
+            self.tray.tick(ctx, session, picture, now);
         }
         if let Some(notice) = &self.notice
             && notice.until.is_some_and(|until| now > until)
@@ -286,6 +286,7 @@ impl App {
             waits.push(self.renderer.wait(now));
         }
         waits.push(self.player.wait(now));
+        waits.push(self.tray.wait(now).filter(|_| !self.lab.is_open()));
         waits.push(match &self.notice {
             Some(notice) => notice.until.map(|until| until - now),
             None => None,

@@ -23,6 +23,8 @@ use rats::Tool;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// Seconds of quiet after an edit before its jobs begin, so that no half-written name is looked for.
+const QUIET: f64 = 0.3;
 /// Seconds of work in one frame of the page, after which what was begun is still finished.
 const SPELL: f64 = 0.008;
 
@@ -67,6 +69,8 @@ type Drawn = (u64, [u32; 2]);
 pub struct Tray {
     /// The state of the work that was looked at last: the text's revision and the frame of the film.
     seen: Option<(u64, u32)>,
+    /// When the jobs of what was seen may begin.
+    due: Option<f64>,
     order: Order,
     /// The traced picture that the results are of, if the jobs read it.
     drawn: Option<Drawn>,
@@ -122,6 +126,7 @@ impl Tray {
         now: f64,
         commands: &mut Vec<Command>,
     ) {
+        // As `items`, which would borrow all of the tray.
         let items = match &self.run {
             Some(run) if self.items.is_empty() => &run.items,
             _ => &self.items,
@@ -135,8 +140,10 @@ impl Tray {
         let compiled = session.compiled();
         let item = self.items().get(index)?;
         let origin = compiled.tool_origins.get(item.job)?;
+        // What lies there while others are made may be of an older text.
+        let present = self.run.is_none() || self.items.is_empty();
         let same = session.is_compiled() && compiled.tools == self.order.tools;
-        same.then_some((
+        (present && same).then_some((
             origin.file as usize,
             origin.start as usize..origin.end as usize,
         ))
@@ -152,14 +159,33 @@ impl Tray {
         }
     }
 
+    /// Seconds until [`Self::tick`] has something to do, if it waits for a time.
+    #[must_use]
+    pub fn wait(&self, now: f64) -> Option<f64> {
+        Some((self.due? - now).max(0.0))
+    }
+
     /// Goes on with the jobs. `picture` is the traced picture if it is finished, with the session's
     /// generation.
-    pub fn tick(&mut self, ctx: &Context, session: &Session, picture: Option<(u64, &Image)>) {
+    pub fn tick(
+        &mut self,
+        ctx: &Context,
+        session: &Session,
+        picture: Option<(u64, &Image)>,
+        now: f64,
+    ) {
         if !session.is_compiled() {
             return;
         }
         let seen = (session.revision(), session.film_frame());
-        if self.seen.replace(seen) != Some(seen) {
+        if self.seen != Some(seen) {
+            // Another work that was just opened is not being written.
+            let quiet = if self.seen.is_some() { QUIET } else { 0.0 };
+            self.seen = Some(seen);
+            self.due = Some(now + quiet);
+        }
+        if self.due.is_some_and(|due| now >= due) {
+            self.due = None;
             let first = self.run.is_none() && self.items.is_empty();
             // While a mistake is being mended the results stay, as the picture does.
             if session.errors() == 0 || first {
