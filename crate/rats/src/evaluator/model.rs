@@ -21,8 +21,9 @@ pub struct Part {
     pub element: Element,
     /// By how much it has been scaled, which its material's radius must follow.
     pub growth: f64,
-    /// From the coordinates of its command to those of the world.
-    pub to_world: DAffine3,
+    /// From the coordinates of its command to those of the world, if they differ. (In a box, as there may be very
+    /// many shapes and few of them are moved.)
+    pub moved: Option<Box<DAffine3>>,
     /// Whether its command may have made other shapes too.
     pub repeated: bool,
     /// Whether its width varies along it.
@@ -225,7 +226,8 @@ impl<'a> Model<'a> {
         for part in &mut self.parts[range] {
             part.element.shape = transform.apply(&part.element.shape);
             part.growth *= transform.growth;
-            part.to_world = transform.affine() * part.to_world;
+            let before = part.moved.as_deref().copied().unwrap_or_default();
+            part.moved = Some(Box::new(transform.affine() * before));
         }
     }
 

@@ -30,6 +30,7 @@ impl Evaluator<'_> {
         if scene.materials.is_empty() {
             scene.materials.push(Material::default());
         }
+        scene.elements.reserve_exact(parts.len());
         let mut grown = HashMap::new();
         let mut warned = false;
         for mut part in parts.into_iter().filter(|part| !part.removed) {
@@ -58,7 +59,7 @@ impl Evaluator<'_> {
                     }
                     scene.elements.push(element);
                     placements.push(Placement {
-                        to_world: part.to_world,
+                        to_world: part.moved.as_deref().copied().unwrap_or_default(),
                         growth: part.growth,
                         repeated: part.repeated,
                     });
