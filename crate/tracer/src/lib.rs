@@ -36,6 +36,7 @@
 
 mod area;
 mod beam;
+mod beams;
 mod cast;
 mod digger;
 pub mod hard;

@@ -1,5 +1,6 @@
 //! Tracing a packet of rays: hits, shadows, colours.
 use crate::beam::Beam;
+use crate::beams::Beams;
 use crate::hard::Crossing;
 use crate::map;
 use crate::picture::{Picture, Stats};
@@ -39,7 +40,7 @@ impl Picture {
         &self,
         rays: &[Ray; PACKET],
         number: usize,
-        slabs: &mut Option<(Slabs<'_>, f64)>,
+        slabs: Option<&mut (Slabs<'_>, f64)>,
         work: &mut Workspace,
         stats: &mut Stats,
     ) -> [Sample; PACKET] {
@@ -243,7 +244,8 @@ impl Picture {
             return 0;
         };
         let furthest = limits.iter().copied().fold(0.0, f64::max);
-        let Some((mut slabs, base)) = self.soft.slabs(beam, Vec::new, furthest) else {
+        let whole = |base: f64| Beams::one(beam.from(base));
+        let Some((mut slabs, base)) = self.soft.slabs(beam, whole, furthest) else {
             return 0;
         };
         // Lanes not in use repeat the first one.

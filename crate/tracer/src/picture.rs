@@ -1,6 +1,7 @@
 //! A scene made ready for tracing.
 use crate::area::{Area, Samples};
 use crate::beam::Beam;
+use crate::beams::Beams;
 use crate::digger::{self, Digger};
 use crate::hard::Crossing;
 use crate::map::Map;
@@ -58,14 +59,14 @@ pub struct Picture {
     map: Option<Map>,
 }
 
-/// Blocks of pixels that share a beam. Blocks and packets are laid out from the picture's corner,
-/// whatever the tiles, and a packet is always traced whole: so a pixel's value does not depend on
+/// Side of the squares of pixels that share a beam. Squares and packets are laid out from the picture's
+/// corner, whatever the tiles, and a packet is always traced whole: so a pixel's value does not depend on
 /// how the picture is cut into tiles.
+pub(crate) const SQUARE: u32 = 64;
+/// Side of the blocks of pixels that have one ray at first.
 pub(crate) const BLOCK: u32 = 8;
 /// Pixels of a packet.
 pub(crate) const PACKET_SIZE: [u32; 2] = [4, 2];
-/// Columns and rows of packets in a block.
-pub(crate) const PACKETS: [u32; 2] = [BLOCK / PACKET_SIZE[0], BLOCK / PACKET_SIZE[1]];
 
 impl Picture {
     /// Prepares a scene. `size` is the picture's width and height in pixels, each > 0.
@@ -192,17 +193,14 @@ impl Picture {
         stats: &mut Stats,
     ) -> Option<Samples> {
         let mut samples = Samples::new(area);
-        // A beam's cells; coarse cells are blocks already, so fewer of them share a beam.
-        let packets = if scale == 1 { PACKETS } else { [1, 1] };
-        let size = [packets[0] * PACKET_SIZE[0], packets[1] * PACKET_SIZE[1]];
-        for block in area.blocks(size) {
+        let square = SQUARE / scale;
+        let [columns, rows] = [square / PACKET_SIZE[0], square / PACKET_SIZE[1]];
+        for block in area.blocks([square; 2]) {
             if stop() {
                 return None;
             }
-            let mut slabs = self.slabs(block.times(scale), packets);
-            // Column by column, as beams are divided.
-            let corners = (0..packets[0]).flat_map(|i| (0..packets[1]).map(move |j| (i, j)));
-            for (number, (i, j)) in corners.enumerate() {
+            let mut slabs = self.slabs(block.times(scale), [columns, rows]);
+            for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
                 let cell = |lane: usize| {
                     let lane = lane as u32;
                     (
@@ -210,23 +208,47 @@ impl Picture {
                         block.top + j * PACKET_SIZE[1] + lane / PACKET_SIZE[0],
                     )
                 };
-                let cells: [(u32, u32); PACKET] = core::array::from_fn(cell);
-                let wanted = cells.iter().filter(|&&(x, y)| area.holds(x, y)).count();
+                let pixels: [(u32, u32); PACKET] = core::array::from_fn(cell);
+                let wanted = pixels.iter().filter(|&&(x, y)| area.holds(x, y)).count();
                 if wanted == 0 {
                     continue;
                 }
-                let rays = cells.map(|(x, y)| {
+                stats.primary_rays += wanted as u64;
+                let number = packet_number([i, j], [columns, rows]);
+                let mut soft = slabs.as_mut();
+                if soft.as_mut().is_some_and(|(c, _)| c.is_empty_for(number)) {
+                    soft = None;
+                }
+                if self.solids.is_empty() && soft.is_none() {
+                    for (x, y) in pixels {
+                        samples.set(x, y, self.nothing());
+                    }
+                    continue;
+                }
+                let rays = pixels.map(|(x, y)| {
                     let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
                     self.ray(middle(x), middle(y))
                 });
-                stats.primary_rays += wanted as u64;
-                let found = self.packet(&rays, number, &mut slabs, work, stats);
-                for ((x, y), sample) in cells.into_iter().zip(found) {
+                let found = self.packet(&rays, number, soft, work, stats);
+                for ((x, y), sample) in pixels.into_iter().zip(found) {
                     samples.set(x, y, sample);
+                }
+                if stop() {
+                    return None;
                 }
             }
         }
         Some(samples)
+    }
+
+    /// What a ray sees that hits nothing.
+    fn nothing(&self) -> Sample {
+        Sample {
+            colour: self.background.max(Vec3::ZERO).min(Vec3::ONE),
+            key: 0,
+            depth: f32::INFINITY,
+            cost: 1.0,
+        }
     }
 
     /// The ray through a point of the picture, in pixels.
@@ -245,18 +267,13 @@ impl Picture {
         if self.soft.is_empty() || self.digger.is_some() {
             return None;
         }
-        let divide = || {
-            let mut beams = Vec::new();
-            let mut level = vec![area];
-            for across in core::iter::repeat_n(true, packets[0].ilog2() as usize)
-                .chain(core::iter::repeat_n(false, packets[1].ilog2() as usize))
-            {
-                level = level.iter().flat_map(|a| a.halves(across)).collect();
-                beams.extend(level.iter().map(|&a| self.beam(a)));
-            }
-            beams
+        let levels = packets[0].ilog2() + packets[1].ilog2();
+        let beams = move |base: f64| {
+            Beams::divided(levels, move |number| {
+                self.beam(division(area, packets, number)).from(base)
+            })
         };
-        self.soft.slabs(self.beam(area), divide, f64::INFINITY)
+        self.soft.slabs(self.beam(area), beams, f64::INFINITY)
     }
 
     /// The beam of all rays through a rectangle of pixels.
@@ -289,4 +306,39 @@ impl Picture {
             })
             .collect()
     }
+}
+
+/// Whether a rectangle of packets is next halved across: as long as it is not taller than wide.
+fn halves_across([columns, rows]: [u32; 2]) -> bool {
+    columns * PACKET_SIZE[0] >= rows * PACKET_SIZE[1] && columns > 1
+}
+
+/// The part of a rectangle, divided into columns and rows of packets, that a number in the binary tree of
+/// its divisions stands for: the halves of i are 2i+1 (left or upper) and 2i+2.
+fn division(area: Area, mut packets: [u32; 2], number: usize) -> Area {
+    let path = number + 1;
+    let mut part = area;
+    for level in (0..path.ilog2()).rev() {
+        let across = halves_across(packets);
+        part = part.halves(across)[path >> level & 1];
+        packets[usize::from(!across)] /= 2;
+    }
+    part
+}
+
+/// The number of a packet, given its column and row, among those of the last level of that tree.
+pub(crate) fn packet_number([mut column, mut row]: [u32; 2], mut packets: [u32; 2]) -> usize {
+    let mut number = 0;
+    while packets != [1, 1] {
+        let across = halves_across(packets);
+        let axis = usize::from(!across);
+        packets[axis] /= 2;
+        let place = if across { &mut column } else { &mut row };
+        let far = *place >= packets[axis];
+        if far {
+            *place -= packets[axis];
+        }
+        number = 2 * number + usize::from(far);
+    }
+    number
 }

@@ -5,7 +5,7 @@
 //! samples only, so it does not matter in which order, or in which tile, pixels are treated.
 use crate::area::{Area, Samples};
 use crate::packet::Workspace;
-use crate::picture::{BLOCK, PACKET_SIZE, PACKETS, Picture, Stats};
+use crate::picture::{PACKET_SIZE, Picture, SQUARE, Stats, packet_number};
 use crate::sample::{Sample, differ};
 use crate::soft::PACKET;
 use glam::Vec3;
@@ -22,7 +22,7 @@ impl Picture {
         stats: &mut Stats,
     ) -> Option<()> {
         let mut means = Vec::new();
-        for block in area.blocks([BLOCK; 2]) {
+        for block in area.blocks([SQUARE; 2]) {
             if stop() {
                 return None;
             }
@@ -35,11 +35,12 @@ impl Picture {
                 continue;
             }
             // The pixels' rays run in the same beams as the packets that they belong to.
-            let mut slabs = self.slabs(block, PACKETS);
+            let packets = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
+            let mut slabs = self.slabs(block, packets);
             for (x, y) in wanted {
                 let column = (x - block.left) / PACKET_SIZE[0];
                 let row = (y - block.top) / PACKET_SIZE[1];
-                let number = (column * PACKETS[1] + row) as usize;
+                let number = packet_number([column, row], packets);
                 let n = self.samples;
                 let (mut sum, mut cost) = (Vec3::ZERO, 0.0);
                 for first in (0..n * n).step_by(PACKET) {
@@ -51,7 +52,7 @@ impl Picture {
                         self.ray(at(x, i % n), at(y, i / n))
                     });
                     stats.primary_rays += u64::from(count);
-                    let found = self.packet(&rays, number, &mut slabs, work, stats);
+                    let found = self.packet(&rays, number, slabs.as_mut(), work, stats);
                     let found = &found[..count as usize];
                     sum += found.iter().map(|s| s.colour).sum::<Vec3>();
                     cost += found.iter().map(|s| s.cost).sum::<f32>();

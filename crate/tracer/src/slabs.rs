@@ -10,8 +10,9 @@
 //! Where a slab has become shorter than its beam is wide, halving it further would not bring the
 //! rays' surroundings closer together: the beam is then divided into narrower ones instead, and each
 //! packet of rays goes on in its own.
-use crate::beam::Beam;
+use crate::beams::Beams;
 use core::ops::Range;
+use field::THRESHOLD;
 use field::bound::{Bound, Estimate, SpanLength};
 
 /// How exactly spans follow the field.
@@ -44,7 +45,7 @@ impl Precision {
 /// The primitives that a beam can meet, and its slabs so far.
 pub struct Slabs<'a> {
     bounds: &'a [Bound],
-    beams: Beams,
+    beams: Beams<'a>,
     precision: Precision,
     /// Primitive of each local number.
     list: Vec<u32>,
@@ -52,40 +53,6 @@ pub struct Slabs<'a> {
     /// Local numbers; the slabs' lists are ranges of it.
     ids: Vec<u32>,
     scratch: Vec<(u32, f64, f64)>,
-}
-
-/// A beam and its divisions: a binary tree, the halves of beam i at 2i+1 and 2i+2, whose last
-/// level has one beam for each packet of rays.
-#[derive(Clone, Debug)]
-pub struct Beams(Vec<Beam>);
-
-impl Beams {
-    /// A beam that is not divided.
-    #[must_use]
-    pub fn one(beam: Beam) -> Self {
-        Self(vec![beam])
-    }
-
-    /// A beam divided. The number of beams is one less than a power of two.
-    #[must_use]
-    pub fn divided(beams: Vec<Beam>) -> Self {
-        debug_assert!((beams.len() + 1).is_power_of_two());
-        Self(beams)
-    }
-
-    /// The half of a beam, if it has halves, in which a packet is.
-    fn half(&self, beam: usize, packet: usize) -> Option<usize> {
-        let left = 2 * beam + 1;
-        if left >= self.0.len() {
-            return None;
-        }
-        // The packet's own beam is in the last level; its ancestors are found by halving.
-        let mut at = (self.0.len() / 2) + packet;
-        while at > left + 1 {
-            at = (at - 1) / 2;
-        }
-        Some(at)
-    }
 }
 
 /// How a slab goes on.
@@ -136,7 +103,10 @@ const NONE: u32 = u32::MAX;
 const NARROW: f64 = 0.5;
 
 /// Slabs and list entries above which a tree is thrown away between two packets.
-const LARGE: (usize, usize) = (1 << 14, 1 << 20);
+const LARGE: (usize, usize) = (1 << 16, 1 << 21);
+
+/// Slabs that [`Slabs::is_empty_for`] looks at.
+const MOST_LOOKS: u32 = 64;
 
 impl<'a> Slabs<'a> {
     /// The slabs of beams between two parameters. `list` holds the primitives they can meet.
@@ -144,7 +114,7 @@ impl<'a> Slabs<'a> {
     pub fn new(
         bounds: &'a [Bound],
         list: Vec<u32>,
-        beams: Beams,
+        beams: Beams<'a>,
         [from, to]: [f64; 2],
         precision: Precision,
     ) -> Self {
@@ -204,12 +174,36 @@ impl<'a> Slabs<'a> {
         }
     }
 
+    /// Whether it is known, after a short look and without following rays, that no ray of a packet meets
+    /// anything.
+    pub fn is_empty_for(&mut self, packet: usize) -> bool {
+        self.is_empty_from(self.root(), packet, &mut 0)
+    }
+
+    fn is_empty_from(&mut self, index: u32, packet: usize, looks: &mut u32) -> bool {
+        let slab = self.slab(index);
+        if slab.above + slab.error < THRESHOLD {
+            return true;
+        }
+        *looks += 1;
+        // Where there are spans, only rays can tell.
+        if !slab.resolved.is_empty() || slab.pending.is_empty() || *looks > MOST_LOOKS {
+            return false;
+        }
+        match self.parts(index, packet) {
+            Parts::Narrower(same) => self.is_empty_from(same, packet, looks),
+            Parts::Halves(left, right) => {
+                self.is_empty_from(left, packet, looks) && self.is_empty_from(right, packet, looks)
+            }
+        }
+    }
+
     /// How a slab goes on for a packet.
     pub fn parts(&mut self, index: u32, packet: usize) -> Parts {
         let s = &self.nodes[index as usize];
         let (from, to) = (s.from, s.to);
         if let Some(beam) = self.beams.half(s.beam, packet)
-            && self.beams.0[s.beam].width(to) > NARROW * (to - from)
+            && self.beams.get(s.beam).width(to) > NARROW * (to - from)
         {
             let side = (beam - 1) % 2;
             if s.children[side] == 0 {
@@ -294,7 +288,7 @@ impl<'a> Slabs<'a> {
         error: f64,
         depth: u32,
     ) {
-        let (center, radius) = self.beams.0[beam].ball(from, to);
+        let (center, radius) = self.beams.get(beam).ball(from, to);
         let h = to - from;
         let length = SpanLength::new(h);
         let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);

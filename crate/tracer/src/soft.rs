@@ -5,8 +5,9 @@ use crate::hierarchy::Hierarchy;
 use crate::lanes::Lanes;
 use crate::ray::Ray;
 use crate::roots::bracketed;
-use crate::slabs::{Beams, Precision, Slabs};
-use crate::walk::{Bundle, Found, Memory, Quest, Walk};
+use crate::beams::Beams;
+use crate::slabs::{Precision, Slabs};
+use crate::walk::{Bundle, Found, Memories, Quest, Walk};
 use field::{Bound, Primitive, Real, THRESHOLD};
 use glam::DVec3;
 use scene::Scene;
@@ -34,7 +35,7 @@ const FAR: f64 = 1e4;
 /// Scratch space that is worth keeping between packets.
 #[derive(Default)]
 pub struct Scratch {
-    memory: Vec<Memory<f32x8>>,
+    memory: Memories<f32x8>,
     active: Vec<u32>,
     stamps: Vec<u32>,
     stamp: u32,
@@ -104,13 +105,13 @@ impl Soft {
     /// The slabs of a beam, up to a parameter; with them the parameter at which the first starts
     /// to count. `None` if no primitive reaches the beam, or all together never reach T.
     ///
-    /// `divide` gives the beam's divisions, for which see [`Beams`].
-    pub fn slabs(
-        &self,
+    /// `beams` divides the beam, given the parameter at which to start.
+    pub fn slabs<'a>(
+        &'a self,
         beam: Beam,
-        divide: impl FnOnce() -> Vec<Beam>,
+        beams: impl FnOnce(f64) -> Beams<'a>,
         limit: f64,
-    ) -> Option<(Slabs<'_>, f64)> {
+    ) -> Option<(Slabs<'a>, f64)> {
         if !(beam.axis.origin.is_finite() && beam.axis.direction.is_finite()) {
             return None;
         }
@@ -134,10 +135,8 @@ impl Soft {
         list.sort_unstable();
         // Parameters are counted from where the first primitive starts to count, so that single
         // precision does not lose digits to a distant eye.
-        let beams = core::iter::once(beam).chain(divide());
-        let beams = Beams::divided(beams.map(|b| b.from(from)).collect());
         let range = [0.0, to - from];
-        let slabs = Slabs::new(&self.bounds, list, beams, range, self.precision);
+        let slabs = Slabs::new(&self.bounds, list, beams(from), range, self.precision);
         (slabs.slab(slabs.root()).above >= THRESHOLD).then_some((slabs, from))
     }
 
@@ -303,7 +302,7 @@ impl Soft {
                 number: 0,
             },
             Quest::All,
-            &mut Vec::new(),
+            &mut Memories::default(),
         )
         .run();
         // Between neighbouring crossings the exact field has its sign; where it changes from one

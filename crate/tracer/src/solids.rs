@@ -48,6 +48,12 @@ impl Solids {
         }
     }
 
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.solids.is_empty()
+    }
+
     /// The material of a solid.
     #[must_use]
     pub fn material(&self, number: u32) -> usize {

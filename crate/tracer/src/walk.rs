@@ -63,7 +63,7 @@ pub struct Walk<'w, 's, L> {
     /// Rays known to be outside and inside at the place reached.
     outside: u32,
     inside: u32,
-    memory: &'w mut Vec<Memory<L>>,
+    memory: &'w mut Memories<L>,
     found: Vec<Found>,
     /// Work done, see [`MOST_WORK`].
     work: usize,
@@ -74,9 +74,45 @@ pub struct Walk<'w, 's, L> {
 
 /// The last node at which a primitive was evaluated: slabs that touch share it.
 #[derive(Clone, Copy, Debug)]
-pub struct Memory<L> {
+struct Memory<L> {
+    /// The walk that it belongs to.
+    walk: u32,
     t: f64,
     node: Node<L>,
+}
+
+/// The last nodes of all primitives, and space for them that is kept between walks.
+#[derive(Debug)]
+pub struct Memories<L> {
+    walk: u32,
+    last: Vec<Memory<L>>,
+}
+
+impl<L> Default for Memories<L> {
+    fn default() -> Self {
+        Self {
+            walk: 0,
+            last: Vec::new(),
+        }
+    }
+}
+
+impl<L: Lanes> Memories<L> {
+    /// Forgets all.
+    fn begin(&mut self, count: usize) {
+        if self.walk == u32::MAX {
+            *self = Self::default();
+        }
+        self.walk += 1;
+        let blank = Memory {
+            walk: 0,
+            t: 0.0,
+            node: Node::zero(),
+        };
+        if self.last.len() < count {
+            self.last.resize(count, blank);
+        }
+    }
 }
 
 /// Slabs deeper than this are not halved further: 2⁻⁴⁰ of the beam's length.
@@ -97,19 +133,12 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         slabs: &'w mut Slabs<'s>,
         bundle: Bundle<'_>,
         quest: Quest,
-        memory: &'w mut Vec<Memory<L>>,
+        memory: &'w mut Memories<L>,
     ) -> Self {
         let Bundle { rays, limits, .. } = bundle;
         let ray = |i: usize| &rays[i.min(rays.len() - 1)];
         let count = slabs.len();
-        memory.clear();
-        memory.resize(
-            count,
-            Memory {
-                t: f64::NAN,
-                node: Node::zero(),
-            },
-        );
+        memory.begin(count);
         Self {
             primitives,
             slabs,
@@ -294,14 +323,15 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let (mut left, mut right) = (Node::zero(), Node::zero());
         for &local in self.slabs.locals(range) {
             let primitive = &self.primitives[self.slabs.primitive(local) as usize];
-            let memory = &mut self.memory[local as usize];
-            if memory.t != from {
+            let walk = self.memory.walk;
+            let memory = &mut self.memory.last[local as usize];
+            if memory.walk != walk || memory.t != from {
                 memory.node = node(primitive, places[0], self.direction);
                 self.evaluations += L::LANES as u64;
             }
             left = left.plus(memory.node);
             memory.node = node(primitive, places[1], self.direction);
-            memory.t = to;
+            (memory.walk, memory.t) = (walk, to);
             self.evaluations += L::LANES as u64;
             right = right.plus(memory.node);
         }

@@ -4,6 +4,7 @@
 //! each packet has its own, with the same result within the same tolerance.
 use super::{Crossings, Digger, Packet};
 use crate::beam::Beam;
+use crate::beams::Beams;
 use crate::ray::Ray;
 use crate::soft::{PACKET, Scratch, Soft};
 use crate::walk::{Bundle, Quest};
@@ -22,7 +23,7 @@ impl Digger for Hermite {
         let rays: Vec<Ray> = (0..PACKET).filter(alive).map(|i| packet.rays[i]).collect();
         let furthest = (0..PACKET).filter(alive).map(|i| packet.limits[i]);
         let furthest = furthest.fold(0.0, f64::max);
-        let slabs = Beam::around(&rays).and_then(|beam| soft.slabs(beam, Vec::new, furthest));
+        let slabs = Beam::around(&rays).and_then(|beam| soft.slabs(beam, |base| Beams::one(beam.from(base)), furthest));
         let mut crossings = [None; PACKET];
         let Some((mut slabs, base)) = slabs else {
             return crossings;

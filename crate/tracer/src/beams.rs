@@ -1,0 +1,56 @@
+//! A beam and its divisions, down to one beam for each packet of rays.
+use crate::beam::Beam;
+use core::cell::OnceCell;
+
+/// How a beam is divided: `narrow(n)` gives the n-th beam, where 0 is the whole and the halves of beam
+/// i are 2i+1 and 2i+2.
+type Narrow<'a> = dyn Fn(usize) -> Beam + 'a;
+
+/// A binary tree of beams, the halves of beam i at 2i+1 and 2i+2, whose last level has one beam for each
+/// packet of rays. Beams are made when they are asked for.
+pub struct Beams<'a> {
+    made: Vec<OnceCell<Beam>>,
+    narrow: Box<Narrow<'a>>,
+}
+
+impl<'a> Beams<'a> {
+    /// A beam that is not divided.
+    #[must_use]
+    pub fn one(beam: Beam) -> Self {
+        Self {
+            made: vec![OnceCell::from(beam)],
+            narrow: Box::new(move |_| beam),
+        }
+    }
+
+    /// A beam divided `levels` times.
+    #[must_use]
+    pub fn divided(levels: u32, narrow: impl Fn(usize) -> Beam + 'a) -> Self {
+        Self {
+            made: vec![OnceCell::new(); (2 << levels) - 1],
+            narrow: Box::new(narrow),
+        }
+    }
+
+    /// A beam.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, index: usize) -> &Beam {
+        self.made[index].get_or_init(|| (self.narrow)(index))
+    }
+
+    /// The half of a beam, if it has halves, in which a packet is.
+    #[must_use]
+    pub fn half(&self, beam: usize, packet: usize) -> Option<usize> {
+        let left = 2 * beam + 1;
+        if left >= self.made.len() {
+            return None;
+        }
+        // The packet's own beam is in the last level; its ancestors are found by halving.
+        let mut at = (self.made.len() / 2) + packet;
+        while at > left + 1 {
+            at = (at - 1) / 2;
+        }
+        Some(at)
+    }
+}
