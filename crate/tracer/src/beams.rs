@@ -39,6 +39,12 @@ impl<'a> Beams<'a> {
         self.made[index].get_or_init(|| (self.narrow)(index))
     }
 
+    /// How often a beam is divided further.
+    #[must_use]
+    pub fn levels_below(&self, beam: usize) -> u32 {
+        (self.made.len() + 1).ilog2() - (beam + 1).ilog2() - 1
+    }
+
     /// The half of a beam, if it has halves, in which a packet is.
     #[must_use]
     pub fn half(&self, beam: usize, packet: usize) -> Option<usize> {

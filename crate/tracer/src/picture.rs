@@ -219,7 +219,7 @@ impl Picture {
                 if soft.as_mut().is_some_and(|(c, _)| c.is_empty_for(number)) {
                     soft = None;
                 }
-                if self.solids.is_empty() && soft.is_none() {
+                if self.solids.is_empty() && self.digger.is_none() && soft.is_none() {
                     for (x, y) in pixels {
                         samples.set(x, y, self.nothing());
                     }

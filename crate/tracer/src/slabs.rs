@@ -101,6 +101,10 @@ const NONE: u32 = u32::MAX;
 
 /// A slab is given to narrower beams when its beam is wider than this times its length.
 const NARROW: f64 = 0.5;
+/// The same of beams wider than a block.
+const WIDE: f64 = 0.4;
+/// Beams that are divided this many times further, into eight packets, are blocks.
+const BLOCK: u32 = 3;
 
 /// Slabs and list entries above which a tree is thrown away between two packets.
 const LARGE: (usize, usize) = (1 << 16, 1 << 21);
@@ -203,7 +207,7 @@ impl<'a> Slabs<'a> {
         let s = &self.nodes[index as usize];
         let (from, to) = (s.from, s.to);
         if let Some(beam) = self.beams.half(s.beam, packet)
-            && self.beams.get(s.beam).width(to) > NARROW * (to - from)
+            && self.beams.get(s.beam).width(to) > self.narrow(s.beam) * (to - from)
         {
             let side = (beam - 1) % 2;
             if s.children[side] == 0 {
@@ -221,6 +225,15 @@ impl<'a> Slabs<'a> {
         }
         let [left, right] = self.nodes[index as usize].children;
         Parts::Halves(left, right)
+    }
+
+    /// A slab is given to narrower beams when its beam is wider than this times its length.
+    fn narrow(&self, beam: usize) -> f64 {
+        if self.beams.levels_below(beam) > BLOCK {
+            WIDE
+        } else {
+            NARROW
+        }
     }
 
     fn inner(&mut self, parent: u32, from: f64, to: f64, beam: usize, depth: u32) -> u32 {
@@ -316,7 +329,13 @@ impl<'a> Slabs<'a> {
         }
         // What is left of the budget is shared out half evenly, half by size. The shares add up
         // to no more than the whole.
-        let left = (budget - error).max(0.0);
+        // In a wide beam a span would be evaluated for many rays that do not meet its primitive.
+        let wide = self.beams.levels_below(beam) > BLOCK;
+        let left = if wide {
+            f64::NEG_INFINITY
+        } else {
+            (budget - error).max(0.0)
+        };
         let even = 0.5 * left / self.scratch.len().max(1) as f64;
         let by_size = 0.5 * left / total.max(f64::MIN_POSITIVE);
         let start = self.ids.len() as u32;

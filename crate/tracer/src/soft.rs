@@ -1,11 +1,11 @@
 //! The soft surface, made ready: which primitives a beam can meet, where its rays hit, and what
 //! the surface is like there.
 use crate::beam::Beam;
+use crate::beams::Beams;
 use crate::hierarchy::Hierarchy;
 use crate::lanes::Lanes;
 use crate::ray::Ray;
 use crate::roots::bracketed;
-use crate::beams::Beams;
 use crate::slabs::{Precision, Slabs};
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
 use field::{Bound, Primitive, Real, THRESHOLD};

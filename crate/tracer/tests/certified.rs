@@ -75,12 +75,20 @@ fn certify(kinds: &[Kind], most_missed: f64, most_off: f64) {
 
 #[test]
 fn pictures_of_points_and_lines_are_within_the_tolerance() {
-    certify(&[Kind::Segment, Kind::Arc, Kind::Curve, Kind::Taper], 0.01, 0.04);
+    certify(
+        &[Kind::Segment, Kind::Arc, Kind::Curve, Kind::Taper],
+        0.01,
+        0.04,
+    );
 }
 
 #[test]
 fn pictures_of_faces_are_within_the_tolerance() {
-    certify(&[Kind::Triangle, Kind::Polygon, Kind::Restricted], 0.01, 0.01);
+    certify(
+        &[Kind::Triangle, Kind::Polygon, Kind::Restricted],
+        0.01,
+        0.01,
+    );
 }
 
 #[test]
