@@ -403,6 +403,7 @@ impl Bound {
         let line = || match kernel {
             // No endless line of the inverse kernel has a finite field.
             Kernel::Inverse => f64::INFINITY,
+            Kernel::Gauss => core::f64::consts::PI.sqrt() * point,
             _ => endless::line(kernel, u),
         };
         let endless = match self.dimension {

@@ -107,6 +107,9 @@ pub trait Real:
     /// crate: the chart's formulas are too long to be compiled again wherever one is used.
     #[doc(hidden)]
     fn evaluate(term: &Term<Self::Scalar>, local: [Self; 3]) -> Jet<Self>;
+    /// A point's value and gradient at a position in the world, see [`Term`].
+    #[doc(hidden)]
+    fn evaluate_point(term: &Term<Self::Scalar>, position: [Self; 3]) -> Jet<Self>;
 
     /// `magnitude` with the sign of `self`.
     #[inline(always)]

@@ -94,9 +94,30 @@ impl<S: Copy> Term<S> {
         }
     }
 
+    /// The same of a point without a profile, whose frame is no more than a scale, at a position in the
+    /// world.
+    #[inline(always)]
+    pub(crate) fn point_jet_inline<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+        let scale = R::lift(self.frame.axes[0][0]);
+        let origin = self.frame.origin.map(R::lift);
+        let horizon = R::splat(R::HORIZON);
+        let [x, y, z] = core::array::from_fn(|i| (p[i] - origin[i]) * scale);
+        let square = (x * x + y * y + z * z).min(horizon * horizon);
+        let (value, slope) = self.form.kernel.pair(square);
+        let amplitude = R::lift(self.amplitude);
+        let steep = (slope + slope) * amplitude * scale;
+        Jet {
+            value: amplitude * value,
+            gradient: [steep * x, steep * y, steep * z],
+        }
+    }
+
     /// Value and gradient at a position in the world.
     #[inline(always)]
     pub(crate) fn jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+        if matches!(self.form.bone, Bone::Point) && self.waves.is_none() {
+            return R::evaluate_point(self, p);
+        }
         let local = self.local_jet(self.frame.local(p));
         Jet {
             value: local.value,

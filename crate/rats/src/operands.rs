@@ -213,6 +213,9 @@ impl<'a> Reader<'_, 'a> {
     }
 
     fn to_colour(&self, vector: DVec3, start: usize, what: &str) -> Outcome<[f32; 3]> {
+        for number in vector.to_array() {
+            self.check(number, start, what)?;
+        }
         if vector.min_element() < 0.0 || vector.max_element() > MAX_COLOUR {
             return Err(Problem::new(
                 self.since(start),
@@ -245,9 +248,6 @@ impl<'a> Reader<'_, 'a> {
             Value::Scalar(x) => {
                 let y = self.number_after(what)?;
                 let vector = DVec3::new(x, y, self.number_after(what)?);
-                for number in vector.to_array() {
-                    self.check(number, start, what)?;
-                }
                 Ok(Share::Colour(self.to_colour(vector, start, what)?))
             }
             Value::Vector(v) | Value::Colour(v) => {

@@ -27,6 +27,11 @@ impl Real for f64 {
         term.local_jet_inline(local)
     }
 
+    #[inline(never)]
+    fn evaluate_point(term: &Term<f64>, position: [Self; 3]) -> Jet<Self> {
+        term.point_jet_inline(position)
+    }
+
     #[inline(always)]
     fn splat(value: f64) -> Self {
         value

@@ -28,6 +28,11 @@ impl Real for f32 {
         term.local_jet_inline(local)
     }
 
+    #[inline(never)]
+    fn evaluate_point(term: &Term<f32>, position: [Self; 3]) -> Jet<Self> {
+        term.point_jet_inline(position)
+    }
+
     #[inline(always)]
     fn splat(value: f64) -> Self {
         value as f32

@@ -19,6 +19,11 @@ impl Real for f32x8 {
         term.local_jet_inline(local)
     }
 
+    #[inline(never)]
+    fn evaluate_point(term: &Term<f32>, position: [Self; 3]) -> Jet<Self> {
+        term.point_jet_inline(position)
+    }
+
     #[inline(always)]
     fn splat(value: f64) -> Self {
         f32x8::splat(value as f32)
