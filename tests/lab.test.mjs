@@ -9,7 +9,7 @@ const SIZES = {
   desk: { viewport: { width: 1440, height: 900 } },
   phone: { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
 };
-const LESSONS = ['kernels', 'convolution', 'slice', 'grid', 'profiles', 'chart', 'superposition'];
+const LESSONS = ['kernels', 'convolution', 'slice', 'grid', 'profiles', 'chart', 'superposition', 'spans'];
 /** A text of the visitor's own. */
 const OWN = '# mine\nframesize 64 48\nsurface s diffuse Gold, blobbiness -2\nsphere s 1 0 0 0\n';
 

@@ -1,7 +1,7 @@
 //! `sinew animate`: a dataset whose variables change with the frames, as an animation.
 
-use crate::trace::{self, Wishes};
-use crate::{Outcome, files, report};
+use crate::trace::Wishes;
+use crate::{Outcome, files, report, whole};
 use clap::Args;
 use picture::Format;
 use picture::animation::{Timing, Writer};
@@ -68,7 +68,7 @@ impl Animate {
         }
         let mut clean = report::to_stderr(&loaded);
         let size = wishes.size.unwrap_or(loaded.compiled.scene.settings.frame);
-        trace::whole(&self.output, |file| {
+        whole::write(&self.output, |file| {
             let mut file = Some(file);
             let mut writer = None;
             for frame in 0..self.frames {

@@ -98,10 +98,9 @@ pub fn run(arguments: &[String]) -> Outcome {
 }
 
 fn is_dataset(path: &Path) -> bool {
-    let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default();
-    files::DATASETS
-        .iter()
-        .any(|known| known.eq_ignore_ascii_case(ending))
+    path.file_name()
+        .and_then(OsStr::to_str)
+        .is_some_and(darkroom::name::is_dataset)
 }
 
 fn parse(arguments: &[String]) -> Result<Request, String> {
@@ -169,9 +168,6 @@ fn log_name(word: &str) -> Result<PathBuf, String> {
 impl Request {
     fn run_file(&self, file: &Path, said: &mut Said) -> Outcome {
         let mut loaded = files::load(file)?;
-        // Here the jobs are done, and each tells what it did.
-        let diagnostics = &mut loaded.compiled.diagnostics;
-        diagnostics.retain(|diagnostic| diagnostic.message != rats::tool::LISTED);
         if self.echo {
             said.say(echo(&loaded.project.files[0].text).trim_end());
         }
@@ -185,15 +181,19 @@ impl Request {
         let folder = file.parent().unwrap_or(Path::new(""));
         let compiled = &mut loaded.compiled;
         // A text that only works on pictures has none of its own.
-        if !compiled.scene.elements.is_empty() || compiled.tools.is_empty() {
+        let has_picture = !compiled.scene.elements.is_empty() || compiled.tools.is_empty();
+        if has_picture && !compiled.output.saved && self.output.is_none() {
+            said.say(
+                "nosave is on: the picture is neither traced nor written (-o NAME asks for it)",
+            );
+        } else if has_picture {
             let traced = self.wishes.trace(&mut compiled.scene, &self.progress())?;
             let [width, height] = traced.picture.size();
             let wrote = match &self.output {
                 Some(path) => trace::write(path, &traced.picture)
                     .map(|()| format!("wrote {}, {width}×{height}", path.display()))?,
                 None => {
-                    let format = compiled.output.format.unwrap_or("png");
-                    let name = format!("{}.{format}", compiled.output.name);
+                    let name = compiled.output.file();
                     tools::save(folder, &name, &traced.picture)?
                 }
             };

@@ -6,8 +6,6 @@
 use rats::{Asset, Compiled, File, Project};
 use std::path::{Path, PathBuf};
 
-/// Endings of the names of datasets, which nothing is written over.
-pub const DATASETS: [&str; 4] = ["rat", "art", "ice", "dat"];
 /// Largest text accepted from disk, bytes.
 const MAX_TEXT: u64 = 4 * 1024 * 1024;
 /// Largest image or mesh accepted from disk, bytes.
@@ -46,21 +44,26 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
     // Every text is looked at once for the names it reads.
     let mut next = 0;
     while next < project.files.len() && project.files.len() < MAX_FILES {
-        for wanted in rats::reads(&project.files[next].text) {
-            let known = project.files.iter().any(|file| file.name == wanted);
-            if !known && let Some(text) = inside(&folder, &wanted).and_then(|path| read(&path).ok())
+        let reader = &project.files[next];
+        let wanted = rats::reads(&reader.text).into_iter();
+        let places: Vec<_> = wanted
+            .map(|name| rats::places(&reader.name, &name))
+            .collect();
+        for place in places.into_iter().flatten() {
+            let known = project.files.iter().any(|file| file.name == place);
+            if !known && let Some(text) = inside(&folder, &place).and_then(|path| read(&path).ok())
             {
-                project.files.push(File { name: wanted, text });
+                project.files.push(File { name: place, text });
             }
         }
         next += 1;
     }
     let mut assets: Vec<Asset> = Vec::new();
-    for wanted in project
-        .files
-        .iter()
-        .flat_map(|f| rats::asset_names(&f.text))
-    {
+    let places = |file: &File, name: &str| rats::places(&file.name, name);
+    for wanted in project.files.iter().flat_map(|file| {
+        let names = rats::asset_names(&file.text).into_iter();
+        names.flat_map(move |name| places(file, &name))
+    }) {
         let known = assets.iter().any(|asset| asset.name == wanted);
         if !known && let Some(bytes) = inside(&folder, &wanted).and_then(|path| bytes(&path)) {
             let bytes = bytes.into();
@@ -92,14 +95,7 @@ fn bytes(path: &Path) -> Option<Vec<u8>> {
 /// The path of a file named in a dataset; names that lead out of the dataset's folder are refused,
 /// because a dataset may come from a stranger.
 pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
-    let relative = Path::new(name);
-    let stays = relative.components().all(|part| {
-        matches!(
-            part,
-            std::path::Component::Normal(_) | std::path::Component::CurDir
-        )
-    });
-    stays.then(|| folder.join(relative))
+    darkroom::name::stays_inside(name).then(|| folder.join(name))
 }
 
 /// A text from disk.

@@ -1,6 +1,6 @@
 //! `sinew fmt`: lays datasets out.
 
-use crate::{Outcome, files, trace};
+use crate::{Outcome, files, whole};
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -47,9 +47,9 @@ fn replace(path: &Path, text: &str) -> Result<(), String> {
     if permissions.readonly() {
         return Err(format!("cannot write {}: it is read-only", path.display()));
     }
-    trace::whole(&path, |file| {
+    whole::write(&path, |file| {
         file.write_all(text.as_bytes())
-            .and_then(|()| file.get_ref().set_permissions(permissions))
+            .and_then(|()| file.set_permissions(permissions))
             .map_err(|error| error.to_string())
     })
 }

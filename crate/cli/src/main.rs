@@ -16,6 +16,7 @@ mod share;
 mod time;
 mod tools;
 mod trace;
+mod whole;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;

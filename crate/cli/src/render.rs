@@ -83,6 +83,13 @@ impl Render {
                 traced.threads
             );
         }
+        let jobs = loaded.compiled.tools.len();
+        if jobs > 0 {
+            eprintln!(
+                "{jobs} of the dataset's commands work on pictures and were not carried out; `sinew {}` does so",
+                self.file.display()
+            );
+        }
         Ok(clean)
     }
 }

@@ -1,6 +1,8 @@
 //! Jobs on pictures in a folder of their own.
 
 use super::*;
+use picture::{Format, combine};
+use rats::tool::{Playback, Shown};
 
 /// A folder that is removed when dropped.
 struct Folder(PathBuf);

@@ -1,10 +1,9 @@
 //! From a scene to a picture in a file, as several subcommands need it.
 
+use crate::whole;
 use picture::{Format, Picture, file};
 use scene::{Scene, Settings};
-use std::fmt::Display;
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
@@ -102,31 +101,7 @@ pub fn write(path: &Path, picture: &Picture) -> Result<(), String> {
     let format = Format::of(path).map_err(|problem| problem.to_string())?;
     let bytes = file::encode(picture, format)
         .map_err(|problem| format!("cannot write {}: {problem}", path.display()))?;
-    whole(path, |file| {
+    whole::write(path, |file| {
         file.write_all(&bytes).map_err(|error| error.to_string())
-    })
-}
-
-/// Writes a file that is there completely or not at all: what was there before stays until the new one is done.
-///
-/// # Errors
-/// If the file cannot be written, or what `fill` says.
-pub fn whole(
-    path: &Path,
-    fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), String>,
-) -> Result<(), String> {
-    let fail = |error: &dyn Display| format!("cannot write {}: {error}", path.display());
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
-    let part = path.with_file_name(name);
-    let file = File::create(&part).map_err(|error| fail(&error))?;
-    let mut file = BufWriter::new(file);
-    let done = fill(&mut file)
-        .and_then(|()| file.flush().map_err(|error| error.to_string()))
-        .and_then(|()| std::fs::rename(&part, path).map_err(|error| error.to_string()));
-    done.map_err(|error| {
-        // The mistake that is told matters more than a leftover.
-        let _ = std::fs::remove_file(&part);
-        fail(&error)
     })
 }

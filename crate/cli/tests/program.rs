@@ -276,6 +276,17 @@ fn the_options_of_rats() {
     assert_eq!(sinew(&[&file], "").status.code(), Some(0));
     assert!(folder.0.join("again-16x12.tif").exists() && !folder.0.join("scene.png").exists());
 
+    // One that is not to be saved is not even traced, unless the command line names it.
+    let file = folder.write("unsaved.rat", &format!("nosave on\n{BALL}"));
+    let output = sinew(&[&file], "");
+    assert!(output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("nosave is on"), "{said}");
+    assert!(!folder.0.join("scene.png").exists());
+    let asked = folder.path("asked.png");
+    assert!(sinew(&["-o", &asked, &file], "").status.success());
+    assert!(folder.0.join("asked.png").exists());
+
     for arguments in [
         &["-l", "good.rat"][..],
         &["-q"],

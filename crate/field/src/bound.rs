@@ -331,38 +331,66 @@ impl Bound {
     /// if any, is smooth.
     #[must_use]
     pub fn slope(&self, near: Nearness) -> f64 {
+        // A wave of length 1/ω adds its own slope to the field's size.
+        self.derivative(near, 1) + self.magnitude(near) * self.ripple()
+    }
+
+    /// The second derivative of f along any line is at most this at some nearness (a Lipschitz constant of
+    /// the slope along a ray within the ball): where the profile, if any, is smooth.
+    #[must_use]
+    pub fn curvature(&self, near: Nearness) -> f64 {
+        let ripple = self.ripple();
+        let wave = 2.0 * self.derivative(near, 1) + self.magnitude(near) * ripple;
+        self.derivative(near, 2) + wave * ripple
+    }
+
+    /// What the profile's wave is multiplied with by each derivative.
+    fn ripple(&self) -> f64 {
+        self.ripple4.sqrt().sqrt()
+    }
+
+    /// A bound on the first or second derivative along any line, without the profile's.
+    fn derivative(&self, near: Nearness, order: usize) -> f64 {
         let kernel = self.kernel;
         let u = near.distance * self.width;
+        let bounds_at = |u| match order {
+            1 => envelope::steepness(kernel, u),
+            _ => envelope::curvature(kernel, u),
+        };
         let Roughness {
             point,
             line,
             plane,
             outward,
-        } = envelope::steepness(kernel, u);
+        } = bounds_at(u);
         let over_endless = match (self.dimension, &self.skeleton) {
             (0, _) => point,
             (1, Skeleton::Arc { .. }) => {
                 let [length, radius] = self.coil;
-                let at = |u| envelope::steepness(kernel, u).point;
+                let at = |u| bounds_at(u).point;
                 // Without a length there is no coil, and no line either.
                 let coiled = bounds::coiled(length, radius, u, at, |_, _| outward);
                 let line = near.stretch * line;
                 if line < coiled { line } else { coiled }
             }
             (1, _) => line,
-            // Of planes of poles: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from above.
-            (_, Skeleton::Plane { .. }) if kernel == Kernel::Inverse => core::f64::consts::TAU,
+            // Of planes of poles: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from above; it
+            // jumps in the plane, and has a slope of less than 1 elsewhere.
+            (_, Skeleton::Plane { .. }) if kernel == Kernel::Inverse => match order {
+                2 if u == 0.0 => f64::INFINITY,
+                _ => core::f64::consts::TAU,
+            },
             _ => plane,
         };
         let whole = self.whole * point;
         let endless = self.endless * over_endless;
-        let slope = if whole < endless || endless.is_nan() {
+        let least = if whole < endless || endless.is_nan() {
             whole
         } else {
             endless
         };
-        // A wave of length 1/ω adds its own slope to the field's size.
-        slope * self.finest + self.magnitude(near) * self.ripple4.sqrt().sqrt()
+        let by_width = if order == 1 { 1.0 } else { self.finest };
+        least * by_width * self.finest
     }
 
     /// `|f|` is at most this at some nearness.

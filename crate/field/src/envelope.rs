@@ -83,6 +83,17 @@ pub fn steepness(kernel: Kernel, u: f64) -> Roughness {
     TABLES[kernel as usize].get_or_init(|| tabulate(kernel, 1))[index(u)]
 }
 
+/// Bounds on the second derivative along any line, at a distance of `u ≥ 0` or more.
+#[must_use]
+pub fn curvature(kernel: Kernel, u: f64) -> Roughness {
+    static TABLES: [OnceLock<Vec<Roughness>>; Kernel::ALL.len()] =
+        [const { OnceLock::new() }; Kernel::ALL.len()];
+    if kernel.is_compact() && u >= 1.0 {
+        return Roughness::NONE;
+    }
+    TABLES[kernel as usize].get_or_init(|| tabulate(kernel, 2))[index(u)]
+}
+
 /// With x = 1+u², the Cauchy kernel along any ray, `k(t) = (P²+t²)⁻²`, has
 /// `|k⁗| = 24·|35w⁴−42w²+3|/(1+w²)²·X⁻⁴`, w = t/P, where X = P²(1+w²) is the value of x at t. The constants
 /// are upper envelopes of its integrals, checked numerically in this file's tests.

@@ -36,7 +36,8 @@ fn span_error(primitive: &Primitive, start: DVec3, direction: DVec3, h: f64) -> 
 fn bounds_hold(kernel: Kernel) {
     for kind in ALL_KINDS {
         let mut random = Random::new(31);
-        let (mut tightest, mut tightest_span, mut tightest_slope) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let (mut tightest, mut tightest_span) = (0.0_f64, 0.0_f64);
+        let (mut tightest_slope, mut tightest_turn) = (0.0_f64, 0.0_f64);
         for _ in 0..120 {
             let primitive = random_primitive(&mut random, kernel, kind);
             let bound = Bound::new(&primitive);
@@ -74,6 +75,16 @@ fn bounds_hold(kernel: Kernel) {
                 let h = 2.0 * radius;
                 let Estimate { error, .. } = bound.estimate(near, &SpanLength::new(h));
                 let off = span_error(&primitive, center - direction * radius, direction, h);
+                // The slope along a chord of the ball turns no faster than the curvature allows.
+                let start = center - direction * radius;
+                let slope_at = |t: f64| primitive.along_ray(start, direction, t).1;
+                let turned = (slope_at(0.7 * h) - slope_at(0.3 * h)).abs();
+                let allowed = 0.4 * h * bound.curvature(near);
+                assert!(
+                    turned <= allowed * (1.0 + 1e-6) + 1e-6 * steepest + tolerance,
+                    "{turned} > {allowed} on {h}: {primitive:?} {center}"
+                );
+                tightest_turn = tightest_turn.max(turned / allowed);
                 // Rounding in f64, and of cells that are integrated numerically.
                 let noise = 1e-9 * magnitude + rounding;
                 assert!(
@@ -97,6 +108,7 @@ fn bounds_hold(kernel: Kernel) {
             tightest > 0.3 && tightest_span > least && tightest_slope > least,
             "{kind:?}: {tightest} {tightest_span} {tightest_slope}"
         );
+        assert!(tightest_turn > least, "{kind:?}: {tightest_turn}");
     }
 }
 

@@ -4,9 +4,11 @@
 //! needs the memory of one frame.
 
 #[cfg(feature = "formats")]
-use crate::formats;
+pub use crate::formats::Frames;
 use crate::limits::MAX_FRAMES;
 use crate::{Format, Picture, Problem, png_file};
+#[cfg(feature = "formats")]
+use crate::{formats, limits::MAX_PIXELS};
 use std::io::Write;
 
 /// How an animation is shown.
@@ -140,8 +142,21 @@ impl<W: Write> Writer<W> {
 /// If the bytes are not of this format, or if the format cannot hold animations. A frame that is damaged
 /// or that leads over a limit is the last one, and is an error itself.
 #[cfg(feature = "formats")]
-pub fn frames(bytes: &[u8], format: Format) -> Result<formats::Frames<'_>, Problem> {
-    formats::frames(bytes, format)
+pub fn frames<'a>(bytes: impl AsRef<[u8]> + 'a, format: Format) -> Result<Frames<'a>, Problem> {
+    frames_at_most(bytes, format, MAX_PIXELS)
+}
+
+/// [`frames`] for whoever has less memory: frames of more than `max_pixels` are refused.
+///
+/// # Errors
+/// As [`frames`].
+#[cfg(feature = "formats")]
+pub fn frames_at_most<'a>(
+    bytes: impl AsRef<[u8]> + 'a,
+    format: Format,
+    max_pixels: u64,
+) -> Result<Frames<'a>, Problem> {
+    formats::frames(bytes, format, max_pixels)
 }
 
 #[cfg(test)]

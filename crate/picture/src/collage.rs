@@ -1,7 +1,7 @@
 //! Several pictures on one sheet.
 
-use crate::limits::{MAX_SHEET, MAX_SIDE};
-use crate::picture::check_size;
+use crate::limits::{MAX_PIXELS, MAX_SHEET, MAX_SIDE};
+use crate::picture::check_room;
 use crate::{Picture, Problem};
 
 /// What shows between pictures of different sizes.
@@ -15,6 +15,18 @@ const BACKGROUND: [u8; 4] = [0, 0, 0, 255];
 /// If there are no pictures or more than [`MAX_SHEET`], if `columns` is 0, or if the sheet would be larger
 /// than a picture may be.
 pub fn collage(pictures: &[Picture], columns: Option<usize>) -> Result<Picture, Problem> {
+    collage_at_most(pictures, columns, MAX_PIXELS)
+}
+
+/// [`collage`] for whoever has less memory: a sheet of more than `max_pixels` is refused.
+///
+/// # Errors
+/// As [`collage`].
+pub fn collage_at_most(
+    pictures: &[Picture],
+    columns: Option<usize>,
+    max_pixels: u64,
+) -> Result<Picture, Problem> {
     let count = pictures.len();
     if !(1..=MAX_SHEET).contains(&count) {
         return Err(Problem::SheetCount(count));
@@ -33,7 +45,7 @@ pub fn collage(pictures: &[Picture], columns: Option<usize>) -> Result<Picture, 
     if sheet_width > MAX_SIDE || sheet_height > MAX_SIDE {
         return Err(Problem::Size(whole[0], whole[1]));
     }
-    check_size(sheet_width, sheet_height)?;
+    check_room(sheet_width, sheet_height, max_pixels)?;
     let mut sheet = Picture::filled(sheet_width, sheet_height, BACKGROUND)?;
     let mut places = (0..rows as u32).flat_map(|y| (0..columns as u32).map(move |x| (x, y)));
     for (picture, (x, y)) in pictures.iter().zip(&mut places) {

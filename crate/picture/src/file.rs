@@ -90,6 +90,19 @@ pub fn decode_at_most(bytes: &[u8], format: Format, max_pixels: u64) -> Result<P
     }
 }
 
+/// Width and height that the head of a file tells. The rest of the file may be damaged all the same.
+///
+/// # Errors
+/// If the bytes are not of this format, or tell of a picture that is too large.
+pub fn size(bytes: &[u8], format: Format) -> Result<[u32; 2], Problem> {
+    match format {
+        Format::Png => png_file::size(bytes),
+        Format::Mtv => mtv::size(bytes),
+        #[cfg(feature = "formats")]
+        Format::Tga | Format::Tif | Format::Gif => crate::formats::size(bytes, format),
+    }
+}
+
 /// The bytes of a file. TGA, TIFF and PNG keep opacity, MTV drops it, GIF keeps 256 colours.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! The formats that the `image` library reads and writes for us.
 
 use crate::limits::{MAX_ANIMATION, MAX_FRAMES, MAX_SIDE};
-use crate::picture::check_size;
+use crate::picture::{check_room, check_size};
 use crate::{Format, Picture, Problem};
 use color_quant::NeuQuant;
 use image::codecs::gif::{GifDecoder, GifEncoder, Repeat};
@@ -47,6 +47,15 @@ fn not_written(format: Format, error: &ImageError) -> Problem {
     Problem::NotWritten(format.name(), error.to_string())
 }
 
+/// Width and height that the head of a file tells.
+pub fn size(bytes: &[u8], format: Format) -> Result<[u32; 2], Problem> {
+    let (width, height) = ImageReader::with_format(Cursor::new(bytes), library_format(format))
+        .into_dimensions()
+        .map_err(|error| damaged(format, &error))?;
+    check_size(width, height)?;
+    Ok([width, height])
+}
+
 /// Reads a picture.
 pub fn decode(bytes: &[u8], format: Format, max_pixels: u64) -> Result<Picture, Problem> {
     let mut reader = ImageReader::with_format(Cursor::new(bytes), library_format(format));
@@ -55,9 +64,7 @@ pub fn decode(bytes: &[u8], format: Format, max_pixels: u64) -> Result<Picture, 
         .into_decoder()
         .map_err(|error| damaged(format, &error))?;
     let (width, height) = decoder.dimensions();
-    if check_size(width, height)? > max_pixels {
-        return Err(Problem::Size(width.into(), height.into()));
-    }
+    check_room(width, height, max_pixels)?;
     let picture = DynamicImage::from_decoder(decoder).map_err(|error| damaged(format, &error))?;
     Picture::new(width, height, picture.into_rgba8().into_raw())
 }
@@ -130,18 +137,23 @@ pub struct Frames<'a> {
     format: Format,
     count: u32,
     pixels: u64,
+    delay: f64,
     failed: bool,
 }
 
 /// The frames of a file. A PNG file without an animation has one.
-pub fn frames(bytes: &[u8], format: Format) -> Result<Frames<'_>, Problem> {
+pub fn frames<'a>(
+    bytes: impl AsRef<[u8]> + 'a,
+    format: Format,
+    max_pixels: u64,
+) -> Result<Frames<'a>, Problem> {
     let wrong = |error| damaged(format, &error);
     let source = Cursor::new(bytes);
     let frames = match format {
         Format::Gif => {
             let mut decoder = GifDecoder::new(source).map_err(wrong)?;
             let (width, height) = decoder.dimensions();
-            let pixels = check_size(width, height)?;
+            let pixels = check_room(width, height, max_pixels)?;
             decoder.set_limits(limits(pixels)).map_err(wrong)?;
             decoder.into_frames()
         }
@@ -149,7 +161,7 @@ pub fn frames(bytes: &[u8], format: Format) -> Result<Frames<'_>, Problem> {
             let largest = limits(crate::limits::MAX_PIXELS);
             let decoder = PngDecoder::with_limits(source, largest).map_err(wrong)?;
             let (width, height) = decoder.dimensions();
-            check_size(width, height)?;
+            check_room(width, height, max_pixels)?;
             if decoder.is_apng().map_err(wrong)? {
                 decoder.apng().map_err(wrong)?.into_frames()
             } else {
@@ -165,15 +177,23 @@ pub fn frames(bytes: &[u8], format: Format) -> Result<Frames<'_>, Problem> {
         format,
         count: 0,
         pixels: 0,
+        delay: 0.0,
         failed: false,
     })
 }
 
 impl Frames<'_> {
+    /// How long the frame that came last is to be shown, seconds; 0 if its file does not say.
+    #[must_use]
+    pub fn delay(&self) -> f64 {
+        self.delay
+    }
+
     fn check(&mut self, frame: Result<image::Frame, ImageError>) -> Result<Picture, Problem> {
-        let image = frame
-            .map_err(|error| damaged(self.format, &error))?
-            .into_buffer();
+        let frame = frame.map_err(|error| damaged(self.format, &error))?;
+        let (milliseconds, parts) = frame.delay().numer_denom_ms();
+        self.delay = f64::from(milliseconds) / f64::from(parts.max(1)) / 1000.0;
+        let image = frame.into_buffer();
         let (width, height) = image.dimensions();
         self.count += 1;
         self.pixels += u64::from(width) * u64::from(height);

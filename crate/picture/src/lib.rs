@@ -5,7 +5,7 @@
 //! [`file`] turns pictures into the bytes of PNG, TGA, TIFF, GIF and MTV files and back,
 //! [`animation`] does so with animations in PNG and GIF.
 //!
-//! Without the feature `formats` only PNG and MTV are known, which keeps the page small. Bytes of files
+//! Without the feature `formats` only PNG and MTV are known. Bytes of files
 //! are never trusted: what is larger than the limits of [`limits`], cut or wrong is a [`Problem`], which
 //! is a sentence for a person.
 
@@ -24,7 +24,7 @@ mod problem;
 mod resize;
 mod swatches;
 
-pub use collage::collage;
+pub use collage::{collage, collage_at_most};
 pub use file::Format;
 pub use picture::Picture;
 pub use plot::plot;

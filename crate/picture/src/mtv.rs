@@ -1,15 +1,25 @@
 //! The format of Mark VandeWettering's ray tracer: a line `width height`, then three bytes a pixel.
 
-use crate::picture::check_size;
+use crate::picture::{check_room, check_size};
 use crate::{Picture, Problem};
 use std::iter;
 
 /// Longest first line, bytes: two numbers, a space and the ends of lines of two systems.
 const MAX_LINE: usize = 24;
 
-/// Reads a file. Bytes behind the last pixel are left alone, as other programs do.
-pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
-    let damaged = |why: String| Problem::Damaged("MTV", why);
+fn damaged(why: String) -> Problem {
+    Problem::Damaged("MTV", why)
+}
+
+/// Width and height that the first line tells.
+pub fn size(bytes: &[u8]) -> Result<[u32; 2], Problem> {
+    let ([width, height], _) = head(bytes)?;
+    check_size(width, height)?;
+    Ok([width, height])
+}
+
+/// The first line, and what comes after it.
+fn head(bytes: &[u8]) -> Result<([u32; 2], &[u8]), Problem> {
     let end = bytes
         .iter()
         .take(MAX_LINE)
@@ -26,10 +36,13 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
             "its first line is not `width height`",
         )));
     };
-    let count = check_size(width, height)?;
-    if count > max_pixels {
-        return Err(Problem::Size(width.into(), height.into()));
-    }
+    Ok(([width, height], rest))
+}
+
+/// Reads a file. Bytes behind the last pixel are left alone, as other programs do.
+pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
+    let ([width, height], rest) = head(bytes)?;
+    let count = check_room(width, height, max_pixels)?;
     let needed = 3 * count;
     let Some(rgb) = usize::try_from(needed).ok().and_then(|n| rest.get(..n)) else {
         return Err(damaged(format!(

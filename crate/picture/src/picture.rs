@@ -133,6 +133,16 @@ pub(crate) fn check_size(width: u32, height: u32) -> Result<u64, Problem> {
     Ok(count)
 }
 
+/// As [`check_size`], for whoever has room for `most` pixels.
+pub(crate) fn check_room(width: u32, height: u32, most: u64) -> Result<u64, Problem> {
+    let count = check_size(width, height)?;
+    if count > most {
+        let size = [width, height];
+        return Err(Problem::NoRoom { size, most });
+    }
+    Ok(count)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

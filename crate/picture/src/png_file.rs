@@ -1,7 +1,7 @@
 //! PNG files of one picture, and animated ones.
 
 use crate::animation::Timing;
-use crate::picture::check_size;
+use crate::picture::{check_room, check_size};
 use crate::{Picture, Problem};
 use std::io::{Cursor, Write};
 
@@ -10,9 +10,22 @@ const NAME: &str = "PNG";
 /// Bytes the decoder may use besides the picture: tables and texts of the file.
 const MAX_BESIDES: usize = 16 << 20;
 
+fn damaged(why: &dyn std::fmt::Display) -> Problem {
+    Problem::Damaged(NAME, why.to_string())
+}
+
+/// Width and height that the head of a file tells.
+pub fn size(bytes: &[u8]) -> Result<[u32; 2], Problem> {
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    let header = decoder
+        .read_header_info()
+        .map_err(|error| damaged(&error))?;
+    check_size(header.width, header.height)?;
+    Ok([header.width, header.height])
+}
+
 /// Reads the first picture of a file, whatever its depth and kind of colour.
 pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
-    let damaged = |why: &dyn std::fmt::Display| Problem::Damaged(NAME, why.to_string());
     let limits = png::Limits { bytes: MAX_BESIDES };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     decoder.set_transformations(png::Transformations::normalize_to_color8());
@@ -21,9 +34,7 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
         .read_header_info()
         .map_err(|error| damaged(&error))?;
     let (width, height) = (header.width, header.height);
-    if check_size(width, height)? > max_pixels {
-        return Err(Problem::Size(width.into(), height.into()));
-    }
+    check_room(width, height, max_pixels)?;
     let mut reader = decoder.read_info().map_err(|error| damaged(&error))?;
     let size = reader
         .output_buffer_size()

@@ -11,6 +11,13 @@ use std::fmt;
 pub enum Problem {
     /// A picture of this width and height has no pixels or too many.
     Size(u64, u64),
+    /// A picture of this width and height is larger than whoever reads it has room for.
+    NoRoom {
+        /// Width and height.
+        size: [u32; 2],
+        /// How many pixels there is room for.
+        most: u64,
+    },
     /// The bytes are not four for each pixel.
     ByteCount {
         /// How many are needed.
@@ -61,6 +68,13 @@ impl fmt::Display for Problem {
             Self::Size(width, height) => write!(
                 f,
                 "a picture of {width}×{height} pixels cannot be: sides are 1 to {MAX_SIDE}, and {MAX_PIXELS} pixels is the limit"
+            ),
+            Self::NoRoom {
+                size: [width, height],
+                most,
+            } => write!(
+                f,
+                "{width}×{height} are more pixels than there is room for; {most} is the limit here"
             ),
             Self::ByteCount { needed, found } => {
                 write!(f, "the picture needs {needed} bytes, {found} were given")

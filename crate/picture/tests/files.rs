@@ -4,7 +4,7 @@
 
 use arbtest::arbtest;
 use picture::animation::{Timing, Writer};
-use picture::file::{decode, decode_at_most, encode};
+use picture::file::{decode, decode_at_most, encode, size};
 use picture::{Format, Picture, Problem};
 use std::path::Path;
 
@@ -111,9 +111,14 @@ fn size_is_checked_before_memory_is_set_aside() {
     for &format in FORMATS {
         let bytes = encode(&sample(40, 30, 0), format).expect("written");
         assert!(decode_at_most(&bytes, format, 1200).is_ok());
+        assert_eq!(size(&bytes, format), Ok([40, 30]));
+        assert!(size(&bytes[..4], format).is_err(), "{format:?}");
         assert_eq!(
             decode_at_most(&bytes, format, 1199),
-            Err(Problem::Size(40, 30)),
+            Err(Problem::NoRoom {
+                size: [40, 30],
+                most: 1199
+            }),
             "{format:?}"
         );
     }

@@ -52,6 +52,13 @@ pub struct OptionSpec {
 }
 
 impl OptionSpec {
+    /// Whether its name begins with a word, in any case: options may be shortened.
+    #[must_use]
+    pub fn begins(&self, word: &str) -> bool {
+        let start = self.name.get(..word.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
+    }
+
     /// The word and what follows it.
     #[must_use]
     pub fn synopsis(&self) -> String {

@@ -7,7 +7,7 @@ use crate::sources::Sources;
 use crate::symbol::Symbols;
 use crate::{Asset, Diagnostic, Project, Severity, Tool};
 use glam::DAffine3;
-use scene::Scene;
+use scene::{Origin, Scene};
 
 /// What a text means.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,6 +22,8 @@ pub struct Compiled {
     pub hot: Vec<HotVariable>,
     /// The work on files that the text asks for, in order.
     pub tools: Vec<Tool>,
+    /// Where each of [`Self::tools`] stands in the texts.
+    pub tool_origins: Vec<Origin>,
     /// Under what name the picture is to be saved.
     pub output: Output,
     /// Whether a variable changes with every frame.
@@ -47,6 +49,16 @@ pub struct Output {
     pub name: String,
     /// `format`; `None` if the text does not say.
     pub format: Option<&'static str>,
+    /// Whether the picture is to be saved at all, which `nosave on` denies.
+    pub saved: bool,
+}
+
+impl Output {
+    /// The whole name of the picture's file: a PNG file where the text does not say.
+    #[must_use]
+    pub fn file(&self) -> String {
+        format!("{}.{}", self.name, self.format.unwrap_or("png"))
+    }
 }
 
 impl Default for Output {
@@ -54,6 +66,7 @@ impl Default for Output {
         Self {
             name: String::from("scene"),
             format: None,
+            saved: true,
         }
     }
 }

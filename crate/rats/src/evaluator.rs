@@ -79,6 +79,7 @@ pub struct Evaluator<'a> {
     definitions: HashMap<Symbol, (usize, &'a Define)>,
     hot: Vec<HotVariable>,
     tools: Vec<Tool>,
+    tool_origins: Vec<Origin>,
     output: Output,
     /// Whether a variable changes with every frame.
     animated: bool,
@@ -129,6 +130,7 @@ impl<'a> Evaluator<'a> {
             definitions: HashMap::new(),
             hot: Vec::new(),
             tools: Vec::new(),
+            tool_origins: Vec::new(),
             output: Output::default(),
             animated: false,
             file: 0,
@@ -156,7 +158,10 @@ impl<'a> Evaluator<'a> {
         self.check_words();
         let (scene, placements) = match self.shot.take() {
             Some(shot) => shot,
-            None => self.picture(),
+            None => {
+                let parts = std::mem::take(&mut self.model.parts);
+                self.picture(parts)
+            }
         };
         self.note_unused_materials();
         self.lint(&scene);
@@ -166,6 +171,7 @@ impl<'a> Evaluator<'a> {
             diagnostics: self.report.finish(project),
             hot: self.hot,
             tools: self.tools,
+            tool_origins: self.tool_origins,
             output: self.output,
             animated: self.animated,
         }
@@ -202,7 +208,8 @@ impl<'a> Evaluator<'a> {
                 let cost = if problem.quiet {
                     20
                 } else {
-                    limits::STEPS_PER_ERROR
+                    let size = self.sources.all[self.file].syntax.items.len();
+                    limits::STEPS_PER_ERROR + (size / limits::OPERANDS_PER_STEP) as u64
                 };
                 if let Node::Command(command) = node
                     && let Some(spec) = command.spec
@@ -272,7 +279,9 @@ impl<'a> Evaluator<'a> {
                 if given.is_off() {
                     return Ok(Flow::Next);
                 }
-                self.not_carried_out(command.word_span.clone(), &format!("`{}`", spec.name));
+                if self.is_news(Severity::Warning, &command.word_span) {
+                    self.not_carried_out(command.word_span.clone(), &format!("`{}`", spec.name));
+                }
                 Ok(Flow::Next)
             }
         }
@@ -312,7 +321,9 @@ impl<'a> Evaluator<'a> {
         let mut index = 0.0;
         let mut result = Ok(());
         while index <= last && flow == Flow::Next {
-            result = self.scope.step(1, &node.head.word_span);
+            result = self
+                .scope
+                .step(limits::STEPS_PER_TURN, &node.head.word_span);
             if result.is_err() {
                 break;
             }
@@ -423,8 +434,12 @@ impl<'a> Evaluator<'a> {
     fn asset(&self, name: &Name<'_>) -> Outcome<&'a Asset> {
         let assets: &'a [Asset] = self.assets;
         let bare = name.text.strip_prefix("./").unwrap_or(name.text);
-        let mut all = assets.iter().chain(crate::library::assets());
-        all.find(|asset| asset.name == bare).ok_or_else(|| {
+        let find = |place: &String| {
+            let mut all = assets.iter().chain(crate::library::assets());
+            all.find(|asset| asset.name == *place)
+        };
+        let places = crate::places(&self.sources.all[self.file].name, name.text);
+        places.iter().find_map(find).ok_or_else(|| {
             let known: Vec<_> = assets.iter().map(|asset| asset.name.as_str()).collect();
             let hint = if known.is_empty() {
                 String::from("drop the file onto the page, or put it beside the dataset")

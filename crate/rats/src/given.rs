@@ -321,11 +321,9 @@ impl<'a> Reader<'_, 'a> {
         };
         // A variable is meant where its name is short for an option, but not where it is the option.
         let is_variable = self.scope.get(symbol).is_some();
-        options.iter().any(|option| {
-            let start = option.name.get(..word.len());
-            let fits = start.is_some_and(|start| start.eq_ignore_ascii_case(word));
-            fits && !(is_variable && word.len() < option.name.len())
-        })
+        options
+            .iter()
+            .any(|option| option.begins(word) && !(is_variable && word.len() < option.name.len()))
     }
 
     /// The problem that none of these words stands here.
@@ -375,7 +373,7 @@ impl<'a> Reader<'_, 'a> {
                 Operand::Name(self.known_name(what)?)
             }
             Kind::Known(_) => Operand::Name(self.known_name(what)?),
-            Kind::New(_) => Operand::Name(self.name(what)?),
+            Kind::New(_) => Operand::Name(self.new_name(what)?),
             Kind::File | Kind::NewFile => Operand::Name(self.file_name(what)?),
             Kind::Text => {
                 self.at = self.items.len();

@@ -48,5 +48,5 @@ mod value;
 pub use compile::{Compiled, HotValue, HotVariable, Output, Placement, compile, compile_at};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
-pub use reads::{ASSET_ENDINGS, asset_names, reads};
+pub use reads::{ASSET_ENDINGS, asset_names, places, reads};
 pub use tool::Tool;

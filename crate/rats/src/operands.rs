@@ -64,6 +64,16 @@ impl<'a> Reader<'_, 'a> {
     pub fn number_in(&mut self, what: &str, low: f64, high: f64, unit: &str) -> Outcome<f64> {
         let start = self.start();
         let number = self.number(what)?;
+        if self.is_percent() {
+            self.at += 1;
+            let share = number / 100.0;
+            let is_share = unit.is_empty() && (low..=high).contains(&share);
+            let plain = if is_share { share } else { number };
+            return Err(
+                Problem::new(self.since(start), format!("{what} is a number, no share"))
+                    .hint(format!("write {plain}")),
+            );
+        }
         if (low..=high).contains(&number) {
             return Ok(number);
         }
@@ -96,6 +106,12 @@ impl<'a> Reader<'_, 'a> {
             self.since(start),
             format!("{what} must be a whole number, not {number}"),
         ))
+    }
+
+    /// Whether a `%` follows what was just read.
+    fn is_percent(&self) -> bool {
+        let next = self.items.get(self.at);
+        next.is_some_and(|item| item.datum == Datum::Sign(b'%') && !item.spaced)
     }
 
     fn check(&self, number: f64, start: usize, what: &str) -> Outcome<f64> {
@@ -214,12 +230,8 @@ impl<'a> Reader<'_, 'a> {
     pub fn share(&mut self, what: &str) -> Outcome<Share> {
         let start = self.start();
         let value = self.value(what)?;
-        let percent = self
-            .items
-            .get(self.at)
-            .is_some_and(|item| item.datum == Datum::Sign(b'%') && !item.spaced);
         match value {
-            Value::Scalar(number) if percent => {
+            Value::Scalar(number) if self.is_percent() => {
                 self.at += 1;
                 let number = self.check(number, start, what)?;
                 if !(0.0..=1e6).contains(&number) {

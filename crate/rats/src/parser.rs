@@ -242,6 +242,17 @@ impl<'a> Parser<'a, '_, '_> {
             )
             .hint("choose another name"));
         }
+        if let [_, hyphen, last, ..] = items
+            && hyphen.datum == Datum::Sign(b'-')
+            && !hyphen.spaced
+            && !last.spaced
+        {
+            return Err(Problem::new(
+                items[0].span().start..last.span().end,
+                "a command's name cannot hold a hyphen: it is a minus",
+            )
+            .hint(format!("begin it with `{word}_`")));
+        }
         let mut parameters: Vec<Formal> = Vec::new();
         let mut at = 1;
         while let Some(item) = items.get(at) {
@@ -289,6 +300,7 @@ impl<'a> Parser<'a, '_, '_> {
         let text = self.symbols.word(word);
         let mut formal = Formal {
             name: word,
+            shown: String::new(),
             takes: Takes::Number,
             default: 0..0,
             span,
@@ -330,6 +342,11 @@ impl<'a> Parser<'a, '_, '_> {
             formal.default = head.items.start + first..head.items.start + end;
             *at = end;
         }
+        let word = self.symbols.word(formal.name);
+        formal.shown = match formal.takes {
+            Takes::Surface => format!("the material's name (`{word}`)"),
+            _ => format!("`{word}`"),
+        };
         formal
     }
 

@@ -15,6 +15,11 @@ use std::ops::Range;
 /// Bytes of a text that a message quotes.
 const LONGEST_QUOTE: usize = 60;
 
+/// As much of a text as a message quotes: a word can be as long as the text.
+fn quote(text: &str) -> &str {
+    &text[..text.floor_char_boundary(LONGEST_QUOTE)]
+}
+
 /// A user's name: of a material, an object, a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name<'a> {
@@ -121,8 +126,7 @@ impl<'e, 'a> Reader<'e, 'a> {
     /// The text of the next item.
     pub(crate) fn found(&self) -> Option<&'a str> {
         let text = &self.text[self.items.get(self.at)?.span()];
-        // A word can be as long as the text.
-        Some(&text[..text.floor_char_boundary(LONGEST_QUOTE)])
+        Some(quote(text))
     }
 
     /// The problem that `what` is missing or something else stands there.
@@ -174,6 +178,37 @@ impl<'e, 'a> Reader<'e, 'a> {
     /// If there is none.
     pub fn name(&mut self, what: &str) -> Outcome<Name<'a>> {
         self.glued(what, |datum| matches!(datum, Datum::Sign(b'^')))
+    }
+
+    /// A name that is made here.
+    ///
+    /// # Errors
+    /// If there is none, or one with a hyphen, which would be a minus where the name is used.
+    pub fn new_name(&mut self, what: &str) -> Outcome<Name<'a>> {
+        let name = self.name(what)?;
+        let is_glued = |item: &Item| !item.spaced;
+        if self.datum() != Some(Datum::Sign(b'-')) || !self.items.get(self.at).is_some_and(is_glued)
+        {
+            return Ok(name);
+        }
+        self.at += 1;
+        while self.items.get(self.at).is_some_and(|item| {
+            is_glued(item)
+                && matches!(
+                    item.datum,
+                    Datum::Word(_) | Datum::Number(_) | Datum::Sign(b'-')
+                )
+        }) {
+            self.at += 1;
+        }
+        let span = self.since(name.span.start);
+        let whole = &self.text[span.clone()];
+        let better = whole.replace(['-', '−'], "_");
+        Err(Problem::new(
+            span,
+            format!("`{}` cannot hold a hyphen: it is a minus", quote(whole)),
+        )
+        .hint(format!("write `{}`", quote(&better))))
     }
 
     /// A name that was made before. A parameter of the running call that stands for a name gives that
@@ -255,12 +290,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         let Ok(name) = self.name("an option") else {
             return Err(self.expected("an option"));
         };
-        let mut fitting = options.iter().filter(|option| {
-            option
-                .name
-                .get(..name.text.len())
-                .is_some_and(|start| start.eq_ignore_ascii_case(name.text))
-        });
+        let mut fitting = options.iter().filter(|option| option.begins(name.text));
         let exact = options
             .iter()
             .find(|option| option.name.eq_ignore_ascii_case(name.text));

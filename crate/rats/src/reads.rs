@@ -16,6 +16,34 @@ pub fn reads(text: &str) -> Vec<String> {
     names
 }
 
+/// The names that a file may have in the project which the text `reader` calls `wanted`: beside the reader
+/// first, then from the project's folder. What would lie outside of that folder is left out.
+#[must_use]
+pub fn places(reader: &str, wanted: &str) -> Vec<String> {
+    let bare = wanted.strip_prefix("./").unwrap_or(wanted);
+    let mut places = Vec::new();
+    if let Some((folder, _)) = reader.rsplit_once('/') {
+        places.extend(joined(folder, bare));
+    }
+    places.push(bare.to_owned());
+    places
+}
+
+/// A name as seen from a folder, without `.` and `..`.
+fn joined(folder: &str, name: &str) -> Option<String> {
+    let mut parts: Vec<&str> = folder.split('/').collect();
+    for part in name.split('/') {
+        match part {
+            "." => {}
+            ".." => {
+                parts.pop()?;
+            }
+            part => parts.push(part),
+        }
+    }
+    Some(parts.join("/"))
+}
+
 /// Endings of the files that are no texts: images and meshes.
 pub const ASSET_ENDINGS: [&str; 5] = ["png", "obj", "ply", "stl", "glb"];
 
@@ -85,12 +113,21 @@ fn names_of(
 
 #[cfg(test)]
 mod tests {
-    use super::{asset_names, reads};
+    use super::{asset_names, places, reads};
 
     #[test]
     fn names_are_found_wherever_read_stands() {
         let text = "read a.rat, sub/b-2.rat # not c.rat\nif 1 {\n  @READ d.rat\n}\nfor i = 1 to 2 {\n read e.rat\n}\nreadx f.rat\n";
         assert_eq!(reads(text), ["a.rat", "sub/b-2.rat", "d.rat", "e.rat"]);
+    }
+
+    #[test]
+    fn files_are_looked_for_beside_their_reader_first() {
+        assert_eq!(places("main.rat", "./b.rat"), ["b.rat"]);
+        assert_eq!(places("sub/a.rat", "b.rat"), ["sub/b.rat", "b.rat"]);
+        assert_eq!(places("x/y/a.rat", "../b.rat"), ["x/b.rat", "../b.rat"]);
+        assert_eq!(places("x/a.rat", "../../b.rat"), ["../../b.rat"]);
+        assert_eq!(places("x/a.rat", "../b.rat"), ["b.rat", "../b.rat"]);
     }
 
     #[test]

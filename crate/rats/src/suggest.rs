@@ -4,6 +4,9 @@
 const MAX_WORD: usize = 40;
 /// Among more names than these no hint is looked for: a text can have many thousands, and as many slips.
 const MAX_CANDIDATES: usize = 2000;
+/// Pairs of letters that one hint may compare, a tenth of a millisecond; where it would take more, no hint
+/// is looked for.
+const MAX_PAIRS: usize = 60_000;
 
 /// The candidate that is nearest to a mistyped word, ignoring case, if it is near enough to be what was
 /// meant: at most one slip in three letters. Of several equally near the first of the alphabet.
@@ -17,9 +20,14 @@ pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) ->
         return None;
     }
     let allowed = (word.chars().count() / 3).max(1);
+    let fits = |c: &&str| c.len().abs_diff(word.len()) <= allowed && c.len() <= MAX_WORD;
+    let letters: usize = candidates.iter().filter(|c| fits(c)).map(|c| c.len()).sum();
+    if letters * word.len() > MAX_PAIRS {
+        return None;
+    }
     candidates
         .into_iter()
-        .filter(|c| c.len().abs_diff(word.len()) <= allowed && c.len() <= MAX_WORD)
+        .filter(fits)
         .map(|c| (distance(word.as_bytes(), c.as_bytes()), c))
         .filter(|(d, _)| *d <= allowed)
         // Some candidates come from maps, which have no order; the same text must get the same hint.

@@ -119,6 +119,8 @@ pub struct Define {
 pub struct Formal {
     /// Its name.
     pub name: Symbol,
+    /// As messages call it.
+    pub shown: String,
     /// What it takes.
     pub takes: Takes,
     /// The operands that make its default, a range of [`Syntax::items`]; empty if it must be given.

@@ -1,13 +1,10 @@
 //! What the commands of the TOOLS group ask for.
 //!
 //! The compiler touches no files. It turns `resize`, `collage`, `diff` … into the jobs below, in the
-//! order of the text, and leaves them to whoever keeps files: the program `sinew` carries them out in
-//! the folder of the dataset.
+//! order of the text, and leaves them to whoever keeps files: the program carries them out in the folder
+//! of the dataset, the page on the files of the open work.
 //!
 //! All names of files are as the text gives them: not checked, possibly leading anywhere.
-
-/// What the compiler notes about each job. Whoever carries the jobs out need not repeat it.
-pub const LISTED: &str = "the program carries this out on files; in the page it is only listed";
 
 /// A job on pictures.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,6 +99,48 @@ pub enum Tool {
         /// The heights, at equal distances from left to right; 2 … 256.
         values: Vec<f64>,
     },
+}
+
+impl Tool {
+    /// The command that asks for it.
+    #[must_use]
+    pub fn command(&self) -> &'static str {
+        match self {
+            Self::Animate { .. } => "animate",
+            Self::Play { .. } => "play",
+            Self::Split { .. } => "split",
+            Self::Collage { .. } => "collage",
+            Self::Fli { .. } => "fli",
+            Self::Convert { .. } => "convert",
+            Self::Resize { .. } => "resize",
+            Self::Diff { .. } => "diff",
+            Self::And { .. } => "and",
+            Self::Xor { .. } => "xor",
+            Self::Show { .. } => "show",
+            Self::Table { .. } => "table",
+        }
+    }
+
+    /// The names of the pictures that the job looks at.
+    #[must_use]
+    pub fn reads(&self) -> Vec<&str> {
+        match self {
+            Self::Animate { files, .. } | Self::Collage { files, .. } | Self::Fli { files, .. } => {
+                files.iter().map(String::as_str).collect()
+            }
+            Self::Play { file }
+            | Self::Split { file, .. }
+            | Self::Resize { file, .. }
+            | Self::Convert { from: file, .. }
+            | Self::Show {
+                what: Shown::File(file),
+            } => vec![file],
+            Self::Diff { a, b, .. } | Self::And { a, b, .. } | Self::Xor { a, b, .. } => {
+                vec![a, b]
+            }
+            Self::Show { .. } | Self::Table { .. } => Vec::new(),
+        }
+    }
 }
 
 /// What an animation does after its last frame.

@@ -48,7 +48,7 @@ fn check(project: &Project) {
     assert_eq!(json.matches("null").count(), absent(scene));
 }
 
-/// How many optional things the materials of a scene leave out.
+/// How many optional things a scene leaves out.
 fn absent(scene: &scene::Scene) -> usize {
     let of = |m: &scene::Material| {
         [
@@ -58,7 +58,9 @@ fn absent(scene: &scene::Scene) -> usize {
             m.end_blobbiness.is_none(),
         ]
     };
-    scene.materials.iter().flat_map(of).filter(|&is| is).count()
+    let materials = scene.materials.iter().flat_map(of);
+    let map = scene.settings.map.is_none();
+    materials.chain([map]).filter(|&is| is).count()
 }
 
 fn one_file(text: String) -> Project {

@@ -3,7 +3,7 @@
 use field::{BlobScale, Kernel, Wave};
 use glam::DVec3;
 use rats::{Compiled, File, HotValue, Project, Severity, compile};
-use scene::{Fragile, LightKind, Scene, Settings, Shape};
+use scene::{Digger, Fragile, LightKind, Scene, Settings, Shape};
 
 fn run(text: &str) -> Compiled {
     compile(&Project {
@@ -461,7 +461,7 @@ fn scaled_flesh_scales_with_its_bones() {
 fn options() {
     let settings = scene(
         "soft off\nfragile arc cyl\nframesize 320 200\nsample 3\ngamma 2.2\ncontrast .1 .2 .3\nblobscale absolute\n\
-         influence .01",
+         influence .01\ndigger HERMITE2 4\nmap on 2",
     )
     .settings;
     let wanted = Settings {
@@ -477,8 +477,24 @@ fn options() {
             ..Fragile::default()
         },
         influence: 0.01,
+        digger: Digger::Spans(4),
+        map: Some(2.0),
     };
     assert_eq!(settings, wanted);
+    for (text, digger) in [
+        ("digger hermite2", Digger::Spans(2)),
+        ("digger hermite2\ndigger hermite", Digger::Hermite),
+        ("digger lagrange", Digger::Lagrange),
+        ("digger Brent", Digger::Brent),
+        ("digger ridder", Digger::Ridder),
+        ("digger rf", Digger::RegulaFalsi),
+        ("digger lg", Digger::Lg),
+        ("digger sphere", Digger::Sphere),
+    ] {
+        assert_eq!(scene(text).settings.digger, digger, "{text}");
+    }
+    assert_eq!(scene("map on").settings.map, Some(1.0));
+    assert_eq!(scene("map on 3\nmap off").settings.map, None);
 }
 
 // ---- SCENE

@@ -103,8 +103,16 @@ fn a_large_scene_is_made_in_time() {
 
 #[test]
 fn elements() {
-    let text = format!("surface s diff Red\nfor i = 0 to {MAX_ELEMENTS} {{ plane s V V }}");
-    fails(format!("var V = 1 1 1\n{text}"), "shapes");
+    let thousand = "surface s diff Red\nobject A\nfor i = 1 to 1000 { sphere s 1 0 0 0 }\nclose\n";
+    let copies = MAX_ELEMENTS / 1000 - 1;
+    let full = run(format!(
+        "{thousand}for i = 1 to {copies} {{ instance A B }}"
+    ));
+    assert_eq!(full.scene.elements.len(), MAX_ELEMENTS);
+    fails(
+        format!("{thousand}for i = 0 to {copies} {{ instance A B }}"),
+        "shapes",
+    );
 }
 
 /// Shapes that take long to prepare, or much room, count as many.
@@ -159,7 +167,8 @@ fn objects() {
         text += "object A\n";
     }
     fails(text, "deep at most");
-    fails("for i = 1 to 300000 { object A\nclose }", "objects");
+    let ten = "object A\nclose\n".repeat(10);
+    fails(format!("for i = 1 to 1e9 {{ {ten} }}"), "objects");
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub use element::{Element, Origin, Shape};
 pub use light::{Light, LightKind};
 pub use material::Material;
 pub use quadric::Quadric;
-pub use settings::{Fragile, Settings};
+pub use settings::{Digger, Fragile, Settings};
 pub use soft::SoftSurface;
 
 use serde::{Deserialize, Serialize};

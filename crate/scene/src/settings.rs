@@ -23,6 +23,10 @@ pub struct Settings {
     /// Depth of influence: a soft element is ignored where its field is below this share of the
     /// threshold. In (0, 1).
     pub influence: f64,
+    /// What finds where rays meet the soft surface.
+    pub digger: Digger,
+    /// `map on g`: instead of colours the picture shows what its pixels cost, raised to 1/g.
+    pub map: Option<f32>,
 }
 
 impl Settings {
@@ -30,6 +34,8 @@ impl Settings {
     pub const MAX_FRAME: u32 = 8192;
     /// Largest sampling grid side.
     pub const MAX_SAMPLES: u32 = 16;
+    /// Most Hermite spans a primitive ([`Digger::Spans`]).
+    pub const MAX_SPANS: u32 = 64;
 }
 
 impl Default for Settings {
@@ -43,8 +49,35 @@ impl Default for Settings {
             blob_scale: BlobScale::Relative,
             fragile: Fragile::default(),
             influence: 1e-3,
+            digger: Digger::Hermite,
+            map: None,
         }
     }
+}
+
+/// `digger NAME`: the ways of finding where a ray meets the soft surface. All but the first are there
+/// for comparison, and have their settings fixed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Digger {
+    /// Hermite spans placed by a certified bound of their error.
+    #[default]
+    Hermite,
+    /// `hermite2 n`: n equally long Hermite spans a primitive over its interval of the ray, 2 in the
+    /// thesis; 1 … [`Settings::MAX_SPANS`].
+    Spans(u32),
+    /// Polynomials through samples.
+    Lagrange,
+    /// Marching to a change of sign, then Brent's method.
+    Brent,
+    /// Marching to a change of sign, then Ridders' method.
+    Ridder,
+    /// Marching to a change of sign, then the regula falsi.
+    RegulaFalsi,
+    /// Halving until Lipschitz constants of the field and its slope rule roots out or isolate them
+    /// (Kalra and Barr).
+    Lg,
+    /// Steps as long as a Lipschitz constant allows (Hart).
+    Sphere,
 }
 
 /// `fragile all|arc|pipe|cylinder|sphere|none`: the soft primitives whose own radius is overruled

@@ -2,8 +2,10 @@
 
 use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
+use crate::intake::Taken;
 use crate::lab::Lesson;
 use crate::notice::Notice;
+use crate::tray::item::Item;
 use crate::{picture, platform, share, work};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
@@ -133,6 +135,21 @@ impl App {
             Command::SetFilmLength(count) => self.player.count = count,
             Command::SaveFilm => self.begin_film(ctx),
             Command::StopFilm => self.stop_film("You stopped it."),
+            Command::ShowResult(index) => {
+                self.tray.open(index);
+                self.dialog = Some(Dialog::Result);
+            }
+            Command::SaveResult(index) => self.save_result(index, now),
+            Command::KeepResult(index) => self.keep_result(ctx, index, now),
+            Command::FindResult(index) => {
+                if let Some((file, range)) = self.tray.place_of(index, session) {
+                    self.dialog = None;
+                    self.tab = Tab::Text;
+                    self.editor.asset = None;
+                    self.editor.jump(file, range);
+                }
+            }
+            Command::FoldTray(folded) => self.tray.folded = folded,
             Command::SavePng => self.save_png(now),
             Command::Share => self.share(ctx, now),
             Command::OpenExample(index) => {
@@ -238,6 +255,33 @@ impl App {
                 self.notice = Some(Notice::done(text, now));
             }
             Err(error) => self.notice = Some(Notice::trouble(error.to_string())),
+        }
+    }
+
+    fn save_result(&mut self, index: usize, now: f64) {
+        let items = self.tray.items();
+        if let Some(film) = items.get(index).and_then(Item::film) {
+            // The browser makes a file of the last part of the name.
+            let name = film.name.rsplit(['/', '\\']).next().unwrap_or_default();
+            platform::download(name, film.mime(), &film.bytes);
+            self.notice = Some(Notice::done(
+                format!("Saved {name}, {}.", film.facts()),
+                now,
+            ));
+        }
+    }
+
+    /// As if the file were dropped on the page, but the text stays in view.
+    fn keep_result(&mut self, ctx: &Context, index: usize, now: f64) {
+        let items = self.tray.items();
+        if let Some(film) = items.get(index).and_then(Item::film) {
+            let taken = Taken {
+                name: film.name.clone(),
+                bytes: Ok(film.bytes.to_vec()),
+            };
+            let open = self.editor.asset.take();
+            self.take_in(ctx, vec![taken], now);
+            self.editor.asset = open;
         }
     }
 

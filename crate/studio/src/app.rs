@@ -22,6 +22,7 @@ use crate::screening::Saving;
 use crate::settings::Settings;
 use crate::sliders::Sliders;
 use crate::storage::Shelf;
+use crate::tray::Tray;
 use crate::work::{Origin, Work};
 use crate::{Backend, fonts, platform, size, theme};
 use egui::{Context, Ui};
@@ -38,6 +39,8 @@ pub enum Dialog {
     Gallery,
     /// The help.
     Help,
+    /// A result of the text's jobs on pictures.
+    Result,
 }
 
 /// Which part a narrow page shows below the picture.
@@ -100,6 +103,7 @@ pub struct App {
     pub(crate) help: Help,
     pub(crate) player: Player,
     pub(crate) saving: Option<Saving>,
+    pub(crate) tray: Tray,
     pub(crate) lab: Lab,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) notice: Option<Notice>,
@@ -161,6 +165,7 @@ impl App {
             help: Help::default(),
             player: Player::default(),
             saving: None,
+            tray: Tray::default(),
             dialog: None,
             notice: None,
             tab: Tab::Text,
@@ -258,6 +263,12 @@ impl App {
                 platform::set_troubled(false);
             }
         }
+        if !self.lab.is_open() {
+            let finished = self.is_finished().then(|| self.renderer.image()).flatten();
+            let session = &self.work.session;
+            let picture = finished.map(|image| (session.generation(), image));
+            self.tray.tick(ctx, session, picture, now);
+        }
         if let Some(notice) = &self.notice
             && notice.until.is_some_and(|until| now > until)
         {
@@ -275,6 +286,7 @@ impl App {
             waits.push(self.renderer.wait(now));
         }
         waits.push(self.player.wait(now));
+        waits.push(self.tray.wait(now).filter(|_| !self.lab.is_open()));
         waits.push(match &self.notice {
             Some(notice) => notice.until.map(|until| until - now),
             None => None,
@@ -322,6 +334,7 @@ impl App {
         }
         self.editor.reset(ctx);
         self.sliders.clear();
+        self.tray.clear();
         self.hands.clear();
         self.renderer.clear();
         self.notice = None;

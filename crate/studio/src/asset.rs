@@ -2,7 +2,9 @@
 //!
 //! Only their heads are read here; what they mean for the picture is the language's affair.
 
+use ::picture::{Format, file};
 pub use rats::Asset;
+use std::path::Path;
 
 /// Largest image or mesh, bytes.
 pub const MAX_ASSET: usize = 8 << 20;
@@ -16,7 +18,7 @@ pub const MAX_SIDE: u32 = 4096;
 /// What an asset is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A PNG file.
+    /// A picture: PNG, or another format that `darkroom` reads.
     Image,
     /// A mesh of triangles or polygons.
     Mesh,
@@ -34,7 +36,7 @@ pub fn extension(name: &str) -> String {
 #[must_use]
 pub fn kind(name: &str) -> Option<Kind> {
     match extension(name).as_str() {
-        "png" => Some(Kind::Image),
+        "png" | "gif" | "tga" | "tif" | "tiff" | "mtv" => Some(Kind::Image),
         "obj" | "ply" | "stl" | "glb" => Some(Kind::Mesh),
         _ => None,
     }
@@ -47,7 +49,9 @@ pub fn kind(name: &str) -> Option<Kind> {
 pub fn facts(asset: &Asset) -> Result<String, String> {
     match kind(&asset.name) {
         Some(Kind::Image) => {
-            let [width, height] = image_size(&asset.bytes).ok_or("it is not a PNG file")?;
+            let [width, height] = Format::of(Path::new(&asset.name))
+                .and_then(|format| file::size(&asset.bytes, format))
+                .map_err(|problem| problem.to_string())?;
             if width.max(height) > MAX_SIDE {
                 return Err(format!(
                     "it is {width} × {height} pixels and {MAX_SIDE} on a side is the limit"
@@ -78,16 +82,6 @@ pub fn size(bytes: usize) -> String {
         1000..1_000_000 => format!("{} kB", bytes.div_ceil(1000)),
         _ => format!("{:.1} MB", bytes as f64 / 1e6),
     }
-}
-
-/// Width and height that the head of a PNG file tells.
-fn image_size(png: &[u8]) -> Option<[u32; 2]> {
-    let head = png.strip_prefix(b"\x89PNG\r\n\x1a\n")?;
-    let number = |at: usize| {
-        let bytes = head.get(at..at + 4)?.try_into().ok()?;
-        Some(u32::from_be_bytes(bytes))
-    };
-    (head.get(4..8)? == b"IHDR").then_some([number(8)?, number(12)?])
 }
 
 /// What a mesh is made of.
@@ -216,7 +210,9 @@ mod tests {
 
     #[test]
     fn what_a_file_is_not_is_refused() {
-        for name in ["a.obj", "a.ply", "a.stl", "a.glb", "a.png", "a.gif", "a"] {
+        for name in [
+            "a.obj", "a.ply", "a.stl", "a.glb", "a.png", "a.gif", "a.tif", "a.mtv", "a",
+        ] {
             for bytes in [
                 &b""[..],
                 b"ply\n",
@@ -227,9 +223,12 @@ mod tests {
                 assert!(told(name, bytes).is_err(), "{name}");
             }
         }
-        let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x02\0\0\0\x03".to_vec();
-        assert_eq!(told("a.png", &png).unwrap(), "2 × 3 pixels");
-        png[16] = 1;
-        assert!(told("a.png", &png).unwrap_err().contains("limit"));
+        let png = |size: [u32; 2]| {
+            let rgba = vec![9; 4 * size[0] as usize * size[1] as usize];
+            crate::picture::png(&crate::picture::Image { size, rgba }).unwrap()
+        };
+        assert_eq!(told("a.png", &png([2, 3])).unwrap(), "2 × 3 pixels");
+        let wide = told("a.png", &png([MAX_SIDE + 1, 1]));
+        assert!(wide.unwrap_err().contains("limit"));
     }
 }

@@ -2,13 +2,15 @@
 
 use crate::asset::{self, Asset, Kind};
 use crate::command::Command;
-use crate::examples;
+use crate::tray::item;
 use crate::{places, theme};
-use egui::{ColorImage, RichText, ScrollArea, TextureHandle, TextureOptions, Ui};
+use ::picture::{Format, Picture, file};
+use egui::{RichText, ScrollArea, TextureHandle, Ui};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Longest side of the image shown, pixels.
-const PREVIEW: usize = 512;
+const PREVIEW: u32 = 512;
 
 /// The image on show, decoded once.
 #[derive(Default)]
@@ -58,11 +60,8 @@ impl AssetView {
             // The head was checked when it was taken in; an old record may hold anything.
             let image = asset::facts(asset)
                 .ok()
-                .and_then(|_| examples::decode(&asset.bytes))
-                .map(|image| {
-                    let pixels = preview(&image);
-                    ui.load_texture("asset", pixels, TextureOptions::LINEAR)
-                });
+                .and_then(|_| decode(asset))
+                .map(|picture| item::texture(ui.ctx(), &picture, PREVIEW));
             self.image = Some((asset.bytes.clone(), image));
         }
         match &self.image {
@@ -83,38 +82,8 @@ impl AssetView {
     }
 }
 
-/// The image, made smaller by leaving out pixels if it is large.
-fn preview(image: &crate::picture::Image) -> ColorImage {
-    let [width, height] = image.size.map(|side| side as usize);
-    let every = width.max(height).div_ceil(PREVIEW).max(1);
-    let (columns, rows) = (width.div_ceil(every), height.div_ceil(every));
-    let mut rgba = Vec::with_capacity(4 * columns * rows);
-    for y in (0..height).step_by(every) {
-        for x in (0..width).step_by(every) {
-            let start = 4 * (y * width + x);
-            rgba.extend_from_slice(&image.rgba[start..start + 4]);
-        }
-    }
-    ColorImage::from_rgba_unmultiplied([columns, rows], &rgba)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::picture::Image;
-
-    #[test]
-    fn large_images_are_shown_small() {
-        for (size, shown) in [
-            ([1300, 3], [434, 1]),
-            ([512, 512], [512, 512]),
-            ([1, 1], [1, 1]),
-        ] {
-            let image = Image {
-                size,
-                rgba: vec![9; (4 * size[0] * size[1]) as usize],
-            };
-            assert_eq!(preview(&image).size, shown);
-        }
-    }
+fn decode(asset: &Asset) -> Option<Picture> {
+    let format = Format::of(Path::new(&asset.name)).ok()?;
+    let most = u64::from(asset::MAX_SIDE).pow(2);
+    file::decode_at_most(&asset.bytes, format, most).ok()
 }

@@ -97,6 +97,16 @@ pub enum Command {
     SaveFilm,
     /// Give that up.
     StopFilm,
+    /// Show a result of the text's jobs on pictures large.
+    ShowResult(usize),
+    /// Write a result to a file.
+    SaveResult(usize),
+    /// Go to the command that made a result.
+    FindResult(usize),
+    /// Make a result an image of the work.
+    KeepResult(usize),
+    /// Show only the head of the tray, or all of it.
+    FoldTray(bool),
     /// Write the picture to a file.
     SavePng,
     /// Make a link, copy it, and put it into the address bar.

@@ -245,7 +245,7 @@ impl Gallery {
 
 /// The largest rectangle of a picture's proportions in the middle of a place; the place itself if
 /// they are nearly the same.
-fn contain(picture: Vec2, place: Rect) -> Rect {
+pub(crate) fn contain(picture: Vec2, place: Rect) -> Rect {
     let scale = (place.width() / picture.x.max(1.0)).min(place.height() / picture.y.max(1.0));
     let size = picture * scale;
     if (size - place.size()).length() < 0.06 * place.width() {

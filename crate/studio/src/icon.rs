@@ -38,6 +38,10 @@ pub enum Icon {
     Image,
     /// A triangle with its middle lines.
     Mesh,
+    /// An angle that points up.
+    Up,
+    /// An angle that points down.
+    Down,
 }
 
 /// A square button; `name` is its tooltip and its name for screen readers.
@@ -191,6 +195,8 @@ pub fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
             line(&[(-5.0, 4.0), (0.0, -5.0), (5.0, 4.0), (-5.0, 4.0)]);
             line(&[(-2.5, -0.5), (2.5, -0.5), (0.0, 4.0), (-2.5, -0.5)]);
         }
+        Icon::Up => line(&[(-5.0, 2.5), (0.0, -2.5), (5.0, 2.5)]),
+        Icon::Down => line(&[(-5.0, -2.5), (0.0, 2.5), (5.0, -2.5)]),
         Icon::Close => {
             line(&[(-4.0, -4.0), (4.0, 4.0)]);
             line(&[(-4.0, 4.0), (4.0, -4.0)]);

@@ -9,8 +9,7 @@ use rats::link::MAX_NAME;
 /// Extensions of texts.
 const TEXTS: [&str; 5] = ["rat", "art", "ice", "dat", "txt"];
 /// What can be taken in, in words.
-pub const KINDS: &str =
-    "texts (.rat .art .ice .dat .txt), images (.png) and meshes (.obj .ply .stl .glb)";
+pub const KINDS: &str = "texts (.rat .art .ice .dat .txt), images (.png .gif .tga .tif .mtv) and meshes (.obj .ply .stl .glb)";
 /// Files that are read at once.
 pub const MOST: usize = 32;
 

@@ -9,10 +9,11 @@ use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery, Show};
 use crate::{
     bar, files, intake, lab, notice, places, platform, problems, size, sliders, status, timeline,
+    tray,
 };
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Rect, RichText,
-    ScrollArea, Stroke, Ui, UiBuilder, pos2, vec2,
+    ScrollArea, Stroke, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 
 /// Below this width in points the parts stand on top of each other.
@@ -281,6 +282,12 @@ fn reset_view(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
+/// Whether there is room for the tray below the picture: not where the keyboard takes half of a phone.
+fn has_tray(place: Rect, narrow: bool) -> bool {
+    let height = tray::strip::height(narrow, false);
+    place.height() > height + if narrow { 60.0 } else { 160.0 }
+}
+
 /// The picture in its place.
 fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
@@ -295,6 +302,16 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         let builder = UiBuilder::new().max_rect(strip).id_salt("timeline");
         let frame = app.work.session.film_frame();
         timeline::show(&mut ui.new_child(builder), &app.player, frame, commands);
+    }
+    if app.tray.is_used() && has_tray(place, narrow) {
+        let height = tray::strip::height(narrow, app.tray.folded);
+        let strip = Rect::from_min_max(pos2(place.left(), place.bottom() - height), place.max);
+        place.max.y = strip.top();
+        ui.painter().rect_filled(strip, 0.0, palette.panel);
+        let line = Stroke::new(1.0, palette.line);
+        ui.painter().hline(strip.x_range(), strip.top(), line);
+        let builder = UiBuilder::new().max_rect(strip).id_salt("tray");
+        tray::strip::show(&mut ui.new_child(builder), &app.tray, narrow, commands);
     }
     let margin = if narrow { 0.0 } else { 18.0 };
     let rect = view::fit(place.shrink(margin), app.work.session.frame());
@@ -343,7 +360,10 @@ fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let [w, h] = app.work.session.frame().map(|side| side as f32);
     // With the keyboard up there is little room; the text then matters more.
     let share = if all.height() < 420.0 { 0.34 } else { 0.46 };
-    let height = (all.width() * h / w).min(all.height() * share).max(80.0);
+    let mut height = (all.width() * h / w).min(all.height() * share).max(80.0);
+    if app.tray.is_used() && all.height() >= 420.0 {
+        height += tray::strip::height(true, false);
+    }
     let split = all.top() + height;
     stage(
         app,
@@ -449,12 +469,12 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
         return;
     };
     let screen = ctx.content_rect();
+    let width = match dialog {
+        Dialog::Gallery | Dialog::Result => 860.0,
+        Dialog::Help => 640.0,
+    };
     let size = vec2(
-        (screen.width() - 24.0).min(if dialog == Dialog::Gallery {
-            860.0
-        } else {
-            640.0
-        }),
+        (screen.width() - 24.0).min(width),
         (screen.height() - 48.0).min(720.0),
     );
     let modal = egui::Modal::new(egui::Id::unique("dialog"))
@@ -471,6 +491,12 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
                     let shelf = app.work.shelf().borrow();
                     app.gallery
                         .show(ui, shelf.opened(), platform::unix_time(), commands);
+                }
+                Dialog::Result => {
+                    let inner = size - Vec2::splat(inner);
+                    let kept = app.work.session.assets();
+                    let now = platform::now(ui.ctx());
+                    app.tray.show_large(ui, inner, kept, now, commands);
                 }
                 Dialog::Help => app.help.show(ui, app.settings.hints, commands),
             }

@@ -63,6 +63,7 @@ pub mod status;
 pub mod storage;
 pub mod theme;
 pub mod timeline;
+pub mod tray;
 pub mod view;
 pub mod work;
 

@@ -20,7 +20,7 @@ pub(crate) struct Saving {
 
 impl App {
     /// Whether the picture of what is to be drawn is finished.
-    fn is_finished(&self) -> bool {
+    pub(crate) fn is_finished(&self) -> bool {
         let generation = self.work.session.generation();
         self.renderer.phase() == Phase::Done
             && self

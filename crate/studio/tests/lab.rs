@@ -329,6 +329,33 @@ fn a_slice_is_refined_and_tells_the_field_under_the_pointer() {
 }
 
 #[test]
+fn spans_are_held_against_the_exact_surface() {
+    let mut window = Window::with_work(DESK);
+    window.follow("#lab=spans");
+    window.until("the maps and the pictures", |window| {
+        let lab = window.lab().unwrap();
+        let done = lab.readings.get("finished") == Some(&1.0);
+        done && lab.waiting == 0 && lab.drawn == 3
+    });
+    assert_eq!(window.lab().unwrap().refused, 0);
+    let worst = |window: &Window| {
+        ["worst of 2", "worst of 4", "worst certified"].map(|name| window.reading(name))
+    };
+    let [two, four, certified] = worst(&window);
+    assert!(
+        two > 0.5 && four < two && certified < 0.01,
+        "{two} {four} {certified}"
+    );
+    // Another view is another comparison, begun at once and not finished in one frame.
+    window.click("lab choice from the front");
+    window.until("the other maps", |window| {
+        window.reading("finished") == 1.0 && window.lab().unwrap().waiting == 0
+    });
+    assert!(worst(&window)[0] != two);
+    platform::set_hash("");
+}
+
+#[test]
 fn small_pictures_are_traced_and_the_editor_s_picture_is_not_disturbed() {
     let mut window = Window::with_work(DESK);
     window.until("the picture", |window| {

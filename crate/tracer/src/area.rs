@@ -79,6 +79,7 @@ impl Samples {
             colour: Vec3::ZERO,
             key: 0,
             depth: f32::INFINITY,
+            cost: 0.0,
         };
         let width = (area.right - area.left) as usize;
         let height = (area.bottom - area.top) as usize;

@@ -80,6 +80,10 @@ impl Beam {
     /// Whether a ray of the beam may meet a ball.
     #[must_use]
     pub fn meets(&self, center: DVec3, radius: f64) -> bool {
+        // A beam that widens as fast as it goes on reaches every place in the end.
+        if self.spread >= 1.0 {
+            return true;
+        }
         let reach = radius + self.radius;
         let d = center - self.axis.origin;
         let along = d.dot(self.axis.direction);
@@ -87,11 +91,7 @@ impl Beam {
         // The distance from the axis' point at t less the beam's growth, sqrt(across² +
         // (along−t)²) − spread·t, is least where its derivative vanishes, if that is at t ≥ 0.
         let slope = (1.0 - self.spread * self.spread).max(0.0).sqrt();
-        let at = if slope > 0.0 {
-            along + across * self.spread / slope
-        } else {
-            f64::INFINITY
-        };
+        let at = along + across * self.spread / slope;
         let least = if at > 0.0 {
             across * slope - self.spread * along
         } else {

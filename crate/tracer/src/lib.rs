@@ -15,7 +15,12 @@
 //! whole beam which primitive needs Hermite spans of which length (`field::Bound` knows how large a field
 //! and the error of a span can be), and `walk` follows single packets through the slabs, adds up
 //! their spans' cubics (`spans`) and takes their roots (`roots`). `walk` is the only part that knows
-//! how crossings are found: given slabs and rays it returns crossings.
+//! how crossings are found: given slabs and rays it returns crossings. Other ways of finding them,
+//! for comparison, are in `digger`; `map` shows what a picture costs.
+//!
+//! What pictures show is held against [`mod@reference`], which looks for the surface by bisection with
+//! bounds of its own (`tests/certified.rs`, `examples/certify.rs`); `cast` follows single rays in the way of
+//! pictures.
 //!
 //! # Limits
 //!
@@ -31,12 +36,16 @@
 
 mod area;
 mod beam;
+mod cast;
+mod digger;
 pub mod hard;
 mod hierarchy;
 mod lanes;
+mod map;
 mod packet;
 pub mod picture;
 mod ray;
+pub mod reference;
 mod refine;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
@@ -55,6 +64,7 @@ mod walk;
 
 pub use picture::{Hit, Picture, Stats};
 pub use ray::Ray;
+pub use reference::Reference;
 #[cfg(not(target_arch = "wasm32"))]
 pub use render::render;
 pub use tile::{Pass, Tile, tiles};

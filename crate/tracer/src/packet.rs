@@ -1,6 +1,7 @@
 //! Tracing a packet of rays: hits, shadows, colours.
 use crate::beam::Beam;
 use crate::hard::Crossing;
+use crate::map;
 use crate::picture::{Picture, Stats};
 use crate::ray::Ray;
 use crate::sample::Sample;
@@ -12,22 +13,22 @@ use glam::{DVec3, Vec3};
 
 /// Where a ray hits, and what it hits.
 #[derive(Clone, Copy, Debug)]
-struct Hit {
-    t: f64,
-    position: DVec3,
+pub(crate) struct Hit {
+    pub t: f64,
+    pub position: DVec3,
     /// Unit, towards the eye's side.
-    normal: DVec3,
+    pub normal: DVec3,
     /// How far rays to the lights must start above the surface.
-    lift: f64,
-    finish: Finish,
+    pub lift: f64,
+    pub finish: Finish,
     /// 1 for the soft surface, 2 and up for hard elements.
-    thing: u32,
+    pub thing: u32,
 }
 
 /// Working space of one thread.
 #[derive(Default)]
 pub struct Workspace {
-    scratch: Scratch,
+    pub(crate) scratch: Scratch,
     crossings: Vec<Crossing>,
 }
 
@@ -43,13 +44,17 @@ impl Picture {
         stats: &mut Stats,
     ) -> [Sample; PACKET] {
         work.scratch.evaluations = 0;
+        work.scratch.alone = [0; PACKET];
         let mut hits = rays.map(|ray| self.hard_hit(&ray, work));
-        if let Some((slabs, base)) = slabs {
+        if let Some(digger) = &self.digger {
+            self.dug_hits(&**digger, rays, work, &mut hits);
+        } else if let Some((slabs, base)) = slabs {
             self.soft_hits(rays, number, slabs, *base, work, &mut hits);
         }
         let across = rays[0].direction.distance(rays[PACKET - 1].direction);
         let mut colours = [self.background; PACKET];
         let mut keys = [0u32; PACKET];
+        let mut cast = [1u32; PACKET];
         for i in 0..PACKET {
             if let Some(hit) = &hits[i] {
                 colours[i] = hit.finish.glow();
@@ -69,6 +74,9 @@ impl Picture {
             }
             if light.shadow && lit != 0 {
                 stats.shadow_rays += u64::from(lit.count_ones());
+                for (i, cast) in cast.iter_mut().enumerate() {
+                    *cast += lit >> i & 1;
+                }
                 lit &= !self.shadowed(&hits, &way, lit, across, work);
             }
             for i in 0..PACKET {
@@ -84,10 +92,12 @@ impl Picture {
             }
         }
         stats.field_evaluations += work.scratch.evaluations;
+        let cost = map::costs(cast, work.scratch.evaluations, &work.scratch.alone);
         core::array::from_fn(|i| Sample {
             colour: colours[i].max(Vec3::ZERO).min(Vec3::ONE),
             key: keys[i],
             depth: hits[i].map_or(f32::INFINITY, |h| h.t as f32),
+            cost: cost[i],
         })
     }
 
@@ -225,6 +235,9 @@ impl Picture {
         limits: &[f64; PACKET],
         work: &mut Workspace,
     ) -> u32 {
+        if let Some(digger) = &self.digger {
+            return self.dug_shadows(&**digger, rays, limits, work);
+        }
         let alive: Vec<Ray> = rays.iter().flatten().copied().collect();
         let Some(beam) = Beam::around(&alive) else {
             return 0;

@@ -1,9 +1,12 @@
 //! A scene made ready for tracing.
 use crate::area::{Area, Samples};
 use crate::beam::Beam;
+use crate::digger::{self, Digger};
 use crate::hard::Crossing;
+use crate::map::Map;
 use crate::packet::Workspace;
 use crate::ray::Ray;
+use crate::sample::Sample;
 use crate::shade::{Finish, bytes};
 use crate::slabs::Slabs;
 use crate::soft::{PACKET, Soft};
@@ -39,7 +42,7 @@ pub struct Hit {
 /// A scene made ready for tracing at one size.
 pub struct Picture {
     pub(crate) size: [u32; 2],
-    unit: Unit,
+    pub(crate) unit: Unit,
     pub(crate) projection: Projection,
     pub(crate) soft: Soft,
     pub(crate) solids: Solids,
@@ -49,6 +52,10 @@ pub struct Picture {
     pub(crate) samples: u32,
     pub(crate) contrast: Vec3,
     gamma: f32,
+    /// What finds the soft surface, if it is not the picture's own certified digger.
+    pub(crate) digger: Option<Box<dyn Digger>>,
+    /// Whether and how costs are shown instead of colours.
+    map: Option<Map>,
 }
 
 /// Blocks of pixels that share a beam. Blocks and packets are laid out from the picture's corner,
@@ -78,6 +85,11 @@ impl Picture {
             samples: scene.settings.samples.clamp(1, Settings::MAX_SAMPLES),
             contrast: Vec3::from(scene.settings.contrast),
             gamma: scene.settings.gamma,
+            digger: match scene.settings.digger {
+                scene::Digger::Hermite => None,
+                other => Some(digger::of(other)),
+            },
+            map: scene.settings.map.map(Map::new),
         }
     }
 
@@ -99,6 +111,10 @@ impl Picture {
             bottom: tile.y.saturating_add(tile.height),
         };
         let mut work = Workspace::default();
+        let dearest = match &self.map {
+            Some(map) => map.dearest(self, stop)?,
+            None => 1.0,
+        };
         match pass {
             Pass::Coarse => {
                 let blocks = Area {
@@ -108,11 +124,11 @@ impl Picture {
                     bottom: area.bottom.div_ceil(BLOCK),
                 };
                 let samples = self.sample(blocks, BLOCK, stop, &mut work, stats)?;
-                Some(self.rgba(area, |x, y| samples.get(x / BLOCK, y / BLOCK).colour))
+                Some(self.rgba(area, dearest, |x, y| *samples.get(x / BLOCK, y / BLOCK)))
             }
             Pass::Full => {
                 let samples = self.sample(area, 1, stop, &mut work, stats)?;
-                Some(self.rgba(area, |x, y| samples.get(x, y).colour))
+                Some(self.rgba(area, dearest, |x, y| *samples.get(x, y)))
             }
             Pass::Smooth if self.samples == 1 => self.trace(tile, Pass::Full, stop, stats),
             Pass::Smooth => {
@@ -124,7 +140,7 @@ impl Picture {
                 };
                 let mut samples = self.sample(wide, 1, stop, &mut work, stats)?;
                 self.refine(area, &mut samples, stop, &mut work, stats)?;
-                Some(self.rgba(area, |x, y| samples.get(x, y).colour))
+                Some(self.rgba(area, dearest, |x, y| *samples.get(x, y)))
             }
         }
     }
@@ -167,7 +183,7 @@ impl Picture {
     }
 
     /// One sample at the centre of each cell of an area, in units of cells of `scale` pixels.
-    fn sample(
+    pub(crate) fn sample(
         &self,
         area: Area,
         scale: u32,
@@ -226,7 +242,7 @@ impl Picture {
     /// The slabs of the beam through a rectangle of pixels, divided into columns and rows (powers of
     /// two) of packets.
     pub(crate) fn slabs(&self, area: Area, packets: [u32; 2]) -> Option<(Slabs<'_>, f64)> {
-        if self.soft.is_empty() {
+        if self.soft.is_empty() || self.digger.is_some() {
             return None;
         }
         let divide = || {
@@ -260,10 +276,15 @@ impl Picture {
         }
     }
 
-    fn rgba(&self, area: Area, colour: impl Fn(u32, u32) -> Vec3) -> Vec<u8> {
+    /// What the samples show; `dearest` is what white stands for in a map of costs.
+    fn rgba(&self, area: Area, dearest: f32, sample: impl Fn(u32, u32) -> Sample) -> Vec<u8> {
         area.pixels()
             .flat_map(|(x, y)| {
-                let [r, g, b] = bytes(colour(x, y), self.gamma);
+                let sample = sample(x, y);
+                let [r, g, b] = match &self.map {
+                    Some(map) => bytes(map.grey(&sample, dearest), 1.0),
+                    None => bytes(sample.colour, self.gamma),
+                };
                 [r, g, b, 255]
             })
             .collect()

@@ -41,7 +41,7 @@ impl Picture {
                 let row = (y - block.top) / PACKET_SIZE[1];
                 let number = (column * PACKETS[1] + row) as usize;
                 let n = self.samples;
-                let mut sum = Vec3::ZERO;
+                let (mut sum, mut cost) = (Vec3::ZERO, 0.0);
                 for first in (0..n * n).step_by(PACKET) {
                     let count = (n * n - first).min(PACKET as u32);
                     let rays = core::array::from_fn(|i| {
@@ -52,15 +52,17 @@ impl Picture {
                     });
                     stats.primary_rays += u64::from(count);
                     let found = self.packet(&rays, number, &mut slabs, work, stats);
-                    let colours = found[..count as usize].iter().map(|s| s.colour);
-                    sum += colours.sum::<Vec3>();
+                    let found = &found[..count as usize];
+                    sum += found.iter().map(|s| s.colour).sum::<Vec3>();
+                    cost += found.iter().map(|s| s.cost).sum::<f32>();
                 }
-                means.push((x, y, sum / (n * n) as f32));
+                let all = (n * n) as f32;
+                means.push((x, y, sum / all, cost / all));
             }
         }
-        for (x, y, mean) in means {
+        for (x, y, colour, cost) in means {
             let mut sample = *samples.get(x, y);
-            sample.colour = mean;
+            (sample.colour, sample.cost) = (colour, cost);
             samples.set(x, y, sample);
         }
         Some(())

@@ -10,6 +10,8 @@ pub struct Sample {
     pub key: u32,
     /// Distance of the hit; infinite for the background.
     pub depth: f32,
+    /// The work done, see [`map`](crate::map).
+    pub cost: f32,
 }
 
 /// A difference of this much of the full brightness is about where steps become visible.

@@ -40,6 +40,8 @@ pub struct Scratch {
     stamp: u32,
     /// Evaluations of one primitive's field at one point, so far.
     pub evaluations: u64,
+    /// Those of them that were made for one ray alone.
+    pub alone: [u64; PACKET],
 }
 
 /// What the surface is like at the hits of a packet.
@@ -86,6 +88,17 @@ impl Soft {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.primitives.is_empty()
+    }
+
+    /// Calls `f` with each primitive that a ray may meet within its depth of influence, the
+    /// primitive's bounds and its material, in no order.
+    pub fn along<'a>(&'a self, ray: &Ray, mut f: impl FnMut(&'a Primitive, &'a Bound, u32)) {
+        let mut give = |i: u32| {
+            let i = i as usize;
+            f(&self.primitives[i], &self.bounds[i], self.material[i]);
+        };
+        self.everywhere.iter().for_each(|&i| give(i));
+        self.tree.search(&Beam::of_ray(*ray), |i, _, _| give(i));
     }
 
     /// The slabs of a beam, up to a parameter; with them the parameter at which the first starts

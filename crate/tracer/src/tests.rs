@@ -1,6 +1,6 @@
 //! Pictures against themselves at a far higher precision, with nothing cut off.
 #[path = "../tests/common/mod.rs"]
-mod common;
+pub mod common;
 
 use crate::picture::{Picture, Stats};
 use crate::slabs::Precision;

@@ -10,10 +10,10 @@ use super::grammar::Grammar;
 use super::slots::{Slots, Type, What};
 use super::symbols::{Entity, Here, Index, Occurrence, Place, SymbolKind};
 use super::walk::{self, Event};
-use crate::Project;
 use crate::commands::{self, CommandSpec, Names};
 use crate::symbol::Symbols;
 use crate::syntax::{Block, Command, Datum, Define, Item, Node, Syntax, Takes};
+use crate::{Project, colours, functions};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::rc::Rc;
@@ -500,10 +500,12 @@ impl<'p, 's> Walker<'p, 's> {
                 What::Name { of, is_new: true } => made.push((span, of)),
                 What::Name { of, is_new: false } => self.known(file, span, of, command),
                 What::File => {
-                    let bare = text[span.clone()]
-                        .strip_prefix("./")
-                        .unwrap_or(&text[span.clone()]);
-                    if let Some(read) = self.project.files.iter().position(|f| f.name == bare) {
+                    let written = &text[span.clone()];
+                    let bare = written.strip_prefix("./").unwrap_or(written);
+                    let files = &self.project.files;
+                    let places = crate::places(&files[file].name, written);
+                    let find = |place: &String| files.iter().position(|f| f.name == *place);
+                    if let Some(read) = places.iter().find_map(find) {
                         let start = span.end - bare.len();
                         let entity = self.named(SymbolKind::File, &self.project.files[read].name);
                         self.note(entity, file, start..span.end, command.span.clone(), false);
@@ -711,6 +713,15 @@ impl<'p, 's> Walker<'p, 's> {
             .or_else(|| frame.locals.get(name).map(|local| local.entity))
     }
 
+    /// Whether a word means a colour or a constant here, as no variable of that name has been set so far. Only
+    /// in the first file and outside of loops and commands is that certain.
+    fn is_not_set_yet(&self, name: &str) -> bool {
+        let is_plain = matches!(&self.frames[..], [frame] if frame.loops.is_empty());
+        is_plain
+            && self.type_of(name).is_none()
+            && (colours::find(name).is_some() || functions::constant(name).is_some())
+    }
+
     fn use_variable(&mut self, file: usize, span: Range<usize>, command: Range<usize>) {
         let text = self.text(file);
         let mut name = &text[span.clone()];
@@ -722,6 +733,9 @@ impl<'p, 's> Walker<'p, 's> {
         {
             name = triple;
             span.end = span.start + triple.len();
+        }
+        if file == 0 && self.is_not_set_yet(name) {
+            return;
         }
         let entity = match self.bound(name) {
             Some(entity) => {

@@ -253,7 +253,9 @@ impl<'i, 'p> Slots<'i, 'p> {
                     break;
                 }
             }
-            if self.stopped {
+            // What is copied needs no description.
+            let is_copy = matches!(parameter.kind, Kind::Copy(_)) && !first;
+            if self.stopped || is_copy {
                 return;
             }
         }
@@ -832,14 +834,8 @@ fn joined(left: Type, right: Type, strength: u8) -> Type {
 }
 
 /// Whether a word is one of these options or the beginning of one.
-pub fn is_beginning(options: &[OptionSpec], word: &str) -> bool {
-    options.iter().any(|option| begins(option.name, word))
-}
-
-/// Whether a name begins with a word, in any case.
-pub fn begins(name: &str, word: &str) -> bool {
-    name.get(..word.len())
-        .is_some_and(|start| start.eq_ignore_ascii_case(word))
+fn is_beginning(options: &[OptionSpec], word: &str) -> bool {
+    options.iter().any(|option| option.begins(word))
 }
 
 /// The option that a word names, whole or by a beginning that fits one only.
@@ -847,7 +843,7 @@ pub fn find_option(options: &'static [OptionSpec], word: &str) -> Option<&'stati
     if let Some(exact) = options.iter().find(|o| o.name.eq_ignore_ascii_case(word)) {
         return Some(exact);
     }
-    let mut fitting = options.iter().filter(|option| begins(option.name, word));
+    let mut fitting = options.iter().filter(|option| option.begins(word));
     fitting.next().filter(|_| fitting.next().is_none())
 }
 

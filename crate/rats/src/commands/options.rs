@@ -243,16 +243,21 @@ pub static TEXTURE: &[OptionSpec] = &[
         "0 0 0 1 1 1",
         "its lowest and highest value",
     ),
-    option("turbulence", &[number("t", "the turbulence")], "1", "noise"),
+    option(
+        "turbulence",
+        &[number("t", "the turbulence").at_least(0.0)],
+        "1",
+        "noise",
+    ),
     option(
         "octaves",
-        &[number("r", "the octaves")],
+        &[number("r", "the octaves").from(0.0, 32.0)],
         "5",
         "detail of the noise",
     ),
     option(
         "mask",
-        &[number("1 0", "the mask, of 1 and 0").many()],
+        &[super::parameter::whole("1 0", 0, 1, "an entry of the mask").many()],
         "",
         "tiles shown and left out",
     ),
@@ -336,11 +341,23 @@ pub static BLOBSCALE: &[OptionSpec] = &[
 
 /// `digger`.
 pub static DIGGER: &[OptionSpec] = &[
-    plain("hermite", "Hermite interpolation"),
-    plain("lagrange", "Lagrange interpolation"),
-    plain("brent", "Brent's method"),
-    plain("ridder", "Ridder's method"),
-    plain("RF", "regula falsi"),
+    plain(
+        "hermite",
+        "Hermite spans as short as a certified bound of their error demands; packets of rays",
+    ),
+    plain(
+        "hermite2",
+        "equally long Hermite spans on each shape's part of the ray, two as published",
+    ),
+    plain("lagrange", "polynomials of degree 4 through samples"),
+    plain("brent", "steps to a change of sign, then Brent's method"),
+    plain("ridder", "steps to a change of sign, then Ridders' method"),
+    plain("RF", "steps to a change of sign, then the regula falsi"),
+    plain(
+        "LG",
+        "halving until Lipschitz constants settle it (Kalra and Barr)",
+    ),
+    plain("sphere", "sphere tracing (Hart)"),
 ];
 
 /// `pack`.

@@ -5,6 +5,7 @@ use super::{Evaluator, Flow};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
+use crate::scope::Scope;
 use crate::symbol::Symbol;
 use crate::syntax::{Command, Define, Formal, Takes};
 use crate::value::Value;
@@ -94,17 +95,6 @@ impl<'a> Evaluator<'a> {
         let mut values: Vec<(Symbol, Option<Value>)> =
             define.parameters.iter().map(|p| (p.name, None)).collect();
         let chain = self.model.chain.clone();
-        let mut usage = self.scope.symbols.word(define.name).to_owned();
-        for parameter in &define.parameters {
-            usage.push(' ');
-            let word = self.scope.symbols.word(parameter.name);
-            if parameter.default.is_empty() {
-                usage += word;
-            } else {
-                usage += &format!("[{word}]");
-            }
-        }
-        let usage = format!("it is written `{usage}`");
         let mut next = 0;
         // In a chain its material is known already.
         if let Some(chain) = chain
@@ -135,7 +125,8 @@ impl<'a> Evaluator<'a> {
                             .parameters
                             .iter()
                             .map(|p| read.scope.symbols.word(p.name));
-                        let hint = crate::suggest::hint(word, names).unwrap_or(usage.clone());
+                        let hint = crate::suggest::hint(word, names)
+                            .unwrap_or_else(|| usage(read.scope, define));
                         let name = read.scope.symbols.word(define.name);
                         return Err(Problem::new(
                             start..start + word.len(),
@@ -157,12 +148,12 @@ impl<'a> Evaluator<'a> {
                         read.here(),
                         "what follows a named parameter must be named too",
                     )
-                    .hint(usage.clone()));
+                    .hint(usage(read.scope, define)));
                 }
                 None => {
                     let Some(_) = define.parameters.get(next) else {
-                        read.end()
-                            .map_err(|problem| problem.maybe_hint(Some(usage.clone())))?;
+                        let end = read.end();
+                        end.map_err(|problem| problem.hint(usage(read.scope, define)))?;
                         break;
                     };
                     next += 1;
@@ -172,7 +163,7 @@ impl<'a> Evaluator<'a> {
             let start = read.start();
             let value = argument(&mut read, &define.parameters[index]);
             let value = value.map_err(|problem| match problem.hint {
-                None => problem.hint(usage.clone()),
+                None => problem.hint(usage(read.scope, define)),
                 Some(_) => problem,
             })?;
             // Better refuse a material here than where the command uses it.
@@ -184,14 +175,11 @@ impl<'a> Evaluator<'a> {
             }
             values[index].1 = Some(value);
         }
-        for (parameter, (name, value)) in define.parameters.iter().zip(&values) {
+        for (parameter, (_, value)) in define.parameters.iter().zip(&values) {
             if value.is_none() && parameter.default.is_empty() {
-                let word = read.scope.symbols.word(*name);
-                let what = match parameter.takes {
-                    Takes::Surface => format!("the material's name (`{word}`)"),
-                    _ => format!("`{word}`"),
-                };
-                return Err(read.expected(&what).maybe_hint(Some(usage)));
+                return Err(read
+                    .expected(&parameter.shown)
+                    .hint(usage(read.scope, define)));
             }
         }
         for name in surfaces {
@@ -217,15 +205,28 @@ impl<'a> Evaluator<'a> {
     }
 }
 
+/// How a call of a defined command is written, as a hint.
+fn usage(scope: &Scope<'_>, define: &Define) -> String {
+    let mut usage = scope.symbols.word(define.name).to_owned();
+    for parameter in &define.parameters {
+        let word = scope.symbols.word(parameter.name);
+        usage += &if parameter.default.is_empty() {
+            format!(" {word}")
+        } else {
+            format!(" [{word}]")
+        };
+    }
+    format!("it is written `{usage}`")
+}
+
 /// One argument of a call.
 fn argument(read: &mut Reader<'_, '_>, parameter: &Formal) -> Outcome<Value> {
-    let what = format!("`{}`", read.scope.symbols.word(parameter.name));
+    let what = parameter.shown.as_str();
     match parameter.takes {
-        Takes::Number => Ok(Value::Scalar(read.number(&what)?)),
-        Takes::Triple => read.triple(&what),
+        Takes::Number => Ok(Value::Scalar(read.number(what)?)),
+        Takes::Triple => read.triple(what),
         Takes::Surface => {
-            let what = format!("the material's name ({what})");
-            let name = read.known_name(&what)?;
+            let name = read.known_name(what)?;
             match read.scope.symbols.find(name.text) {
                 Some(symbol) => Ok(Value::Name(symbol)),
                 None if name.text.parse::<f64>().is_ok() => Err(Problem::new(

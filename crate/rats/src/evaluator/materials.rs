@@ -17,7 +17,7 @@ use std::ops::Range;
 /// Of our own: `surface new = old option …` changes some fields of the copy.
 pub fn surface<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     run.scope.step(8, &command.word_span)?;
-    let name = run.reader(command).name("the material's name")?;
+    let name = run.reader(command).new_name("the material's name")?;
     make(run, command).inspect_err(|_| run.palette.insert_broken(name.text))?;
     Ok(Flow::Next)
 }
@@ -35,15 +35,21 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let old = given.maybe_name("= old").cloned();
     run.watch_material(&name, old.as_ref(), &given);
     let mut surface = match &old {
-        Some(old) => run.palette.surfaces[run.material(old)?].clone(),
+        Some(old) => {
+            let index = run.material(old)?;
+            let old = &mut run.palette.surfaces[index];
+            old.copied = true;
+            old.clone()
+        }
         None => Surface {
             material: Material::default(),
             colours: Colours::default(),
             origin: (0, 0..0),
             used: false,
+            copied: false,
         },
     };
-    surface.used = false;
+    (surface.used, surface.copied) = (false, false);
     surface.origin = (run.file, name.span.clone());
     let mut fields = Fields::default();
     for chosen in given.options {
@@ -58,6 +64,14 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     for (what, span) in fields.not_drawn {
         run.say(Severity::Warning, span, || {
             (format!("`{what}` is not drawn yet"), None)
+        });
+    }
+    if let Some(earlier) = run.palette.idle(name.text).cloned() {
+        run.say_made_twice(Severity::Warning, &name, earlier, || {
+            format!(
+                "nothing was made of the `{0}` above: this `{0}` takes its place",
+                name.text
+            )
         });
     }
     run.palette.insert(&name, surface)

@@ -5,6 +5,7 @@ use super::Evaluator;
 use crate::Severity;
 use crate::commands;
 use crate::problem::Problem;
+use crate::reader::Name;
 use crate::syntax::Command;
 use std::ops::Range;
 
@@ -58,6 +59,25 @@ impl Evaluator<'_> {
             _ => (self.file, span),
         };
         self.report.is_new(file, severity, place)
+    }
+
+    /// Tells that something is made anew under a name, so that what was made `earlier` was in vain. In a loop, a
+    /// branch or another file that may be meant, so nothing is said there.
+    pub(super) fn say_made_twice(
+        &mut self,
+        severity: Severity,
+        name: &Name<'_>,
+        (file, span): (usize, Range<usize>),
+        message: impl FnOnce() -> String,
+    ) {
+        let in_block = self.repeating > 0 || self.depth + 1 > self.reading.len();
+        let is_here = self.file == file && self.is_own();
+        if !in_block && is_here && span != name.span && self.is_news(severity, &name.span) {
+            let problem = Problem::new(name.span.clone(), message())
+                .hint("give one of them another name, or leave one out")
+                .related(None, span, "first made here");
+            self.tell(severity, problem);
+        }
     }
 
     /// As [`Self::say`], about another file.

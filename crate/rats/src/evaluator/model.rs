@@ -10,6 +10,7 @@ use crate::reader::Name;
 use crate::suggest;
 use glam::DAffine3;
 use scene::{Element, Shape};
+use std::cell::Cell;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -20,8 +21,9 @@ pub struct Part {
     pub element: Element,
     /// By how much it has been scaled, which its material's radius must follow.
     pub growth: f64,
-    /// From the coordinates of its command to those of the world.
-    pub to_world: DAffine3,
+    /// From the coordinates of its command to those of the world, if they differ. (In a box, as there may be very
+    /// many shapes and few of them are moved.)
+    pub moved: Option<Box<DAffine3>>,
     /// Whether its command may have made other shapes too.
     pub repeated: bool,
     /// Whether its width varies along it.
@@ -52,6 +54,17 @@ struct Object<'a> {
     is_chain: bool,
 }
 
+/// An object that has been closed.
+#[derive(Debug)]
+struct Closed {
+    /// Its shapes.
+    range: Range<usize>,
+    /// The file and place of its name; none for a copy.
+    place: Option<(usize, Range<usize>)>,
+    /// Whether a command has named it.
+    named: Cell<bool>,
+}
+
 /// All shapes and objects.
 #[derive(Debug, Default)]
 pub struct Model<'a> {
@@ -60,7 +73,7 @@ pub struct Model<'a> {
     /// Objects and chains that could not be begun, whose `close` is still to come.
     pub refused: usize,
     open: Vec<Object<'a>>,
-    closed: HashMap<&'a str, Range<usize>>,
+    closed: HashMap<&'a str, Closed>,
     count: usize,
     /// What the shapes weigh, see [`Part::weight`].
     weight: usize,
@@ -149,7 +162,12 @@ impl<'a> Model<'a> {
         }
         let range = object.start..self.parts.len();
         self.last = Some(range.clone());
-        self.closed.insert(object.name, range);
+        let closed = Closed {
+            range,
+            place: Some(object.place),
+            named: Cell::new(false),
+        };
+        self.closed.insert(object.name, closed);
         Some(object.name)
     }
 
@@ -159,13 +177,21 @@ impl<'a> Model<'a> {
         self.open.last().map(|object| (object.name, &object.place))
     }
 
+    /// Where an object of this name was begun, if no command has named it since.
+    #[must_use]
+    pub fn unnamed(&self, name: &str) -> Option<&(usize, Range<usize>)> {
+        let object = self.closed.get(name)?;
+        object.place.as_ref().filter(|_| !object.named.get())
+    }
+
     /// The shapes of an object.
     ///
     /// # Errors
     /// If there is none of this name.
     pub fn find(&self, name: &Name<'_>) -> Outcome<Range<usize>> {
-        if let Some(range) = self.closed.get(name.text) {
-            return Ok(range.clone());
+        if let Some(object) = self.closed.get(name.text) {
+            object.named.set(true);
+            return Ok(object.range.clone());
         }
         if let Some(object) = self.open.iter().find(|object| object.name == name.text) {
             let (file, span) = object.place.clone();
@@ -200,14 +226,15 @@ impl<'a> Model<'a> {
         for part in &mut self.parts[range] {
             part.element.shape = transform.apply(&part.element.shape);
             part.growth *= transform.growth;
-            part.to_world = transform.affine() * part.to_world;
+            let before = part.moved.as_deref().copied().unwrap_or_default();
+            part.moved = Some(Box::new(transform.affine() * before));
         }
     }
 
     /// Removes shapes.
     pub fn remove(&mut self, range: Range<usize>) {
         self.closed
-            .retain(|_, object| object.start < range.start || object.end > range.end);
+            .retain(|_, Closed { range: own, .. }| own.start < range.start || own.end > range.end);
         for part in &mut self.parts[range] {
             part.removed = true;
         }
@@ -226,7 +253,12 @@ impl<'a> Model<'a> {
         }
         let range = start..self.parts.len();
         self.last = Some(range.clone());
-        self.closed.insert(name.text, range);
+        let closed = Closed {
+            range,
+            place: None,
+            named: Cell::new(false),
+        };
+        self.closed.insert(name.text, closed);
         Ok(())
     }
 

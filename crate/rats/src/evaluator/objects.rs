@@ -26,8 +26,16 @@ pub fn chain<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 /// `object name`
 pub fn object<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let opened = run.given(command).and_then(|given| {
-        let file = run.file;
-        run.model.open(file, given.name("name"), None)
+        let name = given.name("name");
+        if let Some(earlier) = run.model.unnamed(name.text).cloned() {
+            run.say_made_twice(Severity::Note, name, earlier, || {
+                format!(
+                    "the object `{0}` above stays, but the name `{0}` now means this one",
+                    name.text
+                )
+            });
+        }
+        run.model.open(run.file, name, None)
     });
     // Its `close` will come all the same.
     opened.inspect_err(|_| run.model.refused += 1)?;

@@ -6,7 +6,7 @@ use crate::commands::options::{FORMATS, MESH};
 use crate::problem::Outcome;
 use crate::syntax::Command;
 use field::BlobScale;
-use scene::Fragile;
+use scene::{Digger, Fragile};
 
 /// `echo on|off`: nothing is echoed anyway, and every published dataset says it, so nothing is said.
 pub fn silent_switch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
@@ -71,6 +71,12 @@ pub fn format<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     Ok(Flow::Next)
 }
 
+/// `nosave on|off`
+pub fn nosave<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.output.saved = !run.given(command)?.switch();
+    Ok(Flow::Next)
+}
+
 /// `sample n`
 pub fn sample<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
@@ -119,13 +125,37 @@ pub fn influence<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<F
     Ok(Flow::Next)
 }
 
-/// `digger …`: Hermite interpolation is the one there is.
+/// `digger name [n]`
 pub fn digger<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    for (name, span) in run.given(command)?.words("name") {
-        if name != "hermite" {
-            run.not_carried_out(span, &format!("`{name}`"));
-        }
+    let given = run.given(command)?;
+    run.settings.digger = match given.word("name") {
+        Some("hermite2") => Digger::Spans(given.maybe_number("n").map_or(2, |n| n as u32)),
+        Some("lagrange") => Digger::Lagrange,
+        Some("brent") => Digger::Brent,
+        Some("ridder") => Digger::Ridder,
+        Some("RF") => Digger::RegulaFalsi,
+        Some("LG") => Digger::Lg,
+        Some("sphere") => Digger::Sphere,
+        _ => Digger::Hermite,
+    };
+    if let Some(span) = given.span("n")
+        && !matches!(run.settings.digger, Digger::Spans(_))
+    {
+        run.say(Severity::Warning, span, || {
+            (
+                String::from("only `hermite2` has a number of spans"),
+                Some(String::from("leave the number out")),
+            )
+        });
     }
+    Ok(Flow::Next)
+}
+
+/// `map on|off [N]`
+pub fn map<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let given = run.given(command)?;
+    let gamma = given.maybe_number("N").unwrap_or(1.0) as f32;
+    run.settings.map = given.switch().then_some(gamma);
     Ok(Flow::Next)
 }
 

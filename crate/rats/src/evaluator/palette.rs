@@ -24,6 +24,8 @@ pub struct Surface {
     pub origin: (usize, Range<usize>),
     /// Whether a shape is made of it.
     pub used: bool,
+    /// Whether another material began as its copy.
+    pub copied: bool,
 }
 
 /// The colours of a material as the text gives them; shares refer to others.
@@ -78,6 +80,13 @@ impl<'a> Palette<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Where a material of this name was made, if nothing has come of it yet.
+    #[must_use]
+    pub fn idle(&self, name: &str) -> Option<&(usize, Range<usize>)> {
+        let surface = &self.surfaces[*self.by_name.get(name)?];
+        (!surface.used && !surface.copied).then_some(&surface.origin)
     }
 
     /// Remembers that a material or texture should have been made here but was not.

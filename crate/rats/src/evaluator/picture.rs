@@ -11,10 +11,10 @@ use scene::{Element, Material, Scene, Shape};
 use std::collections::HashMap;
 
 impl Evaluator<'_> {
-    /// The scene as it is now, and how its elements came there.
-    pub(super) fn picture(&mut self) -> (Scene, Vec<Placement>) {
+    /// The scene of these shapes as all else is now, and how its elements came there.
+    pub(super) fn picture(&mut self, parts: Vec<Part>) -> (Scene, Vec<Placement>) {
         let mut scene = Scene {
-            elements: Vec::with_capacity(self.model.parts.len()),
+            elements: Vec::with_capacity(parts.len()),
             materials: self
                 .palette
                 .surfaces
@@ -26,24 +26,25 @@ impl Evaluator<'_> {
             camera: self.settled_camera(),
             settings: self.settings,
         };
-        let mut placements = Vec::with_capacity(self.model.parts.len());
+        let mut placements = Vec::with_capacity(parts.len());
         if scene.materials.is_empty() {
             scene.materials.push(Material::default());
         }
-        let parts = std::mem::take(&mut self.model.parts);
+        scene.elements.reserve_exact(parts.len());
         let mut grown = HashMap::new();
         let mut warned = false;
-        for part in parts.iter().filter(|part| !part.removed) {
-            let element = if is_in_bounds(part) {
-                let element = settle(part, &mut scene, &mut grown);
-                fault(&scene, &element).map_or(Ok(element), Err)
+        for mut part in parts.into_iter().filter(|part| !part.removed) {
+            let fault = if is_in_bounds(&part) {
+                settle(&mut part, &mut scene, &mut grown);
+                fault(&scene, &part.element)
             } else {
-                Err((too_far as fn() -> String, None))
+                Some((too_far as fn() -> String, None))
             };
-            let origin = part.element.origin;
+            let element = part.element;
+            let origin = element.origin;
             let span = origin.start as usize..origin.end as usize;
-            match element {
-                Ok(element) => {
+            match fault {
+                None => {
                     if !warned && ignores_profile(&scene, &element) {
                         warned = true;
                         self.say_at(origin.file as usize, Severity::Warning, span, || {
@@ -58,19 +59,18 @@ impl Evaluator<'_> {
                     }
                     scene.elements.push(element);
                     placements.push(Placement {
-                        to_world: part.to_world,
+                        to_world: part.moved.as_deref().copied().unwrap_or_default(),
                         growth: part.growth,
                         repeated: part.repeated,
                     });
                 }
-                Err((message, hint)) => {
+                Some((message, hint)) => {
                     self.say_at(origin.file as usize, Severity::Warning, span, || {
                         (message(), hint)
                     });
                 }
             }
         }
-        self.model.parts = parts;
         if scene.camera.eye == scene.camera.target {
             let (place, span) = self.aimed_at.clone();
             self.say_at(place, Severity::Warning, span, || {
@@ -84,9 +84,9 @@ impl Evaluator<'_> {
     }
 }
 
-/// A part's element in the scene, with the material that it needs there.
-fn settle(part: &Part, scene: &mut Scene, grown: &mut HashMap<(usize, u64), usize>) -> Element {
-    let mut element = part.element.clone();
+/// Gives a part's element the material that it needs in the scene.
+fn settle(part: &mut Part, scene: &mut Scene, grown: &mut HashMap<(usize, u64), usize>) {
+    let element = &mut part.element;
     // What is scaled has flesh scaled alike: the material's radius grows, an absolute width shrinks.
     if part.growth != 1.0 && scene.materials[element.material].is_soft() {
         let key = (element.material, part.growth.to_bits());
@@ -99,7 +99,6 @@ fn settle(part: &Part, scene: &mut Scene, grown: &mut HashMap<(usize, u64), usiz
             materials.len() - 1
         });
     }
-    element
 }
 
 /// Whether an element's material has a profile that its shape has no parameters for.

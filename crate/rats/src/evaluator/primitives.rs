@@ -11,7 +11,7 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
 use field::Kernel;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DMat3, DVec3};
 use mesh::Mesh;
 use scene::{Element, Quadric, Shape};
 
@@ -55,7 +55,7 @@ impl<'a> Evaluator<'a> {
                 origin: self.origin(command),
             },
             growth: 1.0,
-            to_world: DAffine3::IDENTITY,
+            moved: None,
             repeated: self.repeating > 0 || !self.is_own(),
             removed: false,
         };

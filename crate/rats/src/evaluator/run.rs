@@ -2,11 +2,11 @@
 
 use super::{Evaluator, Flow};
 use crate::commands::{self, CommandSpec};
-use crate::limits::MAX_NESTED_FILES;
+use crate::limits::{MAX_NESTED_FILES, STEPS_PER_LOOKUP};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
-use crate::{Severity, colours, library, manual, suggest};
+use crate::{Severity, colours, library, manual, places, suggest};
 
 /// `read fn1 [fn2 …]`
 pub fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
@@ -50,15 +50,16 @@ fn run_inner<'a>(run: &mut Evaluator<'a>, command: &'a Command, file: usize) -> 
 }
 
 fn find_file(run: &Evaluator<'_>, name: &Name<'_>) -> Outcome<usize> {
-    let bare = name.text.strip_prefix("./").unwrap_or(name.text);
-    run.sources.find(bare).ok_or_else(|| {
+    let places = places(&run.sources.all[run.file].name, name.text);
+    let found = places.iter().find_map(|place| run.sources.find(place));
+    found.ok_or_else(|| {
         let own = run.sources.all[..run.sources.own]
             .iter()
             .map(|source| source.name.as_str());
         let known: Vec<&str> = own
             .chain(library::FILES.iter().map(|file| file.0))
             .collect();
-        let hint = suggest::hint(bare, known.iter().copied())
+        let hint = suggest::hint(name.text, known.iter().copied())
             .unwrap_or_else(|| format!("the files are {}", known.join(", ")));
         Problem::new(
             name.span.clone(),
@@ -71,7 +72,7 @@ fn find_file(run: &Evaluator<'_>, name: &Name<'_>) -> Outcome<usize> {
 /// `test command [print]`
 pub fn test<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
-    let spec = find_command(given.name("command"))?;
+    let spec = find_command(run, given.name("command"))?;
     // These would end or undo the run that they are shown in.
     let would_harm = matches!(spec.name, "quit" | "reset" | "shoot");
     if given.word("print").is_some() || would_harm {
@@ -154,7 +155,10 @@ pub fn colors<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 /// `help [command]`
 pub fn help<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
-    let spec = given.maybe_name("command").map(find_command).transpose()?;
+    let spec = match given.maybe_name("command") {
+        Some(name) => Some(find_command(run, name)?),
+        None => None,
+    };
     run.say(Severity::Note, command.span.clone(), || {
         (spec.map_or_else(manual::list, manual::summary), None)
     });
@@ -164,14 +168,15 @@ pub fn help<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 /// `man command`
 pub fn man<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
-    let spec = find_command(given.name("command"))?;
+    let spec = find_command(run, given.name("command"))?;
     run.say(Severity::Note, command.span.clone(), || {
         (manual::page(spec), None)
     });
     Ok(Flow::Next)
 }
 
-fn find_command(name: &Name<'_>) -> Outcome<&'static CommandSpec> {
+fn find_command(run: &mut Evaluator<'_>, name: &Name<'_>) -> Outcome<&'static CommandSpec> {
+    run.scope.step(STEPS_PER_LOOKUP, &name.span)?;
     commands::find(name.text).ok_or_else(|| {
         Problem::new(
             name.span.clone(),

@@ -210,7 +210,8 @@ pub fn shoot<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         run.not_carried_out(span, "an option of `shoot`");
     }
     if run.shot.is_none() {
-        run.shot = Some(run.picture());
+        let parts = run.model.parts.clone();
+        run.shot = Some(run.picture(parts));
     }
     Ok(Flow::Next)
 }

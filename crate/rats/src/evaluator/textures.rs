@@ -2,13 +2,15 @@
 //! profile of the field ([`field::Profile`]). All others are read and checked, and a warning says that
 //! they are not drawn.
 
+use super::palette::Texture;
 use super::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::OptionSpec;
 use crate::commands::options::{SOLIDS, TARGETS, TEXTURE, WAVES};
 use crate::given::Chosen;
 use crate::problem::{Outcome, Problem};
-use crate::reader::Reader;
+use crate::reader::{Name, Reader};
+use crate::suggest;
 use crate::syntax::Command;
 use field::{Profile, Wave};
 use glam::DVec3;
@@ -34,8 +36,10 @@ fn wave(word: &str) -> Option<Wave> {
 }
 
 /// `texture { alias target method option … }`, `texture new = old`
+///
+/// Of our own: `texture new = old option …` changes the copy.
 pub fn texture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let name = run.reader(command).name("the texture's name")?;
+    let name = run.reader(command).new_name("the texture's name")?;
     make(run, command).inspect_err(|_| run.palette.insert_broken(name.text))?;
     Ok(Flow::Next)
 }
@@ -52,8 +56,9 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let name = read.name("the texture's name")?;
     if read.sign(b'=') {
         let old = read.known_name("the name of the old texture")?;
+        let options = read.chosen(TEXTURE)?;
         read.end()?;
-        let texture = run.palette.texture(&old)?.clone();
+        let texture = derived(run, &old, options)?;
         return run.palette.insert_texture(&name, texture);
     }
     let start = read.start();
@@ -75,27 +80,15 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         times: 1.0,
         restriction: 0.0,
     };
-    let mut ignored = Vec::new();
-    let mut of_waves = Vec::new();
-    for Chosen { name, span, given } in options {
-        match name {
-            "scale" | "times" | "bounds" if method.is_none() => of_waves.push((name, span)),
-            "scale" => profile.scale = [given.vector("XYZ").x, given.vector("XYZ").y],
-            // A strength is one number: the first of the three.
-            "times" => profile.times = given.vector("RGB").x,
-            "bounds" => {
-                let bounds = given.vectors("RGB");
-                profile.bounds = [bounds[0].x, bounds[1].x];
-            }
-            "texture" => layers.extend(given.names("t1 +")),
-            "translate" if given.vector("XYZ") == DVec3::ZERO => {}
-            _ => ignored.push((name, span)),
-        }
-    }
+    let ignored = change(
+        options,
+        method.is_some().then_some(&mut profile),
+        &mut layers,
+    );
     let mut texture = run.palette.layers(&layers)?;
     match method {
         None => {
-            for (what, span) in ignored.into_iter().chain(of_waves) {
+            for (what, span) in ignored {
                 not_drawn(run, span, format!("`{what}` of layers"));
             }
         }
@@ -121,6 +114,58 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         }
     }
     run.palette.insert_texture(&name, texture)
+}
+
+/// A copy with changes. Those of what is not drawn say nothing: the original's command has said it.
+fn derived<'a>(
+    run: &mut Evaluator<'a>,
+    old: &Name<'a>,
+    options: Vec<Chosen<'a>>,
+) -> Outcome<Texture> {
+    let original = run.palette.texture(old)?.clone();
+    let mut own = original.profile.filter(|_| original.layers == 1);
+    let mut layers = vec![old.clone()];
+    let ignored = change(options, own.as_mut(), &mut layers);
+    let mut texture = run.palette.layers(&layers)?;
+    texture.profile = own.or(texture.profile);
+    if original.profile.is_some() {
+        let of = if own.is_some() {
+            "a strength"
+        } else {
+            "layers"
+        };
+        for (what, span) in ignored {
+            not_drawn(run, span, format!("`{what}` of {of}"));
+        }
+    }
+    Ok(texture)
+}
+
+/// Applies options to a texture's own profile, if it has one, and collects its other layers; gives the options
+/// that change nothing.
+fn change<'a>(
+    options: Vec<Chosen<'a>>,
+    mut profile: Option<&mut Profile>,
+    layers: &mut Vec<Name<'a>>,
+) -> Vec<(&'static str, Range<usize>)> {
+    let mut ignored = Vec::new();
+    for Chosen { name, span, given } in options {
+        match (name, profile.as_deref_mut()) {
+            ("scale", Some(profile)) => {
+                profile.scale = [given.vector("XYZ").x, given.vector("XYZ").y];
+            }
+            // A strength is one number: the first of the three.
+            ("times", Some(profile)) => profile.times = given.vector("RGB").x,
+            ("bounds", Some(profile)) => {
+                let bounds = given.vectors("RGB");
+                profile.bounds = [bounds[0].x, bounds[1].x];
+            }
+            ("texture", _) => layers.extend(given.names("t1 +")),
+            ("translate", _) if given.vector("XYZ") == DVec3::ZERO => {}
+            _ => ignored.push((name, span)),
+        }
+    }
+    ignored
 }
 
 fn not_drawn(run: &mut Evaluator<'_>, span: Range<usize>, what: String) {
@@ -163,6 +208,13 @@ fn method(read: &mut Reader<'_, '_>) -> Outcome<Method> {
         return Ok(Method::Other(solid.name));
     }
     read.at = back;
-    read.colour(WHAT)?;
+    read.colour(WHAT).map_err(|problem| {
+        // Names of one letter are near to any.
+        let words = SOLIDS.iter().chain(WAVES).map(|word| word.name);
+        match suggest::hint(word.text, words.filter(|word| word.len() > 1)) {
+            Some(hint) if problem.span == word.span => problem.hint(hint),
+            _ => problem,
+        }
+    })?;
     Ok(Method::Other("a colour"))
 }

@@ -1,14 +1,13 @@
 //! TOOLS: work on pictures. The compiler touches no files, so each command becomes a [`Tool`] in the
-//! result, which the program carries out; a note says so.
+//! result, for the program and the page to carry out.
 
 use super::{Evaluator, Flow};
-use crate::Severity;
 use crate::colours;
 use crate::given::Given;
 use crate::limits::MAX_TOOLS;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
-use crate::tool::{LISTED, Playback, Shown, Tool};
+use crate::tool::{Playback, Shown, Tool};
 
 /// Lists a job.
 fn job<'a>(
@@ -25,9 +24,7 @@ fn job<'a>(
         ));
     }
     run.tools.push(tool);
-    run.say(Severity::Note, command.word_span.clone(), || {
-        (LISTED.to_owned(), None)
-    });
+    run.tool_origins.push(run.origin(command));
     Ok(Flow::Next)
 }
 
@@ -172,11 +169,15 @@ pub fn show<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
         let what = match chosen.name {
             "file" => Shown::File(file(&chosen.given, "fn")),
             "color" => {
-                let span = chosen.given.span("Color").unwrap_or(0..0);
-                Shown::Colour {
-                    name: source.text[span].to_owned(),
-                    rgb: chosen.given.colour("Color"),
-                }
+                let written = &source.text[chosen.given.span("Color").unwrap_or(0..0)];
+                let rgb = chosen.given.colour("Color");
+                // How a text is laid out must not matter, so only a word is kept as it is written.
+                let name = if written.chars().all(char::is_alphanumeric) {
+                    written.to_owned()
+                } else {
+                    rgb.map(|share| share.to_string()).join(" ")
+                };
+                Shown::Colour { name, rgb }
             }
             _ => Shown::Palette(colours::names().filter_map(colours::find).collect()),
         };

@@ -27,7 +27,7 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let Some((name, word)) = read.peek_word() else {
         return Err(read.expected("the variable's name"));
     };
-    let spelled = read.name("the variable's name")?;
+    let spelled = read.new_name("the variable's name")?;
     if spelled.text != word {
         return Err(Problem::new(
             spelled.span,

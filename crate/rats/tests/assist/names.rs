@@ -184,6 +184,11 @@ fn renaming() {
         renamed("surface a^2 rad 1\nsphere |a^2 1 0 0 0\n", "b^3.x"),
         Ok(String::from("surface b^3.x rad 1\nsphere b^3.x 1 0 0 0\n"))
     );
+    // Before it is a variable it is a colour.
+    assert_eq!(
+        renamed("background Red\nvar |Red = Red\nfog Red", "b"),
+        Ok(String::from("background Red\nvar b = Red\nfog b"))
+    );
     let no = |text, name| renamed(text, name).expect_err("a refusal");
     assert_eq!(
         no("var b = 2\nvar |a = 1\n", "b"),

@@ -1,4 +1,4 @@
-//! The lab: seven small lessons, each one figure to take hold of, that show how a convolution
+//! The lab: eight small lessons, each one figure to take hold of, that show how a convolution
 //! surface comes about. Each has its own link (`#lab=kernels`), and opening one leaves the open
 //! work alone.
 //!
@@ -18,6 +18,7 @@ pub mod plot;
 pub mod profiles;
 pub mod sample;
 pub mod slice;
+pub mod spans;
 pub mod superposition;
 mod text;
 mod tools;
@@ -51,6 +52,8 @@ pub enum Lesson {
     Chart,
     /// Why a cut bone shows no seam.
     Superposition,
+    /// What the number of Hermite spans does.
+    Spans,
 }
 
 /// How a fragment begins that leads to a lesson.
@@ -58,7 +61,7 @@ const PREFIX: &str = "#lab";
 
 impl Lesson {
     /// All lessons, in the order of the list.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Kernels,
         Self::Convolution,
         Self::Slice,
@@ -66,6 +69,7 @@ impl Lesson {
         Self::Profiles,
         Self::Chart,
         Self::Superposition,
+        Self::Spans,
     ];
 
     /// The word in its link.
@@ -79,6 +83,7 @@ impl Lesson {
             Self::Profiles => "profiles",
             Self::Chart => "chart",
             Self::Superposition => "superposition",
+            Self::Spans => "spans",
         }
     }
 
@@ -159,6 +164,7 @@ pub struct Lab {
     profiles: profiles::Profiles,
     chart: chart::Chart,
     superposition: superposition::Superposition,
+    spans: spans::Spans,
 }
 
 impl Lab {
@@ -179,6 +185,7 @@ impl Lab {
             profiles: profiles::Profiles::default(),
             chart: chart::Chart::default(),
             superposition: superposition::Superposition::default(),
+            spans: spans::Spans::default(),
         }
     }
 

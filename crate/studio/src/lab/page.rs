@@ -143,6 +143,7 @@ fn short(lesson: Lesson) -> &'static str {
         Lesson::Slice => "Slice",
         Lesson::Grid => "Grid",
         Lesson::Chart => "Chart",
+        Lesson::Spans => "Spans",
         _ => lesson.title(),
     }
 }
@@ -272,6 +273,7 @@ fn lesson(app: &mut App, ui: &mut Ui, all: Rect, narrow: bool, commands: &mut Ve
         Lesson::Profiles => lab.profiles.show(ui, &mut bench),
         Lesson::Chart => lab.chart.show(ui, &mut bench),
         Lesson::Superposition => lab.superposition.show(ui, &mut bench),
+        Lesson::Spans => lab.spans.show(ui, &mut bench),
     }
     ui.add_space(if narrow { 24.0 } else { 8.0 });
     if wanted {
@@ -283,6 +285,7 @@ fn lesson(app: &mut App, ui: &mut Ui, all: Rect, narrow: bool, commands: &mut Ve
             Lesson::Profiles => ("Profiles", lab.profiles.dataset()),
             Lesson::Chart => ("Chart", lab.chart.dataset()),
             Lesson::Superposition => ("Superposition", lab.superposition.dataset()),
+            Lesson::Spans => ("Cross", lab.spans.dataset()),
         };
         commands.push(Command::OpenText {
             name: name.to_owned(),

@@ -491,7 +491,7 @@ const SHADES: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-fn shade(share: f32, dark: bool) -> Color32 {
+pub(super) fn shade(share: f32, dark: bool) -> Color32 {
     let at = share.clamp(0.0, 1.0) * (SHADES.len() - 1) as f32;
     let index = (at as usize).min(SHADES.len() - 2);
     let t = at - index as f32;

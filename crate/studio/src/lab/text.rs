@@ -74,6 +74,14 @@ pub fn of(lesson: Lesson) -> Words {
                         parts count in full, so the surface bulges. That is why bones may be put \
                         together from many pieces here.",
         },
+        Lesson::Spans => Words {
+            title: "How many spans?",
+            about: "cubics along a ray, and errors",
+            sentences: "Along each ray a few cubics stand in for a bone's field, and what a picture shows \
+                        is their surface, not the field's. Two spans a bone, as first published, give way \
+                        where a ray runs along a bar, and four are better. The tracer here places spans \
+                        by a proven bound on their error, so there is no number to choose.",
+        },
     }
 }
 

@@ -25,6 +25,6 @@ pub static MATERIALS: &[CommandSpec] = &[
             parameter("Method", Kind::Method, "how to texture: a solid such as `wood`, two waves such as `sin one`, a colour or an image"),
         ])
         .options(o::TEXTURE)
-        .details("A method is a solid (`wood`), a pair of waves along u and v (`sin one`), a colour, or an image (`face.png plain`). With the target `strength` the waves are a profile: they model the flesh along the skeleton (thesis, section 3.4).")
+        .details("A method is a solid (`wood`), a pair of waves along u and v (`sin one`), a colour, or an image (`face.png plain`). With the target `strength` the waves are a profile: they model the flesh along the skeleton (thesis, section 3.4). `texture new = old` copies a texture; options behind it change the copy (ours).")
         .example("light White, position 4 8 10\ntexture Rings, strength sin one, bounds 0.5 0.5 0.5 1 1 1, scale 6 1 1\nsurface Flesh, diffuse SandyBrown, radius 0.8, blobbiness -4, texture Rings\ncylinder Flesh 1, <-3 0 0>, <3 0 0>"),
 ];

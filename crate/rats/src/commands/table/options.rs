@@ -44,13 +44,16 @@ pub static OPTIONS: &[CommandSpec] = &[
     switch("dither", "dither pictures for viewing", idle("screens show all colours now"), "on").example("dither on"),
     switch("compress", "compress saved pictures", idle(SAVING), "on").example("compress on"),
     switch("stat", "report statistics", idle(REPORTS), "off").example("stat on"),
-    row("map", "make an image of the time spent on each pixel", later())
+    row("map", "show what each pixel costs instead of its colour", run(options::map))
         .takes(&[ON_OFF, number("N", "the gamma of the map").from(0.1, 10.0).optional("1")])
         .default("off")
-        .example("map off"),
+        .details("Black is no work, white the dearest pixel of a sample (a packet of rays in every 16×16 pixels); N above 1 lifts what is dark. Work is counted, not timed, so that a map is the same everywhere: an evaluation of one shape's field at one point counts 1, and so does each ray to the eye or to a light. Rays of a packet share the work that is done for all of them, and a pixel shows the mean of its rays.")
+        .example(flesh!("map on 1.5\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
     switch("penumbra", "soft shadows", later(), "off").example("penumbra off"),
     switch("noview", "do not display the picture", idle(WINDOWS), "off").example("noview on"),
-    switch("nosave", "do not save the picture", idle(SAVING), "off").example("nosave on"),
+    switch("nosave", "do not save the picture", run(options::nosave), "off")
+        .details("The program that runs the dataset then neither traces nor writes the picture, unless it is told a name for it with `-o`. In the page, tools do not find the picture among the files; you can still save it by hand.")
+        .example("nosave on"),
     row("gamma", "gamma correction", run(options::gamma))
         .takes(&[number("value", "gamma").from(0.1, 10.0)])
         .default("1")
@@ -65,7 +68,7 @@ pub static OPTIONS: &[CommandSpec] = &[
     row("filename", "name of the saved picture", run(options::filename))
         .takes(&[parameter("name", Kind::NewFile, "the picture's name")])
         .default("scene")
-        .details("The program saves the picture under this name, and the page offers it.")
+        .details("The program saves the picture under this name, and tools such as `collage` know it by this name and its `format`: `shell.png`.")
         .example("filename shell"),
     row("format", "format of the saved picture", run(options::format))
         .takes(&[word("format", o::FORMATS, "a format, such as `tif`")])
@@ -88,10 +91,14 @@ pub static OPTIONS: &[CommandSpec] = &[
         .takes(&[whole("number", 1, 1_000_000_000, "the number of shapes")])
         .default("300")
         .example("maxmol 300"),
-    row("digger", "what finds the roots", run(options::digger))
-        .takes(&[word("name", o::DIGGER, "the digger's name")])
+    row("digger", "what finds where a ray meets the soft surface", run(options::digger))
+        .takes(&[
+            word("name", o::DIGGER, "the digger's name"),
+            whole("n", 1, Settings::MAX_SPANS, "the number of spans a shape gets from `hermite2`").optional("2"),
+        ])
         .default("hermite")
-        .example("digger hermite"),
+        .details("Only `hermite` is certified, and it is the fastest. The others are there to compare with: they follow rays one by one, and what they miss or misplace is missing or misplaced in the picture.")
+        .example(flesh!("digger hermite2 4\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
     row("contrast", "contrast above which a pixel is sampled further", run(options::contrast))
         .takes(&[colour("r g b", "the contrast")])
         .default(".25 .2 .4")

@@ -6,12 +6,11 @@ use crate::commands::options as o;
 use crate::commands::parameter::{Kind, Parameter, Unit, number, parameter, whole};
 use crate::evaluator::{run, tools};
 
-const WINDOWS: &str = "there are no windows here";
 const FILE: Parameter = parameter("fn", Kind::File, "a picture's name");
 const OTHER: Parameter = parameter("fn2", Kind::File, "another picture's name");
 const WINDOW: Parameter = parameter("w", Kind::Text, "a window").optional("");
-/// What all of them say: the compiler only lists the work.
-const WORK: &str = "The program carries it out on files of the dataset's folder when it runs the dataset; the page lists it among the notes.";
+/// What all of them say: where the pictures are.
+const WORK: &str = "The program works on files of the dataset's folder when it runs the dataset. The page works on the images of the work and on its own picture (`scene.png`, or as `filename` and `format` say), and shows the results below the picture.";
 
 /// The commands.
 #[rustfmt::skip]
@@ -37,7 +36,7 @@ pub static TOOLS: &[CommandSpec] = &[
     row("fli", "make a film of pictures of one size", does(tools::fli))
         .takes(&[FILE.many()])
         .options(o::FLI)
-        .details("RATS wrote Autodesk's FLI; ours is an animated PNG or GIF. The program carries it out; the page lists it among the notes.")
+        .details("RATS wrote Autodesk's FLI; ours writes an animated GIF, and `animate` an animated PNG. The program works on files of the dataset's folder, the page on the images of the work.")
         .example("fli one.png two.png speed 12"),
     row("convert", "convert a picture", does(tools::convert))
         .takes(&[FILE, parameter("fn2", Kind::NewFile, "the new picture's name")])
@@ -60,14 +59,14 @@ pub static TOOLS: &[CommandSpec] = &[
         .options(o::SHOW)
         .details(WORK)
         .example("show color OrangeRed"),
-    row("kill", "close windows", idle(WINDOWS)).takes(&[WINDOW]).example("kill"),
-    row("refresh", "draw windows again", idle(WINDOWS)).takes(&[WINDOW]).example("refresh"),
-    row("tile", "arrange windows", idle(WINDOWS)).takes(&[WINDOW]).example("tile"),
+    row("kill", "close windows", idle("results go when the commands that made them go")).takes(&[WINDOW]).example("kill"),
+    row("refresh", "draw windows again", idle("results are made again when the text or its pictures change")).takes(&[WINDOW]).example("refresh"),
+    row("tile", "arrange windows", idle("results lie side by side anyway")).takes(&[WINDOW]).example("tile"),
     row("colors", "list the colours by name", does(run::colors)).example("colors"),
     row("rats", "small talk", does(run::rats)).example("rats"),
     row("table", "plot numbers", does(tools::table))
         .takes(&[number("v", "a number").many()])
-        .details("A polyline of 2 to 256 points. The program draws it as a picture; the page lists it among the notes.")
+        .details("A polyline of 2 to 256 points. The program draws it as a picture `table.png`, and the page shows it below its own picture.")
         .example("table 1 4 9 16 25"),
     library("shell", "a spiral shell of spheres")
         .example(clay!("eyep 1 3 1.5\nvrp -0.1 0 0\nvup 0 0 1\nshell Clay, 5, rise=0.4")),

@@ -1,0 +1,331 @@
+//! The jobs of a text, one after the other.
+
+use crate::work::{Collage, Count, Film, Split, Work};
+use crate::{Shelf, Target, name};
+use picture::animation::{self, Timing};
+use picture::combine::{self, remains};
+use picture::{Format, Picture, Problem, file, plot, resize, swatches};
+use rats::Tool;
+use rats::tool::{Playback, Shown};
+use std::collections::HashSet;
+
+/// Frames a second, where the text says nothing.
+const SPEED: f64 = 12.0;
+
+/// A job that is done.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Done {
+    /// A sentence that says what was done.
+    pub said: String,
+    /// The files that the job wrote, or that it was to show.
+    pub files: Vec<String>,
+}
+
+/// What a step came to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The job goes on.
+    Working,
+    /// The job is done, or a sentence says why it could not be.
+    Finished(Result<Done, String>),
+}
+
+/// Where the jobs of a text are done, in the order of the text. One that fails does not keep the others
+/// from being tried.
+pub struct Bench<S> {
+    shelf: S,
+    tools: Vec<Tool>,
+    next: usize,
+    /// The rest of the job that was begun.
+    work: Option<Work>,
+    names: Names,
+}
+
+/// How a job goes on.
+pub(crate) enum Turn {
+    Working(Work),
+    Done(Done),
+}
+
+impl<S: Shelf> Bench<S> {
+    /// Puts the jobs on the bench. Nothing is done before the first [`Self::step`].
+    #[must_use]
+    pub fn new(shelf: S, tools: Vec<Tool>) -> Self {
+        Self {
+            shelf,
+            tools,
+            next: 0,
+            work: None,
+            names: Names::default(),
+        }
+    }
+
+    /// Where the pictures lie.
+    #[must_use]
+    pub fn shelf(&self) -> &S {
+        &self.shelf
+    }
+
+    /// Where the pictures lie, to put another there.
+    pub fn shelf_mut(&mut self) -> &mut S {
+        &mut self.shelf
+    }
+
+    /// The job that the next step is of; `None` when all are done.
+    #[must_use]
+    pub fn tool(&self) -> Option<&Tool> {
+        self.tools.get(self.next)
+    }
+
+    /// How many jobs there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.tools.len()
+    }
+
+    /// How many jobs are done.
+    #[must_use]
+    pub fn finished(&self) -> usize {
+        self.next
+    }
+
+    /// Goes on by at most one picture; `None` when all jobs are done.
+    pub fn step(&mut self) -> Option<Step> {
+        let tool = self.tools.get(self.next)?;
+        let turn = match self.work.take() {
+            Some(work) => work.step(&self.shelf),
+            None => begin(tool, &self.shelf, &mut self.names),
+        };
+        let finished = match turn {
+            Ok(Turn::Working(work)) => {
+                self.work = Some(work);
+                return Some(Step::Working);
+            }
+            Ok(Turn::Done(done)) => Ok(done),
+            Err(sentence) => Err(sentence),
+        };
+        self.next += 1;
+        Some(Step::Finished(finished))
+    }
+}
+
+/// Names for results that the text does not name.
+#[derive(Default)]
+struct Names(HashSet<String>);
+
+impl Names {
+    /// `table.png`, and `table-2.png` for the second of a text.
+    fn fresh(&mut self, stem: &str, ending: &str) -> String {
+        let names = (1..).map(|number| match number {
+            1 => format!("{stem}.{ending}"),
+            _ => format!("{stem}-{number}.{ending}"),
+        });
+        for name in names {
+            if self.0.insert(name.clone()) {
+                return name;
+            }
+        }
+        unreachable!("numbers do not end")
+    }
+}
+
+pub(crate) fn say(problem: Problem) -> String {
+    problem.to_string()
+}
+
+/// The bytes of a file, and its format.
+fn bytes(shelf: &dyn Shelf, from: &str) -> Result<(Vec<u8>, Format), String> {
+    let format = name::for_reading(from)?;
+    Ok((shelf.read(from)?, format))
+}
+
+/// A picture of the shelf.
+pub(crate) fn read(shelf: &dyn Shelf, from: &str) -> Result<Picture, String> {
+    let (bytes, format) = bytes(shelf, from)?;
+    file::decode_at_most(&bytes, format, shelf.most_pixels())
+        .map_err(|problem| format!("{from}: {problem}"))
+}
+
+/// Begins a file of the shelf.
+pub(crate) fn create(shelf: &dyn Shelf, to: &str) -> Result<(Box<dyn Target>, Format), String> {
+    let format = name::for_writing(to)?;
+    Ok((shelf.create(to)?, format))
+}
+
+/// Writes a picture, and says so.
+pub(crate) fn write(shelf: &dyn Shelf, to: &str, picture: &Picture) -> Result<String, String> {
+    let (mut target, format) = create(shelf, to)?;
+    let bytes = file::encode(picture, format).map_err(say)?;
+    target
+        .write_all(&bytes)
+        .map_err(|error| format!("cannot write {to}: {error}"))?;
+    target.keep()?;
+    let [width, height] = picture.size();
+    Ok(format!("wrote {to}, {width}×{height}"))
+}
+
+/// Refuses a picture of more pixels than there is room for.
+pub(crate) fn check_room(shelf: &dyn Shelf, size: [u64; 2]) -> Result<(), String> {
+    let most = shelf.most_pixels();
+    let [width, height] = size;
+    if width.saturating_mul(height) > most {
+        let size = size.map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+        return Err(say(Problem::NoRoom { size, most }));
+    }
+    Ok(())
+}
+
+/// [`resize`] within the room that there is, also for what stands between its two passes.
+pub(crate) fn resized(
+    shelf: &dyn Shelf,
+    of: &str,
+    picture: &Picture,
+    size: [u32; 2],
+) -> Result<Picture, String> {
+    let [width, height] = size.map(u64::from);
+    check_room(shelf, [width, height])
+        .and_then(|()| check_room(shelf, [u64::from(picture.width()), height]))
+        .and_then(|()| resize(picture, size[0], size[1]).map_err(say))
+        .map_err(|sentence| format!("{of}: {sentence}"))
+}
+
+fn written(shelf: &dyn Shelf, to: String, picture: &Picture) -> Result<Turn, String> {
+    let said = write(shelf, &to, picture)?;
+    let files = vec![to];
+    Ok(Turn::Done(Done { said, files }))
+}
+
+fn begin(tool: &Tool, shelf: &dyn Shelf, names: &mut Names) -> Result<Turn, String> {
+    match tool {
+        Tool::Animate {
+            files,
+            playback,
+            dither,
+        } => {
+            let order: Vec<usize> = match playback {
+                Playback::Mirror => animation::mirrored(files.len()).collect(),
+                Playback::Once | Playback::Loop => (0..files.len()).collect(),
+            };
+            // Dots are of use only where colours are few.
+            let ending = if *dither { "gif" } else { "png" };
+            let to = names.fresh("animation", ending);
+            let repeats = *playback != Playback::Once;
+            let timing = Timing::new(SPEED, repeats).map_err(say)?;
+            let film = Film::new(files, order, None, timing, *dither, to)?;
+            Ok(Turn::Working(Work::Film(film)))
+        }
+        Tool::Fli { files, speed, size } => {
+            let order = (0..files.len()).collect();
+            let timing = Timing::new(speed.unwrap_or(SPEED), true).map_err(say)?;
+            let to = names.fresh("fli", "gif");
+            let film = Film::new(files, order, *size, timing, false, to)?;
+            Ok(Turn::Working(Work::Film(film)))
+        }
+        Tool::Play { file } => describe(shelf, file),
+        Tool::Split { file, pattern } => {
+            let (bytes, format) = bytes(shelf, file)?;
+            let (stem, ending) = name::split(pattern.as_deref().unwrap_or("frame.png"));
+            let split = Split::new(shelf, file, bytes, format, [stem, ending])?;
+            Ok(Turn::Working(Work::Split(split)))
+        }
+        Tool::Collage { columns, files } => {
+            let columns = columns.map(|columns| columns as usize);
+            let to = names.fresh("collage", "png");
+            let collage = Collage::new(files, columns, to);
+            Ok(Turn::Working(Work::Collage(collage)))
+        }
+        Tool::Convert { from, to } => written(shelf, to.clone(), &read(shelf, from)?),
+        Tool::Resize {
+            file,
+            width,
+            height,
+        } => {
+            let picture = resized(shelf, file, &read(shelf, file)?, [*width, *height])?;
+            let (stem, ending) = name::split(file);
+            written(shelf, format!("{stem}-{width}x{height}{ending}"), &picture)
+        }
+        Tool::Diff { a, b, save } => join(shelf, names, "diff", combine::diff, [a, b], save),
+        Tool::And { a, b, save } => join(shelf, names, "and", combine::and, [a, b], save),
+        Tool::Xor { a, b, save } => join(shelf, names, "xor", combine::xor, [a, b], save),
+        Tool::Show { what } => match what {
+            Shown::File(file) => describe(shelf, file),
+            Shown::Colour { name, rgb } => {
+                let to = names.fresh("colour", "png");
+                let said = write(shelf, &to, &swatches(&[*rgb]).map_err(say)?)?;
+                Ok(Turn::Done(Done {
+                    said: format!("{name}: {said}"),
+                    files: vec![to],
+                }))
+            }
+            Shown::Palette(colours) => {
+                let to = names.fresh("palette", "png");
+                written(shelf, to, &swatches(colours).map_err(say)?)
+            }
+        },
+        Tool::Table { values } => {
+            let to = names.fresh("table", "png");
+            written(shelf, to, &plot(values).map_err(say)?)
+        }
+    }
+}
+
+/// How two pictures become one.
+type Join = fn(&Picture, &Picture) -> Result<Picture, Problem>;
+
+fn join(
+    shelf: &dyn Shelf,
+    names: &mut Names,
+    verb: &str,
+    join: Join,
+    [a, b]: [&str; 2],
+    save: &Option<String>,
+) -> Result<Turn, String> {
+    let joined = join(&read(shelf, a)?, &read(shelf, b)?)
+        .map_err(|problem| format!("{a} and {b}: {problem}"))?;
+    let left = remains(&joined);
+    let [width, height] = joined.size();
+    let all = u64::from(width) * u64::from(height);
+    let mut done = Done {
+        said: format!(
+            "{verb} of {a} and {b}: {} of {all} pixels are not black, the largest value is {}",
+            left.pixels, left.largest
+        ),
+        files: Vec::new(),
+    };
+    if let Some(to) = save {
+        let said = write(shelf, to, &joined)?;
+        done.said = format!("{}; {said}", done.said);
+        done.files.push(to.clone());
+    } else if shelf.is_seen() {
+        let to = names.fresh(verb, "png");
+        write(shelf, &to, &joined)?;
+        done.files.push(to);
+    }
+    Ok(Turn::Done(done))
+}
+
+/// Tells the measures of a picture or an animation that is to be shown.
+fn describe(shelf: &dyn Shelf, file: &str) -> Result<Turn, String> {
+    let (bytes, format) = bytes(shelf, file)?;
+    let size = match format {
+        Format::Png | Format::Gif => {
+            let count = Count::new(shelf, file, bytes, format)?;
+            return Ok(Turn::Working(Work::Count(count)));
+        }
+        _ => read(shelf, file)?.size(),
+    };
+    Ok(Turn::Done(Done {
+        said: measures(file, format, 1, size),
+        files: vec![file.to_owned()],
+    }))
+}
+
+/// `film.gif: GIF, 3 frames of 8×6`.
+pub(crate) fn measures(file: &str, format: Format, frames: usize, size: [u32; 2]) -> String {
+    let number = match frames {
+        1 => String::new(),
+        _ => format!("{frames} frames of "),
+    };
+    let [width, height] = size;
+    format!("{file}: {}, {number}{width}×{height}", format.name())
+}

@@ -1,0 +1,305 @@
+//! The tray: what the commands of the TOOLS group made of the work's pictures, below its own picture.
+//!
+//! The jobs of a text run when it has no errors and they, the images they read or the traced picture changed.
+//! They go on in small steps, a few milliseconds in each frame, and wait for the traced picture only if
+//! they read it. What is on the tray stays there until all of a new run is done.
+
+pub mod desk;
+pub mod item;
+pub mod large;
+pub mod strip;
+
+use crate::asset::Asset;
+use crate::command::Command;
+use crate::picture::Image;
+use crate::platform;
+use crate::session::Session;
+use darkroom::{Bench, Done, Step};
+use desk::Desk;
+use egui::{Context, Ui, Vec2};
+use item::{Content, Film, Item};
+use large::Large;
+use rats::Tool;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Seconds of quiet after an edit before its jobs begin, so that no half-written name is looked for.
+const QUIET: f64 = 0.3;
+/// Seconds of work in one frame of the page, after which what was begun is still finished.
+const SPELL: f64 = 0.008;
+
+/// What the jobs depend on, besides the traced picture.
+#[derive(Clone, Default, PartialEq)]
+struct Order {
+    tools: Vec<Tool>,
+    /// The images that they read.
+    assets: Vec<Asset>,
+    /// The name of the traced picture, and whether it is to be saved.
+    picture: (String, bool),
+    /// Whether they read it.
+    reads_picture: bool,
+}
+
+impl Order {
+    fn of(session: &Session) -> Self {
+        let compiled = session.compiled();
+        let picture = (compiled.output.file(), compiled.output.saved);
+        let mut read: Vec<&str> = compiled.tools.iter().flat_map(Tool::reads).collect();
+        read.sort_unstable();
+        read.dedup();
+        let is_read = |name: &str| read.binary_search(&name).is_ok();
+        let assets = session.assets().iter();
+        Self {
+            assets: assets
+                .filter(|asset| is_read(&asset.name))
+                .cloned()
+                .collect(),
+            reads_picture: picture.1 && is_read(&picture.0),
+            picture,
+            tools: compiled.tools.clone(),
+        }
+    }
+}
+
+/// Which picture it is: the session's generation and the size.
+type Drawn = (u64, [u32; 2]);
+
+/// The jobs of the open text and their results.
+#[derive(Default)]
+pub struct Tray {
+    /// The state of the work that was looked at last: the text's revision and the frame of the film.
+    seen: Option<(u64, u32)>,
+    /// When the jobs of what was seen may begin.
+    due: Option<f64>,
+    order: Order,
+    /// The traced picture that the results are of, if the jobs read it.
+    drawn: Option<Drawn>,
+    run: Option<Run>,
+    items: Vec<Item>,
+    /// Whether only the tray's head is shown.
+    pub folded: bool,
+    large: Large,
+}
+
+/// Jobs that are being done.
+struct Run {
+    bench: Bench<Desk>,
+    items: Vec<Item>,
+    waits: bool,
+}
+
+impl Tray {
+    /// Another work is open.
+    pub fn clear(&mut self) {
+        *self = Self {
+            folded: self.folded,
+            ..Self::default()
+        };
+    }
+
+    /// Whether there is anything to show.
+    #[must_use]
+    pub fn is_used(&self) -> bool {
+        !self.order.tools.is_empty()
+    }
+
+    /// What lies on the tray. Results of the first run appear one by one.
+    #[must_use]
+    pub fn items(&self) -> &[Item] {
+        match &self.run {
+            Some(run) if self.items.is_empty() => &run.items,
+            _ => &self.items,
+        }
+    }
+
+    /// Shows a result large.
+    pub fn open(&mut self, index: usize) {
+        self.large.open = index;
+    }
+
+    /// Shows the result that was opened, in a window of a size. `kept` are the images of the work.
+    pub fn show_large(
+        &mut self,
+        ui: &mut Ui,
+        size: Vec2,
+        kept: &[Asset],
+        now: f64,
+        commands: &mut Vec<Command>,
+    ) {
+        // As `items`, which would borrow all of the tray.
+        let items = match &self.run {
+            Some(run) if self.items.is_empty() => &run.items,
+            _ => &self.items,
+        };
+        self.large.show(ui, size, items, kept, now, commands);
+    }
+
+    /// Where the command stands that made a result, if the text is still the one that it was made of.
+    #[must_use]
+    pub fn place_of(&self, index: usize, session: &Session) -> Option<(usize, Range<usize>)> {
+        let compiled = session.compiled();
+        let item = self.items().get(index)?;
+        let origin = compiled.tool_origins.get(item.job)?;
+        // What lies there while others are made may be of an older text.
+        let present = self.run.is_none() || self.items.is_empty();
+        let same = session.is_compiled() && compiled.tools == self.order.tools;
+        (present && same).then_some((
+            origin.file as usize,
+            origin.start as usize..origin.end as usize,
+        ))
+    }
+
+    /// What goes on, in a few words; empty when all is done.
+    #[must_use]
+    pub fn state(&self) -> String {
+        match &self.run {
+            Some(run) if run.waits => String::from("waiting for the picture"),
+            Some(run) => format!("{} of {}", run.bench.finished(), run.bench.count()),
+            None => String::new(),
+        }
+    }
+
+    /// Seconds until [`Self::tick`] has something to do, if it waits for a time.
+    #[must_use]
+    pub fn wait(&self, now: f64) -> Option<f64> {
+        Some((self.due? - now).max(0.0))
+    }
+
+    /// Goes on with the jobs. `picture` is the traced picture if it is finished, with the session's
+    /// generation.
+    pub fn tick(
+        &mut self,
+        ctx: &Context,
+        session: &Session,
+        picture: Option<(u64, &Image)>,
+        now: f64,
+    ) {
+        if !session.is_compiled() {
+            return;
+        }
+        let seen = (session.revision(), session.film_frame());
+        if self.seen != Some(seen) {
+            // Another work that was just opened is not being written.
+            let quiet = if self.seen.is_some() { QUIET } else { 0.0 };
+            self.seen = Some(seen);
+            self.due = Some(now + quiet);
+        }
+        if self.due.is_some_and(|due| now >= due) {
+            self.due = None;
+            let first = self.run.is_none() && self.items.is_empty();
+            // While a mistake is being mended the results stay, as the picture does.
+            if session.errors() == 0 || first {
+                let order = Order::of(session);
+                if order != self.order {
+                    self.order = order;
+                    self.drawn = None;
+                    self.begin();
+                }
+            }
+        }
+        if self.order.reads_picture
+            && let Some((generation, image)) = picture
+        {
+            let drawn = (generation, image.size);
+            if self.drawn != Some(drawn) {
+                if self.drawn.is_some() || self.run.is_none() {
+                    self.begin();
+                }
+                self.drawn = Some(drawn);
+                if let Some(run) = &mut self.run {
+                    run.bench.shelf_mut().put_picture(image);
+                }
+            }
+        }
+        let Some(run) = &mut self.run else {
+            return;
+        };
+        if !run.go_on(ctx) {
+            self.items = std::mem::take(&mut run.items);
+            self.run = None;
+            ctx.request_repaint();
+        } else if !run.waits {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Begins anew.
+    fn begin(&mut self) {
+        if self.order.tools.is_empty() {
+            self.run = None;
+            self.items.clear();
+            return;
+        }
+        let order = self.order.clone();
+        self.run = Some(Run {
+            bench: Bench::new(Desk::new(order.assets, order.picture), order.tools),
+            items: Vec::new(),
+            waits: false,
+        });
+    }
+}
+
+impl Run {
+    /// Works for a short while. Gives whether there is more to do.
+    fn go_on(&mut self, ctx: &Context) -> bool {
+        let start = platform::stopwatch();
+        self.waits = false;
+        loop {
+            let looked = self.items.iter_mut().any(|item| match &mut item.content {
+                Content::File(film) => film.look_at(ctx),
+                _ => false,
+            });
+            if !looked {
+                let Some(tool) = self.bench.tool() else {
+                    return false;
+                };
+                if self.bench.shelf().waits_for(&tool.reads()) {
+                    self.waits = true;
+                    return true;
+                }
+                let (job, command) = (self.bench.finished(), tool.command());
+                if let Some(Step::Finished(finished)) = self.bench.step() {
+                    self.take(job, command, finished);
+                }
+            }
+            if platform::stopwatch() - start > SPELL {
+                return true;
+            }
+        }
+    }
+
+    /// Puts what a job came to on the tray.
+    fn take(&mut self, job: usize, command: &'static str, finished: Result<Done, String>) {
+        let item = |said: String, content| Item {
+            job,
+            command,
+            said,
+            content,
+        };
+        match finished {
+            Err(sentence) => self.items.push(item(sentence, Content::Refused)),
+            Ok(done) if done.files.is_empty() => {
+                self.items.push(item(done.said, Content::Sentence));
+            }
+            Ok(done) => {
+                for name in done.files {
+                    let Some(bytes) = self.bench.shelf().find(&name) else {
+                        continue;
+                    };
+                    let known = |item: &Item| {
+                        item.film()
+                            .is_some_and(|old| old.name == name && Arc::ptr_eq(&old.bytes, &bytes))
+                    };
+                    // What was made and is shown after that lies on the tray once.
+                    if self.items.iter().any(known) {
+                        continue;
+                    }
+                    let look = None;
+                    let film = Film { name, bytes, look };
+                    self.items
+                        .push(item(done.said.clone(), Content::File(film)));
+                }
+            }
+        }
+    }
+}

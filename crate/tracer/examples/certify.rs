@@ -1,0 +1,100 @@
+//! Holds pictures against the true surface on very many rays, and prints a table.
+//!
+//! `cargo run --release -p tracer --example certify -- [--exact] [RAYS [THREADS [KERNEL KIND SEED]]]`
+//!
+//! With a kernel, a kind and a seed only that scene is looked at. Faults go to standard error. With
+//! `--exact` before them the crossings that picking uses are judged instead of those of pictures.
+#[path = "../tests/common/mod.rs"]
+mod common;
+#[path = "../tests/common/trials.rs"]
+mod trials;
+
+use field::Kernel;
+use glam::DVec3;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use tracer::{Hit, Picture};
+use trials::{KINDS, Kind, Row, Trial, check};
+
+/// Packets of eight rays in each scene; fewer where there are hundreds of primitives.
+fn packets(kind: Kind) -> usize {
+    if kind == Kind::Cluster { 3 } else { 8 }
+}
+
+fn as_pictures(trial: &Trial, picture: &Picture) -> Vec<Option<Hit>> {
+    picture.cast(&trial.rays)
+}
+
+fn as_picking(trial: &Trial, picture: &Picture) -> Vec<Option<Hit>> {
+    let first =
+        |&(origin, direction): &(DVec3, DVec3)| picture.hits(origin, direction).first().copied();
+    trial.rays.iter().map(first).collect()
+}
+
+fn main() {
+    let mut args: Vec<String> = std::env::args().skip(1).collect();
+    let exact = args.first().is_some_and(|a| a == "--exact");
+    if exact {
+        args.remove(0);
+    }
+    let cast = if exact { as_picking } else { as_pictures };
+    let number =
+        |i: usize, default: usize| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(default);
+    let (rays, threads) = (number(0, 1_000_000), number(1, 1));
+    if let (Some(kernel), Some(kind)) = (args.get(2), args.get(3)) {
+        let kernel = Kernel::named(kernel).expect("a kernel");
+        let named = |k: &&Kind| format!("{k:?}").eq_ignore_ascii_case(kind);
+        let kind = *KINDS.iter().find(named).expect("a kind");
+        let mut told = String::new();
+        let seed = number(4, 0) as u64;
+        let row = check(kernel, kind, seed, packets(kind), &cast, &mut told);
+        println!("{told}{row:?}");
+        return;
+    }
+    let cells: Vec<(Kernel, Kind)> = Kernel::ALL
+        .into_iter()
+        .flat_map(|kernel| KINDS.map(|kind| (kernel, kind)))
+        .collect();
+    let in_each: usize = KINDS.iter().map(|&k| 8 * packets(k)).sum::<usize>() * Kernel::ALL.len();
+    let scenes = rays.div_ceil(in_each);
+    let rows = Mutex::new(vec![Row::default(); cells.len()]);
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let job = next.fetch_add(1, Ordering::Relaxed);
+                    let (cell, seed) = (job % cells.len(), job / cells.len());
+                    if seed >= scenes {
+                        break;
+                    }
+                    let (kernel, kind) = cells[cell];
+                    let mut told = String::new();
+                    let row = check(kernel, kind, seed as u64, packets(kind), &cast, &mut told);
+                    eprint!("{told}");
+                    if let Ok(mut rows) = rows.lock() {
+                        rows[cell].add(&row);
+                    }
+                }
+            });
+        }
+    });
+    println!(
+        "| kernel | primitives | rays | hits | missed | missed grazing | invented | worst distance ÷ tolerance | undecided |"
+    );
+    println!("|---|---|--:|--:|--:|--:|--:|--:|--:|");
+    let mut total = Row::default();
+    let line = |kernel: &str, kind: &str, r: &Row| {
+        println!(
+            "| {kernel} | {kind} | {} | {} | {} | {} | {} | {:.3} | {} |",
+            r.rays, r.hits, r.missed, r.grazed, r.invented, r.worst, r.uncertain
+        );
+    };
+    if let Ok(rows) = rows.lock() {
+        for ((kernel, kind), row) in cells.iter().zip(rows.iter()) {
+            line(kernel.name(), &format!("{kind:?}").to_lowercase(), row);
+            total.add(row);
+        }
+    }
+    line("all", "all", &total);
+}

@@ -1,0 +1,65 @@
+//! The certified digger: slabs of Hermite spans with a bounded error, for whole packets.
+//!
+//! Pictures do not call it here: there the packets of a block share the slabs of one beam. Here
+//! each packet has its own, with the same result within the same tolerance.
+use super::{Crossings, Digger, Packet};
+use crate::beam::Beam;
+use crate::ray::Ray;
+use crate::soft::{PACKET, Scratch, Soft};
+use crate::walk::{Bundle, Quest};
+
+pub(crate) struct Hermite;
+
+impl Digger for Hermite {
+    fn dig(
+        &self,
+        soft: &Soft,
+        packet: &Packet<'_>,
+        quest: Quest,
+        scratch: &mut Scratch,
+    ) -> Crossings {
+        let alive = |lane: &usize| packet.alive >> lane & 1 != 0;
+        let rays: Vec<Ray> = (0..PACKET).filter(alive).map(|i| packet.rays[i]).collect();
+        let furthest = (0..PACKET).filter(alive).map(|i| packet.limits[i]);
+        let furthest = furthest.fold(0.0, f64::max);
+        let slabs = Beam::around(&rays).and_then(|beam| soft.slabs(beam, Vec::new, furthest));
+        let mut crossings = [None; PACKET];
+        let Some((mut slabs, base)) = slabs else {
+            return crossings;
+        };
+        // Lanes not in use repeat the first ray.
+        let based: [Ray; PACKET] = core::array::from_fn(|i| {
+            let ray = if alive(&i) { &packet.rays[i] } else { &rays[0] };
+            Ray {
+                origin: ray.at(base),
+                direction: ray.direction,
+            }
+        });
+        let limits = packet.limits.map(|limit| limit - base);
+        let bundle = Bundle {
+            rays: &based,
+            limits: &limits,
+            alive: packet.alive,
+            number: 0,
+        };
+        let found = soft.walk(&mut slabs, bundle, quest, scratch);
+        if found.is_empty() {
+            return crossings;
+        }
+        match quest {
+            // Onto the surface itself, as in pictures.
+            Quest::First => {
+                let flesh = soft.flesh(&slabs, &based, &found, scratch);
+                for hit in &found {
+                    crossings[hit.lane] = Some(base + flesh.t[hit.lane]);
+                }
+            }
+            _ => {
+                for hit in &found {
+                    crossings[hit.lane] = Some(base + hit.t);
+                }
+            }
+        }
+        crossings
+    }
+}

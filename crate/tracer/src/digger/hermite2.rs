@@ -1,0 +1,122 @@
+//! The thesis's digger (section 4.2): a fixed number of Hermite spans a primitive, two as published.
+//!
+//! The interval of the ray within a primitive's bounding volume is cut into spans of equal length.
+//! At both ends of the interval value and slope are taken to be 0, at the nodes between they are the
+//! field's own. The spans' ends cut the ray into slabs, on each of which the sum of all spans minus T is
+//! one cubic; its roots are the hits.
+use super::{Side, Sight, Single};
+use crate::roots::roots;
+use crate::spans::{Node, Span};
+use crate::walk::Quest;
+use field::THRESHOLD;
+use scene::Settings;
+
+/// Most spans added up on a ray, or 64 times its primitives; what lies behind the place where that many
+/// have been is not seen.
+const MOST: usize = 1 << 18;
+
+/// How many spans each primitive gets.
+pub(super) struct Spans(u32);
+
+impl Spans {
+    pub fn new(spans: u32) -> Self {
+        Self(spans.clamp(1, Settings::MAX_SPANS))
+    }
+}
+
+/// A cubic on a part of the ray.
+struct Piece {
+    from: f64,
+    to: f64,
+    /// By powers of t − from.
+    powers: [f64; 4],
+}
+
+impl Piece {
+    fn new(from: f64, to: f64, nodes: [Node<f64>; 2]) -> Self {
+        let length = to - from;
+        let [left, right] = nodes;
+        let Span([a, b, c, d]) = Span::hermite(left, right, length);
+        let x = 1.0 / length;
+        Self {
+            from,
+            to,
+            powers: [
+                a,
+                3.0 * (b - a) * x,
+                3.0 * (a - 2.0 * b + c) * (x * x),
+                (d - a + 3.0 * (b - c)) * (x * x * x),
+            ],
+        }
+    }
+
+    /// The powers of t − `start` of the same cubic.
+    fn shifted(&self, start: f64) -> [f64; 4] {
+        let s = start - self.from;
+        let [a, b, c, d] = self.powers;
+        [
+            a + s * (b + s * (c + s * d)),
+            b + s * (2.0 * c + s * 3.0 * d),
+            c + 3.0 * s * d,
+            d,
+        ]
+    }
+}
+
+impl Single for Spans {
+    fn dig(&self, sight: &mut Sight<'_>, quest: Quest) -> Option<f64> {
+        let mut pieces = Vec::new();
+        let mut cuts = sight.range.to_vec();
+        for term in 0..sight.terms.len() {
+            let [from, to] = sight.terms[term].interval;
+            let place = |i: u32| from + (to - from) * (f64::from(i) / f64::from(self.0));
+            let mut left = Node::zero();
+            for i in 1..=self.0 {
+                let mut right = Node::zero();
+                if i < self.0 {
+                    (right.value, right.slope) = sight.one(term, place(i));
+                }
+                pieces.push(Piece::new(place(i - 1), place(i), [left, right]));
+                left = right;
+            }
+            cuts.extend((0..=self.0).map(place));
+        }
+        cuts.retain(|t| *t >= sight.range[0] && *t <= sight.range[1]);
+        cuts.sort_by(f64::total_cmp);
+        pieces.sort_by(|a, b| a.from.total_cmp(&b.from));
+
+        let mut side = Side::unknown(quest);
+        let (mut active, mut next) = (Vec::new(), 0);
+        let mut left = MOST.max(64 * sight.terms.len());
+        for slab in cuts.windows(2) {
+            let (from, to) = (slab[0], slab[1]);
+            if from == to {
+                continue;
+            }
+            while next < pieces.len() && pieces[next].from <= from {
+                active.push(next);
+                next += 1;
+            }
+            active.retain(|&i: &usize| pieces[i].to > from);
+            left = left.checked_sub(active.len())?;
+            let mut sum = [-THRESHOLD, 0.0, 0.0, 0.0];
+            for &i in &active {
+                for (total, part) in sum.iter_mut().zip(pieces[i].shifted(from)) {
+                    *total += part;
+                }
+            }
+            let length = to - from;
+            let value = |x: f64| sum.iter().rev().fold(0.0, |value, c| value * x + c);
+            let found = roots(&sum, 0.0, length);
+            let found = found.as_slice();
+            let places = [0.0].into_iter().chain(found.iter().copied());
+            for (i, root) in places.enumerate() {
+                let beyond = found.get(i).copied().unwrap_or(length);
+                if side.arrive(value(0.5 * (root + beyond)) > 0.0) {
+                    return Some(from + root);
+                }
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,115 @@
+//! Marching: equal steps along a ray until the field changes its sign (the "hill climbing" and "ray
+//! marching" of the literature, with a step that suits the kernels). What refines the root is the
+//! caller's choice.
+use super::{Side, Sight};
+use crate::walk::Quest;
+
+/// Steps in the length on which the sharpest kernel changes. A surface may be missed where the ray is
+/// inside it for less than a step.
+const STEPS: f64 = 8.0;
+/// Most steps on a ray: so many, but fewer where it meets very many primitives, so that it looks at
+/// no more than about [`MOST_LOOKS`] of them, or 64 times at each.
+const MOST: usize = 4096;
+/// See [`MOST`].
+const MOST_LOOKS: usize = 1 << 18;
+/// How exactly roots are refined.
+pub(super) const TOLERANCE: f64 = 1e-9;
+/// Most evaluations while refining a root.
+pub(super) const MOST_REFINING: usize = 100;
+
+/// The length of a step.
+pub(super) fn step(sight: &Sight<'_>) -> f64 {
+    let [from, to] = sight.range;
+    let most = (MOST_LOOKS / sight.terms.len().max(1)).clamp(64, MOST);
+    (sight.finest() / STEPS).max((to - from) / most as f64)
+}
+
+/// The ends of an interval and the values there, which have different signs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bracket {
+    pub ends: [f64; 2],
+    pub values: [f64; 2],
+}
+
+/// Marches to the first change of sign that the quest asks for, and has it refined.
+pub(super) fn march(
+    sight: &mut Sight<'_>,
+    quest: Quest,
+    refine: impl Fn(&mut dyn FnMut(f64) -> f64, Bracket) -> f64,
+) -> Option<f64> {
+    let [from, to] = sight.range;
+    let step = step(sight);
+    let mut side = Side::unknown(quest);
+    let mut at = from;
+    let mut value = sight.excess(at).0;
+    side.arrive(value > 0.0);
+    while at < to {
+        let next = (at + step).min(to);
+        let there = sight.excess(next).0;
+        if side.arrive(there > 0.0) {
+            let bracket = Bracket {
+                ends: [at, next],
+                values: [value, there],
+            };
+            return Some(refine(&mut |t| sight.excess(t).0, bracket));
+        }
+        (at, value) = (next, there);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{brent, regula_falsi, ridder};
+    use super::*;
+
+    type Refine = fn(&mut dyn FnMut(f64) -> f64, Bracket) -> f64;
+    type Function = fn(f64) -> f64;
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn roots_in_brackets_are_refined_whatever_the_function() {
+        // Functions, what is between 0 and 1 the place where they change sign, and how near a method
+        // that stops when it hardly moves can be asked to come.
+        let functions: [(Function, f64, f64); 8] = [
+            (|t| t - 0.3, 0.3, 1e-8),
+            (|t| 0.3 - t, 0.3, 1e-8),
+            (|t| t * t * t - 0.125, 0.5, 1e-8),
+            // The chord's root is the middle, the function's is not.
+            (|t| if t < 0.8 { t - 0.8 } else { 4.0 * t - 3.2 }, 0.8, 1e-8),
+            (|t| libm::exp(20.0 * t) - libm::exp(14.0), 0.7, 1e-7),
+            (|t| libm::tanh(1e3 * (t - 0.9)), 0.9, 1e-7),
+            // Flat at its root, where it says little.
+            (|t| (t - 0.4) * (t - 0.4) * (t - 0.4), 0.4, 1e-3),
+            // Infinite at one end, as at a pole.
+            (
+                |t| if t >= 1.0 { f64::INFINITY } else { t - 0.6 },
+                0.6,
+                1e-8,
+            ),
+        ];
+        let methods: [(&str, Refine); 3] = [
+            ("brent", brent::refine),
+            ("ridder", ridder::refine),
+            ("RF", regula_falsi::refine),
+        ];
+        for (name, refine) in methods {
+            for (i, (f, root, near)) in functions.into_iter().enumerate() {
+                let mut evaluations = 0;
+                let bracket = Bracket {
+                    ends: [0.0, 1.0],
+                    values: [f(0.0), f(1.0)],
+                };
+                let found = refine(
+                    &mut |t| {
+                        evaluations += 1;
+                        f(t)
+                    },
+                    bracket,
+                );
+                assert!((found - root).abs() <= near, "{name} {i}: {found}");
+                assert!(evaluations <= MOST_REFINING, "{name} {i}: {evaluations}");
+            }
+        }
+    }
+}

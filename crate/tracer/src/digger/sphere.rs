@@ -1,0 +1,55 @@
+//! Sphere tracing (Hart): from each place a step of |F−T|/L, with L a Lipschitz constant of F, cannot
+//! reach the surface, and such steps close in on it from one side.
+//!
+//! L holds for the stretch ahead that the step stays within, from bounds per primitive; the stretch
+//! grows where steps would be longer and shrinks with them.
+use super::{Side, Sight, Single};
+use crate::walk::Quest;
+
+/// The shortest step: a hit is this near to the surface, and nothing longer is missed.
+const SHORTEST: f64 = 1e-6;
+/// After so many looks at a primitive, or 64 times the ray's primitives, a ray that creeps along the
+/// surface is taken to have met it.
+const MOST: usize = 1 << 16;
+
+pub(super) struct Sphere;
+
+impl Single for Sphere {
+    fn dig(&self, sight: &mut Sight<'_>, quest: Quest) -> Option<f64> {
+        let [mut at, to] = sight.range;
+        let mut ahead = (to - at) / 16.0;
+        let mut side = Side::unknown(quest);
+        let mut list: Vec<u32> = Vec::new();
+        let (mut looks, most) = (0, MOST.max(64 * sight.terms.len()));
+        while looks < most {
+            if at >= to {
+                return None;
+            }
+            let end = (at + ahead).min(to);
+            list.clear();
+            let terms = sight.terms.iter().enumerate();
+            list.extend(
+                terms
+                    .filter(|(_, term)| term.meets(at, end))
+                    .map(|(i, _)| i as u32),
+            );
+            looks += 1 + list.len();
+            let value = sight.excess_of(&list, at).0;
+            if side.arrive(value > 0.0) {
+                return Some(at);
+            }
+            let (rate, _) = sight.lipschitz(&list, [at, end], false);
+            let safe = value.abs() / rate;
+            if safe >= end - at {
+                at = end;
+                ahead *= 2.0;
+            } else {
+                // Not a number where both are infinite, near a pole.
+                let step = safe.max(SHORTEST);
+                at += step;
+                ahead = 2.0 * step;
+            }
+        }
+        Some(at)
+    }
+}

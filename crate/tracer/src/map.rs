@@ -1,0 +1,81 @@
+//! The map of costs (`map on`): where a picture's work goes, pixel by pixel.
+//!
+//! The unit of cost is one evaluation of one primitive's field at one point; each ray, to the eye or to
+//! a light, counts as one more. Rays of a packet share the evaluations that are made for all of
+//! them at once. A pixel shows the mean of its rays. Work is counted and not timed, so that a
+//! map is the same wherever it is made.
+//!
+//! White stands for the dearest pixel. As tiles are traced on their own, each finds out what that is
+//! from the same sample, one packet in every 16×16 pixels; what is dearer still is white as well.
+use crate::area::Area;
+use crate::packet::Workspace;
+use crate::picture::{PACKET_SIZE, Picture, Stats};
+use crate::sample::Sample;
+use crate::soft::PACKET;
+use glam::Vec3;
+use std::sync::OnceLock;
+
+/// Packets are sampled this far apart, in pixels.
+const APART: u32 = 16;
+
+/// The costs of a packet's rays: of the rays themselves and those they sent to lights, and of
+/// evaluations, some of which were made for one ray alone.
+pub(crate) fn costs(cast: [u32; PACKET], evaluations: u64, alone: &[u64; PACKET]) -> [f32; PACKET] {
+    let shared = evaluations - alone.iter().sum::<u64>();
+    core::array::from_fn(|i| {
+        let own = u64::from(cast[i]) + alone[i];
+        own as f32 + shared as f32 / PACKET as f32
+    })
+}
+
+/// How costs are shown.
+#[derive(Debug)]
+pub(crate) struct Map {
+    power: f32,
+    dearest: OnceLock<f32>,
+}
+
+impl Map {
+    /// Costs as shares of the largest, raised to 1/gamma.
+    pub fn new(gamma: f32) -> Self {
+        Self {
+            power: if gamma > 0.0 { 1.0 / gamma } else { 1.0 },
+            dearest: OnceLock::new(),
+        }
+    }
+
+    /// What white stands for. `None` if it was not known yet and `stop` gave up.
+    pub fn dearest(&self, picture: &Picture, stop: &dyn Fn() -> bool) -> Option<f32> {
+        if let Some(dearest) = self.dearest.get() {
+            return Some(*dearest);
+        }
+        let mut dearest = 1.0_f32;
+        let mut work = Workspace::default();
+        let [width, height] = picture.size;
+        for top in (0..height).step_by(APART as usize) {
+            for left in (0..width).step_by(APART as usize) {
+                let area = Area {
+                    left,
+                    top,
+                    right: (left + PACKET_SIZE[0]).min(width),
+                    bottom: (top + PACKET_SIZE[1]).min(height),
+                };
+                let stats = &mut Stats::default();
+                let samples = picture.sample(area, 1, stop, &mut work, stats)?;
+                let costs = area.pixels().map(|(x, y)| samples.get(x, y).cost);
+                dearest = costs.fold(dearest, f32::max);
+            }
+        }
+        Some(*self.dearest.get_or_init(|| dearest))
+    }
+
+    /// The grey of a sample.
+    pub fn grey(&self, sample: &Sample, dearest: f32) -> Vec3 {
+        let share = (sample.cost / dearest).clamp(0.0, 1.0);
+        Vec3::splat(if self.power == 1.0 {
+            share
+        } else {
+            libm::powf(share, self.power)
+        })
+    }
+}

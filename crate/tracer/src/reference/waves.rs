@@ -1,0 +1,164 @@
+//! Profiles along a ray: how large they and their derivatives can be, and where they are not smooth.
+//!
+//! The factor is smooth but for the places where a wave has a kink or a jump and where a parameter is
+//! cut to [0, 1]. Those lie on planes: across a segment or a triangle, or through the axis of an arc. So
+//! on a ray they are single places, at which the reference divides it.
+use field::{Primitive, Skeleton, Wave};
+use glam::DVec3;
+
+/// What is known of a primitive's profile.
+#[derive(Clone, Debug)]
+pub struct Factor {
+    /// Upper bounds of the factor's magnitude and of its first and second derivatives by length.
+    pub largest: [f64; 3],
+    /// Whether it may be negative.
+    pub turns: bool,
+    /// Where it is not smooth.
+    pub kinks: Vec<Kink>,
+}
+
+/// A plane on which a factor is not smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kink {
+    /// A point of the plane.
+    pub point: DVec3,
+    /// Its unit normal.
+    pub normal: DVec3,
+    /// Whether the factor itself may jump there, not only its slope.
+    pub jumps: bool,
+}
+
+impl Kink {
+    fn new(point: DVec3, normal: DVec3, jumps: bool) -> Self {
+        Self {
+            point,
+            normal: normal.normalize_or_zero(),
+            jumps,
+        }
+    }
+}
+
+/// Kinks of one wave along a bone; waves finer than that have no reference.
+const MOST_KINKS: f64 = 4096.0;
+
+impl Factor {
+    /// Of a primitive.
+    pub fn of(primitive: &Primitive) -> Self {
+        let Some(profile) = primitive.profile else {
+            return Self {
+                largest: [1.0, 0.0, 0.0],
+                turns: false,
+                kinks: Vec::new(),
+            };
+        };
+        let ends = profile.bounds.map(|b| b * profile.times);
+        let size = ends[0].abs().max(ends[1].abs());
+        let rise = (ends[1] - ends[0]).abs();
+        let mut kinks = Vec::new();
+        // First and second derivative of the waves' product.
+        let (mut first, mut second) = (0.0, 0.0);
+        let mut restricted = [0.0; 2];
+        // Of a wave of a parameter that changes by `rate` per unit of length.
+        let steep = |i: usize, rate: f64| {
+            let (a, b) = match profile.waves[i] {
+                Wave::One | Wave::Step => (0.0, 0.0),
+                Wave::X | Wave::Saw => (1.0, 0.0),
+                Wave::Sin | Wave::Cos => (0.5, 0.5),
+                Wave::Sin2 | Wave::Cos2 => (1.0, 2.0),
+                Wave::Hat => (2.0, 0.0),
+            };
+            let p = (profile.scale[i] * rate).abs();
+            (a * p, b * p * p)
+        };
+        let jumps = |i: usize| matches!(profile.waves[i], Wave::Saw | Wave::Step);
+        match &primitive.skeleton {
+            Skeleton::Segment { base, apex } => {
+                let axis = *apex - *base;
+                (first, second) = steep(0, 1.0 / axis.length());
+                for u in breaks(profile.waves[0], profile.scale[0]) {
+                    kinks.push(Kink::new(*base + axis * u, axis, jumps(0)));
+                }
+            }
+            Skeleton::Triangle { corners: [a, b, c] } => {
+                let (e1, e2) = (*b - *a, *c - *a);
+                let normal = e1.cross(e2);
+                let area2 = normal.length();
+                // Gradients of u, of v and of what is left.
+                let by_u = e2.cross(normal) / (area2 * area2);
+                let by_v = normal.cross(e1) / (area2 * area2);
+                let rate = by_u.length().max(by_v.length()).max((by_u + by_v).length());
+                let (u1, u2) = steep(0, rate);
+                let (v1, v2) = steep(1, rate);
+                first = u1 + v1;
+                second = u2 + v2 + 2.0 * u1 * v1;
+                for (i, gradient, edge) in [(0, by_u, e1), (1, by_v, e2)] {
+                    for u in breaks(profile.waves[i], profile.scale[i]) {
+                        kinks.push(Kink::new(*a + edge * u, gradient, jumps(i)));
+                    }
+                }
+                if profile.restriction != 0.0 {
+                    kinks.push(Kink::new(*b, by_u + by_v, false));
+                    let r = 27.0 * profile.restriction.abs();
+                    restricted = [0.75 * r * rate, 6.0 * r * rate * rate];
+                }
+            }
+            Skeleton::Arc {
+                center,
+                u,
+                v,
+                radius,
+                angle,
+            } => {
+                let x = u.try_normalize().unwrap_or(DVec3::X);
+                let y = (*v - x * x.dot(*v))
+                    .try_normalize()
+                    .unwrap_or_else(|| x.any_orthonormal_vector());
+                // With t = ρ/radius the waves count as g = (2t/(1+t²))², and the angle changes by 1/ρ:
+                // g/t ≤ 1.3, g/t² ≤ 4, |g′| ≤ 1.8, |g′|/t ≤ 8, |g″| ≤ 8.
+                let (w1, w2) = steep(0, 1.0 / angle.max(f64::MIN_POSITIVE));
+                let i = 1.0 / radius;
+                first = (1.3 * w1 + 1.8) * i;
+                second = (4.0 * (w2 + w1) + 16.0 * w1 + 8.0) * i * i;
+                let mut at = |azimuth: f64, jumps: bool| {
+                    let (sine, cosine) = libm::sincos(azimuth);
+                    kinks.push(Kink::new(*center, y * cosine - x * sine, jumps));
+                };
+                // In the middle of the gap the parameter jumps from end to end.
+                at(0.5 * angle + core::f64::consts::PI, true);
+                for u in breaks(profile.waves[0], profile.scale[0]) {
+                    at(u * angle, jumps(0));
+                }
+            }
+            // These have no parameters.
+            Skeleton::Point { .. }
+            | Skeleton::Polygon { .. }
+            | Skeleton::Curve { .. }
+            | Skeleton::Plane { .. } => (),
+        }
+        let kept = profile.restriction.abs().max(1.0);
+        Self {
+            largest: [
+                size * kept,
+                rise * first * kept + size * restricted[0],
+                rise * second * kept + 2.0 * rise * first * restricted[0] + size * restricted[1],
+            ],
+            turns: ends[0] < 0.0 || ends[1] < 0.0 || profile.restriction > 1.0,
+            kinks,
+        }
+    }
+}
+
+/// The parameters at which a wave is not smooth, the ends of [0, 1] among them.
+fn breaks(wave: Wave, scale: f64) -> Vec<f64> {
+    let mut found = vec![0.0, 1.0];
+    let step = match wave {
+        Wave::X => 1.0,
+        Wave::Saw | Wave::Hat | Wave::Step => 0.5,
+        Wave::One | Wave::Sin | Wave::Cos | Wave::Sin2 | Wave::Cos2 => return found,
+    };
+    let count = (scale.abs() / step).min(MOST_KINKS);
+    for k in 1..=count as u32 {
+        found.push(f64::from(k) * step / scale.abs());
+    }
+    found
+}
