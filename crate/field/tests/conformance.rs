@@ -164,7 +164,7 @@ tests! {
                 }
             }
         }
-        assert_eq!(hash, 0x81B1_BE67_ED41_2DC7, "{hash:#018x}");
+        assert_eq!(hash, 0x6A3B_CD33_0EBE_B694, "{hash:#018x}");
     }
 
     /// Against a five-point difference of the value.
