@@ -6,8 +6,8 @@
 //!
 //! # How a pixel comes about
 //!
-//! [`picture`] cuts a tile into blocks of pixels that share a beam, and blocks into packets of eight
-//! rays. `packet` finds what the rays of a packet hit, first among the hard elements (`solids`,
+//! [`picture`] cuts a tile into squares of pixels that share a beam, which `beams` divides down to packets
+//! of eight rays. Packets that the bounds of the beam show to be empty send no rays. `packet` finds what the rays of a packet hit, first among the hard elements (`solids`,
 //! [`hard`]), then on the soft surface (`soft`), asks for shadows and mixes colours (`shade`).
 //! `refine` sends more rays where neighbouring pixels differ.
 //!

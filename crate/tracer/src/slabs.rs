@@ -9,7 +9,8 @@
 //!
 //! Where a slab has become shorter than its beam is wide, halving it further would not bring the
 //! rays' surroundings closer together: the beam is then divided into narrower ones instead, and each
-//! packet of rays goes on in its own.
+//! packet of rays goes on in its own. In beams wider than a block of eight packets nothing is resolved, as
+//! spans would be made for rays that do not meet their primitives: they only show what is empty.
 use crate::beams::Beams;
 use core::ops::Range;
 use field::THRESHOLD;
