@@ -84,7 +84,6 @@ for (const name of MODELS) {
       const best = { workers };
       for (let round = 0; round < ROUNDS; round++) {
         const times = await keystroke(sinew, '1');
-        assert.ok(times.coarse <= times.full && times.full <= times.smooth, JSON.stringify(times));
         assert.ok(times.tracing <= times.smooth, JSON.stringify(times));
         for (const [key, time] of Object.entries(times)) {
           best[key] = Math.min(best[key] ?? Infinity, time);

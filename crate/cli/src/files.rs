@@ -49,28 +49,35 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
         let places: Vec<_> = wanted
             .map(|name| rats::places(&reader.name, &name))
             .collect();
-        for place in places.into_iter().flatten() {
-            let known = project.files.iter().any(|file| file.name == place);
-            if !known && let Some(text) = inside(&folder, &place).and_then(|path| read(&path).ok())
-            {
-                project.files.push(File { name: place, text });
+        for places in places {
+            // The first place where there is one, as the language looks for it.
+            for place in places {
+                if project.files.iter().any(|file| file.name == place) {
+                    break;
+                }
+                if let Some(text) = inside(&folder, &place).and_then(|path| read(&path).ok()) {
+                    project.files.push(File { name: place, text });
+                    break;
+                }
             }
         }
         next += 1;
     }
     let mut assets: Vec<Asset> = Vec::new();
     let places = |file: &File, name: &str| rats::places(&file.name, name);
-    for wanted in project.files.iter().flat_map(|file| {
+    for places in project.files.iter().flat_map(|file| {
         let names = rats::asset_names(&file.text).into_iter();
-        names.flat_map(move |name| places(file, &name))
+        names.map(move |name| places(file, &name))
     }) {
-        let known = assets.iter().any(|asset| asset.name == wanted);
-        if !known && let Some(bytes) = inside(&folder, &wanted).and_then(|path| bytes(&path)) {
-            let bytes = bytes.into();
-            assets.push(Asset {
-                name: wanted,
-                bytes,
-            });
+        for name in places {
+            if assets.iter().any(|asset| asset.name == name) {
+                break;
+            }
+            if let Some(bytes) = inside(&folder, &name).and_then(|path| bytes(&path)) {
+                let bytes = bytes.into();
+                assets.push(Asset { name, bytes });
+                break;
+            }
         }
     }
     let start = std::time::Instant::now();

@@ -30,7 +30,7 @@ enum Fineness {
     Smooth,
 }
 
-/// `sinew time FILE | --balls N [--pass P] [--size W H] [--soft on|off] [--rays N] [--no-far]`.
+/// `sinew time FILE | --balls N [--pass P] [--size W H] [--soft on|off] [--rays N]`.
 #[derive(Args)]
 pub struct Time {
     /// The dataset
@@ -52,19 +52,11 @@ pub struct Time {
     /// eye (with `--pass smooth`)
     #[arg(long, value_name = "N")]
     rays: Option<u64>,
-    /// Sum far fields element by element instead of by groups
-    #[arg(long)]
-    no_far: bool,
 }
 
 impl Time {
     /// Traces the picture and prints what it cost; false if the dataset has errors.
     pub fn run(&self) -> Outcome {
-        if self.no_far {
-            return Err(String::from(
-                "--no-far: this build has no hierarchy of far fields that could be left out",
-            ));
-        }
         let (mut scene, clean) = match (&self.file, self.balls) {
             (Some(file), _) => {
                 let loaded = files::load(file)?;

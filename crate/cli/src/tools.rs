@@ -2,14 +2,14 @@
 //!
 //! A dataset may come from a stranger, so a job reads and writes nothing outside the folder of the
 //! dataset, not even through a link that lies in it, and never writes over a dataset. It does write
-//! over pictures of the name that the text gives, as a second run of the same text must.
+//! over pictures of the name that the text gives, or that a result without a name gets, as a second run
+//! of the same text must.
 
 use crate::files;
 use crate::whole::Whole;
 use darkroom::{Bench, Shelf, Step, Target, name};
-use picture::{Picture, file};
+use picture::Picture;
 use rats::Tool;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Largest file of a picture that is read, bytes.
@@ -33,15 +33,7 @@ pub fn carry_out(tools: &[Tool], folder: &Path) -> Vec<Result<String, String>> {
 /// # Errors
 /// If the name leads out of the folder, is that of a dataset or of no known format, or if writing fails.
 pub fn save(folder: &Path, name: &str, picture: &Picture) -> Result<String, String> {
-    let format = name::for_writing(name)?;
-    let mut target = Folder(folder.to_path_buf()).create(name)?;
-    let bytes = file::encode(picture, format).map_err(|problem| problem.to_string())?;
-    target
-        .write_all(&bytes)
-        .map_err(|error| format!("cannot write {name}: {error}"))?;
-    target.keep()?;
-    let [width, height] = picture.size();
-    Ok(format!("wrote {name}, {width}×{height}"))
+    darkroom::write(&Folder(folder.to_path_buf()), name, picture)
 }
 
 /// The folder of a dataset.

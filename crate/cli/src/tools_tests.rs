@@ -1,6 +1,7 @@
 //! Jobs on pictures in a folder of their own.
 
 use super::*;
+use picture::file;
 use picture::{Format, combine};
 use rats::tool::{Playback, Shown};
 
@@ -257,4 +258,26 @@ fn links_do_not_lead_out() {
     folder.refuses(convert("a.png", "in.png"), "leads out");
     folder.refuses(convert("a.png", "sub/b.png"), "leads out");
     assert!(!other.0.join("b.png").exists());
+    // Nor where a file is written before it has its name.
+    link("c.png.part", &other.0.join("secret.png"));
+    let before = std::fs::read(other.0.join("secret.png")).expect("bytes");
+    folder.does(convert("a.png", "c.png"));
+    let after = std::fs::read(other.0.join("secret.png")).expect("bytes");
+    assert_eq!(before, after);
+}
+
+#[test]
+fn results_without_a_name_take_none_that_the_text_uses() {
+    let folder = Folder::new("names");
+    folder.put("a.png", 9, [2, 2]);
+    let tools = [
+        convert("a.png", "collage.png"),
+        Tool::Collage {
+            columns: None,
+            files: vec![String::from("a.png")],
+        },
+    ];
+    let said = carry_out(&tools, &folder.0);
+    assert!(said.iter().all(Result::is_ok), "{said:?}");
+    assert!(folder.0.join("collage-2.png").exists());
 }

@@ -22,7 +22,10 @@ impl Whole {
         let mut name = path.file_name().unwrap_or_default().to_owned();
         name.push(".part");
         let part = path.with_file_name(name);
-        let file = File::create(&part)
+        // What a run that was cut off left there, or what somebody put there, goes: a link would lead
+        // the bytes elsewhere.
+        let _ = std::fs::remove_file(&part);
+        let file = File::create_new(&part)
             .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
         Ok(Self {
             path: path.to_path_buf(),

@@ -51,13 +51,23 @@ impl<S: Shelf> Bench<S> {
     /// Puts the jobs on the bench. Nothing is done before the first [`Self::step`].
     #[must_use]
     pub fn new(shelf: S, tools: Vec<Tool>) -> Self {
+        let mut names = Names::default();
+        for tool in &tools {
+            tool.writes().iter().for_each(|name| names.take(name));
+        }
         Self {
             shelf,
             tools,
             next: 0,
             work: None,
-            names: Names::default(),
+            names,
         }
+    }
+
+    /// Keeps a name from being given to a result that the text does not name, as those are that the text
+    /// gives to results.
+    pub fn reserve(&mut self, name: &str) {
+        self.names.take(name);
     }
 
     /// Where the pictures lie.
@@ -94,7 +104,12 @@ impl<S: Shelf> Bench<S> {
         let tool = self.tools.get(self.next)?;
         let turn = match self.work.take() {
             Some(work) => work.step(&self.shelf),
-            None => begin(tool, &self.shelf, &mut self.names),
+            None => {
+                // What a job reads is not written over by its own result or by a later one's. (What a later
+                // job reads may be this one's result.)
+                tool.reads().iter().for_each(|name| self.names.take(name));
+                begin(tool, &self.shelf, &mut self.names)
+            }
         };
         let finished = match turn {
             Ok(Turn::Working(work)) => {
@@ -114,6 +129,11 @@ impl<S: Shelf> Bench<S> {
 struct Names(HashSet<String>);
 
 impl Names {
+    /// No result gets this name.
+    fn take(&mut self, name: &str) {
+        self.0.insert(name::plain(name).to_owned());
+    }
+
     /// `table.png`, and `table-2.png` for the second of a text.
     fn fresh(&mut self, stem: &str, ending: &str) -> String {
         let names = (1..).map(|number| match number {
@@ -153,7 +173,10 @@ pub(crate) fn create(shelf: &dyn Shelf, to: &str) -> Result<(Box<dyn Target>, Fo
 }
 
 /// Writes a picture, and says so.
-pub(crate) fn write(shelf: &dyn Shelf, to: &str, picture: &Picture) -> Result<String, String> {
+///
+/// # Errors
+/// If the name is refused or the file cannot be written.
+pub fn write(shelf: &dyn Shelf, to: &str, picture: &Picture) -> Result<String, String> {
     let (mut target, format) = create(shelf, to)?;
     let bytes = file::encode(picture, format).map_err(say)?;
     target

@@ -14,7 +14,7 @@ pub mod name;
 mod shelf;
 mod work;
 
-pub use bench::{Bench, Done, Step};
+pub use bench::{Bench, Done, Step, write};
 pub use shelf::{Shelf, Target};
 
 #[cfg(test)]

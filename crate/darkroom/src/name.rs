@@ -23,6 +23,16 @@ pub fn stays_inside(name: &str) -> bool {
         .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
 }
 
+/// A name without a `./` before it.
+#[must_use]
+pub fn plain(name: &str) -> &str {
+    let mut name = name;
+    while let Some(rest) = name.strip_prefix("./") {
+        name = rest;
+    }
+    name
+}
+
 /// What is said of a name that leads out of the folder.
 #[must_use]
 pub fn outside(name: &str) -> String {

@@ -4,7 +4,7 @@ use crate::bone::{Arc, Bone, Curve, Polygon, Segment, Triangle};
 use crate::form::Form;
 use crate::skeleton::{area_vector, cubic};
 use crate::waves::Waves;
-use crate::{Jet, Kernel, Real, Skeleton};
+use crate::{Jet, Kernel, Real, Skeleton, point};
 use glam::{DMat3, DVec3};
 
 /// Local coordinates: `axes·(p − origin)`; the axes are orthogonal and as long as the kernel's
@@ -102,13 +102,13 @@ impl<S: Copy> Term<S> {
         let origin = self.frame.origin.map(R::lift);
         let horizon = R::splat(R::HORIZON);
         let [x, y, z] = core::array::from_fn(|i| (p[i] - origin[i]) * scale);
-        let square = (x * x + y * y + z * z).min(horizon * horizon);
-        let (value, slope) = self.form.kernel.pair(square);
+        let cut = |x: R| x.min(horizon).max(-horizon);
+        let jet = point::jet(self.form.kernel, [cut(x), cut(y), cut(z)]);
         let amplitude = R::lift(self.amplitude);
-        let steep = (slope + slope) * amplitude * scale;
+        let steep = amplitude * scale;
         Jet {
-            value: amplitude * value,
-            gradient: [steep * x, steep * y, steep * z],
+            value: amplitude * jet.value,
+            gradient: jet.gradient.map(|g| steep * g),
         }
     }
 

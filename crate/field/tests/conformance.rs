@@ -164,7 +164,7 @@ tests! {
                 }
             }
         }
-        assert_eq!(hash, 0x6A3B_CD33_0EBE_B694, "{hash:#018x}");
+        assert_eq!(hash, 0x10B0_D40A_B3C9_478C, "{hash:#018x}");
     }
 
     /// Against a five-point difference of the value.

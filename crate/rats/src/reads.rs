@@ -17,7 +17,7 @@ pub fn reads(text: &str) -> Vec<String> {
 }
 
 /// The names that a file may have in the project which the text `reader` calls `wanted`: beside the reader
-/// first, then from the project's folder. What would lie outside of that folder is left out.
+/// first, unless that leads out of the project's folder, then as it is.
 #[must_use]
 pub fn places(reader: &str, wanted: &str) -> Vec<String> {
     let bare = wanted.strip_prefix("./").unwrap_or(wanted);

@@ -141,6 +141,18 @@ impl Tool {
             Self::Show { .. } | Self::Table { .. } => Vec::new(),
         }
     }
+
+    /// The name that the text gives to the result, if it does.
+    #[must_use]
+    pub fn writes(&self) -> Option<&str> {
+        match self {
+            Self::Convert { to, .. } => Some(to),
+            Self::Diff { save, .. } | Self::And { save, .. } | Self::Xor { save, .. } => {
+                save.as_deref()
+            }
+            _ => None,
+        }
+    }
 }
 
 /// What an animation does after its last frame.

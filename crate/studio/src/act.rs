@@ -275,8 +275,9 @@ impl App {
     fn keep_result(&mut self, ctx: &Context, index: usize, now: f64) {
         let items = self.tray.items();
         if let Some(film) = items.get(index).and_then(Item::film) {
+            // An image of the work stays what it is.
             let taken = Taken {
-                name: film.name.clone(),
+                name: self.work.session.free_name(&film.name),
                 bytes: Ok(film.bytes.to_vec()),
             };
             let open = self.editor.asset.take();

@@ -292,6 +292,19 @@ impl Session {
         &self.assets
     }
 
+    /// A name that no image or mesh of the work has: this one, or with a number before its ending.
+    #[must_use]
+    pub fn free_name(&self, name: &str) -> String {
+        let (stem, ending) = darkroom::name::split(name);
+        let mut free = name.to_owned();
+        let mut number = 1;
+        while self.assets.iter().any(|asset| asset.name == free) {
+            number += 1;
+            free = format!("{stem}-{number}{ending}");
+        }
+        free
+    }
+
     /// Adds images and meshes; one whose name is taken replaces what was there. Undo does not know of
     /// them.
     ///

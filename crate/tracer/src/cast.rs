@@ -76,8 +76,8 @@ impl Picture {
         gradient
     }
 
-    /// The largest distance that a hit at `t` may have from the true surface, and the greatest
-    /// thickness, along the ray, of what may go unseen: the smaller of 10⁻⁴ of the scene's size and a
+    /// The largest distance that a hit at `t` is meant to have from the true surface, and the greatest
+    /// thickness, along the ray, of what may go unseen (for what is not so yet, see the limits of this crate): the smaller of 10⁻⁴ of the scene's size and a
     /// fifth of the width of a pixel there; but never less than 10⁻⁶ of the scene's size.
     #[must_use]
     pub fn tolerance(&self, t: f64) -> f64 {

@@ -28,6 +28,8 @@
 //!   each primitive's depth of influence; hits are then moved onto the (cut-off) field itself.
 //!   [`Picture::hits`] cuts nothing off; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
+//! - So where much lies beyond the depth of influence, as in clusters of kernels without end, hits are off by
+//!   many tolerances, and rays that graze a surface can miss it: `examples/certify.rs` counts how often.
 //! - A primitive whose profile has kinks or jumps has no certified spans; they are made short by
 //!   an estimate.
 //! - A packet looks at no more than 2¹⁷ list entries, or 64 times the primitives in its beam; after

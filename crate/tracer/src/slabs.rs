@@ -182,6 +182,7 @@ impl<'a> Slabs<'a> {
     /// Whether it is known, after a short look and without following rays, that no ray of a packet meets
     /// anything.
     pub fn is_empty_for(&mut self, packet: usize) -> bool {
+        self.tidy();
         self.is_empty_from(self.root(), packet, &mut 0)
     }
 
@@ -190,7 +191,7 @@ impl<'a> Slabs<'a> {
         if slab.above + slab.error < THRESHOLD {
             return true;
         }
-        *looks += 1;
+        *looks += 1 + (slab.pending.len() / 64) as u32;
         // Where there are spans, only rays can tell.
         if !slab.resolved.is_empty() || slab.pending.is_empty() || *looks > MOST_LOOKS {
             return false;

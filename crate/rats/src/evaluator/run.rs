@@ -59,7 +59,8 @@ fn find_file(run: &Evaluator<'_>, name: &Name<'_>) -> Outcome<usize> {
         let known: Vec<&str> = own
             .chain(library::FILES.iter().map(|file| file.0))
             .collect();
-        let hint = suggest::hint(name.text, known.iter().copied())
+        let bare = name.text.strip_prefix("./").unwrap_or(name.text);
+        let hint = suggest::hint(bare, known.iter().copied())
             .unwrap_or_else(|| format!("the files are {}", known.join(", ")));
         Problem::new(
             name.span.clone(),

@@ -2,7 +2,7 @@
 //! (figures 4.3 to 4.5 there).
 //!
 //! The pictures come from the workers. The maps are made here, some pixels in each frame: each
-//! pixel's hit is held against the exact crossing, which knows no spans.
+//! pixel's hit is held against the exact crossing, found on the field itself in double precision.
 
 use super::Bench;
 use super::grid::refused;

@@ -72,13 +72,14 @@ impl Desk {
         let (name, saved) = &self.picture;
         *saved
             && self.drawn.is_none()
-            && names.contains(&name.as_str())
+            && names.iter().any(|wanted| name::plain(wanted) == name)
             && !self.made.borrow().files.contains_key(name)
     }
 
     /// A file, if it is there.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<Arc<[u8]>> {
+        let name = name::plain(name);
         if let Some(bytes) = self.made.borrow().files.get(name) {
             return Some(bytes.clone());
         }
@@ -99,7 +100,7 @@ impl Shelf for Desk {
             return Ok(bytes.to_vec());
         }
         let (picture, saved) = &self.picture;
-        if name != picture {
+        if name::plain(name) != picture {
             return Err(format!(
                 "there is no {name} here; drop the picture on the page and it becomes a file of the work"
             ));
@@ -117,6 +118,7 @@ impl Shelf for Desk {
         if !name::stays_inside(name) {
             return Err(name::outside(name));
         }
+        let name = name::plain(name);
         let made = self.made.borrow();
         if made.files.len() >= MAX_RESULTS && !made.files.contains_key(name) {
             return Err(format!(

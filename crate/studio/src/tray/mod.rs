@@ -231,8 +231,11 @@ impl Tray {
             return;
         }
         let order = self.order.clone();
+        let picture = order.picture.0.clone();
+        let mut bench = Bench::new(Desk::new(order.assets, order.picture), order.tools);
+        bench.reserve(&picture);
         self.run = Some(Run {
-            bench: Bench::new(Desk::new(order.assets, order.picture), order.tools),
+            bench,
             items: Vec::new(),
             waits: false,
         });

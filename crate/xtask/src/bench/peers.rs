@@ -84,7 +84,6 @@ pub fn measure() -> Result<Piece> {
     }
     growth(&best, &mut goals);
     diggers(&scenes, &mut goals, &mut page)?;
-    far_fields(&scenes, &mut goals, &mut page)?;
     Ok((goals, page))
 }
 
@@ -265,41 +264,6 @@ fn diggers(scenes: &Scenes, goals: &mut Vec<Goal>, page: &mut String) -> Result<
         wanted: Wanted::AtLeast(4.0),
         unit: "×",
         measured: worst,
-    });
-    Ok(())
-}
-
-/// What grouping far fields gains where every field reaches far.
-fn far_fields(scenes: &Scenes, goals: &mut Vec<Goal>, page: &mut String) -> Result<()> {
-    *page += "### Far fields\n\nSphereflake 820 with Cauchy fields, with and without the hierarchy of far fields.\n\n";
-    let dataset = scenes.dataset("flake-820-cauchy");
-    let mut with = || Ok(ours::time(&scenes.sinew, &[&dataset])?.seconds);
-    let mut without = || Ok(ours::time(&scenes.sinew, &[&dataset, "--no-far"])?.seconds);
-    let measured = match without() {
-        Err(reason) => {
-            let [with] = alternate(3, [&mut with])?;
-            writeln!(page, "{} s. {reason}.\n", with.text())?;
-            Err(format!("{reason:#}"))
-        }
-        Ok(_) => {
-            let [with, without] = alternate(3, [&mut with, &mut without])?;
-            let ratio = without.best() / with.best();
-            writeln!(
-                page,
-                "| with | without | ratio |\n|--:|--:|--:|\n| {} | {} | {} |\n",
-                with.text(),
-                without.text(),
-                short(ratio)
-            )?;
-            Ok(ratio)
-        }
-    };
-    goals.push(Goal {
-        what: "sphereflake 820, Cauchy".into(),
-        against: "without the far fields' hierarchy".into(),
-        wanted: Wanted::AtLeast(5.0),
-        unit: "×",
-        measured,
     });
     Ok(())
 }
