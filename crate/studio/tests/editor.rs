@@ -185,6 +185,33 @@ fn a_click_with_control_goes_to_where_a_name_is_made() {
     assert!(line.starts_with("var # "), "{line}");
 }
 
+/// In a slow browser several keys come in one frame.
+#[test]
+fn a_question_is_about_where_the_keys_before_it_lead() {
+    let mut window = window();
+    window.edit();
+    let mut keys = vec![Key::ArrowDown; 4];
+    keys.extend([Key::ArrowRight; "sphere flesh si".len()]);
+    keys.push(Key::F2);
+    for key in keys {
+        for pressed in [true, false] {
+            let event = Event::Key {
+                key,
+                physical_key: None,
+                pressed,
+                repeat: false,
+                modifiers: Modifiers::NONE,
+            };
+            window.harness.input_mut().events.push(event);
+        }
+    }
+    window.steps(5);
+    window.write("girth");
+    window.key(Modifiers::NONE, Key::Enter);
+    window.steps(3);
+    assert!(window.text().contains("var girth"), "{}", window.text());
+}
+
 #[test]
 fn a_name_that_is_taken_is_refused_in_the_field() {
     let mut window = window();
