@@ -52,8 +52,6 @@ pub struct Editor {
     hover: hover::Hover,
     signature: signature::Line,
     rename: Option<rename::Rename>,
-    /// A key that asks about the text, to be answered in the next frame.
-    asked: Option<egui::KeyboardShortcut>,
     /// Whether a letter was typed in the last frame, which may open the completions.
     typed: bool,
     /// The file and byte of the cursor.

@@ -6,7 +6,7 @@ use super::{Editor, Place, id, rename, to_bytes, to_chars};
 use crate::command::Command;
 use crate::session::Session;
 use egui::text::{CCursor, CCursorRange};
-use egui::{Event, Galley, Key, Modifiers, Pos2, Rect, TextEdit, Ui};
+use egui::{Galley, Key, Modifiers, Pos2, Rect, TextEdit, Ui};
 use rats::assist;
 
 impl Editor {
@@ -81,22 +81,9 @@ impl Editor {
 
     /// Keys that ask about the text: completions, manual, definition, renaming, layout.
     pub(super) fn questions(&mut self, ui: &Ui, session: &Session, commands: &mut Vec<Command>) {
-        // The text field has not seen this frame's keys yet. Where others came with the question, in a slow
-        // frame, the caret is not where they lead: then the question is for the next frame.
-        let asked = self.asked.take();
-        let busy = ui.input(|input| input.events.iter().filter(|e| moves_caret(e)).count() > 1);
-        let mut next = None;
-        let mut pressed = |modifiers, key| {
+        let pressed = |modifiers, key| {
             let shortcut = egui::KeyboardShortcut::new(modifiers, key);
-            if asked == Some(shortcut) {
-                return true;
-            }
-            let now = ui.input_mut(|input| input.consume_shortcut(&shortcut));
-            if now && busy {
-                next = Some(shortcut);
-                ui.ctx().request_repaint();
-            }
-            now && !busy
+            ui.input_mut(|input| input.consume_shortcut(&shortcut))
         };
         // The card that the user looks at comes before the caret.
         if let Some(command) = self.hover.take_command()
@@ -133,7 +120,6 @@ impl Editor {
             // The key goes on: it also lets go of what is chosen in the picture.
             self.signature.close(self.line);
         }
-        self.asked = next;
     }
 
     /// Goes to where the name at a place is made.
@@ -195,12 +181,4 @@ impl Editor {
         }
         self.hover.show(response, session, &self.marks, char, place);
     }
-}
-
-/// Whether an event may move the caret: keys and what they write.
-fn moves_caret(event: &Event) -> bool {
-    matches!(
-        event,
-        Event::Key { pressed: true, .. } | Event::Text(_) | Event::Paste(_)
-    )
 }
