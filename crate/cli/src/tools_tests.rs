@@ -247,7 +247,7 @@ fn links_do_not_lead_out() {
     let folder = Folder::new("links");
     let other = Folder::new("links-other");
     folder.put("a.png", 9, [2, 2]);
-    other.put("secret.png", 9, [2, 2]);
+    other.put("secret.png", 200, [3, 2]);
     let link = |from: &str, to: &Path| {
         std::os::unix::fs::symlink(to, folder.0.join(from)).expect("a link");
     };
