@@ -755,6 +755,8 @@ mod tests {
         session.put_assets(vec![image("a.png", 3)]).unwrap();
         session.put_assets(vec![image("a.png", 4)]).unwrap();
         assert_eq!(session.assets(), [image("a.png", 4)]);
+        assert_eq!(session.free_name("a.png"), "a-2.png");
+        assert_eq!(session.free_name("b.png"), "b.png");
         assert_eq!(session.revision(), revision + 2);
         assert_eq!(session.keep(0).assets.len(), 1);
         let refused = session

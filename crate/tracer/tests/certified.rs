@@ -50,7 +50,7 @@ const COMPACT: [Kernel; 4] = [
 /// Pictures of compact kernels have no hit that is off and lose no surface but where a ray grazes it.
 ///
 /// Of other kernels pictures leave out what lies beyond the depth of influence, and rays that graze a
-/// surface can miss it: how much of that there is must not grow. What of it is left is listed in BENCHMARKS.md.
+/// surface can miss it: how much of that there is must not grow. `examples/certify.rs` lists what is left.
 fn certify(kinds: &[Kind], most_missed: f64, most_off: f64) {
     let mut all = Row::default();
     for kernel in Kernel::ALL {
