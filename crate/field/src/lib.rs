@@ -28,6 +28,7 @@ mod bounds;
 mod carlson;
 mod cauchy;
 mod clausen;
+pub mod course;
 mod curve;
 pub mod endless;
 mod envelope;
@@ -56,6 +57,7 @@ mod term;
 mod waves;
 
 pub use bound::Bound;
+pub use course::Course;
 pub use kernel::{Derivatives, Kernel};
 pub use primitive::{Jet, Primitive};
 pub use profile::{Profile, Wave};

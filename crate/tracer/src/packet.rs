@@ -3,12 +3,13 @@ use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::hard::Crossing;
 use crate::map;
+use crate::nearby::Nearby;
 use crate::picture::{Picture, Stats};
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::shade::{Finish, towards};
 use crate::slabs::Slabs;
-use crate::soft::{PACKET, Scratch};
+use crate::soft::{Flesh, PACKET, Scratch};
 use crate::walk::{Bundle, Quest};
 use glam::{DVec3, Vec3};
 
@@ -26,6 +27,16 @@ pub(crate) struct Hit {
     pub thing: u32,
 }
 
+/// What is known of the soft surface near a packet's rays.
+pub(crate) enum Near<'n, 's> {
+    /// There is none.
+    Nothing,
+    /// Lumps alone.
+    Lumps(&'n Nearby),
+    /// The slabs of a beam around the rays, and the parameter at which they start.
+    Slabs(&'n mut (Slabs<'s>, f64)),
+}
+
 /// Working space of one thread.
 #[derive(Default)]
 pub struct Workspace {
@@ -40,7 +51,7 @@ impl Picture {
         &self,
         rays: &[Ray; PACKET],
         number: usize,
-        slabs: Option<&mut (Slabs<'_>, f64)>,
+        near: Near<'_, '_>,
         work: &mut Workspace,
         stats: &mut Stats,
     ) -> [Sample; PACKET] {
@@ -49,8 +60,14 @@ impl Picture {
         let mut hits = rays.map(|ray| self.hard_hit(&ray, work));
         if let Some(digger) = &self.digger {
             self.dug_hits(&**digger, rays, work, &mut hits);
-        } else if let Some((slabs, base)) = slabs {
-            self.soft_hits(rays, number, slabs, *base, work, &mut hits);
+        } else {
+            match near {
+                Near::Nothing => {}
+                Near::Slabs((slabs, base)) => {
+                    self.soft_hits(rays, number, slabs, *base, work, &mut hits);
+                }
+                Near::Lumps(near) => self.lump_hits(rays, near, work, &mut hits),
+            }
         }
         let across = rays[0].direction.distance(rays[PACKET - 1].direction);
         let mut colours = [self.background; PACKET];
@@ -146,8 +163,61 @@ impl Picture {
             return;
         }
         let flesh = self.soft.flesh(slabs, &based, &found, scratch);
-        for hit in &found {
-            let lane = hit.lane;
+        let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
+        self.clothe(rays, &flesh, base, met, hits);
+    }
+
+    /// The hits on a surface of lumps alone.
+    fn lump_hits(
+        &self,
+        rays: &[Ray; PACKET],
+        near: &Nearby,
+        work: &mut Workspace,
+        hits: &mut [Option<Hit>; PACKET],
+    ) {
+        let limits = core::array::from_fn(|i| hits[i].map_or(f64::INFINITY, |h| h.t));
+        let scratch = &mut work.scratch;
+        let Some(climbed) = self
+            .soft
+            .quick(near, rays, &limits, ALL, &mut scratch.quick)
+        else {
+            let beam = Beam::around(rays);
+            let slabs = beam.and_then(|beam| {
+                self.soft
+                    .slabs(beam, |base| Beams::one(beam.from(base)), f64::INFINITY)
+            });
+            if let Some((mut slabs, base)) = slabs {
+                self.soft_hits(rays, 0, &mut slabs, base, work, hits);
+            }
+            return;
+        };
+        scratch.evaluations += climbed.evaluations;
+        if climbed.met == 0 {
+            return;
+        }
+        let based = rays.map(|r| Ray {
+            origin: r.at(near.base),
+            direction: r.direction,
+        });
+        let t = climbed.t.to_array().map(f64::from);
+        let active = core::mem::take(&mut scratch.quick.numbers);
+        let flesh = self
+            .soft
+            .flesh_of(&active, &based, t, [1e-3; PACKET], climbed.met, scratch);
+        scratch.quick.numbers = active;
+        self.clothe(rays, &flesh, near.base, climbed.met, hits);
+    }
+
+    /// Makes hits of what is known of the surface where rays meet it.
+    fn clothe(
+        &self,
+        rays: &[Ray; PACKET],
+        flesh: &Flesh,
+        base: f64,
+        met: u32,
+        hits: &mut [Option<Hit>; PACKET],
+    ) {
+        for lane in (0..PACKET).filter(|lane| met >> lane & 1 != 0) {
             let ray = &rays[lane];
             let gradient = flesh.gradient[lane];
             let steepness = gradient.length();

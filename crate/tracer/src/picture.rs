@@ -5,13 +5,14 @@ use crate::beams::Beams;
 use crate::digger::{self, Digger};
 use crate::hard::Crossing;
 use crate::map::Map;
-use crate::packet::Workspace;
+use crate::packet::{Near, Workspace};
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::shade::{Finish, bytes};
 use crate::slabs::Slabs;
 use crate::soft::{PACKET, Soft};
 use crate::solids::Solids;
+use crate::square::{Lumps, Square};
 use crate::unit::Unit;
 use crate::{Pass, Tile};
 use glam::{DVec3, Vec3};
@@ -199,7 +200,7 @@ impl Picture {
             if stop() {
                 return None;
             }
-            let mut slabs = self.slabs(block.times(scale), [columns, rows]);
+            let mut square = self.square(block.times(scale), [columns, rows]);
             for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
                 let cell = |lane: usize| {
                     let lane = lane as u32;
@@ -215,11 +216,9 @@ impl Picture {
                 }
                 stats.primary_rays += wanted as u64;
                 let number = packet_number([i, j], [columns, rows]);
-                let mut soft = slabs.as_mut();
-                if soft.as_mut().is_some_and(|(c, _)| c.is_empty_for(number)) {
-                    soft = None;
-                }
-                if self.solids.is_empty() && self.digger.is_none() && soft.is_none() {
+                let near = square.near([i, j], number);
+                let nothing = matches!(near, Near::Nothing);
+                if self.solids.is_empty() && self.digger.is_none() && nothing {
                     for (x, y) in pixels {
                         samples.set(x, y, self.nothing());
                     }
@@ -229,7 +228,7 @@ impl Picture {
                     let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
                     self.ray(middle(x), middle(y))
                 });
-                let found = self.packet(&rays, number, soft, work, stats);
+                let found = self.packet(&rays, number, near, work, stats);
                 for ((x, y), sample) in pixels.into_iter().zip(found) {
                     samples.set(x, y, sample);
                 }
@@ -261,6 +260,21 @@ impl Picture {
         }
     }
 
+    /// What is known of the soft surface in a square of pixels, divided into columns and rows (powers of
+    /// two) of packets.
+    pub(crate) fn square(&self, area: Area, packets: [u32; 2]) -> Square<'_> {
+        if self.soft.is_empty() || self.digger.is_some() {
+            return Square::Empty;
+        }
+        if let Some(near) = self.soft.nearby(&self.beam(area), f64::INFINITY) {
+            return Square::Lumps(Lumps::new(self, area, packets, near));
+        }
+        match self.slabs(area, packets) {
+            Some(slabs) => Square::Slabs(slabs),
+            None => Square::Empty,
+        }
+    }
+
     /// The slabs of the beam through a rectangle of pixels, divided into columns and rows (powers of
     /// two) of packets.
     pub(crate) fn slabs(&self, area: Area, packets: [u32; 2]) -> Option<(Slabs<'_>, f64)> {
@@ -277,7 +291,7 @@ impl Picture {
     }
 
     /// The beam of all rays through a rectangle of pixels.
-    fn beam(&self, area: Area) -> Beam {
+    pub(crate) fn beam(&self, area: Area) -> Beam {
         let [l, t, r, b] = [area.left, area.top, area.right, area.bottom].map(f64::from);
         let axis = self.ray(0.5 * (l + r), 0.5 * (t + b));
         // Directions of equal distance from the axis' lie on ellipses or so in the picture: the

@@ -36,7 +36,7 @@ impl Picture {
             }
             // The pixels' rays run in the same beams as the packets that they belong to.
             let packets = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
-            let mut slabs = self.slabs(block, packets);
+            let mut square = self.square(block, packets);
             for (x, y) in wanted {
                 let column = (x - block.left) / PACKET_SIZE[0];
                 let row = (y - block.top) / PACKET_SIZE[1];
@@ -52,7 +52,13 @@ impl Picture {
                         self.ray(at(x, i % n), at(y, i / n))
                     });
                     stats.primary_rays += u64::from(count);
-                    let found = self.packet(&rays, number, slabs.as_mut(), work, stats);
+                    let found = self.packet(
+                        &rays,
+                        number,
+                        square.near([column, row], number),
+                        work,
+                        stats,
+                    );
                     let found = &found[..count as usize];
                     sum += found.iter().map(|s| s.colour).sum::<Vec3>();
                     cost += found.iter().map(|s| s.cost).sum::<f32>();

@@ -4,6 +4,8 @@ use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::hierarchy::Hierarchy;
 use crate::lanes::Lanes;
+use crate::nearby::Nearby;
+use crate::quick::{LEFT_OUT, Quick};
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::slabs::{Precision, Slabs};
@@ -18,13 +20,15 @@ pub const PACKET: usize = 8;
 
 /// The soft surface of a scene.
 pub struct Soft {
-    primitives: Vec<Primitive>,
+    pub(crate) primitives: Vec<Primitive>,
     /// Material of each primitive.
     material: Vec<u32>,
     bounds: Vec<Bound>,
     tree: Hierarchy,
     /// Primitives without a bounding ball.
     everywhere: Vec<u32>,
+    /// The logarithm of what is left out of a lump's field, in units of T.
+    pub(crate) left_out_logarithm: f32,
     /// How exactly pictures follow the surface.
     pub precision: Precision,
 }
@@ -39,6 +43,7 @@ pub struct Scratch {
     active: Vec<u32>,
     stamps: Vec<u32>,
     stamp: u32,
+    pub(crate) quick: Quick,
     /// Evaluations of one primitive's field at one point, so far.
     pub evaluations: u64,
     /// Those of them that were made for one ray alone.
@@ -67,10 +72,15 @@ impl Soft {
             .collect();
         let primitives = surface.field.primitives;
         let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
+        let left_out = LEFT_OUT * THRESHOLD / primitives.len().max(1) as f64;
         let mut balls = Vec::new();
         let mut everywhere = Vec::new();
         for (i, p) in primitives.iter().enumerate() {
             match p.bounding_sphere() {
+                Some((center, radius)) if p.is_lump() => {
+                    let bone = radius - p.influence;
+                    balls.push((i as u32, center, bone + p.lump_reach(left_out)));
+                }
                 Some((center, radius)) => balls.push((i as u32, center, radius)),
                 None => everywhere.push(i as u32),
             }
@@ -81,6 +91,7 @@ impl Soft {
             bounds,
             tree: Hierarchy::new(balls),
             everywhere,
+            left_out_logarithm: libm::log(left_out) as f32,
             precision: Precision::PICTURE,
         }
     }
@@ -140,6 +151,35 @@ impl Soft {
         (slabs.slab(slabs.root()).above >= THRESHOLD).then_some((slabs, from))
     }
 
+    /// The lumps near a beam, up to a parameter. `None` if the beam meets anything else.
+    pub fn nearby(&self, beam: &Beam, limit: f64) -> Option<Nearby> {
+        if !self.everywhere.is_empty()
+            || !(beam.axis.origin.is_finite() && beam.axis.direction.is_finite())
+        {
+            return None;
+        }
+        let mut found = Vec::new();
+        let mut plain = true;
+        self.tree.search(beam, |i, center, radius| {
+            plain &= self.primitives[i as usize].is_lump();
+            let near = beam.reach(center, radius)[0];
+            if near < limit {
+                found.push((near, i, center, radius));
+            }
+        });
+        if !plain {
+            return None;
+        }
+        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let base = found.first().map_or(0.0, |lump| lump.0);
+        let mut near = Nearby::default();
+        near.begin(beam.axis.at(base), base);
+        for (_, i, center, radius) in found {
+            near.push(i, center, radius);
+        }
+        Some(near)
+    }
+
     /// Walks a bundle through the slabs of its beam.
     pub fn walk(
         &self,
@@ -194,6 +234,24 @@ impl Soft {
         }
         scratch.active.sort_unstable();
 
+        let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
+        let active = core::mem::take(&mut scratch.active);
+        let flesh = self.flesh_of(&active, rays, t, reach, met, scratch);
+        scratch.active = active;
+        flesh
+    }
+
+    /// The same, given the primitives that count, in order, and for each ray where it is near the surface and how
+    /// far from there that may be.
+    pub fn flesh_of(
+        &self,
+        active: &[u32],
+        rays: &[Ray],
+        t: [f64; PACKET],
+        reach: [f64; PACKET],
+        met: u32,
+        scratch: &mut Scratch,
+    ) -> Flesh {
         let ray = |i: usize| &rays[i.min(rays.len() - 1)];
         let origin: [f32x8; 3] = core::array::from_fn(|k| f32x8::from_lanes(|i| ray(i).origin[k]));
         let direction: [f32x8; 3] =
@@ -203,13 +261,12 @@ impl Soft {
         let mut at = start;
         let mut weights: Vec<(u32, f32x8)> = Vec::new();
         let mut gradient = [f32x8::splat(0.0); 3];
-        let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
         for _ in 0..MOST_POLISHING {
             let point = core::array::from_fn(|k| origin[k] + direction[k] * at);
             let mut value = f32x8::splat(0.0);
             gradient = [f32x8::splat(0.0); 3];
             weights.clear();
-            for &p in &scratch.active {
+            for &p in active {
                 let jet = self.primitives[p as usize].jet(point);
                 value += jet.value;
                 for (sum, part) in gradient.iter_mut().zip(jet.gradient) {
@@ -222,7 +279,7 @@ impl Soft {
                     _ => weights.push((material, positive)),
                 }
             }
-            scratch.evaluations += (scratch.active.len() * PACKET) as u64;
+            scratch.evaluations += (active.len() * PACKET) as u64;
             let slope = gradient[0] * direction[0]
                 + gradient[1] * direction[1]
                 + gradient[2] * direction[2];

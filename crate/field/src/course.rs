@@ -1,0 +1,250 @@
+//! A lump's field along rays, with its largest value on any piece of them.
+//!
+//! A *lump* is a primitive whose course along a ray is so simple that bounds on it need no search: a
+//! point, of a compact or the Gaussian kernel, or a Gaussian segment; above zero, without a profile, of one width. For these
+//! `q(t) = q₀ + k(t−c)²`, the square of the distance from the point, or from the segment's line, in
+//! units of the kernel's width, is a parabola. Beside it the share W of a segment that is abreast depends on the
+//! position x along it, which is linear in t.
+//!
+//! On an interval of t the field is at most its value with the least q and the most central x of the
+//! interval. Its second derivative is at least `−2k·amplitude·|G′(q)|`, with the least q: for
+//! `g″ = amplitude·(2k·G′ + 4k²(t−c)²·G″)`, and all kernels G of q fall and are convex, so G″ ≥ 0 and |G′| falls.
+//! A segment is a sum of such points, and a Gaussian has |G′| = G.
+use crate::bone::Bone;
+use crate::real::Scalar;
+use crate::{Kernel, Primitive, Real};
+use core::f64::consts::FRAC_2_SQRT_PI;
+
+/// Half the length, in kernel widths, from which on a segment is a lump: from there the two error functions
+/// keep enough digits in their difference.
+const SHORT: f64 = 0.5;
+/// From this half length on the further end of a Gaussian segment is not felt: erfc 4 = 1.5·10⁻⁸.
+const LONG: f64 = 4.0;
+
+/// A lump along rays `origin + t·direction` of unit direction, one a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Course<R: Real> {
+    kernel: Kernel,
+    amplitude: R,
+    /// q is least here …
+    center: R,
+    /// … and is this …
+    least: R,
+    /// … and grows by this times the square of the distance from there.
+    pace: R,
+    segment: Option<Abreast<R>>,
+}
+
+/// Where along a segment a ray is: at `x = place + rate·t`, the segment is |x| ≤ half.
+#[derive(Clone, Copy, Debug)]
+struct Abreast<R> {
+    half: R,
+    place: R,
+    rate: R,
+    long: bool,
+}
+
+impl Primitive {
+    /// Whether [`Primitive::course`] is defined.
+    #[must_use]
+    pub fn is_lump(&self) -> bool {
+        let term = &self.prepared.double;
+        let simple = match &term.form.bone {
+            Bone::Point => true,
+            Bone::Segment(segment) => {
+                self.kernel == Kernel::Gauss && segment.half >= SHORT && self.tapered.is_none()
+            }
+            _ => false,
+        };
+        let ends = self.kernel == Kernel::Gauss || self.kernel.is_compact();
+        simple && ends && term.waves.is_none() && term.amplitude > 0.0
+    }
+
+    /// The distance from a lump's bone beyond which its field is at most `level`.
+    #[must_use]
+    pub fn lump_reach(&self, level: f64) -> f64 {
+        let term = &self.prepared.double;
+        if self.kernel != Kernel::Gauss {
+            return 1.0 / self.width;
+        }
+        let peak = match &term.form.bone {
+            // The integral over an endless line.
+            Bone::Segment(_) => term.amplitude * core::f64::consts::PI.sqrt(),
+            _ => term.amplitude,
+        };
+        libm::log((peak / level).max(1.0)).sqrt() / self.width
+    }
+
+    /// The field along rays given relative to `middle`, the point's place or the segment's middle.
+    ///
+    /// Only for lumps; of other primitives the result means nothing.
+    #[inline(always)]
+    #[must_use]
+    pub fn course<R: Real>(&self, middle: [R; 3], origin: [R; 3], direction: [R; 3]) -> Course<R> {
+        let term = R::Scalar::prepared(&self.prepared);
+        let amplitude = R::lift(term.amplitude);
+        let [ox, oy, oz]: [R; 3] = core::array::from_fn(|i| middle[i] - origin[i]);
+        let [dx, dy, dz] = direction;
+        if let Bone::Segment(segment) = &term.form.bone {
+            // In the segment's frame; t = 0 at the ray's origin.
+            let axis = |i: usize| {
+                let [ax, ay, az] = term.frame.axes[i].map(R::lift);
+                (-(ax * ox + ay * oy + az * oz), ax * dx + ay * dy + az * dz)
+            };
+            let [(x, rate), (y, vy), (z, vz)] = [axis(0), axis(1), axis(2)];
+            let pace = vy * vy + vz * vz;
+            // A ray along the segment is everywhere as far from it.
+            let still = R::splat(1e-12);
+            let center = -(y * vy + z * vz) / pace.max(still);
+            let (y, z) = (y + vy * center, z + vz * center);
+            return Course {
+                kernel: self.kernel,
+                amplitude: amplitude * R::splat(1.0 / FRAC_2_SQRT_PI),
+                center,
+                least: y * y + z * z,
+                pace,
+                segment: Some(Abreast {
+                    half: R::lift(segment.half),
+                    place: x,
+                    rate,
+                    long: segment.half.lane(0) >= LONG,
+                }),
+            };
+        }
+        let scale = R::lift(term.frame.axes[0][0]);
+        let pace = scale * scale;
+        // The cross product keeps the digits that a difference of squares would lose.
+        let (x, y, z) = (oy * dz - oz * dy, oz * dx - ox * dz, ox * dy - oy * dx);
+        Course {
+            kernel: self.kernel,
+            amplitude,
+            center: ox * dx + oy * dy + oz * dz,
+            least: pace * (x * x + y * y + z * z),
+            pace,
+            segment: None,
+        }
+    }
+
+    /// The square q of the distance, in units of the kernel's width, between a lump's bone and the surface of a ball
+    /// of this radius around its middle.
+    #[inline(always)]
+    #[must_use]
+    pub fn lump_square(&self, radius: f32) -> f32 {
+        let term = &self.prepared.single;
+        let axis = term.frame.axes[0];
+        match &term.form.bone {
+            Bone::Segment(segment) => {
+                let scale = (axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]).sqrt();
+                (radius * scale - segment.half).square()
+            }
+            _ => (radius * axis[0]).square(),
+        }
+    }
+}
+
+impl<R: Real> Course<R> {
+    /// Value and derivative by t.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, t: R) -> (R, R) {
+        let away = t - self.center;
+        let swift = self.pace * away;
+        let (value, slope) = self.kernel.pair(self.least + swift * away);
+        let Some(abreast) = &self.segment else {
+            let steep = self.amplitude * (swift + swift);
+            return (self.amplitude * value, steep * slope);
+        };
+        let beside = self.amplitude * value;
+        let (share, change) = abreast.share(t);
+        (beside * share, beside * (change - (swift + swift) * share))
+    }
+
+    /// Upper bounds, between two parameters, on the value and on minus the second derivative.
+    #[inline(always)]
+    #[must_use]
+    pub fn most(&self, from: R, to: R) -> (R, R) {
+        let nearest = self.center.max(from).min(to);
+        let away = nearest - self.center;
+        let (value, slope) = self.kernel.pair(self.least + self.pace * away * away);
+        let twice = self.pace + self.pace;
+        match &self.segment {
+            None => (self.amplitude * value, -(self.amplitude * slope * twice)),
+            Some(abreast) => {
+                let most = self.amplitude * value * abreast.most(from, to);
+                // Along the segment the points' distances change too, at most at the full rate.
+                let rate = abreast.rate * abreast.rate;
+                (most, most * (twice + rate + rate))
+            }
+        }
+    }
+
+    /// Whether the largest value between two parameters is that at the further one, in all lanes: then
+    /// [`Course::at`] there says what [`Course::most`] would.
+    #[inline(always)]
+    #[must_use]
+    pub fn rises_until(&self, to: R) -> bool {
+        self.segment.is_none() && !R::any(self.center.lt(to))
+    }
+
+    /// The parameters between which q is at most `square`. Where it never is, the first is greater than
+    /// the second.
+    #[inline(always)]
+    #[must_use]
+    pub fn within(&self, square: R) -> [R; 2] {
+        let room = square - self.least;
+        let half = (room.max(R::splat(0.0)) / self.pace.max(R::splat(1e-12))).sqrt();
+        let miss = room.lt(R::splat(0.0));
+        let [mut near, mut far] = [self.center - half, self.center + half];
+        if let Some(abreast) = &self.segment {
+            // Where |x| ≤ half + √square, unless the ray runs across.
+            let rate = abreast.rate.abs().max(R::splat(1e-12));
+            let middle = -(abreast.rate.sign_to(abreast.place)) / rate;
+            let reach = (abreast.half + square.sqrt()) / rate;
+            near = near.max(middle - reach);
+            far = far.min(middle + reach);
+        }
+        [
+            R::select(miss, R::splat(1.0), near),
+            R::select(miss, R::splat(-1.0), far),
+        ]
+    }
+}
+
+impl<R: Real> Abreast<R> {
+    /// `erf(x+half) − erf(x−half)` and its derivative by t.
+    #[inline(always)]
+    fn share(&self, t: R) -> (R, R) {
+        let x = self.place + self.rate * t;
+        let side = x.abs();
+        let near = side - self.half;
+        let bell = (-(near * near)).exp();
+        let mut share = reach(near, bell);
+        let mut change = -bell;
+        if !self.long {
+            let far = side + self.half;
+            let bell = (-(far * far)).exp();
+            share = share - far.erfc(bell);
+            change = change + bell;
+        }
+        let change = x.sign_to(change) * self.rate * R::splat(FRAC_2_SQRT_PI);
+        (share, change)
+    }
+
+    /// A bound on the share between two parameters.
+    #[inline(always)]
+    fn most(&self, from: R, to: R) -> R {
+        let (a, b) = (self.place + self.rate * from, self.place + self.rate * to);
+        // The position nearest to the middle.
+        let zero = R::splat(0.0);
+        let x = zero.max(a.min(b)).min(a.max(b));
+        let near = x.abs() - self.half;
+        reach(near, (-(near * near)).exp())
+    }
+}
+
+/// `erfc a`, for either sign of a, given `bell` = e^(−a²).
+#[inline(always)]
+fn reach<R: Real>(a: R, bell: R) -> R {
+    let beyond = a.abs().erfc(bell);
+    R::select(a.lt(R::splat(0.0)), R::splat(2.0) - beyond, beyond)
+}

@@ -1,0 +1,272 @@
+//! Certified climbing: finds the first crossing of rays with a surface of lumps.
+//!
+//! Of a lump the largest value on any piece of a ray is known in closed form, and so is how far its field bends
+//! down (`field::course`). So a ray outside the surface may go on from `from` to `to`
+//!
+//! - if the largest values on that piece add up to less than T, or
+//! - if the field is below T at both ends and `max(F(from), F(to)) + h²/8·N < T`, where h is the length and
+//!   N ≥ −F″ on the piece: a chord's error.
+//!
+//! If F(to) ≥ T there is a crossing on the piece, and when `N·h² < 2(T − F(from))` it is the only one: a
+//! second one before it would need more bending. Then Newton's steps lead to it. All else halves the piece, but no
+//! further than to the tolerance. Eight rays go in step; each has its own pieces.
+use field::Course;
+use wide::f32x8;
+
+/// A lump on the way of a packet's rays.
+#[derive(Clone, Copy, Debug)]
+pub struct Lump {
+    /// Its field along the rays.
+    pub course: Course<f32x8>,
+    /// No ray meets it before this …
+    pub from: f32,
+    /// … nor after this.
+    pub to: f32,
+    /// The primitive.
+    pub number: u32,
+}
+
+/// Where rays climb.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// Where each ray starts.
+    pub from: f32x8,
+    /// Where it ends.
+    pub to: f32x8,
+    /// Where to look first: a guess at the crossing.
+    pub guess: f32x8,
+    /// The rays that go, a bit each.
+    pub alive: u32,
+    /// Pieces shorter than this are not divided.
+    pub tolerance: f32,
+}
+
+/// Where rays came to.
+#[derive(Clone, Copy, Debug)]
+pub struct Climbed {
+    /// Near the crossing, on rays that cross.
+    pub t: f32x8,
+    /// Those rays, a bit each.
+    pub met: u32,
+    /// Evaluations of lumps, for one ray each.
+    pub evaluations: u64,
+}
+
+/// A little less than T: a ray that the field's rounding alone keeps outside meets the surface.
+const LEVEL: f32 = 1.0 - 4e-6;
+
+/// Rounds after which a packet is given up.
+const MOST_ROUNDS: u32 = 400;
+
+/// What the lumps add up to at the far end of a piece, and on the piece.
+struct Sum {
+    value: f32x8,
+    slope: f32x8,
+    most: f32x8,
+    bend: f32x8,
+}
+
+/// Climbs. `None` if a ray starts inside or none of this ends, which is for others to deal with.
+///
+/// The lumps are in order of `from`.
+#[must_use]
+pub fn climb(lumps: &[Lump], way: &Way) -> Option<Climbed> {
+    let zero = f32x8::splat(0.0);
+    let level = f32x8::splat(LEVEL);
+    let tolerance = f32x8::splat(way.tolerance);
+    let mut evaluations = 0;
+    // Known: below T up to `low`, with these values there.
+    let mut low = way.from;
+    let (mut low_value, _) = values(lumps, low, way.alive, &mut evaluations);
+    let mut going = way.alive & low.simd_lt(way.to).to_bitmask();
+    if level.simd_le(low_value).to_bitmask() & going != 0 {
+        return None;
+    }
+    // And above T at `high`, if that is finite.
+    let mut high = f32x8::splat(f32::INFINITY);
+    let (mut high_value, mut high_slope, mut high_bend) = (zero, zero, zero);
+    let mut step = f32x8::splat(f32::INFINITY);
+    let mut next = way.guess.fast_min(way.to).fast_max(low);
+    let mut met = 0;
+    for _ in 0..MOST_ROUNDS {
+        if going == 0 {
+            let t = polish(
+                lumps,
+                met,
+                [low, low_value],
+                [high, high_value, high_slope],
+                &mut evaluations,
+            );
+            return Some(Climbed {
+                t,
+                met,
+                evaluations,
+            });
+        }
+        let sum = Sum::on(lumps, low, next, going, &mut evaluations);
+        let length = next - low;
+        let short = length.simd_le(tolerance).to_bitmask();
+        let above = level.simd_le(sum.value).to_bitmask() & going;
+        let chord =
+            low_value.fast_max(sum.value) + f32x8::splat(0.125) * length * length * sum.bend;
+        let below = going & !above;
+        let calm = below & (sum.most.simd_lt(level) | chord.simd_lt(level)).to_bitmask();
+        let passed = calm | below & short;
+        let failed = below & !passed;
+        // Those that go on.
+        let mask = mask(passed);
+        low = mask.select(next, low);
+        low_value = mask.select(sum.value, low_value);
+        // A length that served may be doubled.
+        step = mask.select(
+            f32x8::splat(2.0) * step.fast_min(length.fast_max(tolerance)),
+            step,
+        );
+        let arrived = passed & way.to.simd_le(low).to_bitmask();
+        going &= !arrived;
+        // Those that must look closer.
+        step = self::mask(failed).select(f32x8::splat(0.5) * length, step);
+        // Those that know of a crossing.
+        let mask = self::mask(above);
+        high = mask.select(next, high);
+        high_value = mask.select(sum.value, high_value);
+        high_slope = mask.select(sum.slope, high_slope);
+        high_bend = mask.select(sum.bend, high_bend);
+        let width = high - low;
+        let only = (high_bend * width * width).simd_lt(f32x8::splat(2.0) * (level - low_value))
+            | width.simd_le(tolerance);
+        let settled = only.to_bitmask() & level.simd_le(high_value).to_bitmask() & going;
+        met |= settled;
+        going &= !settled;
+        // Before the crossing, so far that the rest could be told to be its only one.
+        let back = high - (f32x8::splat(1.4) / high_bend).sqrt();
+        let middle = f32x8::splat(0.5) * (low + high);
+        let back = low.simd_lt(back).select(back, middle);
+        let known = high.simd_lt(f32x8::splat(f32::INFINITY));
+        next = known.select(back, way.to).fast_min(low + step);
+    }
+    None
+}
+
+/// A mask from bits.
+#[inline(always)]
+fn mask(bits: u32) -> f32x8 {
+    let bit = wide::i32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
+    let set = wide::i32x8::splat(bits as i32) & bit;
+    wide::bytemuck::cast(set.simd_eq(bit))
+}
+
+/// The lowest and highest of the lanes given by bits.
+#[inline(always)]
+fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
+    let mask = mask(bits);
+    let low = mask.select(a, f32x8::splat(f32::INFINITY)).to_array();
+    let high = mask.select(b, f32x8::splat(f32::NEG_INFINITY)).to_array();
+    (
+        low.into_iter().fold(f32::INFINITY, f32::min),
+        high.into_iter().fold(f32::NEG_INFINITY, f32::max),
+    )
+}
+
+/// The field at t, and its slope.
+#[inline(always)]
+fn values(lumps: &[Lump], t: f32x8, bits: u32, evaluations: &mut u64) -> (f32x8, f32x8) {
+    let (first, last) = extremes(t, t, bits);
+    let (mut value, mut slope) = (f32x8::splat(0.0), f32x8::splat(0.0));
+    for lump in lumps {
+        if lump.from > last {
+            break;
+        }
+        if lump.to < first {
+            continue;
+        }
+        *evaluations += 8;
+        let (v, s) = lump.course.at(t);
+        value += v;
+        slope += s;
+    }
+    (value, slope)
+}
+
+impl Sum {
+    #[inline(always)]
+    fn on(lumps: &[Lump], from: f32x8, to: f32x8, bits: u32, evaluations: &mut u64) -> Self {
+        let (first, last) = extremes(from, to, bits);
+        let zero = f32x8::splat(0.0);
+        let mut sum = Self {
+            value: zero,
+            slope: zero,
+            most: zero,
+            bend: zero,
+        };
+        for lump in lumps {
+            if lump.from > last {
+                break;
+            }
+            if lump.to < first {
+                continue;
+            }
+            *evaluations += 16;
+            let (value, slope) = lump.course.at(to);
+            let (most, bend) = lump.course.most(from, to);
+            sum.value += value;
+            sum.slope += slope;
+            sum.most += most;
+            sum.bend += bend;
+        }
+        sum
+    }
+}
+
+/// Steps towards the crossings between `low` and `high`: Newton's, or between the ends where those lead out.
+#[inline(always)]
+fn polish(
+    lumps: &[Lump],
+    met: u32,
+    [mut low, mut low_value]: [f32x8; 2],
+    [mut high, mut high_value, high_slope]: [f32x8; 3],
+    evaluations: &mut u64,
+) -> f32x8 {
+    let level = f32x8::splat(1.0);
+    let (mut at, mut value, mut slope) = (high, high_value, high_slope);
+    if met == 0 {
+        return at;
+    }
+    for step in 0..MOST_STEPS {
+        let newton = at - (value - level) / slope;
+        let fits = low.simd_le(newton) & newton.simd_le(high);
+        let share = (level - low_value) / (high_value - low_value);
+        let share = share
+            .fast_max(f32x8::splat(0.0))
+            .fast_min(f32x8::splat(1.0));
+        // Newton's steps could go on for ever within the ends; halving does not.
+        let between = if step % 4 == 3 {
+            f32x8::splat(0.5)
+        } else {
+            share
+        };
+        let chord = low + (high - low) * between;
+        at = fits.select(newton, chord);
+        if f32x8::splat(CLOSE)
+            .simd_lt((value - level).abs())
+            .to_bitmask()
+            & met
+            == 0
+        {
+            // What this last step leaves is mended where the surface's look is found out.
+            break;
+        }
+        (value, slope) = values(lumps, at, met, evaluations);
+        let over = level.simd_le(value);
+        high = over.select(at, high);
+        high_value = over.select(value, high_value);
+        low = over.select(low, at);
+        low_value = over.select(low_value, value);
+    }
+    at
+}
+
+/// Newton's steps at most.
+const MOST_STEPS: u32 = 24;
+/// The field is within this of T where steps end.
+const CLOSE: f32 = 2e-2;

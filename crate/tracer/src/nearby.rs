@@ -1,0 +1,125 @@
+//! The lumps near a beam of rays, and those of them near a narrower one.
+//!
+//! Lists are in order of the distance at which a lump can first be met, their places relative to a point in
+//! the beam, so that single precision is enough for them; eight are judged at a time.
+use crate::beam::Beam;
+use glam::DVec3;
+use wide::f32x8;
+
+/// Lumps, each within a ball.
+#[derive(Clone, Debug, Default)]
+pub struct Nearby {
+    /// Places are counted from here …
+    pub middle: DVec3,
+    /// … and ray parameters from this one.
+    pub base: f64,
+    numbers: Vec<u32>,
+    /// Centre and radius: x, y, z, radius of eight lumps at a time.
+    balls: Vec<[[f32; 8]; 4]>,
+}
+
+/// A ball that no beam meets.
+const NOWHERE: f32 = -1e30;
+
+/// Places are rounded to single precision: squares of distances are off by no more than this part of them.
+const ROUNDING: f32 = 1e-6;
+
+impl Nearby {
+    /// Begins a list that is counted from a beam's axis at a parameter.
+    pub fn begin(&mut self, middle: DVec3, base: f64) {
+        (self.middle, self.base) = (middle, base);
+        self.numbers.clear();
+        self.balls.clear();
+    }
+
+    /// Adds a lump by its number and ball.
+    pub fn push(&mut self, number: u32, center: DVec3, radius: f64) {
+        let place = (center - self.middle).as_vec3();
+        self.add(number, [place.x, place.y, place.z, radius as f32]);
+    }
+
+    #[inline(always)]
+    fn add(&mut self, number: u32, ball: [f32; 4]) {
+        let lane = self.numbers.len() % 8;
+        if lane == 0 {
+            self.balls
+                .push([[0.0; 8], [0.0; 8], [0.0; 8], [NOWHERE; 8]]);
+        }
+        if let Some(last) = self.balls.last_mut() {
+            for (all, one) in last.iter_mut().zip(ball) {
+                all[lane] = one;
+            }
+        }
+        self.numbers.push(number);
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// A lump's number, centre and radius.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, index: usize) -> (u32, [f32; 3], f32) {
+        let [x, y, z, radius] = &self.balls[index / 8];
+        let lane = index % 8;
+        (
+            self.numbers[index],
+            [x[lane], y[lane], z[lane]],
+            radius[lane],
+        )
+    }
+
+    /// Puts those lumps whose balls a ray of a beam may meet into another list. The beam's parameters start
+    /// at [`Nearby::base`].
+    pub fn narrow(&self, beam: &Beam, into: &mut Self) {
+        into.begin(self.middle, self.base);
+        self.each_near(beam, |list, index| {
+            let (number, [x, y, z], radius) = list.get(index);
+            into.add(number, [x, y, z, radius]);
+        });
+    }
+
+    /// Calls `found` with the index of each lump that a ray of a beam may meet.
+    #[inline(always)]
+    pub fn each_near(&self, beam: &Beam, mut found: impl FnMut(&Self, usize)) {
+        let offset = (beam.axis.origin - self.middle).as_vec3();
+        let axis = beam.axis.direction.as_vec3();
+        let [ox, oy, oz] = offset.to_array().map(f32x8::splat);
+        let [ax, ay, az] = axis.to_array().map(f32x8::splat);
+        // Every beam of a picture is much narrower than this.
+        let grow = f32x8::splat((beam.spread / (1.0 - beam.spread.min(0.5))) as f32 * 1.001);
+        let wide = f32x8::splat(beam.radius as f32 * 1.001 + 1e-7);
+        let all = beam.spread >= 0.5;
+        for (block, [x, y, z, radius]) in self.balls.iter().enumerate() {
+            let [x, y, z] = [
+                f32x8::new(*x) - ox,
+                f32x8::new(*y) - oy,
+                f32x8::new(*z) - oz,
+            ];
+            let radius = f32x8::new(*radius);
+            let square = x * x + y * y + z * z;
+            let along = x * ax + y * ay + z * az;
+            let across = square - along * along;
+            // A ray's point at t is within radius + spread·t of the axis' point, so in the ball t is at most
+            // (along + reach)/(1 − spread).
+            let reach = radius + wide;
+            let ahead = along + reach;
+            let widest = reach + grow * ahead.fast_max(f32x8::splat(0.0));
+            let near = across.simd_le(widest * widest + square * f32x8::splat(ROUNDING))
+                & ahead.simd_ge(f32x8::splat(0.0))
+                & radius.simd_ge(f32x8::splat(0.0));
+            let mut bits = near.to_bitmask();
+            if all {
+                bits = radius.simd_ge(f32x8::splat(0.0)).to_bitmask();
+            }
+            while bits != 0 {
+                let lane = bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                found(self, block * 8 + lane);
+            }
+        }
+    }
+}

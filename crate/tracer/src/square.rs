@@ -1,0 +1,90 @@
+//! What the packets of a square of pixels share.
+use crate::area::Area;
+use crate::nearby::Nearby;
+use crate::packet::Near;
+use crate::picture::Picture;
+use crate::slabs::Slabs;
+
+/// What is known of the soft surface in a square of pixels.
+pub(crate) enum Square<'a> {
+    /// There is none.
+    Empty,
+    /// Lumps alone.
+    Lumps(Lumps<'a>),
+    /// Slabs, and the parameter at which they start.
+    Slabs((Slabs<'a>, f64)),
+}
+
+impl<'a> Square<'a> {
+    /// What of it a packet needs, given by its column and row and its number.
+    pub fn near(&mut self, place: [u32; 2], number: usize) -> Near<'_, 'a> {
+        match self {
+            Self::Empty => Near::Nothing,
+            Self::Slabs(slabs) => {
+                if slabs.0.is_empty_for(number) {
+                    Near::Nothing
+                } else {
+                    Near::Slabs(slabs)
+                }
+            }
+            Self::Lumps(lumps) => match lumps.near(place) {
+                near if near.len() == 0 => Near::Nothing,
+                near => Near::Lumps(near),
+            },
+        }
+    }
+}
+
+/// Parts of a square in each direction.
+const PARTS: u32 = 4;
+
+/// The lumps in a square, and in each of its parts.
+pub(crate) struct Lumps<'a> {
+    picture: &'a Picture,
+    area: Area,
+    packets: [u32; 2],
+    all: Nearby,
+    parts: Vec<Option<Nearby>>,
+}
+
+impl<'a> Lumps<'a> {
+    pub fn new(picture: &'a Picture, area: Area, packets: [u32; 2], all: Nearby) -> Self {
+        Self {
+            picture,
+            area,
+            packets,
+            all,
+            parts: vec![None; (PARTS * PARTS) as usize],
+        }
+    }
+
+    /// Those in the part that holds the packet in a column and row.
+    fn near(&mut self, [column, row]: [u32; 2]) -> &Nearby {
+        let [columns, rows] = self.packets;
+        if self.all.len() == 0 || columns < 2 * PARTS {
+            return &self.all;
+        }
+        let (i, j) = (column * PARTS / columns, row * PARTS / rows);
+        let Self {
+            picture,
+            area,
+            all,
+            parts,
+            ..
+        } = self;
+        parts[(j * PARTS + i) as usize].get_or_insert_with(|| {
+            let [width, height] =
+                [area.right - area.left, area.bottom - area.top].map(|n| n / PARTS);
+            let (left, top) = (area.left + i * width, area.top + j * height);
+            let part = Area {
+                left,
+                top,
+                right: left + width,
+                bottom: top + height,
+            };
+            let mut near = Nearby::default();
+            all.narrow(&picture.beam(part).from(all.base), &mut near);
+            near
+        })
+    }
+}
