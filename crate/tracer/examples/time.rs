@@ -68,6 +68,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             png.write_header()?.write_image_data(&pixels)?;
         }
     }
+    eprintln!("{:?}", tracer::climb::D);
     Ok(())
 }
 

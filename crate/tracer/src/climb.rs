@@ -88,8 +88,9 @@ pub fn climb(lumps: &[Lump], way: &Way) -> Option<Climbed> {
     let mut step = f32x8::splat(f32::INFINITY);
     let mut next = way.guess.fast_min(way.to).fast_max(low);
     let mut met = 0;
-    for _ in 0..MOST_ROUNDS {
+    for round in 0..MOST_ROUNDS {
         if going == 0 {
+            { use std::sync::atomic::Ordering::Relaxed as X; D[0].fetch_add(1,X); D[1].fetch_add(round as u64,X); D[2].fetch_add(lumps.len() as u64,X); D[3].fetch_add(evaluations,X); D[5+(32-round.leading_zeros()) as usize].fetch_add(1,X); if round>40 {D[4].fetch_add(1,X);} }
             let t = polish(
                 lumps,
                 met,
@@ -270,3 +271,5 @@ fn polish(
 const MOST_STEPS: u32 = 24;
 /// The field is within this of T where steps end.
 const CLOSE: f32 = 2e-2;
+
+pub static D: [std::sync::atomic::AtomicU64; 20] = [const { std::sync::atomic::AtomicU64::new(0) }; 20];

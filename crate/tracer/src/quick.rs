@@ -104,8 +104,8 @@ impl Soft {
             let lump_to = meets.select(leaves, -far);
             from = from.fast_min(lump_from);
             to = to.fast_max(lump_to);
-            let [core, _] = course.within(f32x8::splat(self.core(primitive, square)));
-            let inside = meets & enters.simd_le(core);
+            let [core, out] = course.within(f32x8::splat(self.core(primitive, square)));
+            let inside = meets & enters.simd_le(core) & core.simd_le(out);
             guess = guess.fast_min(inside.select(core, far));
             work.lumps.push(Lump {
                 course,
