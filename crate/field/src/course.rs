@@ -159,6 +159,25 @@ impl<R: Real> Course<R> {
         (beside * share, beside * (change - (swift + swift) * share))
     }
 
+    /// The same with what [`Course::most`] says of the second derivative at t alone.
+    #[inline(always)]
+    #[must_use]
+    pub fn bent(&self, t: R) -> (R, R, R) {
+        let away = t - self.center;
+        if self.segment.is_some() {
+            let (value, slope) = self.at(t);
+            return (value, slope, R::splat(0.0));
+        }
+        let swift = self.pace * away;
+        let (value, slope) = self.kernel.pair(self.least + swift * away);
+        let steep = self.amplitude * slope;
+        (
+            self.amplitude * value,
+            steep * (swift + swift),
+            -(steep * (self.pace + self.pace)),
+        )
+    }
+
     /// Upper bounds, between two parameters, on the value and on minus the second derivative.
     #[inline(always)]
     #[must_use]

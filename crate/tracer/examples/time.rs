@@ -68,7 +68,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             png.write_header()?.write_image_data(&pixels)?;
         }
     }
-    eprintln!("{:?}", tracer::climb::D);
     Ok(())
 }
 

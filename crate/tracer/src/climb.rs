@@ -22,6 +22,8 @@ pub struct Lump {
     pub from: f32,
     /// … nor after this.
     pub to: f32,
+    /// Where it is strong, on each ray; the first is greater than the second where it never is.
+    pub strong: [f32x8; 2],
     /// The primitive.
     pub number: u32,
 }
@@ -64,11 +66,15 @@ struct Sum {
     slope: f32x8,
     most: f32x8,
     bend: f32x8,
+    /// The largest of the values that make up `most`, and where its lump is strong.
+    largest: f32x8,
+    strong: [f32x8; 2],
 }
 
 /// Climbs. `None` if a ray starts inside or none of this ends, which is for others to deal with.
 ///
 /// The lumps are in order of `from`.
+#[inline(never)]
 #[must_use]
 pub fn climb(lumps: &[Lump], way: &Way) -> Option<Climbed> {
     let zero = f32x8::splat(0.0);
@@ -77,8 +83,12 @@ pub fn climb(lumps: &[Lump], way: &Way) -> Option<Climbed> {
     let mut evaluations = 0;
     // Known: below T up to `low`, with these values there.
     let mut low = way.from;
-    let (mut low_value, _) = values(lumps, low, way.alive, &mut evaluations);
     let mut going = way.alive & low.simd_lt(way.to).to_bitmask();
+    // Where rays come from outside of all lumps' reach there is nothing yet.
+    let mut low_value = zero;
+    if low.simd_le(zero).to_bitmask() & going != 0 {
+        (low_value, _) = values(lumps, low, way.alive, &mut evaluations);
+    }
     if level.simd_le(low_value).to_bitmask() & going != 0 {
         return None;
     }
@@ -88,9 +98,8 @@ pub fn climb(lumps: &[Lump], way: &Way) -> Option<Climbed> {
     let mut step = f32x8::splat(f32::INFINITY);
     let mut next = way.guess.fast_min(way.to).fast_max(low);
     let mut met = 0;
-    for round in 0..MOST_ROUNDS {
+    for _ in 0..MOST_ROUNDS {
         if going == 0 {
-            { use std::sync::atomic::Ordering::Relaxed as X; D[0].fetch_add(1,X); D[1].fetch_add(round as u64,X); D[2].fetch_add(lumps.len() as u64,X); D[3].fetch_add(evaluations,X); D[5+(32-round.leading_zeros()) as usize].fetch_add(1,X); if round>40 {D[4].fetch_add(1,X);} }
             let t = polish(
                 lumps,
                 met,
@@ -126,7 +135,7 @@ pub fn climb(lumps: &[Lump], way: &Way) -> Option<Climbed> {
         let arrived = passed & way.to.simd_le(low).to_bitmask();
         going &= !arrived;
         // Those that must look closer.
-        step = self::mask(failed).select(f32x8::splat(0.5) * length, step);
+        step = self::mask(failed).select(sum.closer(low, next, tolerance) - low, step);
         // Those that know of a crossing.
         let mask = self::mask(above);
         high = mask.select(next, high);
@@ -199,6 +208,8 @@ impl Sum {
             slope: zero,
             most: zero,
             bend: zero,
+            largest: zero,
+            strong: [zero; 2],
         };
         for lump in lumps {
             if lump.from > last {
@@ -207,20 +218,43 @@ impl Sum {
             if lump.to < first {
                 continue;
             }
-            *evaluations += 16;
-            let (value, slope) = lump.course.at(to);
-            let (most, bend) = lump.course.most(from, to);
+            let course = &lump.course;
+            let (value, slope, here) = course.bent(to);
+            let (most, bend) = if course.rises_until(to) {
+                (value, here)
+            } else {
+                *evaluations += 8;
+                course.most(from, to)
+            };
+            *evaluations += 8;
             sum.value += value;
             sum.slope += slope;
             sum.most += most;
             sum.bend += bend;
+            let larger = sum.largest.simd_lt(most);
+            sum.largest = larger.select(most, sum.largest);
+            for (own, other) in sum.strong.iter_mut().zip(lump.strong) {
+                *own = larger.select(other, *own);
+            }
         }
         sum
+    }
+
+    /// Where to look instead on a piece about which nothing can be told: up to where the largest lump begins to be strong,
+    /// or to where it ends, or half as far.
+    #[inline(always)]
+    fn closer(&self, from: f32x8, to: f32x8, tolerance: f32x8) -> f32x8 {
+        let [near, far] = self.strong;
+        let strong = near.simd_lt(far);
+        let middle = f32x8::splat(0.5) * (from + to);
+        let ends = strong & (from + tolerance).simd_lt(far) & far.simd_lt(to);
+        let begins = strong & (from + tolerance).simd_lt(near) & near.simd_lt(to);
+        begins.select(near, ends.select(far, middle))
     }
 }
 
 /// Steps towards the crossings between `low` and `high`: Newton's, or between the ends where those lead out.
-#[inline(always)]
+#[inline(never)]
 fn polish(
     lumps: &[Lump],
     met: u32,
@@ -271,5 +305,3 @@ fn polish(
 const MOST_STEPS: u32 = 24;
 /// The field is within this of T where steps end.
 const CLOSE: f32 = 2e-2;
-
-pub static D: [std::sync::atomic::AtomicU64; 20] = [const { std::sync::atomic::AtomicU64::new(0) }; 20];

@@ -40,7 +40,7 @@ mod area;
 mod beam;
 mod beams;
 mod cast;
-pub mod climb;
+mod climb;
 mod digger;
 pub mod hard;
 mod hierarchy;

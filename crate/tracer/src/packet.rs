@@ -57,7 +57,11 @@ impl Picture {
     ) -> [Sample; PACKET] {
         work.scratch.evaluations = 0;
         work.scratch.alone = [0; PACKET];
-        let mut hits = rays.map(|ray| self.hard_hit(&ray, work));
+        let mut hits = if self.solids.is_empty() {
+            [None; PACKET]
+        } else {
+            rays.map(|ray| self.hard_hit(&ray, work))
+        };
         if let Some(digger) = &self.digger {
             self.dug_hits(&**digger, rays, work, &mut hits);
         } else {

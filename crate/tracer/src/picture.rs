@@ -8,7 +8,7 @@ use crate::map::Map;
 use crate::packet::{Near, Workspace};
 use crate::ray::Ray;
 use crate::sample::Sample;
-use crate::shade::{Finish, bytes};
+use crate::shade::{self, Finish};
 use crate::slabs::Slabs;
 use crate::soft::{PACKET, Soft};
 use crate::solids::Solids;
@@ -117,6 +117,7 @@ impl Picture {
             Some(map) => map.dearest(self, stop)?,
             None => 1.0,
         };
+        let mut pixels = Pixels::new(self, area, dearest);
         match pass {
             Pass::Coarse => {
                 let blocks = Area {
@@ -126,14 +127,9 @@ impl Picture {
                     bottom: area.bottom.div_ceil(BLOCK),
                 };
                 let samples = self.sample(blocks, BLOCK, stop, &mut work, stats)?;
-                Some(self.rgba(area, dearest, |x, y| *samples.get(x / BLOCK, y / BLOCK)))
+                pixels.show(area, |x, y| *samples.get(x / BLOCK, y / BLOCK));
             }
-            Pass::Full => {
-                let samples = self.sample(area, 1, stop, &mut work, stats)?;
-                Some(self.rgba(area, dearest, |x, y| *samples.get(x, y)))
-            }
-            Pass::Smooth if self.samples == 1 => self.trace(tile, Pass::Full, stop, stats),
-            Pass::Smooth => {
+            Pass::Smooth if self.samples > 1 => {
                 let wide = Area {
                     left: area.left.saturating_sub(1),
                     top: area.top.saturating_sub(1),
@@ -142,9 +138,18 @@ impl Picture {
                 };
                 let mut samples = self.sample(wide, 1, stop, &mut work, stats)?;
                 self.refine(area, &mut samples, stop, &mut work, stats)?;
-                Some(self.rgba(area, dearest, |x, y| *samples.get(x, y)))
+                pixels.show(area, |x, y| *samples.get(x, y));
+            }
+            Pass::Full | Pass::Smooth => {
+                // Square by square, so that samples need little memory.
+                for square in area.blocks([SQUARE; 2]) {
+                    let part = square.meet(area);
+                    let samples = self.sample(part, 1, stop, &mut work, stats)?;
+                    pixels.show(part, |x, y| *samples.get(x, y));
+                }
             }
         }
+        Some(pixels.rgba)
     }
 
     /// All crossings of a ray with surfaces, soft and hard, in order of t > 0.
@@ -306,19 +311,50 @@ impl Picture {
             spread: spread * (1.0 + 1e-9),
         }
     }
+}
 
-    /// What the samples show; `dearest` is what white stands for in a map of costs.
-    fn rgba(&self, area: Area, dearest: f32, sample: impl Fn(u32, u32) -> Sample) -> Vec<u8> {
-        area.pixels()
-            .flat_map(|(x, y)| {
+/// The bytes of a tile.
+struct Pixels<'a> {
+    picture: &'a Picture,
+    area: Area,
+    /// What white stands for in a map of costs.
+    dearest: f32,
+    rgba: Vec<u8>,
+}
+
+impl<'a> Pixels<'a> {
+    fn new(picture: &'a Picture, area: Area, dearest: f32) -> Self {
+        let [width, height] = [area.right - area.left, area.bottom - area.top];
+        Self {
+            picture,
+            area,
+            dearest,
+            rgba: vec![255; 4 * width as usize * height as usize],
+        }
+    }
+
+    /// Shows samples in a part of the tile.
+    fn show(&mut self, part: Area, sample: impl Fn(u32, u32) -> Sample) {
+        let width = (self.area.right - self.area.left) as usize;
+        // Neighbours often have the same colour, that of the background.
+        let mut last = (Vec3::NAN, [0; 3]);
+        for y in part.top..part.bottom {
+            let row = (y - self.area.top) as usize * width;
+            let start = row + (part.left - self.area.left) as usize;
+            let end = row + (part.right - self.area.left) as usize;
+            let bytes = self.rgba[4 * start..4 * end].chunks_exact_mut(4);
+            for (x, pixel) in (part.left..part.right).zip(bytes) {
                 let sample = sample(x, y);
-                let [r, g, b] = match &self.map {
-                    Some(map) => bytes(map.grey(&sample, dearest), 1.0),
-                    None => bytes(sample.colour, self.gamma),
+                let (colour, gamma) = match &self.picture.map {
+                    Some(map) => (map.grey(&sample, self.dearest), 1.0),
+                    None => (sample.colour, self.picture.gamma),
                 };
-                [r, g, b, 255]
-            })
-            .collect()
+                if colour != last.0 {
+                    last = (colour, shade::bytes(colour, gamma));
+                }
+                pixel[..3].copy_from_slice(&last.1);
+            }
+        }
     }
 }
 

@@ -15,6 +15,10 @@ use wide::f32x8;
 /// is at most this.
 pub const LEFT_OUT: f64 = 1e-4;
 
+/// A lump is said to be strong up to this part of the way from its own surface to where its reach ends, as
+/// squares of distances.
+const STRONG: f32 = 0.15;
+
 /// Working space of one thread.
 #[derive(Default)]
 pub struct Quick {
@@ -104,13 +108,16 @@ impl Soft {
             let lump_to = meets.select(leaves, -far);
             from = from.fast_min(lump_from);
             to = to.fast_max(lump_to);
-            let [core, out] = course.within(f32x8::splat(self.core(primitive, square)));
+            let core = self.core(primitive, square);
+            let strong = course.within(f32x8::splat(core + STRONG * (square - core)));
+            let [core, out] = course.within(f32x8::splat(core));
             let inside = meets & enters.simd_le(core) & core.simd_le(out);
             guess = guess.fast_min(inside.select(core, far));
             work.lumps.push(Lump {
                 course,
                 from: least(lump_from),
                 to: -least(-lump_to),
+                strong,
                 number,
             });
         });
