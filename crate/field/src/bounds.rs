@@ -125,6 +125,9 @@ pub(crate) fn depth(form: &Form<f64>, factor: f64, level: f64) -> f64 {
             _ => 1.0,
         };
     }
+    if let (Kernel::Gauss, Bone::Point) = (form.kernel, &form.bone) {
+        return libm::log(factor / level).max(0.0).sqrt() * (1.0 + 1e-9);
+    }
     let mut outside = 1.0;
     while !below(outside) {
         outside *= 2.0;

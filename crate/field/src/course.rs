@@ -10,10 +10,12 @@
 //! interval. Its second derivative is at least `−2k·amplitude·|G′(q)|`, with the least q: for
 //! `g″ = amplitude·(2k·G′ + 4k²(t−c)²·G″)`, and all kernels G of q fall and are convex, so G″ ≥ 0 and |G′| falls.
 //! A segment is a sum of such points, and a Gaussian has |G′| = G.
-use crate::bone::Bone;
+use crate::bone::{Bone, Segment};
 use crate::real::Scalar;
-use crate::{Kernel, Primitive, Real};
+use crate::term::Frame;
+use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
 use core::f64::consts::FRAC_2_SQRT_PI;
+use glam::DVec3;
 
 /// Half the length, in kernel widths, from which on a segment is a lump: from there the two error functions
 /// keep enough digits in their difference.
@@ -44,51 +46,131 @@ struct Abreast<R> {
     long: bool,
 }
 
+/// A lump: a primitive whose course along rays is simple.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lump<S> {
+    kernel: Kernel,
+    /// The kernel's width parameter.
+    scale: S,
+    amplitude: S,
+    segment: Option<Rod<S>>,
+}
+
+/// The frame of a segment, and half its length in kernel widths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Rod<S> {
+    half: S,
+    axes: [[S; 3]; 3],
+}
+
 impl Primitive {
-    /// Whether [`Primitive::course`] is defined.
+    /// The primitive as a lump, if it is one. Its place is [`Primitive::lump_middle`].
     #[must_use]
-    pub fn is_lump(&self) -> bool {
-        let term = &self.prepared.double;
-        let simple = match &term.form.bone {
-            Bone::Point => true,
-            Bone::Segment(segment) => {
-                self.kernel == Kernel::Gauss && segment.half >= SHORT && self.tapered.is_none()
-            }
-            _ => false,
-        };
+    pub fn lump<S: Scalar>(&self) -> Option<Lump<S>> {
+        let term = S::prepared(&self.prepared);
         let ends = self.kernel == Kernel::Gauss || self.kernel.is_compact();
-        simple && ends && term.waves.is_none() && term.amplitude > 0.0
-    }
-
-    /// The distance from a lump's bone beyond which its field is at most `level`.
-    #[must_use]
-    pub fn lump_reach(&self, level: f64) -> f64 {
-        let term = &self.prepared.double;
-        if self.kernel != Kernel::Gauss {
-            return 1.0 / self.width;
+        if !ends || term.waves.is_some() || term.amplitude.lane(0) <= 0.0 {
+            return None;
         }
-        let peak = match &term.form.bone {
-            // The integral over an endless line.
-            Bone::Segment(_) => term.amplitude * core::f64::consts::PI.sqrt(),
-            _ => term.amplitude,
+        let segment = match &term.form.bone {
+            Bone::Point => None,
+            Bone::Segment(Segment { half })
+                if self.kernel == Kernel::Gauss && half.lane(0) >= SHORT =>
+            {
+                Some(Rod {
+                    half: *half,
+                    axes: term.frame.axes,
+                })
+            }
+            _ => return None,
         };
-        libm::log((peak / level).max(1.0)).sqrt() / self.width
+        Some(Lump {
+            kernel: self.kernel,
+            scale: S::round(self.width),
+            amplitude: term.amplitude,
+            segment,
+        })
     }
 
-    /// The field along rays given relative to `middle`, the point's place or the segment's middle.
-    ///
-    /// Only for lumps; of other primitives the result means nothing.
+    /// The point's place, or the segment's middle.
+    #[must_use]
+    pub fn lump_middle(&self) -> DVec3 {
+        DVec3::from_array(self.prepared.double.frame.origin)
+    }
+}
+
+impl<S: Scalar> Lump<S> {
+    /// The square q of a distance from the bone, in units of the kernel's width, beyond which the field is at most
+    /// `level`.
+    #[must_use]
+    pub fn reach(&self, level: f64) -> f64 {
+        if self.kernel != Kernel::Gauss {
+            return 1.0;
+        }
+        let amplitude = self.amplitude.lane(0);
+        let peak = match &self.segment {
+            // The integral over an endless line.
+            Some(_) => amplitude * core::f64::consts::PI.sqrt(),
+            None => amplitude,
+        };
+        libm::log((peak / level).max(1.0))
+    }
+
+    /// The radius of a ball around the middle that holds all places within this square of the distance.
+    #[must_use]
+    pub fn radius(&self, square: f64) -> f64 {
+        let half = self.segment.map_or(0.0, |rod| rod.half.lane(0));
+        (half + square.sqrt()) / self.scale.lane(0)
+    }
+
+    /// Where the lump alone would have its surface, given its [`Lump::reach`] for `level`; for compact kernels a guess.
+    #[must_use]
+    pub fn core(&self, square: f64, level: f64) -> f64 {
+        if self.kernel == Kernel::Gauss {
+            square + libm::log(level / THRESHOLD)
+        } else {
+            0.4 * square
+        }
+    }
+
+    /// Value and gradient at a position relative to the middle.
     #[inline(always)]
     #[must_use]
-    pub fn course<R: Real>(&self, middle: [R; 3], origin: [R; 3], direction: [R; 3]) -> Course<R> {
-        let term = R::Scalar::prepared(&self.prepared);
-        let amplitude = R::lift(term.amplitude);
-        let [ox, oy, oz]: [R; 3] = core::array::from_fn(|i| middle[i] - origin[i]);
+    pub fn jet<R: Real<Scalar = S>>(&self, position: [R; 3]) -> Jet<R> {
+        let amplitude = R::lift(self.amplitude);
+        let Some(rod) = &self.segment else {
+            let scale = R::lift(self.scale);
+            let jet = point::jet(self.kernel, position.map(|x| x * scale));
+            let steep = amplitude * scale;
+            return Jet {
+                value: amplitude * jet.value,
+                gradient: jet.gradient.map(|g| steep * g),
+            };
+        };
+        let frame = Frame {
+            origin: [S::splat(0.0); 3],
+            axes: rod.axes,
+        };
+        let segment = Segment { half: rod.half };
+        let jet = gauss::segment::jet(&segment, frame.local(position)).times(amplitude);
+        Jet {
+            value: jet.value,
+            gradient: frame.world(jet.gradient),
+        }
+    }
+
+    /// The field along rays, given the middle relative to their origins.
+    #[inline(always)]
+    #[must_use]
+    pub fn course<R: Real<Scalar = S>>(&self, middle: [R; 3], direction: [R; 3]) -> Course<R> {
+        let amplitude = R::lift(self.amplitude);
+        let [ox, oy, oz] = middle;
         let [dx, dy, dz] = direction;
-        if let Bone::Segment(segment) = &term.form.bone {
+        if let Some(rod) = &self.segment {
             // In the segment's frame; t = 0 at the ray's origin.
             let axis = |i: usize| {
-                let [ax, ay, az] = term.frame.axes[i].map(R::lift);
+                let [ax, ay, az]: [S; 3] = rod.axes[i];
+                let [ax, ay, az] = [ax, ay, az].map(R::lift);
                 (-(ax * ox + ay * oy + az * oz), ax * dx + ay * dy + az * dz)
             };
             let [(x, rate), (y, vy), (z, vz)] = [axis(0), axis(1), axis(2)];
@@ -104,14 +186,14 @@ impl Primitive {
                 least: y * y + z * z,
                 pace,
                 segment: Some(Abreast {
-                    half: R::lift(segment.half),
+                    half: R::lift(rod.half),
                     place: x,
                     rate,
-                    long: segment.half.lane(0) >= LONG,
+                    long: rod.half.lane(0) >= LONG,
                 }),
             };
         }
-        let scale = R::lift(term.frame.axes[0][0]);
+        let scale = R::lift(self.scale);
         let pace = scale * scale;
         // The cross product keeps the digits that a difference of squares would lose.
         let (x, y, z) = (oy * dz - oz * dy, oz * dx - ox * dz, ox * dy - oy * dx);
@@ -122,22 +204,6 @@ impl Primitive {
             least: pace * (x * x + y * y + z * z),
             pace,
             segment: None,
-        }
-    }
-
-    /// The square q of the distance, in units of the kernel's width, between a lump's bone and the surface of a ball
-    /// of this radius around its middle.
-    #[inline(always)]
-    #[must_use]
-    pub fn lump_square(&self, radius: f32) -> f32 {
-        let term = &self.prepared.single;
-        let axis = term.frame.axes[0];
-        match &term.form.bone {
-            Bone::Segment(segment) => {
-                let scale = (axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]).sqrt();
-                (radius * scale - segment.half).square()
-            }
-            _ => (radius * axis[0]).square(),
         }
     }
 }

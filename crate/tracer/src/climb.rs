@@ -15,7 +15,7 @@ use wide::f32x8;
 
 /// A lump on the way of a packet's rays.
 #[derive(Clone, Copy, Debug)]
-pub struct Lump {
+pub struct Step {
     /// Its field along the rays.
     pub course: Course<f32x8>,
     /// No ray meets it before this …
@@ -24,8 +24,8 @@ pub struct Lump {
     pub to: f32,
     /// Where it is strong, on each ray; the first is greater than the second where it never is.
     pub strong: [f32x8; 2],
-    /// The primitive.
-    pub number: u32,
+    /// Its index in the list.
+    pub index: u32,
 }
 
 /// Where rays climb.
@@ -76,7 +76,7 @@ struct Sum {
 /// The lumps are in order of `from`.
 #[inline(never)]
 #[must_use]
-pub fn climb(lumps: &[Lump], way: &Way) -> Option<Climbed> {
+pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
     let zero = f32x8::splat(0.0);
     let level = f32x8::splat(LEVEL);
     let tolerance = f32x8::splat(way.tolerance);
@@ -168,7 +168,7 @@ fn mask(bits: u32) -> f32x8 {
 
 /// The lowest and highest of the lanes given by bits.
 #[inline(always)]
-fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
+pub fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
     let mask = mask(bits);
     let low = mask.select(a, f32x8::splat(f32::INFINITY)).to_array();
     let high = mask.select(b, f32x8::splat(f32::NEG_INFINITY)).to_array();
@@ -180,7 +180,7 @@ fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
 
 /// The field at t, and its slope.
 #[inline(always)]
-fn values(lumps: &[Lump], t: f32x8, bits: u32, evaluations: &mut u64) -> (f32x8, f32x8) {
+fn values(lumps: &[Step], t: f32x8, bits: u32, evaluations: &mut u64) -> (f32x8, f32x8) {
     let (first, last) = extremes(t, t, bits);
     let (mut value, mut slope) = (f32x8::splat(0.0), f32x8::splat(0.0));
     for lump in lumps {
@@ -200,7 +200,7 @@ fn values(lumps: &[Lump], t: f32x8, bits: u32, evaluations: &mut u64) -> (f32x8,
 
 impl Sum {
     #[inline(always)]
-    fn on(lumps: &[Lump], from: f32x8, to: f32x8, bits: u32, evaluations: &mut u64) -> Self {
+    fn on(lumps: &[Step], from: f32x8, to: f32x8, bits: u32, evaluations: &mut u64) -> Self {
         let (first, last) = extremes(from, to, bits);
         let zero = f32x8::splat(0.0);
         let mut sum = Self {
@@ -256,7 +256,7 @@ impl Sum {
 /// Steps towards the crossings between `low` and `high`: Newton's, or between the ends where those lead out.
 #[inline(never)]
 fn polish(
-    lumps: &[Lump],
+    lumps: &[Step],
     met: u32,
     [mut low, mut low_value]: [f32x8; 2],
     [mut high, mut high_value, high_slope]: [f32x8; 3],

@@ -3,6 +3,7 @@
 //! Lists are in order of the distance at which a lump can first be met, their places relative to a point in
 //! the beam, so that single precision is enough for them; eight are judged at a time.
 use crate::beam::Beam;
+use field::Lump;
 use glam::DVec3;
 use wide::f32x8;
 
@@ -13,9 +14,24 @@ pub struct Nearby {
     pub middle: DVec3,
     /// … and ray parameters from this one.
     pub base: f64,
-    numbers: Vec<u32>,
+    lumps: Vec<Near>,
     /// Centre and radius: x, y, z, radius of eight lumps at a time.
     balls: Vec<[[f32; 8]; 4]>,
+}
+
+/// A lump in a list.
+#[derive(Clone, Copy, Debug)]
+pub struct Near {
+    /// Its field.
+    pub lump: Lump<f32>,
+    /// Its place.
+    pub middle: [f32; 3],
+    /// It is followed up to this square of the distance from its bone, in kernel widths.
+    pub square: f32,
+    /// Alone it would have its surface there.
+    pub core: f32,
+    /// Its material.
+    pub material: u32,
 }
 
 /// A ball that no beam meets.
@@ -28,19 +44,19 @@ impl Nearby {
     /// Begins a list that is counted from a beam's axis at a parameter.
     pub fn begin(&mut self, middle: DVec3, base: f64) {
         (self.middle, self.base) = (middle, base);
-        self.numbers.clear();
+        self.lumps.clear();
         self.balls.clear();
     }
 
-    /// Adds a lump by its number and ball.
-    pub fn push(&mut self, number: u32, center: DVec3, radius: f64) {
-        let place = (center - self.middle).as_vec3();
-        self.add(number, [place.x, place.y, place.z, radius as f32]);
+    /// Adds a lump with the radius of its ball; its place is counted from [`Nearby::middle`].
+    pub fn push(&mut self, near: Near, radius: f64) {
+        let [x, y, z] = near.middle;
+        self.add(near, [x, y, z, radius as f32]);
     }
 
     #[inline(always)]
-    fn add(&mut self, number: u32, ball: [f32; 4]) {
-        let lane = self.numbers.len() % 8;
+    fn add(&mut self, near: Near, ball: [f32; 4]) {
+        let lane = self.lumps.len() % 8;
         if lane == 0 {
             self.balls
                 .push([[0.0; 8], [0.0; 8], [0.0; 8], [NOWHERE; 8]]);
@@ -50,26 +66,20 @@ impl Nearby {
                 all[lane] = one;
             }
         }
-        self.numbers.push(number);
+        self.lumps.push(near);
     }
 
     /// How many there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.numbers.len()
+        self.lumps.len()
     }
 
-    /// A lump's number, centre and radius.
-    #[inline]
+    /// A lump.
+    #[inline(always)]
     #[must_use]
-    pub fn get(&self, index: usize) -> (u32, [f32; 3], f32) {
-        let [x, y, z, radius] = &self.balls[index / 8];
-        let lane = index % 8;
-        (
-            self.numbers[index],
-            [x[lane], y[lane], z[lane]],
-            radius[lane],
-        )
+    pub fn get(&self, index: usize) -> &Near {
+        &self.lumps[index]
     }
 
     /// Puts those lumps whose balls a ray of a beam may meet into another list. The beam's parameters start
@@ -77,8 +87,8 @@ impl Nearby {
     pub fn narrow(&self, beam: &Beam, into: &mut Self) {
         into.begin(self.middle, self.base);
         self.each_near(beam, |list, index| {
-            let (number, [x, y, z], radius) = list.get(index);
-            into.add(number, [x, y, z, radius]);
+            let ball = list.balls[index / 8].map(|row| row[index % 8]);
+            into.add(*list.get(index), ball);
         });
     }
 

@@ -181,35 +181,22 @@ impl Picture {
     ) {
         let limits = core::array::from_fn(|i| hits[i].map_or(f64::INFINITY, |h| h.t));
         let scratch = &mut work.scratch;
-        let Some(climbed) = self
+        let Some(looked) = self
             .soft
             .quick(near, rays, &limits, ALL, &mut scratch.quick)
         else {
             let beam = Beam::around(rays);
             let slabs = beam.and_then(|beam| {
-                self.soft
-                    .slabs(beam, |base| Beams::one(beam.from(base)), f64::INFINITY)
+                let whole = |base: f64| Beams::one(beam.from(base));
+                self.soft.slabs(beam, whole, f64::INFINITY)
             });
             if let Some((mut slabs, base)) = slabs {
                 self.soft_hits(rays, 0, &mut slabs, base, work, hits);
             }
             return;
         };
-        scratch.evaluations += climbed.evaluations;
-        if climbed.met == 0 {
-            return;
-        }
-        let based = rays.map(|r| Ray {
-            origin: r.at(near.base),
-            direction: r.direction,
-        });
-        let t = climbed.t.to_array().map(f64::from);
-        let active = core::mem::take(&mut scratch.quick.numbers);
-        let flesh = self
-            .soft
-            .flesh_of(&active, &based, t, [1e-3; PACKET], climbed.met, scratch);
-        scratch.quick.numbers = active;
-        self.clothe(rays, &flesh, near.base, climbed.met, hits);
+        scratch.evaluations += looked.evaluations;
+        self.clothe(rays, &looked.flesh, near.base, looked.met, hits);
     }
 
     /// Makes hits of what is known of the surface where rays meet it.

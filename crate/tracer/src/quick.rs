@@ -3,11 +3,11 @@
 //! The lumps near a square of pixels are listed once, those near each of its parts when a packet in it asks, those near
 //! the packet anew for each; then [`climb`](mod@crate::climb) follows the packet's rays.
 use crate::beam::Beam;
-use crate::climb::{Climbed, Lump, Way, climb};
+use crate::climb::{Climbed, Step, Way, climb, extremes};
 use crate::nearby::Nearby;
 use crate::ray::Ray;
-use crate::soft::{PACKET, Soft};
-use field::{Kernel, Primitive, Real};
+use crate::soft::{Flesh, NEAR_ENOUGH, PACKET, Soft};
+use field::Real;
 use glam::DVec3;
 use wide::f32x8;
 
@@ -22,10 +22,23 @@ const STRONG: f32 = 0.15;
 /// Working space of one thread.
 #[derive(Default)]
 pub struct Quick {
-    lumps: Vec<Lump>,
-    /// The primitives that a packet's hits depend on.
-    pub numbers: Vec<u32>,
+    steps: Vec<Step>,
 }
+
+/// What a packet's rays met.
+pub struct Looked {
+    /// Those that met the surface, a bit each.
+    pub met: u32,
+    /// What it is like there; parameters are counted from the list's base.
+    pub flesh: Flesh,
+    /// Evaluations of lumps, for one ray each.
+    pub evaluations: u64,
+}
+
+/// Looks at a packet's hits, each with a step of Newton's onto the surface.
+const MOST_LOOKS: usize = 3;
+/// No such step leads further than this.
+const MOST_MOVE: f32 = 1e-3;
 
 /// Rays of a packet, counted from a list's base.
 struct Rays {
@@ -79,24 +92,23 @@ impl Soft {
         limits: &[f64; PACKET],
         alive: u32,
         work: &mut Quick,
-    ) -> Option<Climbed> {
+    ) -> Option<Looked> {
         let lanes = Rays::new(rays, near);
-        let nothing = Climbed {
-            t: f32x8::splat(0.0),
+        let nothing = Looked {
             met: 0,
+            flesh: Flesh::default(),
             evaluations: 0,
         };
         let far = f32x8::splat(f32::INFINITY);
         let (mut from, mut to, mut guess) = (far, -far, far);
         let mut evaluations = 0;
-        work.lumps.clear();
+        work.steps.clear();
         let limit = f32x8::from_lanes(|i| (limits[i] - near.base).min(1e30));
         near.each_near(&lanes.beam, |list, index| {
-            let (number, center, radius) = list.get(index);
-            let primitive = &self.primitives[number as usize];
-            let square = primitive.lump_square(radius);
-            let course = primitive.course(center.map(f32x8::splat), lanes.origin, lanes.direction);
-            let [enters, leaves] = course.within(f32x8::splat(square));
+            let near = list.get(index);
+            let middle = core::array::from_fn(|i| f32x8::splat(near.middle[i]) - lanes.origin[i]);
+            let course = near.lump.course(middle, lanes.direction);
+            let [enters, leaves] = course.within(f32x8::splat(near.square));
             let enters = enters.fast_max(f32x8::splat(0.0));
             let leaves = leaves.fast_min(limit);
             let meets = enters.simd_le(leaves);
@@ -104,27 +116,27 @@ impl Soft {
             if meets.to_bitmask() & alive == 0 {
                 return;
             }
-            let lump_from = meets.select(enters, far);
-            let lump_to = meets.select(leaves, -far);
-            from = from.fast_min(lump_from);
-            to = to.fast_max(lump_to);
-            let core = self.core(primitive, square);
-            let strong = course.within(f32x8::splat(core + STRONG * (square - core)));
-            let [core, out] = course.within(f32x8::splat(core));
+            let step_from = meets.select(enters, far);
+            let step_to = meets.select(leaves, -far);
+            from = from.fast_min(step_from);
+            to = to.fast_max(step_to);
+            let strong = near.core + STRONG * (near.square - near.core);
+            let strong = course.within(f32x8::splat(strong));
+            let [core, out] = course.within(f32x8::splat(near.core));
             let inside = meets & enters.simd_le(core) & core.simd_le(out);
             guess = guess.fast_min(inside.select(core, far));
-            work.lumps.push(Lump {
+            work.steps.push(Step {
                 course,
-                from: least(lump_from),
-                to: -least(-lump_to),
+                from: least(step_from),
+                to: -least(-step_to),
                 strong,
-                number,
+                index: index as u32,
             });
         });
-        if work.lumps.is_empty() {
+        if work.steps.is_empty() {
             return Some(nothing);
         }
-        work.lumps.sort_by(|a, b| a.from.total_cmp(&b.from));
+        work.steps.sort_by(|a, b| a.from.total_cmp(&b.from));
         let alive = alive & from.simd_le(to).to_bitmask();
         let way = Way {
             from,
@@ -133,33 +145,70 @@ impl Soft {
             alive,
             tolerance: 5e-5,
         };
-        let mut climbed = climb(&work.lumps, &way)?;
-        climbed.evaluations += evaluations;
-        work.numbers.clear();
-        if climbed.met != 0 {
-            let met = climbed.met;
-            let at = climbed.t.to_array();
-            let hits = || (0..PACKET).filter(|i| met >> i & 1 != 0).map(|i| at[i]);
-            let (first, last) =
-                hits().fold((f32::INFINITY, 0.0f32), |(a, b), t| (a.min(t), b.max(t)));
-            let numbers = work
-                .lumps
-                .iter()
-                .filter(|lump| lump.from <= last && first <= lump.to)
-                .map(|lump| lump.number);
-            work.numbers.extend(numbers);
-            work.numbers.sort_unstable();
+        let climbed = climb(&work.steps, &way)?;
+        if climbed.met == 0 {
+            return Some(nothing);
         }
-        Some(climbed)
+        Some(self.look(near, &lanes, &climbed, evaluations, work))
     }
 
-    /// Where a lump alone would have its surface: the square of the distance in kernel widths, or a guess at it.
-    fn core(&self, primitive: &Primitive, square: f32) -> f32 {
-        if primitive.kernel == Kernel::Gauss {
-            // amplitude·e^(−square) is what is left out.
-            square + self.left_out_logarithm
-        } else {
-            0.4 * square
+    /// Moves a packet's hits onto the surface, and says what it is like there.
+    fn look(
+        &self,
+        near: &Nearby,
+        rays: &Rays,
+        climbed: &Climbed,
+        evaluations: u64,
+        work: &mut Quick,
+    ) -> Looked {
+        let met = climbed.met;
+        let mut evaluations = evaluations + climbed.evaluations;
+        let mut at = climbed.t;
+        let mut weights: Vec<(u32, f32x8)> = Vec::new();
+        let mut gradient = [f32x8::splat(0.0); 3];
+        let (first, last) = extremes(at, at, met);
+        for _ in 0..MOST_LOOKS {
+            let mut value = f32x8::splat(0.0);
+            gradient = [f32x8::splat(0.0); 3];
+            weights.clear();
+            let place: [f32x8; 3] =
+                core::array::from_fn(|i| rays.origin[i] + rays.direction[i] * at);
+            for step in &work.steps {
+                if step.from > last {
+                    break;
+                }
+                if step.to < first {
+                    continue;
+                }
+                let near = near.get(step.index as usize);
+                let jet = near.lump.jet(core::array::from_fn(|i| {
+                    place[i] - f32x8::splat(near.middle[i])
+                }));
+                evaluations += 8;
+                value += jet.value;
+                for (sum, part) in gradient.iter_mut().zip(jet.gradient) {
+                    *sum += part;
+                }
+                match weights.iter_mut().find(|(m, _)| *m == near.material) {
+                    Some((_, weight)) => *weight += jet.value,
+                    None => weights.push((near.material, jet.value)),
+                }
+            }
+            let [x, y, z]: [f32x8; 3] = core::array::from_fn(|i| gradient[i] * rays.direction[i]);
+            let excess = value - f32x8::splat(1.0);
+            let next = at - excess / (x + y + z);
+            // Where the ray only grazes the surface Newton's step may lead astray.
+            let good = (next - climbed.t).abs().simd_lt(f32x8::splat(MOST_MOVE));
+            at = good.select(next, at);
+            if f32x8::splat(NEAR_ENOUGH).simd_lt(excess.abs()).to_bitmask() & met == 0 {
+                break;
+            }
+        }
+        weights.sort_unstable_by_key(|(material, _)| *material);
+        Looked {
+            met,
+            flesh: Flesh::new(at, gradient, weights),
+            evaluations,
         }
     }
 }

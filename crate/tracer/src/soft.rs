@@ -4,7 +4,7 @@ use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::hierarchy::Hierarchy;
 use crate::lanes::Lanes;
-use crate::nearby::Nearby;
+use crate::nearby::{Near, Nearby};
 use crate::quick::{LEFT_OUT, Quick};
 use crate::ray::Ray;
 use crate::roots::bracketed;
@@ -20,15 +20,15 @@ pub const PACKET: usize = 8;
 
 /// The soft surface of a scene.
 pub struct Soft {
-    pub(crate) primitives: Vec<Primitive>,
+    primitives: Vec<Primitive>,
     /// Material of each primitive.
     material: Vec<u32>,
     bounds: Vec<Bound>,
     tree: Hierarchy,
     /// Primitives without a bounding ball.
     everywhere: Vec<u32>,
-    /// The logarithm of what is left out of a lump's field, in units of T.
-    pub(crate) left_out_logarithm: f32,
+    /// What is left out of a lump's field.
+    left_out: f64,
     /// How exactly pictures follow the surface.
     pub precision: Precision,
 }
@@ -51,6 +51,7 @@ pub struct Scratch {
 }
 
 /// What the surface is like at the hits of a packet.
+#[derive(Default)]
 pub struct Flesh {
     /// Ray parameter of each hit, polished.
     pub t: [f64; PACKET],
@@ -58,6 +59,23 @@ pub struct Flesh {
     pub gradient: [DVec3; PACKET],
     /// Materials met, and each one's share of the (positive) field in every lane.
     pub weights: Vec<(u32, [f32; PACKET])>,
+}
+
+impl Flesh {
+    /// From lanes side by side.
+    pub fn new(t: f32x8, gradient: [f32x8; 3], weights: Vec<(u32, f32x8)>) -> Self {
+        let gradient = gradient.map(f32x8::to_array);
+        Self {
+            t: t.to_array().map(f64::from),
+            gradient: core::array::from_fn(|i| {
+                DVec3::from_array([0, 1, 2].map(|k| f64::from(gradient[k][i])))
+            }),
+            weights: weights
+                .into_iter()
+                .map(|(m, w)| (m, w.to_array()))
+                .collect(),
+        }
+    }
 }
 
 impl Soft {
@@ -77,11 +95,13 @@ impl Soft {
         let mut everywhere = Vec::new();
         for (i, p) in primitives.iter().enumerate() {
             match p.bounding_sphere() {
-                Some((center, radius)) if p.is_lump() => {
-                    let bone = radius - p.influence;
-                    balls.push((i as u32, center, bone + p.lump_reach(left_out)));
+                Some(ball) => {
+                    let (center, radius) = match p.lump::<f32>() {
+                        Some(lump) => (p.lump_middle(), lump.radius(lump.reach(left_out))),
+                        None => ball,
+                    };
+                    balls.push((i as u32, center, radius));
                 }
-                Some((center, radius)) => balls.push((i as u32, center, radius)),
                 None => everywhere.push(i as u32),
             }
         }
@@ -91,7 +111,7 @@ impl Soft {
             bounds,
             tree: Hierarchy::new(balls),
             everywhere,
-            left_out_logarithm: libm::log(left_out) as f32,
+            left_out,
             precision: Precision::PICTURE,
         }
     }
@@ -161,10 +181,12 @@ impl Soft {
         let mut found = Vec::new();
         let mut plain = true;
         self.tree.search(beam, |i, center, radius| {
-            plain &= self.primitives[i as usize].is_lump();
             let near = beam.reach(center, radius)[0];
-            if near < limit {
-                found.push((near, i, center, radius));
+            if near < limit && plain {
+                match self.primitives[i as usize].lump() {
+                    Some(lump) => found.push((near, i, radius, lump)),
+                    None => plain = false,
+                }
             }
         });
         if !plain {
@@ -172,12 +194,21 @@ impl Soft {
         }
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let base = found.first().map_or(0.0, |lump| lump.0);
-        let mut near = Nearby::default();
-        near.begin(beam.axis.at(base), base);
-        for (_, i, center, radius) in found {
-            near.push(i, center, radius);
+        let mut list = Nearby::default();
+        list.begin(beam.axis.at(base), base);
+        for (_, i, radius, lump) in found {
+            let square = lump.reach(self.left_out);
+            let middle = self.primitives[i as usize].lump_middle() - list.middle;
+            let near = Near {
+                lump,
+                middle: middle.as_vec3().to_array(),
+                square: square as f32,
+                core: lump.core(square, self.left_out) as f32,
+                material: self.material[i as usize],
+            };
+            list.push(near, radius);
         }
-        Some(near)
+        Some(list)
     }
 
     /// Walks a bundle through the slabs of its beam.
@@ -234,24 +265,6 @@ impl Soft {
         }
         scratch.active.sort_unstable();
 
-        let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
-        let active = core::mem::take(&mut scratch.active);
-        let flesh = self.flesh_of(&active, rays, t, reach, met, scratch);
-        scratch.active = active;
-        flesh
-    }
-
-    /// The same, given the primitives that count, in order, and for each ray where it is near the surface and how
-    /// far from there that may be.
-    pub fn flesh_of(
-        &self,
-        active: &[u32],
-        rays: &[Ray],
-        t: [f64; PACKET],
-        reach: [f64; PACKET],
-        met: u32,
-        scratch: &mut Scratch,
-    ) -> Flesh {
         let ray = |i: usize| &rays[i.min(rays.len() - 1)];
         let origin: [f32x8; 3] = core::array::from_fn(|k| f32x8::from_lanes(|i| ray(i).origin[k]));
         let direction: [f32x8; 3] =
@@ -261,12 +274,13 @@ impl Soft {
         let mut at = start;
         let mut weights: Vec<(u32, f32x8)> = Vec::new();
         let mut gradient = [f32x8::splat(0.0); 3];
+        let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
         for _ in 0..MOST_POLISHING {
             let point = core::array::from_fn(|k| origin[k] + direction[k] * at);
             let mut value = f32x8::splat(0.0);
             gradient = [f32x8::splat(0.0); 3];
             weights.clear();
-            for &p in active {
+            for &p in &scratch.active {
                 let jet = self.primitives[p as usize].jet(point);
                 value += jet.value;
                 for (sum, part) in gradient.iter_mut().zip(jet.gradient) {
@@ -279,7 +293,7 @@ impl Soft {
                     _ => weights.push((material, positive)),
                 }
             }
-            scratch.evaluations += (active.len() * PACKET) as u64;
+            scratch.evaluations += (scratch.active.len() * PACKET) as u64;
             let slope = gradient[0] * direction[0]
                 + gradient[1] * direction[1]
                 + gradient[2] * direction[2];
@@ -296,20 +310,7 @@ impl Soft {
                 break;
             }
         }
-        Flesh {
-            t: core::array::from_fn(|i| Real::lane(at, i)),
-            gradient: core::array::from_fn(|i| {
-                DVec3::new(
-                    Real::lane(gradient[0], i),
-                    Real::lane(gradient[1], i),
-                    Real::lane(gradient[2], i),
-                )
-            }),
-            weights: weights
-                .into_iter()
-                .map(|(m, w)| (m, w.to_array()))
-                .collect(),
-        }
+        Flesh::new(at, gradient, weights)
     }
 
     /// All crossings of a ray, exactly: where the whole field, with nothing cut off, equals T.
@@ -412,4 +413,4 @@ impl Soft {
 const MOST_POLISHING: usize = 3;
 /// Where the field is within this of T, normal and colours are those of the surface: they change
 /// by about one part in a thousand on the way there, less than a picture shows.
-const NEAR_ENOUGH: f32 = 1e-3;
+pub const NEAR_ENOUGH: f32 = 1e-3;
