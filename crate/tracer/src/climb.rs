@@ -10,7 +10,7 @@
 //! If F(to) ≥ T there is a crossing on the piece, and when `N·h² < 2(T − F(from))` it is the only one: a
 //! second one before it would need more bending. Then Newton's steps lead to it. All else halves the piece, but no
 //! further than to the tolerance. Eight rays go in step; each has its own pieces.
-use field::Course;
+use field::{Course, Real};
 use wide::f32x8;
 
 /// A lump on the way of a packet's rays.
@@ -56,6 +56,9 @@ pub struct Climbed {
 
 /// A little less than T: a ray that the field's rounding alone keeps outside meets the surface.
 const LEVEL: f32 = 1.0 - 4e-6;
+
+/// A field of this much is deep inside.
+const DEEP: f32 = 1.5;
 
 /// Rounds after which a packet is given up.
 const MOST_ROUNDS: u32 = 400;
@@ -148,10 +151,19 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
         let settled = only.to_bitmask() & level.simd_le(high_value).to_bitmask() & going;
         met |= settled;
         going &= !settled;
-        // Before the crossing, so far that the rest could be told to be its only one.
-        let back = high - (f32x8::splat(1.4) / high_bend).sqrt();
+        // Before the crossing, so far that the rest could be told to be its only one; from deep inside by Newton's
+        // step for the logarithm, which for Gaussians leads out, but not far.
+        let near = high - (f32x8::splat(1.4) / high_bend).sqrt();
+        let deep = f32x8::splat(DEEP).simd_lt(high_value);
+        let mut back = near;
+        if deep.to_bitmask() & going != 0 {
+            let out = high - Real::ln(high_value) * high_value / high_slope;
+            let out = zero.simd_lt(high_slope).select(out, low);
+            back = deep.select(out, near);
+        }
         let middle = f32x8::splat(0.5) * (low + high);
-        let back = low.simd_lt(back).select(back, middle);
+        let fits = low.simd_lt(back) & back.simd_lt(high);
+        let back = fits.select(back, middle);
         let known = high.simd_lt(f32x8::splat(f32::INFINITY));
         next = known.select(back, way.to).fast_min(low + step);
     }
