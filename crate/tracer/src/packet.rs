@@ -181,9 +181,9 @@ impl Picture {
     ) {
         let limits = core::array::from_fn(|i| hits[i].map_or(f64::INFINITY, |h| h.t));
         let scratch = &mut work.scratch;
-        let Some(looked) = self
-            .soft
-            .quick(near, rays, &limits, ALL, &mut scratch.quick)
+        let Some(looked) =
+            self.soft
+                .quick(near, rays, &limits, ALL, Quest::First, &mut scratch.quick)
         else {
             let beam = Beam::around(rays);
             let slabs = beam.and_then(|beam| {
@@ -301,6 +301,19 @@ impl Picture {
             return self.dug_shadows(&**digger, rays, limits, work);
         }
         let alive: Vec<Ray> = rays.iter().flatten().copied().collect();
+        let Some(any) = alive.first() else {
+            return 0;
+        };
+        let followed = (0..PACKET).fold(0, |m, i| m | u32::from(rays[i].is_some()) << i);
+        let filled = rays.map(|ray| ray.unwrap_or(*any));
+        let quick = &mut work.scratch.quick;
+        if let Some((looked, _)) =
+            self.soft
+                .quick_alone(&filled, limits, followed, Quest::Entry, quick)
+        {
+            work.scratch.evaluations += looked.evaluations;
+            return looked.met;
+        }
         let Some(beam) = Beam::around(&alive) else {
             return 0;
         };
@@ -310,15 +323,11 @@ impl Picture {
             return 0;
         };
         // Lanes not in use repeat the first one.
-        let based = rays.map(|ray| {
-            let ray = ray.unwrap_or(alive[0]);
-            Ray {
-                origin: ray.at(base),
-                direction: ray.direction,
-            }
+        let based = filled.map(|ray| Ray {
+            origin: ray.at(base),
+            direction: ray.direction,
         });
         let limits = limits.map(|l| l - base);
-        let followed = (0..PACKET).fold(0, |m, i| m | u32::from(rays[i].is_some()) << i);
         let bundle = Bundle {
             rays: &based,
             limits: &limits,

@@ -5,6 +5,7 @@ use crate::beams::Beams;
 use crate::digger::{self, Digger};
 use crate::hard::Crossing;
 use crate::map::Map;
+use crate::nearby::Nearby;
 use crate::packet::{Near, Workspace};
 use crate::ray::Ray;
 use crate::sample::Sample;
@@ -75,11 +76,14 @@ impl Picture {
     pub fn new(scene: &Scene, size: [u32; 2]) -> Self {
         let (unit, scene) = Unit::fit(scene);
         let size = size.map(|n| n.max(1));
+        let projection = scene.camera.projection(size[0], size[1]);
+        let mut soft = Soft::new(&scene);
+        soft.pixel = 2.0 * projection.half_width / f64::from(size[0]);
         Self {
             size,
             unit,
-            projection: scene.camera.projection(size[0], size[1]),
-            soft: Soft::new(&scene),
+            projection,
+            soft,
             solids: Solids::new(&scene),
             finishes: scene.materials.iter().map(Finish::of).collect(),
             lights: scene.lights.clone(),
@@ -271,7 +275,11 @@ impl Picture {
         if self.soft.is_empty() || self.digger.is_some() {
             return Square::Empty;
         }
-        if let Some(near) = self.soft.nearby(&self.beam(area), f64::INFINITY) {
+        let mut near = Nearby::default();
+        if self
+            .soft
+            .list_lumps(&self.beam(area), f64::INFINITY, &mut near)
+        {
             return Square::Lumps(Lumps::new(self, area, packets, near));
         }
         match self.slabs(area, packets) {

@@ -7,6 +7,7 @@ use crate::climb::{Climbed, Step, Way, climb, extremes};
 use crate::nearby::Nearby;
 use crate::ray::Ray;
 use crate::soft::{Flesh, NEAR_ENOUGH, PACKET, Soft};
+use crate::walk::Quest;
 use field::Real;
 use glam::DVec3;
 use wide::f32x8;
@@ -23,9 +24,11 @@ const STRONG: f32 = 0.15;
 #[derive(Default)]
 pub struct Quick {
     steps: Vec<Step>,
+    list: Nearby,
 }
 
 /// What a packet's rays met.
+#[derive(Default)]
 pub struct Looked {
     /// Those that met the surface, a bit each.
     pub met: u32,
@@ -34,6 +37,11 @@ pub struct Looked {
     /// Evaluations of lumps, for one ray each.
     pub evaluations: u64,
 }
+
+/// Half the least and the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), or less.
+const FINEST: f64 = 1e-6;
+/// See [`FINEST`].
+const COARSEST: f64 = 5e-5;
 
 /// Looks at a packet's hits, each with a step of Newton's onto the surface.
 const MOST_LOOKS: usize = 3;
@@ -83,22 +91,47 @@ fn around(places: [f32x8; 3]) -> (DVec3, f64) {
 }
 
 impl Soft {
-    /// Finds the first crossing, from outside to inside, of the rays of a packet. `None` if this is not the way
-    /// to find it.
+    /// Finds the first crossing of rays that make a packet of their own, up to their limits; for [`Quest::Entry`] only whether
+    /// there is one. `None` if this is not the way to find it.
+    pub fn quick_alone(
+        &self,
+        rays: &[Ray; PACKET],
+        limits: &[f64; PACKET],
+        alive: u32,
+        quest: Quest,
+        work: &mut Quick,
+    ) -> Option<(Looked, f64)> {
+        let lanes = |i: &usize| alive >> i & 1 != 0;
+        let followed: Vec<Ray> = (0..PACKET).filter(lanes).map(|i| rays[i]).collect();
+        let furthest = (0..PACKET).filter(lanes).map(|i| limits[i]);
+        let furthest = furthest.fold(0.0, f64::max);
+        let beam = Beam::around(&followed)?;
+        let mut list = core::mem::take(&mut work.list);
+        let looked = if self.list_lumps(&beam, furthest, &mut list) {
+            self.quick(&list, rays, limits, alive, quest, work)
+        } else {
+            None
+        };
+        let base = list.base;
+        work.list = list;
+        looked.map(|looked| (looked, base))
+    }
+
+    /// Finds the first crossing, from outside to inside, of the rays of a packet; for [`Quest::Entry`] only whether there
+    /// is one. `None` if this is not the way to find it.
     pub fn quick(
         &self,
         near: &Nearby,
         rays: &[Ray; PACKET],
         limits: &[f64; PACKET],
         alive: u32,
+        quest: Quest,
         work: &mut Quick,
     ) -> Option<Looked> {
+        if near.len() == 0 {
+            return Some(Looked::default());
+        }
         let lanes = Rays::new(rays, near);
-        let nothing = Looked {
-            met: 0,
-            flesh: Flesh::default(),
-            evaluations: 0,
-        };
         let far = f32x8::splat(f32::INFINITY);
         let (mut from, mut to, mut guess) = (far, -far, far);
         let mut evaluations = 0;
@@ -134,7 +167,7 @@ impl Soft {
             });
         });
         if work.steps.is_empty() {
-            return Some(nothing);
+            return Some(Looked::default());
         }
         work.steps.sort_by(|a, b| a.from.total_cmp(&b.from));
         let alive = alive & from.simd_le(to).to_bitmask();
@@ -143,11 +176,15 @@ impl Soft {
             to,
             guess,
             alive,
-            tolerance: 5e-5,
+            tolerance: (0.1 * self.pixel * near.base).clamp(FINEST, COARSEST) as f32,
         };
         let climbed = climb(&work.steps, &way)?;
-        if climbed.met == 0 {
-            return Some(nothing);
+        if climbed.met == 0 || quest == Quest::Entry {
+            return Some(Looked {
+                met: climbed.met,
+                flesh: Flesh::default(),
+                evaluations: evaluations + climbed.evaluations,
+            });
         }
         Some(self.look(near, &lanes, &climbed, evaluations, work))
     }

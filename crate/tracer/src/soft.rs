@@ -31,6 +31,8 @@ pub struct Soft {
     left_out: f64,
     /// How exactly pictures follow the surface.
     pub precision: Precision,
+    /// The width of a pixel at distance 1.
+    pub pixel: f64,
 }
 
 /// Rays from infinitely wide primitives are followed this far (in units of the scene's size).
@@ -113,6 +115,7 @@ impl Soft {
             everywhere,
             left_out,
             precision: Precision::PICTURE,
+            pixel: 1.0,
         }
     }
 
@@ -171,12 +174,11 @@ impl Soft {
         (slabs.slab(slabs.root()).above >= THRESHOLD).then_some((slabs, from))
     }
 
-    /// The lumps near a beam, up to a parameter. `None` if the beam meets anything else.
-    pub fn nearby(&self, beam: &Beam, limit: f64) -> Option<Nearby> {
-        if !self.everywhere.is_empty()
-            || !(beam.axis.origin.is_finite() && beam.axis.direction.is_finite())
-        {
-            return None;
+    /// Lists the lumps near a beam, up to a parameter. False if the beam meets anything else.
+    pub fn list_lumps(&self, beam: &Beam, limit: f64, list: &mut Nearby) -> bool {
+        let finite = beam.axis.origin.is_finite() && beam.axis.direction.is_finite();
+        if !self.everywhere.is_empty() || !finite {
+            return false;
         }
         let mut found = Vec::new();
         let mut plain = true;
@@ -190,11 +192,10 @@ impl Soft {
             }
         });
         if !plain {
-            return None;
+            return false;
         }
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let base = found.first().map_or(0.0, |lump| lump.0);
-        let mut list = Nearby::default();
         list.begin(beam.axis.at(base), base);
         for (_, i, radius, lump) in found {
             let square = lump.reach(self.left_out);
@@ -208,7 +209,7 @@ impl Soft {
             };
             list.push(near, radius);
         }
-        Some(list)
+        true
     }
 
     /// Walks a bundle through the slabs of its beam.

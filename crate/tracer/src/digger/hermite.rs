@@ -19,6 +19,20 @@ impl Digger for Hermite {
         quest: Quest,
         scratch: &mut Scratch,
     ) -> Crossings {
+        if let Some((looked, base)) = soft.quick_alone(
+            packet.rays,
+            packet.limits,
+            packet.alive,
+            quest,
+            &mut scratch.quick,
+        ) {
+            scratch.evaluations += looked.evaluations;
+            return core::array::from_fn(|i| {
+                // Whoever asks only whether there is an entry is told that there is one.
+                let t = looked.flesh.t[i];
+                (looked.met >> i & 1 != 0).then_some(base + t)
+            });
+        }
         let alive = |lane: &usize| packet.alive >> lane & 1 != 0;
         let rays: Vec<Ray> = (0..PACKET).filter(alive).map(|i| packet.rays[i]).collect();
         let furthest = (0..PACKET).filter(alive).map(|i| packet.limits[i]);
