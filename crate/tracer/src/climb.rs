@@ -48,14 +48,16 @@ pub struct Way {
 pub struct Climbed {
     /// Near the crossing, on rays that cross.
     pub t: f32x8,
+    /// It lies between these.
+    pub between: [f32x8; 2],
     /// Those rays, a bit each.
     pub met: u32,
     /// Evaluations of lumps, for one ray each.
     pub evaluations: u64,
 }
 
-/// A little less than T: a ray that the field's rounding alone keeps outside meets the surface.
-const LEVEL: f32 = 1.0 - 4e-6;
+/// T, less what rounding takes from sums: a ray that rounding alone keeps outside meets the surface.
+const LEVEL: f32 = 1.0 - 2.4e-7;
 
 /// A field of this much is deep inside.
 const DEEP: f32 = 1.5;
@@ -103,18 +105,21 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
     let mut met = 0;
     for _ in 0..MOST_ROUNDS {
         if going == 0 {
-            let t = polish(
-                lumps,
-                met,
-                [low, low_value],
-                [high, high_value, high_slope],
-                &mut evaluations,
-            );
-            return Some(Climbed {
-                t,
+            let mut climbed = Climbed {
+                t: high,
+                between: [low, high],
                 met,
                 evaluations,
-            });
+            };
+            if met != 0 {
+                polish(
+                    lumps,
+                    &mut climbed,
+                    low_value,
+                    [high_value, high_slope, high_bend],
+                );
+            }
+            return Some(climbed);
         }
         let sum = Sum::on(lumps, low, next, going, &mut evaluations);
         let length = next - low;
@@ -265,20 +270,18 @@ impl Sum {
     }
 }
 
-/// Steps towards the crossings between `low` and `high`: Newton's, or between the ends where those lead out.
+/// Steps towards the crossings: Newton's, or between the ends where those lead out. At the far end value, slope and
+/// bend are known.
 #[inline(never)]
 fn polish(
     lumps: &[Step],
-    met: u32,
-    [mut low, mut low_value]: [f32x8; 2],
-    [mut high, mut high_value, high_slope]: [f32x8; 3],
-    evaluations: &mut u64,
-) -> f32x8 {
+    climbed: &mut Climbed,
+    mut low_value: f32x8,
+    [mut high_value, slope, bend]: [f32x8; 3],
+) {
     let level = f32x8::splat(1.0);
-    let (mut at, mut value, mut slope) = (high, high_value, high_slope);
-    if met == 0 {
-        return at;
-    }
+    let [mut low, mut high] = climbed.between;
+    let (mut at, mut value, mut slope) = (high, high_value, slope);
     for step in 0..MOST_STEPS {
         let newton = at - (value - level) / slope;
         let fits = low.simd_le(newton) & newton.simd_le(high);
@@ -292,28 +295,27 @@ fn polish(
         } else {
             share
         };
-        let chord = low + (high - low) * between;
-        at = fits.select(newton, chord);
-        if f32x8::splat(CLOSE)
-            .simd_lt((value - level).abs())
-            .to_bitmask()
-            & met
-            == 0
-        {
-            // What this last step leaves is mended where the surface's look is found out.
+        let next = fits.select(newton, low + (high - low) * between);
+        let length = next - at;
+        at = next;
+        // What this step leaves, and its look at the surface will mend.
+        let left = bend * length * length;
+        let near = fits & left.simd_lt(f32x8::splat(CLOSE));
+        if !near.to_bitmask() & climbed.met == 0 {
             break;
         }
-        (value, slope) = values(lumps, at, met, evaluations);
+        (value, slope) = values(lumps, at, climbed.met, &mut climbed.evaluations);
         let over = level.simd_le(value);
         high = over.select(at, high);
         high_value = over.select(value, high_value);
         low = over.select(low, at);
         low_value = over.select(low_value, value);
     }
-    at
+    climbed.t = at;
+    climbed.between = [low, high];
 }
 
 /// Newton's steps at most.
 const MOST_STEPS: u32 = 24;
-/// The field is within this of T where steps end.
-const CLOSE: f32 = 2e-2;
+/// Where a step ends the field is within about this of T.
+const CLOSE: f32 = 2e-3;

@@ -45,8 +45,6 @@ const COARSEST: f64 = 5e-5;
 
 /// Looks at a packet's hits, each with a step of Newton's onto the surface.
 const MOST_LOOKS: usize = 3;
-/// No such step leads further than this.
-const MOST_MOVE: f32 = 1e-3;
 
 /// Rays of a packet, counted from a list's base.
 struct Rays {
@@ -235,7 +233,7 @@ impl Soft {
             let excess = value - f32x8::splat(1.0);
             let next = at - excess / (x + y + z);
             // Where the ray only grazes the surface Newton's step may lead astray.
-            let good = (next - climbed.t).abs().simd_lt(f32x8::splat(MOST_MOVE));
+            let good = climbed.between[0].simd_le(next) & next.simd_le(climbed.between[1]);
             at = good.select(next, at);
             if f32x8::splat(NEAR_ENOUGH).simd_lt(excess.abs()).to_bitmask() & met == 0 {
                 break;
