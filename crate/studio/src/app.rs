@@ -111,7 +111,6 @@ pub struct App {
     /// The picture's place in device pixels at the last frame.
     pub(crate) place: [f32; 2],
     pub(crate) forced_size: Option<[u32; 2]>,
-    keyboard: Keyboard,
     pub(crate) parts: Parts,
     saved_settings: Settings,
     /// The text, and whether it was compiled, that the diagnostics in the outbox are about.
@@ -144,6 +143,7 @@ impl App {
         let (work, trouble) = Work::start(parts.shelf.clone(), carried, calm);
         parts.requests.attach(ctx);
         ctx.set_fonts(fonts::definitions());
+        ctx.add_plugin(Keyboard::default());
         let settings: Settings = parts.shelf.borrow().settings();
         ctx.set_theme(settings.theme);
         let repaint = ctx.clone();
@@ -171,7 +171,6 @@ impl App {
             tab: Tab::Text,
             place: [640.0, 480.0],
             forced_size: None,
-            keyboard: Keyboard::default(),
             saved_settings: settings.clone(),
             settings,
             reported: None,
@@ -350,7 +349,6 @@ impl App {
             self.touch = Some(touch);
             theme::apply(&ctx, touch);
         }
-        self.keyboard.order(&ctx);
         let mut commands = Vec::new();
         self.keys(&ctx, &mut commands);
         crate::layout::show(self, ui, &mut commands);
