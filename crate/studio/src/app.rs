@@ -246,17 +246,8 @@ impl App {
             platform::set_title(&self.titled);
         }
         self.screen(now);
-        let session = &self.work.session;
-        if session.enabled() {
-            self.renderer
-                .want(session.generation(), self.size(ctx), now);
-            // No new picture begins while the lab is open, but one that runs is finished first.
-            if self.lab.is_open() && self.renderer.phase() != Phase::Tracing {
-                self.lab.pictures.tick(ctx);
-            } else {
-                self.lab.pictures.pause();
-                self.renderer.tick(ctx, now, || session.scene());
-            }
+        self.trace(ctx, now);
+        if self.work.session.enabled() {
             if !self.healthy && now - started > HEALTHY {
                 self.healthy = true;
                 platform::set_troubled(false);
@@ -302,6 +293,23 @@ impl App {
             .min_by(f64::total_cmp)
         {
             ctx.request_repaint_after_secs(wait.max(0.0) as f32 + 0.002);
+        }
+    }
+
+    /// Begins the picture that is wanted, if its time has come, and takes in what the workers have done.
+    fn trace(&mut self, ctx: &Context, now: f64) {
+        let size = self.size(ctx);
+        let session = &self.work.session;
+        if !session.enabled() {
+            return;
+        }
+        self.renderer.want(session.generation(), size, now);
+        // No new picture begins while the lab is open, but one that runs is finished first.
+        if self.lab.is_open() && self.renderer.phase() != Phase::Tracing {
+            self.lab.pictures.tick(ctx);
+        } else {
+            self.lab.pictures.pause();
+            self.renderer.tick(ctx, now, || session.scene());
         }
     }
 
@@ -357,6 +365,8 @@ impl App {
             self.carry_out(&ctx, command, now);
         }
         self.work.settle(now);
+        // Workers need not wait for this frame to be drawn.
+        self.trace(&ctx, now);
     }
 }
 
