@@ -151,13 +151,6 @@ export class Sinew {
     return this.page.evaluate((name) => sinew.debug.rects()[name], name);
   }
 
-  /** Waits until the browser has drawn this often. */
-  async frames(count) {
-    for (let i = 0; i < count; i++) {
-      await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn))));
-    }
-  }
-
   /** Clicks the middle of a widget. */
   async click(name) {
     const { x, y, w, h } = await this.place(name);

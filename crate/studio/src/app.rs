@@ -247,11 +247,9 @@ impl App {
         }
         self.screen(now);
         self.trace(ctx, now);
-        if self.work.session.enabled() {
-            if !self.healthy && now - started > HEALTHY {
-                self.healthy = true;
-                platform::set_troubled(false);
-            }
+        if self.work.session.enabled() && !self.healthy && now - started > HEALTHY {
+            self.healthy = true;
+            platform::set_troubled(false);
         }
         if !self.lab.is_open() {
             let finished = self.is_finished().then(|| self.renderer.image()).flatten();
