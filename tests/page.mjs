@@ -151,13 +151,6 @@ export class Sinew {
     return this.page.evaluate((name) => sinew.debug.rects()[name], name);
   }
 
-  /** Waits until the browser has drawn this often. */
-  async frames(count) {
-    for (let i = 0; i < count; i++) {
-      await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn))));
-    }
-  }
-
   /** Clicks the middle of a widget. */
   async click(name) {
     const { x, y, w, h } = await this.place(name);
@@ -181,14 +174,14 @@ export class Sinew {
   }
 }
 
-/** The picture that the program `sinew` draws of a text, decoded. */
-export async function native(text, [width, height]) {
+/** The picture that the program `sinew` draws of a text, decoded. `options` are further arguments. */
+export async function native(text, [width, height], options = []) {
   const folder = await mkdtemp(join(tmpdir(), 'sinew-'));
   try {
     const [dataset, picture] = [join(folder, 'main.rat'), join(folder, 'main.png')];
     await writeFile(dataset, text);
     await promisify(execFile)(setting('SINEW_PROGRAM'), [
-      'render', dataset, '-o', picture, '-r', String(width), String(height),
+      'render', dataset, '-o', picture, '-r', String(width), String(height), ...options,
     ]);
     return decode(await readFile(picture));
   } finally {

@@ -111,7 +111,6 @@ pub struct App {
     /// The picture's place in device pixels at the last frame.
     pub(crate) place: [f32; 2],
     pub(crate) forced_size: Option<[u32; 2]>,
-    keyboard: Keyboard,
     pub(crate) parts: Parts,
     saved_settings: Settings,
     /// The text, and whether it was compiled, that the diagnostics in the outbox are about.
@@ -144,6 +143,7 @@ impl App {
         let (work, trouble) = Work::start(parts.shelf.clone(), carried, calm);
         parts.requests.attach(ctx);
         ctx.set_fonts(fonts::definitions());
+        ctx.add_plugin(Keyboard::default());
         let settings: Settings = parts.shelf.borrow().settings();
         ctx.set_theme(settings.theme);
         let repaint = ctx.clone();
@@ -171,7 +171,6 @@ impl App {
             tab: Tab::Text,
             place: [640.0, 480.0],
             forced_size: None,
-            keyboard: Keyboard::default(),
             saved_settings: settings.clone(),
             settings,
             reported: None,
@@ -247,21 +246,10 @@ impl App {
             platform::set_title(&self.titled);
         }
         self.screen(now);
-        let session = &self.work.session;
-        if session.enabled() {
-            self.renderer
-                .want(session.generation(), self.size(ctx), now);
-            // No new picture begins while the lab is open, but one that runs is finished first.
-            if self.lab.is_open() && self.renderer.phase() != Phase::Tracing {
-                self.lab.pictures.tick(ctx);
-            } else {
-                self.lab.pictures.pause();
-                self.renderer.tick(ctx, now, || session.scene());
-            }
-            if !self.healthy && now - started > HEALTHY {
-                self.healthy = true;
-                platform::set_troubled(false);
-            }
+        self.trace(ctx, now);
+        if self.work.session.enabled() && !self.healthy && now - started > HEALTHY {
+            self.healthy = true;
+            platform::set_troubled(false);
         }
         if !self.lab.is_open() {
             let finished = self.is_finished().then(|| self.renderer.image()).flatten();
@@ -303,6 +291,23 @@ impl App {
             .min_by(f64::total_cmp)
         {
             ctx.request_repaint_after_secs(wait.max(0.0) as f32 + 0.002);
+        }
+    }
+
+    /// Begins the picture that is wanted, if its time has come, and takes in what the workers have done.
+    fn trace(&mut self, ctx: &Context, now: f64) {
+        let size = self.size(ctx);
+        let session = &self.work.session;
+        if !session.enabled() {
+            return;
+        }
+        self.renderer.want(session.generation(), size, now);
+        // No new picture begins while the lab is open, but one that runs is finished first.
+        if self.lab.is_open() && self.renderer.phase() != Phase::Tracing {
+            self.lab.pictures.tick(ctx);
+        } else {
+            self.lab.pictures.pause();
+            self.renderer.tick(ctx, now, || session.scene());
         }
     }
 
@@ -350,7 +355,6 @@ impl App {
             self.touch = Some(touch);
             theme::apply(&ctx, touch);
         }
-        self.keyboard.order(&ctx);
         let mut commands = Vec::new();
         self.keys(&ctx, &mut commands);
         crate::layout::show(self, ui, &mut commands);
@@ -359,6 +363,8 @@ impl App {
             self.carry_out(&ctx, command, now);
         }
         self.work.settle(now);
+        // Workers need not wait for this frame to be drawn.
+        self.trace(&ctx, now);
     }
 }
 

@@ -2,29 +2,28 @@
 //!
 //! Some keys (Enter, Tab, undo …) are handled by us before egui's text field sees the rest. When a
 //! slow frame brings "a", Enter, "b" at once, Enter must come after "a" and before "b". So a frame
-//! gets at most one such key, and only at its beginning; what follows waits for the next frame.
+//! gets at most one such key, and only at its beginning; what follows waits for the next frame. So do keys
+//! that come after a click: the widget that was clicked has them only from the next frame on, and until
+//! then arrow keys and Tab would go from widget to widget.
 
-use egui::{Context, Event, Key, Modifiers};
+use egui::{Context, Event, Key, Modifiers, RawInput};
 
-/// Events that wait for the next frame.
+/// Events that wait for the next frame. A plugin, as egui moves the focus by arrow keys and Tab before
+/// any widget is shown.
 #[derive(Default)]
 pub struct Keyboard {
     waiting: Vec<Event>,
 }
 
-impl Keyboard {
-    /// Sorts the events of this frame. Call it before any widget is shown.
-    pub fn order(&mut self, ctx: &Context) {
-        ctx.input_mut(|input| {
-            if self.waiting.is_empty() && !input.events.iter().any(is_ours) {
-                return;
-            }
-            let mut events = std::mem::take(&mut self.waiting);
-            events.append(&mut input.events);
-            let (now, later) = split(events);
-            input.events = now;
-            self.waiting = later;
-        });
+impl egui::Plugin for Keyboard {
+    fn debug_name(&self) -> &'static str {
+        "keyboard"
+    }
+
+    fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
+        let mut events = std::mem::take(&mut self.waiting);
+        events.append(&mut input.events);
+        (input.events, self.waiting) = split(events);
         if !self.waiting.is_empty() {
             ctx.request_repaint();
         }
@@ -34,18 +33,26 @@ impl Keyboard {
 /// What this frame may see, and what must wait.
 fn split(events: Vec<Event>) -> (Vec<Event>, Vec<Event>) {
     let (mut now, mut later) = (Vec::new(), Vec::new());
-    let mut written = false;
+    let (mut written, mut clicked) = (false, false);
     for event in events {
-        if !writes(&event) {
-            now.push(event);
-        } else if !later.is_empty() || (written && is_ours(&event)) {
+        let writes = writes(&event);
+        let click = is_click(&event);
+        // A key must not go up before it goes down.
+        let in_order = writes || click || matches!(event, Event::Key { .. });
+        if in_order && !later.is_empty() || writes && (clicked || written && is_ours(&event)) {
             later.push(event);
         } else {
-            written = true;
+            written |= writes;
+            clicked |= click;
             now.push(event);
         }
     }
     (now, later)
+}
+
+/// Whether a button of the pointer goes down or up.
+fn is_click(event: &Event) -> bool {
+    matches!(event, Event::PointerButton { .. })
 }
 
 /// Whether an event can change a text or move its cursor.
@@ -126,5 +133,42 @@ mod tests {
         let (now, later) = split(later);
         assert_eq!(now, [key(Key::Enter), text("b")]);
         assert_eq!(split(later), (vec![key(Key::Enter)], vec![]));
+    }
+
+    #[test]
+    fn keys_after_a_click_wait_for_the_widget_that_was_clicked() {
+        let click = |pressed| Event::PointerButton {
+            pos: egui::Pos2::ZERO,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        let events = vec![
+            text("a"),
+            click(true),
+            click(false),
+            key(Key::ArrowUp),
+            text("b"),
+        ];
+        let (now, later) = split(events);
+        assert_eq!(now, [text("a"), click(true), click(false)]);
+        let again = [later, vec![click(true), text("c")]].concat();
+        let (now, later) = split(again);
+        assert_eq!(now, [key(Key::ArrowUp), text("b"), click(true)]);
+        assert_eq!(later, [text("c")]);
+    }
+
+    #[test]
+    fn a_key_goes_up_after_it_went_down() {
+        let up = Event::Key {
+            key: Key::Enter,
+            physical_key: None,
+            pressed: false,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        let (now, later) = split(vec![text("a"), key(Key::Enter), up.clone()]);
+        assert_eq!(now, [text("a")]);
+        assert_eq!(later, [key(Key::Enter), up]);
     }
 }

@@ -1,7 +1,8 @@
 //! When to trace, and the traced picture on its way to the screen.
 //!
-//! A change is traced after a short pause, so that typing does not begin a picture at every key; the
-//! running picture is given up at the change itself, which frees the workers for the next one.
+//! A change is traced at once where the workers soon have a coarse picture of it; else after a short pause,
+//! so that typing does not have a large scene prepared at every key. The running picture is given up at
+//! the change itself, which frees the workers for the next one.
 
 use crate::picture::{self, Assembly, Change, Image};
 use crate::pool::{Job, Pool, Progress};
@@ -11,8 +12,10 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use tracer::Pass;
 
-/// Seconds of quiet before a change is traced.
+/// Seconds of quiet before a change of a scene is traced that takes longer than [`QUICK`].
 pub const DEBOUNCE: f64 = 0.15;
+/// Seconds to the coarse picture that a scene may take whose changes are traced at once.
+pub const QUICK: f64 = 0.25;
 /// Seconds of quiet before a new size of the view is traced: the split is being dragged.
 pub const RESIZE_DEBOUNCE: f64 = 0.35;
 /// Seconds in which the window finds its size before the first picture begins.
@@ -76,6 +79,8 @@ pub struct Renderer {
     appeared: f64,
     progress: Progress,
     timings: Timings,
+    /// What the last coarse picture took the workers.
+    coarse: f64,
 }
 
 impl Renderer {
@@ -95,11 +100,12 @@ impl Renderer {
             appeared: f64::NEG_INFINITY,
             progress: Progress::default(),
             timings: Timings::default(),
+            coarse: 0.0,
         }
     }
 
     /// Says what should be on the screen. When that differs from what is coming, the running
-    /// picture is given up and a new one begins after a pause.
+    /// picture is given up and a new one begins, after a pause unless scenes are quick.
     pub fn want(&mut self, generation: u64, size: [u32; 2], now: f64) {
         let Some((old_generation, old_size)) = self.wanted else {
             self.wanted = Some((generation, size));
@@ -114,7 +120,8 @@ impl Renderer {
         if generation != old_generation {
             self.halt();
             self.phase = Phase::Waiting;
-            self.due = now + DEBOUNCE;
+            let quick = self.coarse <= QUICK;
+            self.due = now + if quick { 0.0 } else { DEBOUNCE };
         } else if self.phase != Phase::Cancelled {
             self.phase = Phase::Waiting;
             // Nothing is on the screen yet: the window is only finding its size.
@@ -184,6 +191,9 @@ impl Renderer {
                 restarted: progress.restarted,
                 ..self.progress.clone()
             };
+        }
+        if let Some(seconds) = progress.pass_seconds[0] {
+            self.coarse = seconds;
         }
         changed |= progress != self.progress;
         self.progress = progress;

@@ -212,6 +212,42 @@ fn a_question_is_about_where_the_keys_before_it_lead() {
     assert!(window.text().contains("var girth"), "{}", window.text());
 }
 
+/// Also the click before them may come in the same frame.
+#[test]
+fn keys_that_come_with_a_click_go_to_what_was_clicked() {
+    let mut window = window();
+    let at = window.place("editor").center_top() + egui::vec2(0.0, 20.0);
+    window.harness.event(Event::PointerMoved(at));
+    window.steps(1);
+    let key = |key| Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    let button = |pressed| Event::PointerButton {
+        pos: at,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let events = [
+        button(true),
+        button(false),
+        key(Key::ArrowDown),
+        key(Key::Home),
+        Event::Text(String::from("# here ")),
+    ];
+    window.harness.input_mut().events.extend(events);
+    window.steps(3);
+    let line = window
+        .text()
+        .lines()
+        .position(|line| line.starts_with("# here "));
+    assert!(line.is_some_and(|line| line > 0), "{}", window.text());
+}
+
 #[test]
 fn a_name_that_is_taken_is_refused_in_the_field() {
     let mut window = window();

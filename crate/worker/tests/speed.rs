@@ -1,7 +1,9 @@
 //! What the worker's engine takes for the scenes of `tests/bench/`, natively and as wasm. A measurement:
 //! `cargo xtask bench wasm` runs it. That it ends with a picture is a test.
 
-use rats::{File, Project};
+mod common;
+
+use common::{BENCH, compile};
 use scene::Scene;
 use tracer::{Pass, tiles};
 use worker::{Answer, Engine, Order, Request, Step};
@@ -11,43 +13,12 @@ const TILE: u32 = 32;
 /// Pictures of each scene, of which the quickest counts.
 const PICTURES: usize = 3;
 
-const FLAKE: &str = include_str!("../../../tests/bench/flake.rat");
-const SCENES: [(&str, &str); 7] = [
-    (
-        "flake-10",
-        include_str!("../../../tests/bench/flake-10.rat"),
-    ),
-    (
-        "flake-820",
-        include_str!("../../../tests/bench/flake-820.rat"),
-    ),
-    (
-        "flake-7381",
-        include_str!("../../../tests/bench/flake-7381.rat"),
-    ),
-    (
-        "flake-820-cauchy",
-        include_str!("../../../tests/bench/flake-820-cauchy.rat"),
-    ),
-    ("coral", include_str!("../../../tests/bench/coral.rat")),
-    (
-        "seahorse",
-        include_str!("../../../tests/bench/seahorse.rat"),
-    ),
-    ("tee", include_str!("../../../tests/bench/tee.rat")),
-];
-
-fn compile(text: &str) -> Scene {
-    let file = |name: &str, text: &str| File {
-        name: name.into(),
-        text: text.into(),
-    };
-    let project = Project {
-        files: vec![file("main.rat", text), file("flake.rat", FLAKE)],
-    };
-    let compiled = rats::compile(&project);
-    assert_eq!(compiled.diagnostics, []);
-    compiled.scene
+/// Scenes that tell something about speed.
+fn scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let small = ["flake-1", "flake-91"];
+    BENCH
+        .into_iter()
+        .filter(move |(name, _)| !small.contains(name))
 }
 
 /// Traces a picture as the page has it traced, and gives the seconds that it took and how many
@@ -84,7 +55,7 @@ fn picture(scene: &Scene, size: [u32; 2]) -> (f64, usize) {
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 fn every_scene_shows_something() {
-    for (name, text) in SCENES {
+    for (name, text) in scenes() {
         let (_, drawn) = picture(&compile(text), [32, 32]);
         assert!((20..1000).contains(&drawn), "{name}: {drawn} pixels");
     }
@@ -95,7 +66,7 @@ fn every_scene_shows_something() {
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 #[ignore = "a measurement, for optimised builds"]
 fn speed() {
-    for (name, text) in SCENES {
+    for (name, text) in scenes() {
         let scene = compile(text);
         let best = (0..PICTURES)
             .map(|_| picture(&scene, scene.settings.frame).0)

@@ -92,6 +92,7 @@ impl<W: Workers> Core<W> {
                 stats,
                 seconds,
             } => {
+                let complete = self.scheduler.complete_passes();
                 let wanted = self.scheduler.traced(index, order, &stats, seconds, now);
                 if let (true, Some(generation)) = (wanted, self.scheduler.generation()) {
                     self.done.push(TileDone {
@@ -101,7 +102,7 @@ impl<W: Workers> Core<W> {
                         pixels,
                     });
                 }
-                return wanted && self.scheduler.is_worth_a_look();
+                return self.scheduler.complete_passes() > complete;
             }
             Answer::Failed(reason) => {
                 self.scheduler.died(index, &reason, now);

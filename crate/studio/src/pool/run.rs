@@ -130,6 +130,16 @@ impl Run {
         ahead.min(share)
     }
 
+    /// Whether tiles of the coarse pass were never handed out.
+    pub fn is_coarse(&self) -> bool {
+        self.passes[0] == Pass::Coarse && self.next < self.tiles.len()
+    }
+
+    /// How many passes are complete.
+    pub fn complete_passes(&self) -> usize {
+        self.pass_seconds.iter().flatten().count()
+    }
+
     /// Seconds a task may take. After each failure it gets more, as a tile may be slow for good
     /// reasons.
     pub fn limit(&self, task: usize) -> f64 {

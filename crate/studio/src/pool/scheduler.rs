@@ -154,12 +154,11 @@ impl Scheduler {
         self.run.as_ref().map(|run| run.plan.generation)
     }
 
-    /// Whether a tile that has come can be seen: those of small pictures are seen all at once.
+    /// How many passes of the present picture are complete. Only then is it worth a look at once: tiles are
+    /// looked at when the app draws anyway.
     #[must_use]
-    pub fn is_worth_a_look(&self) -> bool {
-        self.run
-            .as_ref()
-            .is_none_or(|run| !run.plan.small || run.ended.is_some())
+    pub fn complete_passes(&self) -> usize {
+        self.run.as_ref().map_or(0, Run::complete_passes)
     }
 
     /// Workers can be started from now on.
@@ -183,6 +182,28 @@ impl Scheduler {
         for index in 0..self.slots.len() {
             self.begin(index, now);
         }
+        self.deal(now);
+    }
+
+    /// Hands out the whole coarse pass, a tile to each worker in turn: tracing it takes less time than
+    /// asking a page that is busy drawing for more.
+    fn deal(&mut self, now: f64) {
+        let mut enough = 1;
+        while self.run.as_ref().is_some_and(Run::is_coarse) {
+            enough += 1;
+            let before = self.held();
+            for index in 0..self.slots.len() {
+                self.give(index, enough, false, now);
+            }
+            // Nobody is awake.
+            if self.held() == before {
+                return;
+            }
+        }
+    }
+
+    fn held(&self) -> usize {
+        self.slots.iter().map(|slot| slot.holds.len()).sum()
     }
 
     /// Ends the present picture.
@@ -486,6 +507,18 @@ impl Scheduler {
         } else {
             run.enough(workers)
         };
+        self.give(index, enough, again, now);
+    }
+
+    /// Gives a worker tiles until it has so many, from those never handed out or from those to be done
+    /// again.
+    fn give(&mut self, index: usize, enough: usize, again: bool, now: f64) {
+        let (Some(run), slot) = (&mut self.run, &mut self.slots[index]) else {
+            return;
+        };
+        if slot.life != Life::Awake || !slot.begun {
+            return;
+        }
         let mut orders = Vec::new();
         while slot.holds.len() < enough {
             let Some(task) = run.take(again) else { break };
@@ -497,10 +530,20 @@ impl Scheduler {
         }
         // Tiles given up in an earlier pass may have been the last ones.
         run.settle(now);
-        match self.commands.last_mut() {
-            _ if orders.is_empty() => {}
-            Some(Command::Trace(last, before)) if *last == index => before.extend(orders),
-            _ => self.commands.push(Command::Trace(index, orders)),
+        if orders.is_empty() {
+            return;
+        }
+        let mine = self
+            .commands
+            .iter_mut()
+            .rev()
+            .find_map(|command| match command {
+                Command::Trace(worker, before) if *worker == index => Some(before),
+                _ => None,
+            });
+        match mine {
+            Some(before) => before.extend(orders),
+            None => self.commands.push(Command::Trace(index, orders)),
         }
     }
 }

@@ -172,6 +172,27 @@ fn every_tile_is_done_once_in_each_pass_the_centre_first() {
 }
 
 #[test]
+fn the_coarse_pass_is_handed_out_at_once_in_turn() {
+    let mut crowd = Crowd::new(3);
+    crowd.work();
+    crowd.scheduler.start(plan(1), 0.0);
+    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE);
+    let mut dealt = vec![None; tiles.len()];
+    for command in crowd.scheduler.commands() {
+        let Command::Trace(worker, orders) = command else {
+            continue;
+        };
+        for order in orders {
+            assert_eq!(order.pass, Pass::Coarse);
+            let at = tiles.iter().position(|tile| *tile == order.tile);
+            dealt[at.unwrap()] = Some(worker);
+        }
+    }
+    let wanted: Vec<_> = (0..tiles.len()).map(|i| Some(i % 3)).collect();
+    assert_eq!(dealt, wanted);
+}
+
+#[test]
 fn one_ray_a_pixel_needs_no_third_pass() {
     let mut crowd = Crowd::new(2);
     let samples = 1;
@@ -188,10 +209,10 @@ fn a_small_picture_has_the_last_pass_alone_and_is_seen_when_it_is_finished() {
     let small = true;
     crowd.scheduler.start(Plan { small, ..plan(1) }, 0.0);
     crowd.obey();
-    assert!(!crowd.scheduler.is_worth_a_look());
+    assert_eq!(crowd.scheduler.complete_passes(), 0);
     crowd.work_off();
     assert!(crowd.progress().finished);
-    assert!(crowd.scheduler.is_worth_a_look());
+    assert_eq!(crowd.scheduler.complete_passes(), 1);
     assert!(!crowd.done.is_empty());
     assert!(crowd.done.iter().all(|order| order.pass == Pass::Smooth));
 }

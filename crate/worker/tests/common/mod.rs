@@ -1,0 +1,43 @@
+//! The scenes of `tests/bench/`, compiled.
+#![allow(dead_code)]
+
+use rats::{File, Project};
+use scene::Scene;
+
+const FLAKE: &str = include_str!("../../../../tests/bench/flake.rat");
+
+macro_rules! bench {
+    ($name:literal) => {
+        (
+            $name,
+            include_str!(concat!("../../../../tests/bench/", $name, ".rat")),
+        )
+    };
+}
+
+/// Names and texts.
+pub const BENCH: [(&str, &str); 9] = [
+    bench!("flake-1"),
+    bench!("flake-10"),
+    bench!("flake-91"),
+    bench!("flake-820"),
+    bench!("flake-7381"),
+    bench!("flake-820-cauchy"),
+    bench!("coral"),
+    bench!("seahorse"),
+    bench!("tee"),
+];
+
+/// What a text means; it may read `flake.rat`.
+pub fn compile(text: &str) -> Scene {
+    let file = |name: &str, text: &str| File {
+        name: name.into(),
+        text: text.into(),
+    };
+    let project = Project {
+        files: vec![file("main.rat", text), file("flake.rat", FLAKE)],
+    };
+    let compiled = rats::compile(&project);
+    assert_eq!(compiled.diagnostics, []);
+    compiled.scene
+}

@@ -1,0 +1,156 @@
+//! Pictures are equal bit for bit, natively by one worker and by two on threads, and as wasm by two
+//! workers, and take the same work. The lines `picture NAME PASS SIZE HASH WORK` that this test prints are
+//! compared between platforms by `cargo xtask test wasm`. Whole pictures, those of the page against those
+//! of the program, are compared in `tests/agree.test.mjs`.
+
+mod common;
+
+use common::{BENCH, compile};
+use scene::{Scene, wire};
+use tracer::{Pass, Stats, Tile, tiles};
+use worker::{Answer, Engine, Order, Request, Step};
+
+/// Side of the page's tiles.
+const TILE: u32 = 32;
+/// So many tiles of a picture are traced, spread over its middle.
+const TILES: usize = 10;
+/// At most n×n rays a pixel.
+const SAMPLES: u32 = 2;
+
+macro_rules! examples {
+    ($($name:literal)*) => {
+        [$((
+            $name,
+            include_str!(concat!("../../../www/examples/", $name, ".rat")),
+        )),*]
+    };
+}
+
+const EXAMPLES: [(&str, &str); 22] = examples![
+    "coral-crab" "coral-tree" "cowrie" "generators" "hermite-crab" "icicle" "sea-urchin" "seahorse"
+    "seaweed" "shell-1" "shell-2" "shell-3" "sphereflake" "spinal-starecase" "starfish" "starfish-a"
+    "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "tshape"
+];
+
+/// FNV-1a.
+fn hash(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xCBF2_9CE4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3)
+    })
+}
+
+/// What a worker makes of its tiles: pixels, and counts of the work, of each.
+fn traced(scene: &Scene, size: [u32; 2], pass: Pass, tiles: &[Tile]) -> Vec<(Vec<u8>, Stats)> {
+    let mut engine = Engine::default();
+    engine.accept(Request::Begin {
+        generation: 1,
+        scene: Box::new(scene.clone()),
+        size,
+    });
+    let order = |&tile| Order {
+        generation: 1,
+        tile,
+        pass,
+    };
+    engine.accept(Request::Trace(tiles.iter().map(order).collect()));
+    let mut done = Vec::new();
+    loop {
+        match engine.step(&|| false, &|| 0.0) {
+            Step::Idle => return done,
+            Step::Answer(Answer::Traced { pixels, stats, .. }) => done.push((pixels, stats)),
+            _ => {}
+        }
+    }
+}
+
+/// The same by two workers that take tiles in turn, natively at the same time.
+fn traced_by_two(
+    scene: &Scene,
+    size: [u32; 2],
+    pass: Pass,
+    tiles: &[Tile],
+) -> Vec<(Vec<u8>, Stats)> {
+    let half =
+        |first: usize| -> Vec<Tile> { tiles.iter().skip(first).step_by(2).copied().collect() };
+    #[cfg(not(target_arch = "wasm32"))]
+    let [even, odd] = std::thread::scope(|scope| {
+        let worker = |first| scope.spawn(move || traced(scene, size, pass, &half(first)));
+        [worker(0), worker(1)].map(|thread| thread.join().expect("it does not panic"))
+    });
+    #[cfg(target_arch = "wasm32")]
+    let [even, odd] = [0, 1].map(|first| traced(scene, size, pass, &half(first)));
+    let mut halves = [even.into_iter(), odd.into_iter()];
+    (0..tiles.len())
+        .filter_map(|i| halves[i % 2].next())
+        .collect()
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn pictures_are_the_same_whoever_traces_them() {
+    for (name, text) in EXAMPLES.into_iter().chain(BENCH) {
+        let mut scene = compile(text);
+        let bytes = wire::pack(&scene).expect("a scene is packed");
+        say(&format!("picture {name} scene {:016x}", hash(&bytes)));
+        scene.settings.samples = SAMPLES;
+        let size = scene.settings.frame;
+        let all = tiles(size[0], size[1], TILE);
+        let tiles = all.iter().step_by(all.len() / (2 * TILES)).take(TILES);
+        let tiles: Vec<Tile> = tiles.copied().collect();
+        for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
+            let done = traced_by_two(&scene, size, pass, &tiles);
+            assert_eq!(done.len(), tiles.len(), "{name}, {pass:?}");
+            #[cfg(not(target_arch = "wasm32"))]
+            assert!(
+                done == traced(&scene, size, pass, &tiles),
+                "{name}, {pass:?}: it matters how many workers there are"
+            );
+            let pixels = done.iter().flat_map(|(pixels, _)| pixels);
+            let pixels: Vec<u8> = pixels.copied().collect();
+            assert!(
+                pass == Pass::Coarse || pixels.chunks_exact(4).any(|pixel| pixel != &pixels[..4]),
+                "{name} shows nothing"
+            );
+            let count =
+                |of: fn(&Stats) -> u64| done.iter().map(|(_, stats)| of(stats)).sum::<u64>();
+            say(&format!(
+                "picture {name} {pass:?} {}x{} {:016x} {} {} {}",
+                size[0],
+                size[1],
+                hash(&pixels),
+                count(|stats| stats.primary_rays),
+                count(|stats| stats.shadow_rays),
+                count(|stats| stats.field_evaluations),
+            ));
+        }
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+#[test]
+fn no_example_is_left_out() {
+    for (folder, known) in [
+        ("../../www/examples", &EXAMPLES[..]),
+        ("../../tests/bench", &BENCH[..]),
+    ] {
+        for entry in std::fs::read_dir(folder).expect("the folder is there") {
+            let name = entry.expect("it can be read").file_name();
+            let name = name.to_str().expect("a plain name");
+            // What the others read.
+            let Some(name) = name.strip_suffix(".rat").filter(|name| *name != "flake") else {
+                continue;
+            };
+            assert!(known.iter().any(|(other, _)| *other == name), "{name}");
+        }
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn say(line: &str) {
+    println!("{line}");
+}
+
+#[cfg(target_arch = "wasm32")]
+fn say(line: &str) {
+    wasm_bindgen_test::console_log!("{line}");
+}
