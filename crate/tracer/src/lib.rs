@@ -54,6 +54,7 @@ mod refine;
 pub mod render;
 mod roots;
 mod sample;
+mod settle;
 mod shade;
 mod slabs;
 mod soft;
