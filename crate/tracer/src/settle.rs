@@ -60,20 +60,19 @@ pub struct Along<'a> {
 }
 
 impl Settler {
-    /// Whether a ray is inside the surface.
-    pub fn inside(&mut self, along: &Along<'_>, t: f64) -> bool {
-        self.at(along, t).node.value >= 0.0
-    }
-
-    /// Calls `tell` with the crossings on a stretch, in order, until it says `false`.
+    /// Calls `tell` with a stretch's start and whether it is inside the surface, and then with each crossing
+    /// and whether it enters, in order, until it says `false`.
     pub fn crossings(
         &mut self,
         along: &Along<'_>,
         [from, to]: [f64; 2],
-        mut tell: impl FnMut(f64) -> bool,
+        mut tell: impl FnMut(f64, bool) -> bool,
     ) {
-        let (left, right) = (self.at(along, from), self.at(along, to));
-        self.between(along, left, right, &mut tell);
+        let left = self.at(along, from);
+        if tell(from, left.node.value >= 0.0) {
+            let right = self.at(along, to);
+            self.between(along, left, right, &mut tell);
+        }
     }
 
     /// F − T and its slope.
@@ -100,7 +99,7 @@ impl Settler {
         along: &Along<'_>,
         left: Place,
         right: Place,
-        tell: &mut impl FnMut(f64) -> bool,
+        tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
         let length = right.t - left.t;
         let Some(pieces) = self.pieces.checked_sub(1) else {
@@ -145,9 +144,10 @@ impl Settler {
         along: &Along<'_>,
         left: Place,
         right: Place,
-        tell: &mut impl FnMut(f64) -> bool,
+        tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
-        if (left.node.value >= 0.0) == (right.node.value >= 0.0) {
+        let enters = right.node.value >= 0.0;
+        if (left.node.value >= 0.0) == enters {
             return true;
         }
         let excess = |t: f64| {
@@ -155,6 +155,6 @@ impl Settler {
             (node.value, node.slope)
         };
         let within = 1e-3 * along.resolution;
-        tell(bracketed(excess, left.t, right.t, within))
+        tell(bracketed(excess, left.t, right.t, within), enters)
     }
 }

@@ -61,7 +61,7 @@ pub struct Slabs<'a> {
     nodes: Vec<Slab>,
     /// Local numbers; the slabs' lists are ranges of it.
     ids: Vec<u32>,
-    scratch: Vec<(u32, f64, f64, f64)>,
+    scratch: Vec<(u32, f64, f64)>,
 }
 
 /// How a slab goes on.
@@ -351,11 +351,9 @@ impl<'a> Slabs<'a> {
                 below += magnitude;
             }
             total += magnitude;
-            let rounded = magnitude.min(LARGE_TERM)
-                * (4.0 * rounding + misplaced * bound.relative_slope(near));
             // A span is between the values' and slopes' extremes, so it is never further off than
             // its bound says; a NaN counts as far off.
-            self.scratch.push((local, magnitude, span_error, rounded));
+            self.scratch.push((local, magnitude, span_error));
         }
         // What is left of the budget is shared out half evenly, half by size. The shares add up
         // to no more than the whole.
@@ -370,16 +368,17 @@ impl<'a> Slabs<'a> {
         let by_size = 0.5 * left / total.max(f64::MIN_POSITIVE);
         let start = self.ids.len() as u32;
         let mut sum = error;
-        for &(local, magnitude, span_error, rounded) in &self.scratch {
+        for &(local, magnitude, span_error) in &self.scratch {
             if span_error <= even + by_size * magnitude {
                 self.ids.push(local);
                 sum += span_error;
-                noise += rounded;
+                let steep = self.bounds[self.list[local as usize] as usize].relative_slope();
+                noise += magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steep);
             }
         }
         let middle = self.ids.len() as u32;
         let (mut pending_above, mut pending_below) = (0.0, 0.0);
-        for &(local, magnitude, span_error, _) in &self.scratch {
+        for &(local, magnitude, span_error) in &self.scratch {
             if span_error <= even + by_size * magnitude {
                 continue;
             }

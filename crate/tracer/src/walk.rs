@@ -124,6 +124,9 @@ impl<L: Lanes> Memories<L> {
 /// Slabs deeper than this are not halved further: 2⁻⁴⁰ of the beam's length.
 const DEEPEST: u32 = 40;
 
+/// How many times a slab's cubics are halved to tell their crossings apart.
+const CUTS: u32 = 4;
+
 /// When walking one packet has looked at this many list entries, or at [`MOST_VISITS`] times all
 /// primitives of the beam, the slabs left are not halved further but settled ray by ray, within limits of
 /// that, so that no scene can take unlimited time or memory. A packet of the published scenes looks at a few hundred.
@@ -272,25 +275,36 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// The rays whose cubics do not tell for certain how often they cross in this slab: never,
-    /// or exactly once.
+    /// The rays whose cubics do not tell for certain how often they cross in this slab: on each piece
+    /// of it never, or exactly once.
     fn doubtful(&self, span: Span<L>, error: f64) -> u32 {
+        Self::open(self.alive, span, error, STEEP * error, CUTS)
+    }
+
+    /// Those of some rays that are in doubt on a piece, on which differences of coefficients are off by `steep`.
+    fn open(lanes: u32, span: Span<L>, error: f64, steep: f64, cuts: u32) -> u32 {
         let [a, b, c, d] = span.0;
         let level = L::splat(THRESHOLD);
         let e = L::splat(error);
         let never = span.max().less(level - e) | (level + e).less(span.min());
-        let steep = L::splat(STEEP * error);
+        let off = L::splat(steep);
         let rises = a.less(level - e)
             & (level + e).less(d)
-            & steep.less(b - a)
-            & steep.less(c - b)
-            & steep.less(d - c);
+            & off.less(b - a)
+            & off.less(c - b)
+            & off.less(d - c);
         let falls = d.less(level - e)
             & (level + e).less(a)
-            & steep.less(a - b)
-            & steep.less(b - c)
-            & steep.less(c - d);
-        self.alive & !(never | rises | falls)
+            & off.less(a - b)
+            & off.less(b - c)
+            & off.less(c - d);
+        let open = lanes & !(never | rises | falls);
+        if open == 0 || cuts == 0 {
+            return open;
+        }
+        let [left, right] = span.halves();
+        let before = Self::open(open, left, error, 0.5 * steep, cuts - 1);
+        before | Self::open(open & !before, right, error, 0.5 * steep, cuts - 1)
     }
 
     /// The crossings of some rays in a slab, by single rays in double precision.
@@ -315,16 +329,11 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 resolution: self.slabs.resolution(),
             };
             let mut settler = core::mem::take(&mut self.settler);
-            let inside = settler.inside(&along, from);
-            let side = |inside: bool| if inside { bit } else { 0 };
-            self.arrive(index, from, side(!inside), side(inside), true);
-            if self.alive & bit != 0 {
-                settler.crossings(&along, [from, to], |t| {
-                    let entering = self.outside & bit != 0;
-                    self.arrive(index, t, side(!entering), side(entering), true);
-                    self.alive & bit != 0
-                });
-            }
+            settler.crossings(&along, [from, to], |t, inside| {
+                let side = |yes: bool| if yes { bit } else { 0 };
+                self.arrive(index, t, side(!inside), side(inside), true);
+                self.alive & bit != 0
+            });
             self.evaluations += core::mem::take(&mut settler.evaluations);
             self.settler = settler;
         }
