@@ -81,7 +81,7 @@ fn pictures_of_points_and_lines_are_within_the_tolerance() {
         0.015,
         0.02,
     );
-    certify(&[Kind::Point], 0.0, 0.005, 0.0);
+    certify(&[Kind::Point], 0.0, 0.008, 0.0);
 }
 
 #[test]
