@@ -45,6 +45,8 @@ pub struct Bound {
     negative: bool,
     /// Depth of influence.
     pub influence: f64,
+    /// With a profile, an estimate of its wave's derivative over its size; else 0.
+    ripple: f64,
     /// With a profile, an estimate of the fourth derivative of its wave over its size; else 0.
     ripple4: f64,
 }
@@ -194,6 +196,7 @@ impl Bound {
             positive: high > 0.0,
             negative: low < 0.0,
             influence: primitive.influence,
+            ripple,
             ripple4: (ripple * ripple) * (ripple * ripple),
         }
     }
@@ -286,7 +289,7 @@ impl Bound {
     }
 
     /// The bounds at some nearness, for spans of some length.
-    #[inline]
+    #[inline(always)] // Pictures spend their time here.
     #[must_use]
     pub fn estimate(&self, near: Nearness, length: &SpanLength) -> Estimate {
         let (kernel, width) = (self.kernel, self.finest);
@@ -332,21 +335,24 @@ impl Bound {
     #[must_use]
     pub fn slope(&self, near: Nearness) -> f64 {
         // A wave of length 1/ω adds its own slope to the field's size.
-        self.derivative(near, 1) + self.magnitude(near) * self.ripple()
+        self.derivative(near, 1) + self.magnitude(near) * self.ripple
+    }
+
+    /// About the largest slope of f over its size, as far as single precision's rounding of coordinates asks for
+    /// it: that of a Gaussian three widths out, steeper than which is only what is small; with the profile's.
+    #[inline]
+    #[must_use]
+    pub fn relative_slope(&self) -> f64 {
+        8.0 * self.finest + self.ripple
     }
 
     /// The second derivative of f along any line is at most this at some nearness (a Lipschitz constant of
     /// the slope along a ray within the ball): where the profile, if any, is smooth.
     #[must_use]
     pub fn curvature(&self, near: Nearness) -> f64 {
-        let ripple = self.ripple();
+        let ripple = self.ripple;
         let wave = 2.0 * self.derivative(near, 1) + self.magnitude(near) * ripple;
         self.derivative(near, 2) + wave * ripple
-    }
-
-    /// What the profile's wave is multiplied with by each derivative.
-    fn ripple(&self) -> f64 {
-        self.ripple4.sqrt().sqrt()
     }
 
     /// A bound on the first or second derivative along any line, without the profile's.

@@ -14,7 +14,7 @@
 //! The soft surface is found by the thesis' method (chapter 4), certified: `slabs` decides for a
 //! whole beam which primitive needs Hermite spans of which length (`field::Bound` knows how large a field
 //! and the error of a span can be), and `walk` follows single packets through the slabs, adds up
-//! their spans' cubics (`spans`) and takes their roots (`roots`). `walk` is the only part that knows
+//! their spans' cubics (`spans`) and takes their roots (`roots`); what those leave in doubt `settle` decides. `walk` is the only part that knows
 //! how crossings are found: given slabs and rays it returns crossings. Other ways of finding them,
 //! for comparison, are in `digger`; `map` shows what a picture costs.
 //!
@@ -30,10 +30,13 @@
 //!   within 10⁻⁹·T of T.
 //! - So where much lies beyond the depth of influence, as in clusters of kernels without end, hits are off by
 //!   many tolerances, and rays that graze a surface can miss it: `examples/certify.rs` counts how often.
+//! - Where spans leave a ray in doubt it is settled alone (`settle`), on the field that is cut off; stretches
+//!   shorter than 5·10⁻⁷ of the scene are not looked into, and one packet looks at no more than 4096 pieces.
 //! - A primitive whose profile has kinks or jumps has no certified spans; they are made short by
 //!   an estimate.
 //! - A packet looks at no more than 2¹⁷ list entries, or 64 times the primitives in its beam; after
-//!   that its spans are no longer certified. A slab is no shorter than 2⁻⁴⁰ of its beam.
+//!   that its slabs are settled as they are, and where that looks at too many pieces what is left is
+//!   decided by the signs at its ends. A slab is no shorter than 2⁻⁴⁰ of its beam.
 //! - Soft planes are followed up to 10⁴ times the scene's size.
 
 mod area;
@@ -57,6 +60,7 @@ mod refine;
 pub mod render;
 mod roots;
 mod sample;
+mod settle;
 mod shade;
 mod slabs;
 mod soft;

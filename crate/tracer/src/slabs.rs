@@ -25,6 +25,10 @@ pub struct Precision {
     pub last: f64,
     /// Whether primitives are dropped beyond their depth of influence.
     pub truncate: bool,
+    /// Rounding of coordinates, and of values relative to a primitive's field.
+    pub rounding: f64,
+    /// Stretches of rays shorter than this need not be looked into, in units of the scene.
+    pub resolution: f64,
 }
 
 impl Precision {
@@ -34,12 +38,16 @@ impl Precision {
         first: 8e-3,
         last: 5e-4,
         truncate: true,
+        rounding: 2.5e-7,
+        resolution: 5e-7,
     };
     /// For exact answers.
     pub const EXACT: Self = Self {
         first: 8e-3,
         last: 1e-9,
         truncate: false,
+        rounding: 0.0,
+        resolution: 1e-12,
     };
 }
 
@@ -84,8 +92,11 @@ pub struct Slab {
     pub pending_above: f64,
     /// The same for the pending terms alone.
     pub pending_below: f64,
-    /// Bound on the error of all spans over this slab: the resolved ones and the coarser ones.
+    /// Bound on the error of all spans over this slab: the resolved ones and the coarser ones, with
+    /// the rounding of the arithmetic.
     pub error: f64,
+    /// What of it is rounding, which takes nothing from the budget.
+    noise: f64,
     /// What the errors may add up to.
     budget: f64,
     parent: u32,
@@ -106,6 +117,10 @@ const NARROW: f64 = 0.5;
 const WIDE: f64 = 0.4;
 /// Beams that are divided this many times further, into eight packets, are blocks.
 const BLOCK: u32 = 3;
+
+/// Where the field is T no term is much larger than that, unless others carve it away: what is known of rounding
+/// counts terms as no larger than this.
+pub const LARGE_TERM: f64 = 4.0 * THRESHOLD;
 
 /// Slabs and list entries above which a tree is thrown away between two packets.
 const LARGE: (usize, usize) = (1 << 16, 1 << 21);
@@ -133,7 +148,7 @@ impl<'a> Slabs<'a> {
             scratch: Vec::new(),
         };
         let all = 0..slabs.list.len() as u32;
-        slabs.add(all, from, to, 0, NONE, precision.first, 0.0, 0);
+        slabs.add(all, from, to, 0, NONE, precision.first, [0.0; 2], 0);
         slabs
     }
 
@@ -240,7 +255,8 @@ impl<'a> Slabs<'a> {
 
     fn inner(&mut self, parent: u32, from: f64, to: f64, beam: usize, depth: u32) -> u32 {
         let s = &self.nodes[parent as usize];
-        let (pending, budget, error) = (s.pending.clone(), s.budget, s.error);
+        let (pending, budget) = (s.pending.clone(), s.budget);
+        let error = [s.error - s.noise, s.noise];
         let index = self.nodes.len() as u32;
         self.add(pending, from, to, beam, parent, budget, error, depth);
         index
@@ -249,7 +265,14 @@ impl<'a> Slabs<'a> {
     /// Whether a slab's spans are as fine as they get.
     #[must_use]
     pub fn is_final(&self, index: u32) -> bool {
-        self.slab(index).error <= self.precision.last
+        let slab = self.slab(index);
+        slab.error - slab.noise <= self.precision.last || slab.budget <= self.precision.last
+    }
+
+    /// Stretches of rays shorter than this need not be looked into.
+    #[must_use]
+    pub fn resolution(&self) -> f64 {
+        self.precision.resolution
     }
 
     /// The same slab from anew, with all its primitives and a smaller error.
@@ -271,9 +294,9 @@ impl<'a> Slabs<'a> {
             let all = start..self.ids.len() as u32;
             let s = &self.nodes[index as usize];
             let (from, to, beam, depth) = (s.from, s.to, s.beam, s.depth + 1);
-            let budget = (s.error.min(s.budget) / 16.0).max(self.precision.last);
+            let budget = ((s.error - s.noise).min(s.budget) / 16.0).max(self.precision.last);
             let finer = self.nodes.len() as u32;
-            self.add(all, from, to, beam, NONE, budget, 0.0, depth);
+            self.add(all, from, to, beam, NONE, budget, [0.0; 2], depth);
             self.nodes[index as usize].finer = finer;
         }
         self.nodes[index as usize].finer
@@ -300,13 +323,16 @@ impl<'a> Slabs<'a> {
         beam: usize,
         parent: u32,
         budget: f64,
-        error: f64,
+        [error, mut noise]: [f64; 2],
         depth: u32,
     ) {
         let (center, radius) = self.beams.get(beam).ball(from, to);
         let h = to - from;
         let length = SpanLength::new(h);
         let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);
+        let rounding = self.precision.rounding;
+        // Coordinates are rounded in the world and in the primitive's own frame.
+        let misplaced = rounding * (center.abs().max_element() + radius + to).max(1.0);
         self.scratch.clear();
         for &local in &self.ids[candidates.start as usize..candidates.end as usize] {
             let bound = &self.bounds[self.list[local as usize] as usize];
@@ -346,6 +372,8 @@ impl<'a> Slabs<'a> {
             if span_error <= even + by_size * magnitude {
                 self.ids.push(local);
                 sum += span_error;
+                let steep = self.bounds[self.list[local as usize] as usize].relative_slope();
+                noise += magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steep);
             }
         }
         let middle = self.ids.len() as u32;
@@ -373,7 +401,8 @@ impl<'a> Slabs<'a> {
             below,
             pending_above,
             pending_below,
-            error: sum,
+            error: sum + noise,
+            noise,
             budget,
             parent,
             beam,

@@ -221,8 +221,15 @@ impl Soft {
         scratch: &mut Scratch,
     ) -> Vec<Found> {
         slabs.tidy();
-        let (found, evaluations) =
-            Walk::<f32x8>::new(&self.primitives, slabs, bundle, quest, &mut scratch.memory).run();
+        let (found, evaluations) = Walk::<f32x8>::new(
+            &self.primitives,
+            &self.bounds,
+            slabs,
+            bundle,
+            quest,
+            &mut scratch.memory,
+        )
+        .run();
         scratch.evaluations += evaluations;
         found
     }
@@ -275,7 +282,14 @@ impl Soft {
         let mut at = start;
         let mut weights: Vec<(u32, f32x8)> = Vec::new();
         let mut gradient = [f32x8::splat(0.0); 3];
-        let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
+        let lanes = |settled: bool| {
+            let some = found.iter().filter(|hit| hit.settled == settled);
+            some.fold(0, |m, hit| m | 1u32 << hit.lane)
+        };
+        // What is settled stays where it is.
+        let met = lanes(false);
+        let stays = lanes(true);
+        let free = f32x8::from_lanes(|i| f64::from(1 - (stays >> i & 1)));
         for _ in 0..MOST_POLISHING {
             let point = core::array::from_fn(|k| origin[k] + direction[k] * at);
             let mut value = f32x8::splat(0.0);
@@ -304,14 +318,22 @@ impl Soft {
             // the spans' crossing is kept.
             let low = Real::max(start - furthest, f32x8::splat(0.0));
             let next = at + step;
-            let good = next.simd_le(start + furthest) & next.simd_ge(low);
+            let good = next.simd_le(start + furthest)
+                & next.simd_ge(low)
+                & free.simd_gt(f32x8::splat(0.0));
             at = good.bitselect(next, at);
             let off = f32x8::splat(NEAR_ENOUGH).less(excess.abs());
             if off & met == 0 {
                 break;
             }
         }
-        Flesh::new(at, gradient, weights)
+        let mut flesh = Flesh::new(at, gradient, weights);
+        for (i, own) in flesh.t.iter_mut().enumerate() {
+            if stays >> i & 1 != 0 {
+                *own = t[i];
+            }
+        }
+        flesh
     }
 
     /// All crossings of a ray, exactly: where the whole field, with nothing cut off, equals T.
@@ -353,6 +375,7 @@ impl Soft {
         );
         let (found, _) = Walk::<f64>::new(
             &self.primitives,
+            &self.bounds,
             &mut slabs,
             Bundle {
                 rays: &[based],

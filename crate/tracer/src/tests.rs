@@ -31,6 +31,7 @@ fn difference(scene: &Scene) -> [f64; 2] {
         first: 1e-4,
         last: 2e-6,
         truncate: false,
+        ..Precision::PICTURE
     };
     let exact = trace(&picture);
     [1, 8].map(|bar| {

@@ -8,9 +8,10 @@
 //! hit is ever interpolated.
 use crate::lanes::Lanes;
 use crate::ray::Ray;
+use crate::settle::{Along, STEEP, Settler};
 use crate::slabs::{Parts, Slabs};
 use crate::spans::{Node, Span};
-use field::{Primitive, THRESHOLD};
+use field::{Bound, Primitive, THRESHOLD};
 
 /// What the rays look for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,14 +47,18 @@ pub struct Found {
     pub slab: u32,
     /// The ray's lane.
     pub lane: usize,
+    /// Whether t is exact already.
+    pub settled: bool,
 }
 
 /// Some rays on their way through the slabs of their beam.
 pub struct Walk<'w, 's, L> {
     primitives: &'w [Primitive],
+    bounds: &'w [Bound],
     slabs: &'w mut Slabs<'s>,
     packet: usize,
     quest: Quest,
+    rays: &'w [Ray],
     origin: [L; 3],
     direction: [L; 3],
     /// Where each ray ends.
@@ -64,6 +69,7 @@ pub struct Walk<'w, 's, L> {
     outside: u32,
     inside: u32,
     memory: &'w mut Memories<L>,
+    settler: Settler,
     found: Vec<Found>,
     /// Work done, see [`MOST_WORK`].
     work: usize,
@@ -118,9 +124,12 @@ impl<L: Lanes> Memories<L> {
 /// Slabs deeper than this are not halved further: 2⁻⁴⁰ of the beam's length.
 const DEEPEST: u32 = 40;
 
+/// How many times a slab's cubics are halved to tell their crossings apart.
+const CUTS: u32 = 4;
+
 /// When walking one packet has looked at this many list entries, or at [`MOST_VISITS`] times all
-/// primitives of the beam, the slabs left are taken as they are, uncertified, so that no scene can
-/// take unlimited time or memory. A packet of the published scenes looks at a few hundred.
+/// primitives of the beam, the slabs left are not halved further but settled ray by ray, within limits of
+/// that, so that no scene can take unlimited time or memory. A packet of the published scenes looks at a few hundred.
 const MOST_WORK: usize = 1 << 17;
 /// See [`MOST_WORK`].
 const MOST_VISITS: usize = 64;
@@ -130,8 +139,9 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     #[must_use]
     pub fn new(
         primitives: &'w [Primitive],
+        bounds: &'w [Bound],
         slabs: &'w mut Slabs<'s>,
-        bundle: Bundle<'_>,
+        bundle: Bundle<'w>,
         quest: Quest,
         memory: &'w mut Memories<L>,
     ) -> Self {
@@ -141,9 +151,11 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         memory.begin(count);
         Self {
             primitives,
+            bounds,
             slabs,
             packet: bundle.number,
             quest,
+            rays,
             origin: core::array::from_fn(|k| L::from_lanes(|i| ray(i).origin[k])),
             direction: core::array::from_fn(|k| L::from_lanes(|i| ray(i).direction[k])),
             limit: L::from_lanes(|i| limits[i.min(limits.len() - 1)]),
@@ -151,6 +163,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             outside: 0,
             inside: 0,
             memory,
+            settler: Settler::default(),
             found: Vec::new(),
             work: 0,
             most: MOST_WORK.max(MOST_VISITS * count),
@@ -176,7 +189,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         self.work += 1 + slab.resolved.len() + slab.pending.len();
         let mut span = base;
         if !slab.resolved.is_empty() {
-            span = span.plus(self.span(index, false));
+            span = span.plus(self.span(index));
             if self.rejected(
                 index,
                 span,
@@ -187,16 +200,18 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 return;
             }
         }
-        let exhausted = self.work > self.most || slab.depth >= DEEPEST;
-        if exhausted && !slab.pending.is_empty() {
-            span = span.plus(self.span(index, true));
+        if self.work > self.most || slab.depth >= DEEPEST {
+            self.settle(index, self.alive);
+            return;
         }
-        if slab.pending.is_empty() || exhausted {
-            if !exhausted && !self.slabs.is_final(index) && !self.certain(span, slab.error) {
+        if slab.pending.is_empty() {
+            let doubtful = self.doubtful(span, slab.error);
+            if doubtful != 0 && !self.slabs.is_final(index) {
                 let finer = self.slabs.finer(index);
                 self.visit(finer, Span::zero());
             } else {
-                self.cross(index, span);
+                self.cross(index, span, !doubtful);
+                self.settle(index, doubtful);
             }
             return;
         }
@@ -221,12 +236,12 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
         let slab = self.slabs.slab(index);
         let from = slab.from;
-        self.arrive(index, from, outside, inside);
+        self.arrive(index, from, outside, inside, false);
         true
     }
 
     /// Notes on which side the rays are, at t; a ray that was on the other side crosses there.
-    fn arrive(&mut self, index: u32, t: f64, outside: u32, inside: u32) {
+    fn arrive(&mut self, index: u32, t: f64, outside: u32, inside: u32, settled: bool) {
         let outside = outside & self.alive;
         let inside = inside & self.alive & !outside;
         let leaving = outside & self.inside;
@@ -237,58 +252,105 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         while crossing != 0 {
             let lane = crossing.trailing_zeros() as usize;
             crossing &= crossing - 1;
-            self.report(lane, t, index, entering >> lane & 1 != 0);
+            let found = Found {
+                t,
+                slab: index,
+                lane,
+                settled,
+            };
+            self.report(found, entering >> lane & 1 != 0);
         }
     }
 
-    fn report(&mut self, lane: usize, t: f64, slab: u32, enters: bool) {
-        if t > self.limit.lane(lane) {
-            self.alive &= !(1 << lane);
+    fn report(&mut self, found: Found, enters: bool) {
+        if found.t > self.limit.lane(found.lane) {
+            self.alive &= !(1 << found.lane);
             return;
         }
         if enters || self.quest != Quest::Entry {
-            self.found.push(Found { t, slab, lane });
+            self.found.push(found);
             if self.quest != Quest::All {
-                self.alive &= !(1 << lane);
+                self.alive &= !(1 << found.lane);
             }
         }
     }
 
-    /// Whether each ray's cubic tells for certain how often the ray crosses in this slab: never,
-    /// or exactly once.
-    fn certain(&self, span: Span<L>, error: f64) -> bool {
+    /// The rays whose cubics do not tell for certain how often they cross in this slab: on each piece
+    /// of it never, or exactly once.
+    fn doubtful(&self, span: Span<L>, error: f64) -> u32 {
+        Self::open(self.alive, span, error, STEEP * error, CUTS)
+    }
+
+    /// Those of some rays that are in doubt on a piece, on which differences of coefficients are off by `steep`.
+    fn open(lanes: u32, span: Span<L>, error: f64, steep: f64, cuts: u32) -> u32 {
         let [a, b, c, d] = span.0;
         let level = L::splat(THRESHOLD);
         let e = L::splat(error);
         let never = span.max().less(level - e) | (level + e).less(span.min());
-        // A span's slope is off by at most 3.08·error/length, and the slope's own Bernstein
-        // coefficients are 3/length times these differences.
-        let steep = L::splat(1.03 * error);
+        let off = L::splat(steep);
         let rises = a.less(level - e)
             & (level + e).less(d)
-            & steep.less(b - a)
-            & steep.less(c - b)
-            & steep.less(d - c);
+            & off.less(b - a)
+            & off.less(c - b)
+            & off.less(d - c);
         let falls = d.less(level - e)
             & (level + e).less(a)
-            & steep.less(a - b)
-            & steep.less(b - c)
-            & steep.less(c - d);
-        self.alive & !(never | rises | falls) == 0
+            & off.less(a - b)
+            & off.less(b - c)
+            & off.less(c - d);
+        let open = lanes & !(never | rises | falls);
+        if open == 0 || cuts == 0 {
+            return open;
+        }
+        let [left, right] = span.halves();
+        let before = Self::open(open, left, error, 0.5 * steep, cuts - 1);
+        before | Self::open(open & !before, right, error, 0.5 * steep, cuts - 1)
     }
 
-    /// The crossings in a slab whose cubics are final.
-    fn cross(&mut self, index: u32, span: Span<L>) {
+    /// The crossings of some rays in a slab, by single rays in double precision.
+    fn settle(&mut self, index: u32, lanes: u32) {
+        let mut lanes = lanes & self.alive;
+        if lanes == 0 {
+            return;
+        }
+        let s = self.slabs.slab(index);
+        let (from, to) = (s.from, s.to);
+        let (slabs, list) = (&*self.slabs, &mut self.settler.list);
+        list.clear();
+        slabs.each(index, |local| list.push(slabs.primitive(local)));
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            let bit = 1u32 << lane;
+            lanes &= !bit;
+            let along = Along {
+                primitives: self.primitives,
+                bounds: self.bounds,
+                ray: self.rays[lane.min(self.rays.len() - 1)],
+                resolution: self.slabs.resolution(),
+            };
+            let mut settler = core::mem::take(&mut self.settler);
+            settler.crossings(&along, [from, to], |t, inside| {
+                let side = |yes: bool| if yes { bit } else { 0 };
+                self.arrive(index, t, side(!inside), side(inside), true);
+                self.alive & bit != 0
+            });
+            self.evaluations += core::mem::take(&mut settler.evaluations);
+            self.settler = settler;
+        }
+    }
+
+    /// The crossings of some rays in a slab whose cubics are final.
+    fn cross(&mut self, index: u32, span: Span<L>, lanes: u32) {
         let level = L::splat(THRESHOLD);
         let (from, to) = {
             let s = self.slabs.slab(index);
             (s.from, s.to)
         };
         let outside = span.0[0].less(level);
-        self.arrive(index, from, outside, !outside);
+        self.arrive(index, from, outside & lanes, !outside & lanes, false);
         // Lanes whose coefficients are all on one side have no root.
         let one_sided = span.max().less(level) | level.less(span.min());
-        let mut lanes = self.alive & !one_sided;
+        let mut lanes = self.alive & lanes & !one_sided;
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
             lanes &= lanes - 1;
@@ -305,15 +367,21 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 let enters = self.outside & bit != 0;
                 self.outside ^= bit;
                 self.inside ^= bit;
-                self.report(lane, from + x * (to - from), index, enters);
+                let found = Found {
+                    t: from + x * (to - from),
+                    slab: index,
+                    lane,
+                    settled: false,
+                };
+                self.report(found, enters);
             }
         }
     }
 
-    /// The sum of the spans of a slab's resolved (or pending) primitives.
-    fn span(&mut self, index: u32, pending: bool) -> Span<L> {
+    /// The sum of the spans of a slab's resolved primitives.
+    fn span(&mut self, index: u32) -> Span<L> {
         let s = self.slabs.slab(index);
-        let range = if pending { &s.pending } else { &s.resolved };
+        let range = &s.resolved;
         let (from, to) = (s.from, s.to);
         let along = |t: f64| {
             let t = L::splat(t);

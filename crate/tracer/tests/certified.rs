@@ -47,18 +47,18 @@ const COMPACT: [Kernel; 4] = [
     Kernel::Compact6,
 ];
 
-/// Pictures of compact kernels have no hit that is off and lose no surface but where a ray grazes it.
+/// Pictures of compact kernels have no hit that is off and lose no surface, not even where a ray grazes it.
 ///
 /// Of other kernels pictures leave out what lies beyond the depth of influence, and rays that graze a
 /// surface can miss it: how much of that there is must not grow. `examples/certify.rs` lists what is left.
-fn certify(kinds: &[Kind], most_missed: f64, most_off: f64) {
+fn certify(kinds: &[Kind], most_missed: f64, most_grazed: f64, most_off: f64) {
     let mut all = Row::default();
     for kernel in Kernel::ALL {
         let (row, told) = run(&[kernel], kinds, 3, 4, &|trial, picture| {
             picture.cast(&trial.rays)
         });
         if COMPACT.contains(&kernel) {
-            assert!(row.missed + row.invented == 0, "{kernel:?} {row:?}\n{told}");
+            assert!(row.faults() == 0, "{kernel:?} {row:?}\n{told}");
         }
         all.add(&row);
     }
@@ -67,7 +67,7 @@ fn certify(kinds: &[Kind], most_missed: f64, most_off: f64) {
     assert!(all.uncertain * 200 < all.rays, "{all:?}");
     let share = |count: u64| count as f64 / all.rays as f64;
     assert!(share(all.missed) <= most_missed, "{all:?}");
-    assert!(share(all.grazed) <= 0.04, "{all:?}");
+    assert!(share(all.grazed) <= most_grazed, "{all:?}");
     assert!(share(all.invented) <= most_off, "{all:?}");
 }
 
@@ -77,24 +77,26 @@ fn certify(kinds: &[Kind], most_missed: f64, most_off: f64) {
 fn pictures_of_points_and_lines_are_within_the_tolerance() {
     certify(
         &[Kind::Segment, Kind::Arc, Kind::Curve, Kind::Taper],
-        0.01,
-        0.04,
+        0.002,
+        0.015,
+        0.02,
     );
-    certify(&[Kind::Point], 0.01, 0.02);
+    certify(&[Kind::Point], 0.0, 0.008, 0.0);
 }
 
 #[test]
 fn pictures_of_faces_are_within_the_tolerance() {
     certify(
         &[Kind::Triangle, Kind::Polygon, Kind::Restricted],
-        0.01,
-        0.01,
+        0.0,
+        0.001,
+        0.0,
     );
 }
 
 #[test]
 fn pictures_of_clusters_are_no_further_off_than_they_were() {
-    certify(&[Kind::Cluster], 0.05, 0.4);
+    certify(&[Kind::Cluster], 0.03, 0.02, 0.25);
 }
 
 /// Kinds whose pictures any of the following faults would spoil.
