@@ -175,9 +175,11 @@ impl<S: Scalar> Lump<S> {
             };
             let [(x, rate), (y, vy), (z, vz)] = [axis(0), axis(1), axis(2)];
             let pace = vy * vy + vz * vz;
-            // A ray along the segment is everywhere as far from it.
-            let still = R::splat(1e-12);
-            let center = -(y * vy + z * vz) / pace.max(still);
+            // A ray along the segment is everywhere as far from it; what rounding says of where it is nearest
+            // means nothing.
+            let still = R::splat(1e-12) * (pace + rate * rate);
+            let zero = R::splat(0.0);
+            let center = R::select(pace.lt(still), zero, -(y * vy + z * vz) / pace);
             let (y, z) = (y + vy * center, z + vz * center);
             return Course {
                 kernel: self.kernel,

@@ -11,6 +11,7 @@
 //! - [`Shaping`] turns a radius, a blobbiness and a strength into a kernel's width and height;
 //! - [`Primitive`] is a term of the field: its value and gradient, its depth of influence, where a
 //!   ray meets that, how far a cubic may stand in for it;
+//! - [`Lump`] is a primitive so simple that its largest value on any piece of a ray has a closed form;
 //! - [`Real`] is the number formulas are written in: `f64`, `f32`, or eight `f32` side by side.
 //!
 //! # Accuracy

@@ -319,3 +319,152 @@ fn polish(
 const MOST_STEPS: u32 = 24;
 /// Where a step ends the field is within about this of T.
 const CLOSE: f32 = 2e-3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use field::{Kernel, Primitive, Shaping, Skeleton};
+    use glam::DVec3;
+
+    /// Random numbers between 0 and 1.
+    fn random(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31)
+        }
+    }
+
+    /// Points and segments around the origin.
+    fn lumps(next: &mut impl FnMut() -> f64, count: usize) -> Vec<Primitive> {
+        let mut place = || DVec3::new(next(), next(), next()) * 1.6 - 0.8;
+        let places: Vec<_> = (0..count).map(|_| (place(), place())).collect();
+        let kernels = [
+            Kernel::Gauss,
+            Kernel::Gauss,
+            Kernel::Quartic,
+            Kernel::Metaballs,
+        ];
+        places
+            .into_iter()
+            .enumerate()
+            .filter_map(|(i, (a, b))| {
+                let kernel = kernels[i % kernels.len()];
+                let skeleton = if i % 4 == 1 {
+                    Skeleton::Segment { base: a, apex: b }
+                } else {
+                    Skeleton::Point { center: a }
+                };
+                let shaping = Shaping {
+                    kernel,
+                    radius: 0.03 + 0.3 * next() * next(),
+                    blobbiness: -1.0 - 4.0 * next(),
+                    blob_scale: field::BlobScale::Relative,
+                    strength: 1.0,
+                    influence: 1e-3,
+                    taper: None,
+                };
+                Primitive::new(skeleton, &shaping, None)
+            })
+            .collect()
+    }
+
+    /// The first crossing of a ray, by very many samples in double precision, with how near the field comes to T before.
+    fn scan(primitives: &[Primitive], origin: DVec3, direction: DVec3) -> (Option<f64>, f64) {
+        let mut nearest = f64::INFINITY;
+        for i in 0..20_000 {
+            let t = f64::from(i) * 2e-4;
+            let point = (origin + direction * t).to_array();
+            let field: f64 = primitives.iter().map(|p| p.value(point)).sum();
+            if field >= 1.0 {
+                return (Some(t), nearest);
+            }
+            nearest = nearest.min(1.0 - field);
+        }
+        (None, nearest)
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn the_first_crossing_is_found_and_no_other() {
+        let mut next = random(11);
+        let (mut hits, mut misses) = (0, 0);
+        for case in 0..40 {
+            let primitives = lumps(&mut next, 1 + case % 9);
+            let rays: [(DVec3, DVec3); 8] = core::array::from_fn(|_| {
+                let origin = DVec3::new(next() - 0.5, next() - 0.5, -4.0) * 0.5;
+                let aim = DVec3::new(next() - 0.5, next() - 0.5, 0.0);
+                (origin, (aim - origin).normalize())
+            });
+            let lane = |f: &dyn Fn(usize) -> f64| f32x8::from_lanes(f);
+            let direction: [f32x8; 3] = [0, 1, 2].map(|k| lane(&|i| rays[i].1[k]));
+            let steps: Vec<Step> = primitives
+                .iter()
+                .enumerate()
+                .map(|(index, p)| {
+                    let lump = p.lump::<f32>().expect("a lump");
+                    let middle = [0, 1, 2].map(|k| lane(&|i| p.lump_middle()[k] - rays[i].0[k]));
+                    let course = lump.course(middle, direction);
+                    let square = lump.reach(1e-6);
+                    let strong = lump.core(square, 1e-6) + 2.0;
+                    Step {
+                        course,
+                        from: 0.0,
+                        to: 10.0,
+                        strong: course.within(f32x8::splat(strong as f32)),
+                        index: index as u32,
+                    }
+                })
+                .collect();
+            let way = Way {
+                from: f32x8::splat(0.0),
+                to: f32x8::splat(3.9),
+                guess: f32x8::splat(f32::INFINITY),
+                alive: 255,
+                tolerance: 5e-5,
+            };
+            let Some(climbed) = climb(&steps, &way) else {
+                continue;
+            };
+            for (i, &(origin, direction)) in rays.iter().enumerate() {
+                let (want, nearest) = scan(&primitives, origin, direction);
+                let got = (climbed.met >> i & 1 != 0).then(|| f64::from(climbed.t.to_array()[i]));
+                match (want, got) {
+                    (None, None) => misses += 1,
+                    (Some(want), Some(got)) if (want - got).abs() < 1e-3 => hits += 1,
+                    // What the samples step over, or single precision cannot tell.
+                    _ => assert!(
+                        nearest < 1e-3,
+                        "case {case}, ray {i}: {want:?} {got:?} {nearest}"
+                    ),
+                }
+            }
+        }
+        assert!(hits > 60 && misses > 60, "{hits} {misses}");
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn a_ray_that_starts_inside_is_left_to_others() {
+        let mut next = random(5);
+        let primitive = &lumps(&mut next, 1)[0];
+        let lump = primitive.lump::<f32>().expect("a lump");
+        let zero = f32x8::splat(0.0);
+        let course = lump.course([zero; 3], [zero, zero, f32x8::splat(1.0)]);
+        let steps = [Step {
+            course,
+            from: 0.0,
+            to: 1.0,
+            strong: [zero, zero],
+            index: 0,
+        }];
+        let way = Way {
+            from: zero,
+            to: f32x8::splat(1.0),
+            guess: zero,
+            alive: 255,
+            tolerance: 5e-5,
+        };
+        assert!(climb(&steps, &way).is_none());
+    }
+}

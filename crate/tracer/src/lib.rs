@@ -6,17 +6,24 @@
 //!
 //! # How a pixel comes about
 //!
-//! [`picture`] cuts a tile into squares of pixels that share a beam, which `beams` divides down to packets
-//! of eight rays. Packets that the bounds of the beam show to be empty send no rays. `packet` finds what the rays of a packet hit, first among the hard elements (`solids`,
+//! [`picture`] cuts a tile into squares of pixels, and those into packets of eight rays. What the packets of a
+//! square share is in `square`: lists of what is near them, or beams that bounds are known of; packets that meet
+//! nothing send no rays. `packet` finds what the rays of a packet hit, first among the hard elements (`solids`,
 //! [`hard`]), then on the soft surface (`soft`), asks for shadows and mixes colours (`shade`).
 //! `refine` sends more rays where neighbouring pixels differ.
 //!
-//! The soft surface is found by the thesis' method (chapter 4), certified: `slabs` decides for a
-//! whole beam which primitive needs Hermite spans of which length (`field::Bound` knows how large a field
-//! and the error of a span can be), and `walk` follows single packets through the slabs, adds up
-//! their spans' cubics (`spans`) and takes their roots (`roots`); what those leave in doubt `settle` decides. `walk` is the only part that knows
-//! how crossings are found: given slabs and rays it returns crossings. Other ways of finding them,
-//! for comparison, are in `digger`; `map` shows what a picture costs.
+//! The soft surface is found in one of two ways, both certified.
+//!
+//! - The quick way (`quick`) is for *lumps*, whose largest value on any piece of a ray is known in closed form
+//!   (`field::course`): points and Gaussian segments, of kernels that end or nearly do. `nearby` lists the lumps near a
+//!   square, a part of it, a packet; `climb` steps along the packet's rays, each step proved to cross nothing.
+//! - The general way is the thesis' (chapter 4): `slabs` decides for a whole beam which primitive needs Hermite spans
+//!   of which length (`field::Bound` knows how large a field and the error of a span can be), and `walk` follows single
+//!   packets through the slabs, adds up their spans' cubics (`spans`) and takes their roots (`roots`); what those leave
+//!   in doubt `settle` decides. A square whose beam meets anything but lumps is traced so, and a packet of which a
+//!   ray starts inside.
+//!
+//! Other ways of finding crossings, for comparison, are in `digger`; `map` shows what a picture costs.
 //!
 //! What pictures show is held against [`mod@reference`], which looks for the surface by bisection with
 //! bounds of its own (`tests/certified.rs`, `examples/certify.rs`); `cast` follows single rays in the way of
@@ -24,7 +31,8 @@
 //!
 //! # Limits
 //!
-//! - The soft surface of a picture is that of a field within 5·10⁻⁴·T of the true one, cut off at
+//! - Of lumps no more than 10⁻⁴·T is left out, all together, and single precision is exact enough for the tolerance.
+//! - Of all else the soft surface of a picture is that of a field within 5·10⁻⁴·T of the true one, cut off at
 //!   each primitive's depth of influence; hits are then moved onto the (cut-off) field itself.
 //!   [`Picture::hits`] cuts nothing off; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.

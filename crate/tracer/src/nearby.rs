@@ -133,3 +133,84 @@ impl Nearby {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ray::Ray;
+    use field::{Kernel, Primitive, Shaping, Skeleton};
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn no_lump_that_a_ray_meets_is_left_out_and_most_others_are() {
+        let mut state = 17u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
+        };
+        let shaping = Shaping {
+            kernel: Kernel::Gauss,
+            radius: 0.1,
+            blobbiness: -4.0,
+            blob_scale: field::BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: None,
+        };
+        let point = Skeleton::Point {
+            center: DVec3::ZERO,
+        };
+        let primitive = Primitive::new(point, &shaping, None).expect("flesh");
+        let lump = primitive.lump().expect("a lump");
+        let (mut kept, mut all) = (0, 0);
+        for _ in 0..60 {
+            // Far from the origin, where single precision would not do without a place amid the lumps.
+            let middle = DVec3::new(next(), next(), next()) * 1e4;
+            let mut list = Nearby::default();
+            list.begin(middle, 0.0);
+            let balls: Vec<(DVec3, f64)> = (0..300)
+                .map(|_| {
+                    (
+                        middle + 3.0 * DVec3::new(next(), next(), next()),
+                        0.2 * next().abs(),
+                    )
+                })
+                .collect();
+            for (i, &(center, radius)) in balls.iter().enumerate() {
+                let near = Near {
+                    lump,
+                    middle: (center - middle).as_vec3().to_array(),
+                    square: 1.0,
+                    core: 1.0,
+                    material: i as u32,
+                };
+                list.push(near, radius);
+            }
+            let beam = Beam {
+                axis: Ray {
+                    origin: middle + 4.0 * DVec3::new(next(), next(), next()),
+                    direction: DVec3::new(next(), next(), next()).normalize(),
+                },
+                radius: 0.02 * next().abs(),
+                spread: 0.1 * next().abs(),
+            };
+            let mut narrow = Nearby::default();
+            list.narrow(&beam, &mut narrow);
+            let found: Vec<u32> = (0..narrow.len()).map(|i| narrow.get(i).material).collect();
+            kept += found.len();
+            all += balls.len();
+            for _ in 0..200 {
+                let offset = DVec3::new(next(), next(), next()).normalize() * beam.radius * 0.999;
+                let turn = DVec3::new(next(), next(), next()).normalize() * beam.spread * 0.999;
+                let (origin, direction) = (beam.axis.origin + offset, beam.axis.direction + turn);
+                for (i, &(center, radius)) in balls.iter().enumerate() {
+                    let t = (center - origin).dot(direction).max(0.0) / direction.length_squared();
+                    if (origin + direction * t).distance(center) < radius * (1.0 - 1e-6) {
+                        assert!(found.contains(&(i as u32)), "{beam:?} {center} {radius}");
+                    }
+                }
+            }
+        }
+        assert!(kept * 5 < all, "{kept} of {all}");
+    }
+}

@@ -78,7 +78,8 @@ impl Rays {
 
 /// A place amid eight, and how far they are from it at most.
 fn around(places: [f32x8; 3]) -> (DVec3, f64) {
-    let middle = places.map(|x| x.reduce_add() / PACKET as f32);
+    // In the order of the lanes, which is the same everywhere.
+    let middle = places.map(|x| x.to_array().iter().sum::<f32>() / PACKET as f32);
     let [x, y, z]: [f32x8; 3] = core::array::from_fn(|i| places[i] - f32x8::splat(middle[i]));
     let square = (x * x + y * y + z * z).to_array();
     let widest = square.into_iter().fold(0.0, f32::max);

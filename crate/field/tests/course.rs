@@ -1,0 +1,147 @@
+//! What is promised of lumps: their course along rays is the field's, and its bounds hold.
+mod common;
+
+use common::{Random, primitive};
+use field::{Kernel, Lump, Primitive, Real, Skeleton};
+use glam::DVec3;
+use wide::f32x8;
+
+const KERNELS: [Kernel; 5] = [
+    Kernel::Gauss,
+    Kernel::Metaballs,
+    Kernel::Soft,
+    Kernel::Quartic,
+    Kernel::Compact6,
+];
+
+/// Lumps of each kind, with a ray that may run through the middle, along the segment, or far away.
+fn cases() -> Vec<(Primitive, DVec3, DVec3)> {
+    let mut random = Random::new(51);
+    let mut cases = Vec::new();
+    for i in 0..400 {
+        let kernel = if i % 2 == 0 {
+            Kernel::Gauss
+        } else {
+            random.pick(&KERNELS)
+        };
+        let size = random.decades(-2.0, 1.0);
+        let base = random.vector(size);
+        let along = random.direction();
+        let skeleton = if kernel == Kernel::Gauss && i % 4 == 0 {
+            let apex = base + along * size * random.range(1.0, 30.0);
+            Skeleton::Segment { base, apex }
+        } else {
+            Skeleton::Point { center: base }
+        };
+        let shaping = field::Shaping {
+            kernel,
+            ..random.shaping(size)
+        };
+        let primitive = primitive(skeleton, &shaping, None);
+        if primitive.lump::<f64>().is_none() {
+            continue;
+        }
+        let aside = random.vector(2.0 * size) * random.pick(&[0.0, 1e-7, 0.3, 1.0]);
+        let other = random.direction();
+        let direction = random.pick(&[along, other]);
+        let origin = primitive.lump_middle() + aside - direction * size * random.range(0.0, 20.0);
+        cases.push((primitive, origin, direction));
+    }
+    cases
+}
+
+fn course<R: Real>(primitive: &Primitive, origin: DVec3, direction: DVec3) -> field::Course<R> {
+    let lump: Lump<R::Scalar> = primitive.lump().expect("a lump");
+    let middle = (primitive.lump_middle() - origin).to_array().map(R::splat);
+    lump.course(middle, direction.to_array().map(R::splat))
+}
+
+tests! {
+    /// Value and slope are those of the primitive, exactly in double and nearly in single precision.
+    fn a_course_is_the_field_along_the_ray() {
+        let cases = cases();
+        assert!(cases.len() > 200, "{}", cases.len());
+        for (primitive, origin, direction) in cases {
+            let exact = course::<f64>(&primitive, origin, direction);
+            let shipped = course::<f32x8>(&primitive, origin, direction);
+            for i in 0..60 {
+                let t = f64::from(i) * 0.4 / primitive.width;
+                let jet = primitive.jet((origin + direction * t).to_array());
+                let slope = DVec3::from_array(jet.gradient).dot(direction);
+                let steep = 1.0 + 2.0 * primitive.width;
+                let (value, change) = exact.at(t);
+                let size = 1.0 + jet.value.abs();
+                assert!((value - jet.value).abs() < 1e-7 * size, "{primitive:?} {t}: {value} {jet:?}");
+                assert!((change - slope).abs() < 1e-6 * size * steep, "{primitive:?} {t}: {change} {slope}");
+                let (value, change) = shipped.at(f32x8::splat(t as f32));
+                assert!((value.lane(3) - jet.value).abs() < 3e-4 * size, "{primitive:?} {t}: {} {jet:?}", value.lane(3));
+                assert!((change.lane(3) - slope).abs() < 3e-3 * size * steep, "{primitive:?} {t}");
+                let lump: Lump<f64> = primitive.lump().expect("a lump");
+                let own = lump.jet((origin + direction * t - primitive.lump_middle()).to_array());
+                assert!((own.value - jet.value).abs() < 1e-12 * size, "{primitive:?} {t}");
+                for (a, b) in own.gradient.into_iter().zip(jet.gradient) {
+                    assert!((a - b).abs() < 1e-11 * size * steep, "{primitive:?} {t}");
+                }
+            }
+        }
+    }
+
+    /// On any piece nothing is larger, nothing bends down more, and where a course says that it rises the end is the
+    /// largest.
+    fn bounds_on_pieces_hold() {
+        let mut random = Random::new(52);
+        let mut tight = 0;
+        for (primitive, origin, direction) in cases() {
+            let course = course::<f64>(&primitive, origin, direction);
+            for _ in 0..20 {
+                let from = random.range(0.0, 20.0) / primitive.width;
+                let to = from + random.decades(-3.0, 1.0) / primitive.width;
+                let (most, bend) = course.most(from, to);
+                let (mut largest, mut bent) = (0.0f64, 0.0f64);
+                let step = (to - from) / 40.0;
+                let at = |i: u32| from + step * f64::from(i);
+                for i in 0..=40 {
+                    largest = largest.max(course.at(at(i)).0);
+                    if i > 0 && step * primitive.width > 1e-3 {
+                        bent = bent.max((course.at(at(i - 1)).1 - course.at(at(i)).1) / step);
+                    }
+                }
+                let room = 1e-9 * (1.0 + largest);
+                assert!(largest <= most + room, "{primitive:?} {from} {to}: {largest} {most}");
+                let steep = primitive.width * primitive.width;
+                assert!(bent <= bend * (1.0 + 1e-6) + 1e-6 * steep, "{primitive:?} {from} {to}: {bent} {bend}");
+                tight += u32::from(most <= largest * 1.001 + 1e-12);
+                let (value, slope, here) = course.bent(to);
+                let (same, change) = course.at(to);
+                assert!(value == same && (slope - change).abs() <= 1e-12 * (1.0 + change.abs()));
+                if course.rises_until(to) {
+                    assert!((value - most).abs() <= room && (here - bend).abs() <= 1e-9 * (1.0 + bend));
+                }
+            }
+        }
+        assert!(tight > 2000, "{tight}");
+    }
+
+    /// Beyond its reach a lump's field is small; outside of what `within` says it is beyond.
+    fn beyond_the_reach_there_is_little() {
+        let mut random = Random::new(53);
+        for (primitive, origin, direction) in cases() {
+            let lump: Lump<f64> = primitive.lump().expect("a lump");
+            let level = random.decades(-7.0, -2.0);
+            let square = lump.reach(level);
+            let [near, far] = course::<f64>(&primitive, origin, direction).within(square);
+            for i in 0..200 {
+                let t = f64::from(i) * 0.2 / primitive.width;
+                let point = origin + direction * t;
+                let value = primitive.value(point.to_array());
+                if near > far || t < near || t > far {
+                    assert!(value <= level * (1.0 + 1e-6) + 1e-12, "{primitive:?} {t} {near} {far}: {value} {level}");
+                }
+                if value > level {
+                    let distance = point.distance(primitive.lump_middle());
+                    assert!(distance <= lump.radius(square) * (1.0 + 1e-9));
+                }
+            }
+        }
+    }
+}
