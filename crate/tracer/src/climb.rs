@@ -318,7 +318,7 @@ fn polish(
 /// Newton's steps at most.
 const MOST_STEPS: u32 = 24;
 /// Where a step ends the field is within about this of T.
-const CLOSE: f32 = 2e-3;
+const CLOSE: f32 = 2e-2;
 
 #[cfg(test)]
 mod tests {

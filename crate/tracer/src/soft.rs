@@ -204,7 +204,8 @@ impl Soft {
                 lump,
                 middle: middle.as_vec3().to_array(),
                 square: square as f32,
-                core: lump.core(square, self.left_out) as f32,
+                // A little inside, so that rounding does not put it outside.
+                core: lump.core(square, self.left_out) as f32 - 1e-4,
                 material: self.material[i as usize],
             };
             list.push(near, radius);
