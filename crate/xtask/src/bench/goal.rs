@@ -1,7 +1,5 @@
 //! Goals and whether they are met.
 
-use std::fmt::Write;
-
 /// What a ratio should be.
 #[derive(Clone, Copy, Debug)]
 pub enum Wanted {
@@ -43,33 +41,33 @@ pub fn short(number: f64) -> String {
     }
 }
 
-/// The table; nothing if there are no goals.
-pub fn table(goals: &[Goal]) -> String {
-    if goals.is_empty() {
+/// The table of rows; nothing if there are none.
+pub fn table(rows: &[String]) -> String {
+    if rows.is_empty() {
         return String::new();
     }
-    let mut out =
-        String::from("## Goals\n\n| what | against | goal | measured | |\n|---|---|--:|--:|---|\n");
-    for goal in goals {
-        let unit = goal.unit;
-        let wanted = match goal.wanted {
+    let head = "## Goals\n\n| what | against | goal | measured | |\n|---|---|--:|--:|---|\n";
+    format!("{head}{}\n", rows.concat())
+}
+
+impl Goal {
+    /// The goal's row of the table.
+    pub fn row(&self) -> String {
+        let unit = self.unit;
+        let wanted = match self.wanted {
             Wanted::AtLeast(least) => format!("≥ {least}{unit}"),
             Wanted::AtMost(most) => format!("≤ {most}{unit}"),
         };
-        let (measured, met) = match &goal.measured {
-            Ok(ratio) if goal.wanted.met(*ratio) => (short(*ratio) + unit, "met"),
+        let (measured, met) = match &self.measured {
+            Ok(ratio) if self.wanted.met(*ratio) => (short(*ratio) + unit, "met"),
             Ok(ratio) => (short(*ratio) + unit, "**not met**"),
             Err(reason) => (String::from("–"), reason.as_str()),
         };
-        // Writing to a string never fails.
-        let _ = writeln!(
-            out,
-            "| {} | {} | {wanted} | {measured} | {met} |",
-            goal.what, goal.against
-        );
+        format!(
+            "| {} | {} | {wanted} | {measured} | {met} |\n",
+            self.what, self.against
+        )
     }
-    out.push('\n');
-    out
 }
 
 #[cfg(test)]
@@ -85,11 +83,14 @@ mod tests {
             unit: "×",
             measured,
         };
-        let table = table(&[
-            goal(Wanted::AtLeast(4.0), Ok(4.125)),
-            goal(Wanted::AtMost(1.5), Ok(16.04)),
-            goal(Wanted::AtMost(1.5), Err(String::from("no b here"))),
-        ]);
+        let table = table(
+            &[
+                goal(Wanted::AtLeast(4.0), Ok(4.125)),
+                goal(Wanted::AtMost(1.5), Ok(16.04)),
+                goal(Wanted::AtMost(1.5), Err(String::from("no b here"))),
+            ]
+            .map(|goal| goal.row()),
+        );
         assert!(table.contains("| a | b | ≥ 4× | 4.12× | met |"), "{table}");
         assert!(table.contains("| a | b | ≤ 1.5× | 16.0× | **not met** |"));
         assert!(table.contains("| a | b | ≤ 1.5× | – | no b here |"));

@@ -1,7 +1,8 @@
 //! `cargo xtask bench`: measures, and writes BENCHMARKS.md. Nothing in that file is written by hand.
 //!
 //! Each module measures one thing and gives a piece of the page, and [`Goal`]s: the rows of the table
-//! at its top. What cannot be measured here, as a program is missing, says so in its place.
+//! at its top. What cannot be measured here, as a program is missing, says so in its place. Each part is kept in
+//! the target folder when it is measured, so that parts can be measured one by one.
 
 mod browser;
 mod certify;
@@ -16,10 +17,11 @@ mod scenes;
 mod series;
 mod wasm;
 
-use crate::shell::{find, read, root};
+use crate::shell::{find, read, root, target};
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use goal::Goal;
+use std::path::PathBuf;
 use std::process::Command;
 
 /// A part of the measurements.
@@ -44,53 +46,104 @@ pub enum Part {
 /// What a part came to: the rows it adds to the table of goals, and its piece of the page.
 type Piece = (Vec<Goal>, String);
 
-/// Measures everything and writes the file; or measures one part and prints what it came to.
+/// Measures everything, or one part, and writes the file: of parts not measured now what was measured last.
 pub fn bench(part: Option<Part>) -> Result<()> {
     if find("node").is_none() {
         bail!("Node.js is missing. Install Node.js 20 or newer (https://nodejs.org).");
     }
-    let parts = part.map_or_else(|| Part::value_variants().to_vec(), |part| vec![part]);
-    let mut goals = Vec::new();
-    let mut pieces = String::new();
-    for part in parts {
+    let now = part.map_or_else(|| Part::value_variants().to_vec(), |part| vec![part]);
+    for part in now {
         let (title, result) = measure(part);
         // The fields' tables have headings of their own.
-        if part != Part::Fields {
-            pieces += &format!("## {title}\n\n");
-        }
+        let mut text = if part == Part::Fields {
+            String::new()
+        } else {
+            format!("## {title}\n\n")
+        };
+        let mut rows = Vec::new();
         match result {
-            Ok((rows, piece)) => {
-                goals.extend(rows);
-                pieces += &piece;
+            Ok((goals, piece)) => {
+                rows = goals.iter().map(Goal::row).collect();
+                text += &piece;
             }
             Err(error) => {
                 eprintln!("{title}: {error:#}");
-                pieces += &format!("Not measured: {error:#}.\n\n");
+                text += &format!("Not measured: {error:#}.\n\n");
             }
         }
+        let kept = serde_json::json!({ "rows": rows, "text": text, "commit": commit() });
+        let path = kept_at(part);
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        std::fs::write(path, kept.to_string())?;
     }
-    let page = format!("{}{}{pieces}", head(), goal::table(&goals));
+    let (mut rows, mut pieces) = (Vec::new(), String::new());
+    for &part in Part::value_variants() {
+        let kept = std::fs::read_to_string(kept_at(part)).ok();
+        let kept: Option<serde_json::Value> = kept.and_then(|k| serde_json::from_str(&k).ok());
+        let Some(kept) = kept else {
+            let name = part
+                .to_possible_value()
+                .map_or(String::new(), |v| v.get_name().into());
+            pieces += &format!(
+                "## {}\n\nNot measured: run `cargo xtask bench {name}`.\n\n",
+                title(part)
+            );
+            continue;
+        };
+        let own = kept["rows"].as_array().into_iter().flatten();
+        rows.extend(own.filter_map(|row| row.as_str().map(String::from)));
+        pieces += kept["text"].as_str().unwrap_or_default();
+        let commit = kept["commit"].as_str().unwrap_or_default();
+        pieces += &format!("{}: measured at commit {commit}.\n\n", title(part));
+    }
+    let page = format!("{}{}{pieces}", head(), goal::table(&rows));
     let page = page.trim_end().to_owned() + "\n";
-    if part.is_some() {
-        println!("\n{page}");
-        return Ok(());
-    }
     let path = root().join("BENCHMARKS.md");
     std::fs::write(&path, page).context("BENCHMARKS.md cannot be written")?;
     println!("wrote {}", path.display());
     Ok(())
 }
 
-fn measure(part: Part) -> (&'static str, Result<Piece>) {
+/// Where a part is kept that was measured.
+fn kept_at(part: Part) -> PathBuf {
+    target().join(format!("bench/measured-{part:?}.json"))
+}
+
+/// The commit that is checked out.
+fn commit() -> String {
+    let git = read(
+        Command::new("git")
+            .args(["rev-parse", "--short", "HEAD"])
+            .current_dir(root()),
+    );
+    git.map_or("unknown".into(), |commit| commit.trim().into())
+}
+
+fn title(part: Part) -> &'static str {
     match part {
-        Part::Speed => ("The tracer, one thread", peers::measure()),
-        Part::Models => ("Soft and hard models", models::measure()),
-        Part::Wasm => ("The tracer as wasm", wasm::measure()),
-        Part::Browser => ("The page in a browser", browser::measure()),
-        Part::Certify => ("Certified", certify::measure()),
-        Part::Profile => ("Where the time goes", profile::measure()),
-        Part::Fields => ("Fields", fields::measure().map(|piece| (Vec::new(), piece))),
+        Part::Speed => "The tracer, one thread",
+        Part::Models => "Soft and hard models",
+        Part::Wasm => "The tracer as wasm",
+        Part::Browser => "The page in a browser",
+        Part::Certify => "Certified",
+        Part::Profile => "Where the time goes",
+        Part::Fields => "Fields",
     }
+}
+
+fn measure(part: Part) -> (&'static str, Result<Piece>) {
+    let result = match part {
+        Part::Speed => peers::measure(),
+        Part::Models => models::measure(),
+        Part::Wasm => wasm::measure(),
+        Part::Browser => browser::measure(),
+        Part::Certify => certify::measure(),
+        Part::Profile => profile::measure(),
+        Part::Fields => fields::measure().map(|piece| (Vec::new(), piece)),
+    };
+    (title(part), result)
 }
 
 /// What was measured with what.

@@ -5,10 +5,12 @@ use super::goal::{Goal, Wanted, short};
 use super::scenes::{FLAKES, Scenes};
 use super::series::{ROUNDS, Runs, alternate};
 use super::{Piece, ours, povray};
+use crate::examples;
 use crate::shell::find;
 use anyhow::Result;
 use std::collections::HashMap;
 use std::fmt::Write;
+use std::path::Path;
 
 /// A scene, what POV-Ray makes of it, and how many times quicker we want to be.
 struct Case {
@@ -78,9 +80,13 @@ pub fn measure() -> Result<Piece> {
          `tests/bench/*.rat`; how they are told to POV-Ray stands in `crate/xtask/src/bench/povray.rs`.\n\n",
         povray::options(false).join(" ")
     );
+    page += "The column AVX2 is the same program built with `RUSTFLAGS=\"-C target-cpu=x86-64-v3\"`: it draws the same \
+             pictures, bit for bit, on processors since about 2013.\n\n";
+    let swift = examples::sinew_for_avx2()?;
     let mut best = HashMap::new();
     for smooth in [false, true] {
-        against_povray(&scenes, smooth, &mut goals, &mut page, &mut best)?;
+        let programs = (&scenes, swift.as_deref());
+        against_povray(programs, smooth, &mut goals, &mut page, &mut best)?;
     }
     growth(&best, &mut goals);
     diggers(&scenes, &mut goals, &mut page)?;
@@ -91,7 +97,7 @@ pub fn measure() -> Result<Piece> {
 type Best = HashMap<String, f64>;
 
 fn against_povray(
-    scenes: &Scenes,
+    (scenes, swift): (&Scenes, Option<&Path>),
     smooth: bool,
     goals: &mut Vec<Goal>,
     page: &mut String,
@@ -108,8 +114,8 @@ fn against_povray(
     } else {
         *page += "### One ray a pixel\n\n";
     }
-    *page += "| scene | peer | ours | peer's | rays, ours | rays, peer's | times quicker | goal |\n\
-              |---|---|--:|--:|--:|--:|--:|--:|\n";
+    *page += "| scene | peer | ours | ours, AVX2 | peer's | rays, ours | rays, peer's | times quicker | AVX2 | goal |\n\
+              |---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n";
     for case in &CASES {
         let dataset = scenes.dataset(case.scene);
         let file = scenes.path(&format!("{}-{}.pov", case.scene, pieces(case.pov)));
@@ -139,6 +145,7 @@ fn against_povray(
             our_rays = cost.rays;
             Ok(cost.seconds)
         };
+        let mut fast = || Ok(ours::time(swift.unwrap_or(&scenes.sinew), &arguments)?.seconds);
         let mut pov = || {
             // An isosurface takes long, with anti-aliasing so long that once is enough.
             let cost = match (case.pov, probe) {
@@ -152,25 +159,30 @@ fn against_povray(
             Pov::Blob(_) if !smooth => ROUNDS,
             _ => 3,
         };
-        let (us, them) = if installed {
-            let [us, them] = alternate(rounds, [&mut our, &mut pov])?;
-            (us, Some(them))
+        let (us, fast, them) = if installed {
+            let [us, fast, them] = alternate(rounds, [&mut our, &mut fast, &mut pov])?;
+            (us, fast, Some(them))
         } else {
-            let [us] = alternate(rounds, [&mut our])?;
-            (us, None)
+            let [us, fast] = alternate(rounds, [&mut our, &mut fast])?;
+            (us, fast, None)
         };
-        let ratio = them
-            .as_ref()
-            .map(|them| (them.best() / pov_rays) / (us.best() / our_rays));
+        let fast = swift.map(|_| fast);
+        let quicker = |us: &Runs| {
+            let them = them.as_ref()?;
+            Some((them.best() / pov_rays) / (us.best() / our_rays))
+        };
+        let ratio = quicker(&us);
         let row = format!(
-            "| {} | {} | {} | {} | {our_rays:.0} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {our_rays:.0} | {} | {} | {} | {} |",
             case.title,
             case.peer,
             us.text(),
+            fast.as_ref().map_or("–".into(), Runs::text),
             them.as_ref().map_or("not installed".into(), Runs::text),
             them.as_ref()
                 .map_or("–".into(), |_| format!("{pov_rays:.0}")),
             ratio.map_or("–".into(), short),
+            fast.as_ref().and_then(quicker).map_or("–".into(), short),
             case.goal.map_or("–".into(), |goal| format!("≥ {goal}")),
         );
         println!("{row}");
@@ -224,7 +236,7 @@ fn growth(best: &Best, goals: &mut Vec<Goal>) {
 
 /// Our root finder against that of Kalra and Barr, on the thesis's series (table 4.4).
 fn diggers(scenes: &Scenes, goals: &mut Vec<Goal>, page: &mut String) -> Result<()> {
-    *page += "### Root finders\n\nThe certified Hermite spans against our own `digger LG` (Kalra and Barr 1989), \
+    *page += "### Root finders\n\nThe certified digger against our own `digger LG` (Kalra and Barr 1989), \
               full pictures, one ray a pixel. Thesis, table 4.4: 3.0 to 3.6.\n\n";
     let mut worst: Result<f64, String> = Ok(f64::INFINITY);
     let mut rows = String::new();
