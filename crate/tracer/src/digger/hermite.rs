@@ -1,6 +1,6 @@
-//! The certified digger: slabs of Hermite spans with a bounded error, for whole packets.
+//! The certified digger, for whole packets: the quick way for lumps, else slabs of Hermite spans with a bounded error.
 //!
-//! Pictures do not call it here: there the packets of a square share the slabs of one beam. Here
+//! Pictures do not call it here: there the packets of a square share lists, or the slabs of one beam. Here
 //! each packet has its own, with the same result within the same tolerance.
 use super::{Crossings, Digger, Packet};
 use crate::beam::Beam;

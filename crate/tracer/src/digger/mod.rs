@@ -8,7 +8,7 @@
 //!
 //! | digger | finds | can miss |
 //! |---|---|---|
-//! | [`hermite`] | roots of Hermite spans with a bounded error | little: see the limits of this crate |
+//! | [`hermite`] | roots of Hermite spans with a bounded error; of lumps, by steps with a bound on their bend | little: see the limits of this crate |
 //! | [`hermite2`] | roots of n Hermite spans a primitive | what its spans do not show |
 //! | [`lagrange`] | roots of polynomials through five samples | what is thinner than its samples are apart |
 //! | [`brent`], [`ridder`], [`regula_falsi`] | changes of sign between steps, refined | what is thinner than a step |
