@@ -20,6 +20,8 @@ use glam::DVec3;
 /// Half the length, in kernel widths, from which on a segment is a lump: from there the two error functions
 /// keep enough digits in their difference.
 const SHORT: f64 = 0.5;
+/// Amplitudes and width parameters of lumps are at most this.
+const LARGEST: f64 = 1e9;
 /// From this half length on the further end of a Gaussian segment is not felt: erfc 4 = 1.5·10⁻⁸.
 const LONG: f64 = 4.0;
 
@@ -69,7 +71,10 @@ impl Primitive {
     pub fn lump<S: Scalar>(&self) -> Option<Lump<S>> {
         let term = S::prepared(&self.prepared);
         let ends = self.kernel == Kernel::Gauss || self.kernel.is_compact();
-        if !ends || term.waves.is_some() || term.amplitude.lane(0) <= 0.0 {
+        let plain = ends && term.waves.is_none() && self.tapered.is_none();
+        let amplitude = self.prepared.double.amplitude;
+        // Larger ones leave single precision no room for derivatives.
+        if !(plain && amplitude > 0.0 && amplitude <= LARGEST && self.width <= LARGEST) {
             return None;
         }
         let segment = match &term.form.bone {

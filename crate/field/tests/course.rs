@@ -122,6 +122,22 @@ tests! {
         assert!(tight > 2000, "{tight}");
     }
 
+    /// What single precision has no room for is no lump, nor what is not simple.
+    fn what_is_too_large_or_not_simple_is_no_lump() {
+        let lump = |blobbiness: f64, strength: f64, kernel: Kernel| {
+            let shaping = field::Shaping {
+                kernel,
+                strength,
+                ..common::shaping(1.0, blobbiness)
+            };
+            primitive(Skeleton::Point { center: DVec3::ZERO }, &shaping, None).lump::<f32>()
+        };
+        assert!(lump(-4.0, 1.0, Kernel::Gauss).is_some());
+        assert!(lump(-100.0, 1.0, Kernel::Gauss).is_none());
+        assert!(lump(-4.0, -1.0, Kernel::Gauss).is_none());
+        assert!(lump(-4.0, 1.0, Kernel::Cauchy).is_none());
+    }
+
     /// Beyond its reach a lump's field is small; outside of what `within` says it is beyond.
     fn beyond_the_reach_there_is_little() {
         let mut random = Random::new(53);

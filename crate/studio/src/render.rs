@@ -118,6 +118,10 @@ impl Renderer {
         }
         self.wanted = Some((generation, size));
         if generation != old_generation {
+            // A picture that is given up before it was seen took at least so long.
+            if self.phase == Phase::Tracing && self.timings.coarse.is_none() {
+                self.coarse = self.coarse.max(now - self.running.1);
+            }
             self.halt();
             self.phase = Phase::Waiting;
             let quick = self.coarse <= QUICK;

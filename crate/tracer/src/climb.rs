@@ -57,11 +57,13 @@ pub struct Climbed {
 }
 
 /// T, less what rounding takes from sums: a ray that rounding alone keeps outside meets the surface.
-const LEVEL: f32 = 1.0 - 2.4e-7;
+const LEVEL: f32 = 1.0 - 1e-6;
 
 /// A field of this much is deep inside.
 const DEEP: f32 = 1.5;
 
+/// Evaluations after which a packet is given up; those of the published scenes need some thousand.
+const MOST_EVALUATIONS: u64 = 1 << 24;
 /// Rounds after which a packet is given up.
 const MOST_ROUNDS: u32 = 400;
 
@@ -104,6 +106,9 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
     let mut next = way.guess.fast_min(way.to).fast_max(low);
     let mut met = 0;
     for _ in 0..MOST_ROUNDS {
+        if evaluations > MOST_EVALUATIONS {
+            return None;
+        }
         if going == 0 {
             let mut climbed = Climbed {
                 t: high,
@@ -130,16 +135,15 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
         let below = going & !above;
         let calm = below & (sum.most.simd_lt(level) | chord.simd_lt(level)).to_bitmask();
         let passed = calm | below & short;
+        let moved = zero.simd_lt(length).to_bitmask();
         let failed = below & !passed;
         // Those that go on.
         let mask = mask(passed);
         low = mask.select(next, low);
         low_value = mask.select(sum.value, low_value);
         // A length that served may be doubled.
-        step = mask.select(
-            f32x8::splat(2.0) * step.fast_min(length.fast_max(tolerance)),
-            step,
-        );
+        let doubled = f32x8::splat(2.0) * step.fast_min(length.fast_max(tolerance));
+        step = self::mask(passed & moved).select(doubled, step);
         let arrived = passed & way.to.simd_le(low).to_bitmask();
         going &= !arrived;
         // Those that must look closer.

@@ -31,7 +31,10 @@
 //!
 //! # Limits
 //!
-//! - Of lumps no more than 10⁻⁴·T is left out, all together, and single precision is exact enough for the tolerance.
+//! - Of lumps no more than 10⁻⁵·T is left out, all together, whatever `influence` says; that and single precision (about
+//!   10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field. A packet near more than 2¹⁶ lumps,
+//!   or that makes more than 2²⁴ evaluations, goes the general way. Where that is taken for what else a square
+//!   holds, lumps too end at their depth of influence.
 //! - Of all else the soft surface of a picture is that of a field within 5·10⁻⁴·T of the true one, cut off at
 //!   each primitive's depth of influence; hits are then moved onto the (cut-off) field itself.
 //!   [`Picture::hits`] cuts nothing off; it may miss two crossings between which the field is

@@ -14,7 +14,7 @@ use wide::f32x8;
 
 /// Each lump is followed until its field is below this much of T, divided by their number: all that is left out
 /// is at most this.
-pub const LEFT_OUT: f64 = 1e-4;
+pub const LEFT_OUT: f64 = 1e-5;
 
 /// A lump is said to be strong up to this part of the way from its own surface to where its reach ends, as
 /// squares of distances.
@@ -44,7 +44,11 @@ const FINEST: f64 = 1e-6;
 const COARSEST: f64 = 5e-5;
 
 /// Looks at a packet's hits, each with a step of Newton's onto the surface.
-const MOST_LOOKS: usize = 3;
+const MOST_LOOKS: usize = 12;
+/// The field is not known better than this in single precision.
+const ROUNDING: f32 = 2e-6;
+/// A packet near more lumps than this is left to the general way, which needs less space for each.
+const MOST_STEPS: usize = 1 << 16;
 
 /// Rays of a packet, counted from a list's base.
 struct Rays {
@@ -59,7 +63,10 @@ impl Rays {
         let origin = core::array::from_fn(|k| f32x8::from_lanes(|i| start[i][k]));
         let direction = core::array::from_fn(|k| f32x8::from_lanes(|i| rays[i].direction[k]));
         let (offset, radius) = around(origin);
-        let (axis, spread) = around(direction);
+        let (mean, spread) = around(direction);
+        // The mean of unit vectors is shorter than one.
+        let axis = mean.try_normalize().unwrap_or(rays[0].direction);
+        let spread = spread + axis.distance(mean);
         let beam = Beam {
             axis: Ray {
                 origin: near.middle + offset,
@@ -168,6 +175,9 @@ impl Soft {
         if work.steps.is_empty() {
             return Some(Looked::default());
         }
+        if work.steps.len() > MOST_STEPS {
+            return None;
+        }
         work.steps.sort_by(|a, b| a.from.total_cmp(&b.from));
         let alive = alive & from.simd_le(to).to_bitmask();
         let way = Way {
@@ -175,7 +185,7 @@ impl Soft {
             to,
             guess,
             alive,
-            tolerance: (0.1 * self.pixel * near.base).clamp(FINEST, COARSEST) as f32,
+            tolerance: self.tolerance(near) as f32,
         };
         let climbed = climb(&work.steps, &way)?;
         if climbed.met == 0 || quest == Quest::Entry {
@@ -188,6 +198,11 @@ impl Soft {
         Some(self.look(near, &lanes, &climbed, evaluations, work))
     }
 
+    /// The tolerance for what is in a list, none of which is nearer to the rays' origins than its base.
+    fn tolerance(&self, list: &Nearby) -> f64 {
+        (0.1 * self.pixel * list.base).clamp(FINEST, COARSEST)
+    }
+
     /// Moves a packet's hits onto the surface, and says what it is like there.
     fn look(
         &self,
@@ -198,11 +213,13 @@ impl Soft {
         work: &mut Quick,
     ) -> Looked {
         let met = climbed.met;
+        let tolerance = self.tolerance(near) as f32;
         let mut evaluations = evaluations + climbed.evaluations;
         let mut at = climbed.t;
         let mut weights: Vec<(u32, f32x8)> = Vec::new();
         let mut gradient = [f32x8::splat(0.0); 3];
         let (first, last) = extremes(at, at, met);
+        let [mut low, mut high] = climbed.between;
         for _ in 0..MOST_LOOKS {
             let mut value = f32x8::splat(0.0);
             gradient = [f32x8::splat(0.0); 3];
@@ -232,11 +249,22 @@ impl Soft {
             }
             let [x, y, z]: [f32x8; 3] = core::array::from_fn(|i| gradient[i] * rays.direction[i]);
             let excess = value - f32x8::splat(1.0);
-            let next = at - excess / (x + y + z);
+            let over = excess.simd_ge(f32x8::splat(0.0));
+            high = over.select(at, high);
+            low = over.select(low, at);
+            let newton = at - excess / (x + y + z);
             // Where the ray only grazes the surface Newton's step may lead astray.
-            let good = climbed.between[0].simd_le(next) & next.simd_le(climbed.between[1]);
-            at = good.select(next, at);
-            if f32x8::splat(NEAR_ENOUGH).simd_lt(excess.abs()).to_bitmask() & met == 0 {
+            let good = low.simd_le(newton) & newton.simd_le(high);
+            at = good.select(newton, f32x8::splat(0.5) * (low + high));
+            // The distance from the surface is about the excess over the gradient's length.
+            let steep = gradient
+                .iter()
+                .fold(f32x8::splat(0.0), |s, g| s + *g * *g)
+                .sqrt();
+            let allowed =
+                (steep * f32x8::splat(0.5 * tolerance)).fast_min(f32x8::splat(NEAR_ENOUGH));
+            let allowed = allowed.fast_max(f32x8::splat(ROUNDING));
+            if allowed.simd_lt(excess.abs()).to_bitmask() & met == 0 {
                 break;
             }
         }
@@ -252,4 +280,41 @@ impl Soft {
 /// The least of eight numbers.
 fn least(x: f32x8) -> f32 {
     x.to_array().into_iter().fold(f32::INFINITY, f32::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hierarchy::Hierarchy;
+
+    /// Tiny balls on the rays themselves, also in packets as wide as those of `Picture::cast`.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn the_beam_of_a_packet_holds_its_outer_rays() {
+        for wide in [1e-4, 2e-3, 0.05, 0.14] {
+            let rays: [Ray; PACKET] = core::array::from_fn(|i| Ray {
+                origin: DVec3::ZERO,
+                direction: DVec3::new(
+                    wide * ((i % 4) as f64 / 3.0 - 0.5),
+                    wide * ((i / 4) as f64 - 0.5),
+                    1.0,
+                )
+                .normalize(),
+            });
+            let list = Nearby::default();
+            let beam = Rays::new(&rays, &list).beam;
+            let ball = |i: usize, t: f64| (i as u32, rays[i].direction * t, 1e-6);
+            for t in [0.3, 3.0, 30.0] {
+                let tree = Hierarchy::new((0..PACKET).map(|i| ball(i, t)).collect());
+                let mut found = 0;
+                tree.search(&beam, |_, _, _| found += 1);
+                assert_eq!(found, PACKET, "{wide} {t}");
+                assert!((beam.axis.direction.length() - 1.0).abs() < 1e-12);
+                for ray in &rays {
+                    let off = beam.axis.direction.distance(ray.direction);
+                    assert!(off <= beam.spread, "{wide}: {off} {}", beam.spread);
+                }
+            }
+        }
+    }
 }

@@ -38,6 +38,9 @@ impl<'a> Square<'a> {
 /// Parts of a square in each direction.
 const PARTS: u32 = 4;
 
+/// Longer lists have none for parts, which would need much space where lumps are large.
+const MANY: usize = 1 << 15;
+
 /// The lumps in a square, and in each of its parts.
 pub(crate) struct Lumps<'a> {
     picture: &'a Picture,
@@ -61,7 +64,7 @@ impl<'a> Lumps<'a> {
     /// Those in the part that holds the packet in a column and row.
     fn near(&mut self, [column, row]: [u32; 2]) -> &Nearby {
         let [columns, rows] = self.packets;
-        if self.all.len() == 0 || columns < 2 * PARTS {
+        if self.all.len() == 0 || self.all.len() > MANY || columns < 2 * PARTS {
             return &self.all;
         }
         let (i, j) = (column * PARTS / columns, row * PARTS / rows);

@@ -71,6 +71,17 @@ fn certify(kinds: &[Kind], most_missed: f64, most_grazed: f64, most_off: f64) {
     assert!(share(all.invented) <= most_off, "{all:?}");
 }
 
+/// Points that go the quick way have no fault at all.
+#[test]
+fn pictures_of_lumps_are_within_the_tolerance() {
+    let kernels = [&[Kernel::Gauss][..], &COMPACT].concat();
+    let (row, told) = run(&kernels, &[Kind::Point], 6, 6, &|trial, picture| {
+        picture.cast(&trial.rays)
+    });
+    assert!(row.faults() == 0, "{row:?}\n{told}");
+    assert!(row.hits > 500, "{row:?}");
+}
+
 // Cut into several tests so that they run side by side.
 
 #[test]

@@ -21,8 +21,16 @@ pub fn sinew() -> Result<PathBuf> {
 
 /// The same built for processors with AVX2, if this is one: it draws the same bits, sooner.
 pub fn sinew_for_avx2() -> Result<Option<PathBuf>> {
+    // All that x86-64-v3 stands for.
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+    if std::arch::is_x86_feature_detected!("avx2")
+        && std::arch::is_x86_feature_detected!("bmi1")
+        && std::arch::is_x86_feature_detected!("bmi2")
+        && std::arch::is_x86_feature_detected!("f16c")
+        && std::arch::is_x86_feature_detected!("fma")
+        && std::arch::is_x86_feature_detected!("lzcnt")
+        && std::arch::is_x86_feature_detected!("movbe")
+    {
         let folder = target().join("avx2");
         let mut build = cargo(&["build", "--release", "--package", "cli"]);
         build.env("RUSTFLAGS", "-C target-cpu=x86-64-v3");

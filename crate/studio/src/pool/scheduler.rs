@@ -186,8 +186,11 @@ impl Scheduler {
     }
 
     /// Hands out the whole coarse pass, a tile to each worker in turn: tracing it takes less time than
-    /// asking a page that is busy drawing for more.
+    /// asking a page that is busy drawing for more. Not before all are awake: the first would get all of it.
     fn deal(&mut self, now: f64) {
+        if self.slots.iter().any(|slot| slot.life != Life::Awake) {
+            return;
+        }
         let mut enough = 1;
         while self.run.as_ref().is_some_and(Run::is_coarse) {
             enough += 1;

@@ -2,7 +2,7 @@
 //!
 //! Each module measures one thing and gives a piece of the page, and [`Goal`]s: the rows of the table
 //! at its top. What cannot be measured here, as a program is missing, says so in its place. Each part is kept in
-//! the target folder when it is measured, so that parts can be measured one by one.
+//! `tests/bench/measured/`, so that parts can be measured one by one.
 
 mod browser;
 mod certify;
@@ -17,7 +17,7 @@ mod scenes;
 mod series;
 mod wasm;
 
-use crate::shell::{find, read, root, target};
+use crate::shell::{find, read, root};
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use goal::Goal;
@@ -60,23 +60,26 @@ pub fn bench(part: Option<Part>) -> Result<()> {
         } else {
             format!("## {title}\n\n")
         };
-        let mut rows = Vec::new();
-        match result {
-            Ok((goals, piece)) => {
-                rows = goals.iter().map(Goal::row).collect();
-                text += &piece;
-            }
+        let (goals, piece) = match result {
+            Ok(measured) => measured,
             Err(error) => {
+                // What was measured before stays.
                 eprintln!("{title}: {error:#}");
-                text += &format!("Not measured: {error:#}.\n\n");
+                continue;
             }
-        }
-        let kept = serde_json::json!({ "rows": rows, "text": text, "commit": commit() });
+        };
+        let rows: Vec<String> = goals.iter().map(Goal::row).collect();
+        text += &piece;
+        let kept = serde_json::json!({
+            "rows": rows,
+            "text": text.trim_end(),
+            "with": format!("{}; commit {}", versions(), commit()),
+        });
         let path = kept_at(part);
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        std::fs::write(path, kept.to_string())?;
+        std::fs::write(path, serde_json::to_string_pretty(&kept)? + "\n")?;
     }
     let (mut rows, mut pieces) = (Vec::new(), String::new());
     for &part in Part::value_variants() {
@@ -94,11 +97,10 @@ pub fn bench(part: Option<Part>) -> Result<()> {
         };
         let own = kept["rows"].as_array().into_iter().flatten();
         rows.extend(own.filter_map(|row| row.as_str().map(String::from)));
-        pieces += kept["text"].as_str().unwrap_or_default();
-        let commit = kept["commit"].as_str().unwrap_or_default();
-        pieces += &format!("{}: measured at commit {commit}.\n\n", title(part));
+        let [text, with] = ["text", "with"].map(|key| kept[key].as_str().unwrap_or_default());
+        pieces += &format!("{text}\n\n*{}*: {with}.\n\n", title(part));
     }
-    let page = format!("{}{}{pieces}", head(), goal::table(&rows));
+    let page = format!("{HEAD}{}{pieces}", goal::table(&rows));
     let page = page.trim_end().to_owned() + "\n";
     let path = root().join("BENCHMARKS.md");
     std::fs::write(&path, page).context("BENCHMARKS.md cannot be written")?;
@@ -108,7 +110,8 @@ pub fn bench(part: Option<Part>) -> Result<()> {
 
 /// Where a part is kept that was measured.
 fn kept_at(part: Part) -> PathBuf {
-    target().join(format!("bench/measured-{part:?}.json"))
+    let name = format!("tests/bench/measured/{part:?}.json").to_lowercase();
+    root().join(name)
 }
 
 /// The commit that is checked out.
@@ -146,8 +149,13 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
     (title(part), result)
 }
 
-/// What was measured with what.
-fn head() -> String {
+/// What stands above all.
+const HEAD: &str = "# Benchmarks\n\nWritten by `cargo xtask bench`, part by part; below each part stands what it \
+was measured with. No figure is written by hand. Absolute figures are those of one machine and drift with what else it \
+does: compare ratios within a table.\n\n";
+
+/// What is measured with what.
+fn versions() -> String {
     let version = |program: &str| read(Command::new(program).arg("--version")).unwrap_or_default();
     let mut versions = vec![version("rustc"), format!("node {}", version("node"))];
     versions.extend(povray::version());
@@ -157,12 +165,7 @@ fn head() -> String {
         std::env::consts::ARCH,
         processor()
     ));
-    format!(
-        "# Benchmarks\n\nWritten by `cargo xtask bench`, which makes all figures anew; none is written by \
-         hand. Absolute figures are those of one machine and drift with what else it does: compare \
-         ratios within a table. {}.\n\n",
-        versions.join("; ")
-    )
+    versions.join("; ")
 }
 
 /// The processor's name and how many cores it lends us.

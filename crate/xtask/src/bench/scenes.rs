@@ -25,6 +25,9 @@ impl Scenes {
         fs::create_dir_all(&folder)?;
         for entry in fs::read_dir(root().join("tests/bench"))? {
             let file = entry?;
+            if !file.file_type()?.is_file() {
+                continue;
+            }
             fs::copy(file.path(), folder.join(file.file_name()))?;
         }
         Ok(Self {
