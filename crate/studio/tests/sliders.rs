@@ -25,9 +25,12 @@ fn a_pad_moves_a_vector_and_one_undo_takes_the_drag_back() {
     for size in [[1000.0, 700.0], [390.0, 844.0]] {
         let mut window = Window::open(size[0], size[1]);
         window.load(TEXT);
+        // What is said of the picture while it is traced moves the layout on a phone.
+        window.finish();
         if size[0] < 700.0 {
             let tab = window.place("tab sliders").center();
             window.click(tab);
+            window.steps(4);
         }
         let pad = window.place("pad C");
         assert!(pad.width() >= 70.0, "{pad:?}");
@@ -38,6 +41,7 @@ fn a_pad_moves_a_vector_and_one_undo_takes_the_drag_back() {
         assert!((x + 0.5).abs() < 0.03 && (y + 0.5).abs() < 0.03, "{x} {y}");
         assert_eq!((z, window.errors()), (0.0, 0));
 
+        window.finish();
         window.steps(4);
         let rail = window.place("slider C z");
         window.drag(rail.center(), rail.center_top());
