@@ -428,6 +428,11 @@ mod tests {
                 tolerance: 5e-5,
             };
             let Some(climbed) = climb(&steps, &way) else {
+                // Only where a ray starts inside.
+                let starts = rays.iter().any(|&(origin, direction)| {
+                    scan(&primitives, origin, direction).0 == Some(0.0)
+                });
+                assert!(starts, "case {case} was given up");
                 continue;
             };
             for (i, &(origin, direction)) in rays.iter().enumerate() {

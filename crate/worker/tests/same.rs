@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{BENCH, compile};
+use common::{BENCH, compile, say};
 use scene::{Scene, wire};
 use tracer::{Pass, Stats, Tile, tiles};
 use worker::{Answer, Engine, Order, Request, Step};
@@ -143,14 +143,4 @@ fn no_example_is_left_out() {
             assert!(known.iter().any(|(other, _)| *other == name), "{name}");
         }
     }
-}
-
-#[cfg(not(target_arch = "wasm32"))]
-fn say(line: &str) {
-    println!("{line}");
-}
-
-#[cfg(target_arch = "wasm32")]
-fn say(line: &str) {
-    wasm_bindgen_test::console_log!("{line}");
 }

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{BENCH, compile};
+use common::{BENCH, compile, say};
 use scene::Scene;
 use tracer::{Pass, tiles};
 use worker::{Answer, Engine, Order, Request, Step};
@@ -94,14 +94,4 @@ fn now() -> f64 {
         fn now() -> f64;
     }
     now() / 1000.0
-}
-
-#[cfg(not(target_arch = "wasm32"))]
-fn say(line: &str) {
-    println!("{line}");
-}
-
-#[cfg(target_arch = "wasm32")]
-fn say(line: &str) {
-    wasm_bindgen_test::console_log!("{line}");
 }
