@@ -7,6 +7,7 @@ mod machine;
 
 use crate::{Outcome, files, report};
 use clap::{Args, ValueEnum};
+use field::Kernel;
 use scene::Scene;
 use serde_json::json;
 use std::path::PathBuf;
@@ -17,6 +18,14 @@ use tracer::{Pass, Picture};
 enum Switch {
     On,
     Off,
+}
+
+/// The kernel of a name.
+fn kernel(name: &str) -> Result<Kernel, String> {
+    Kernel::named(name).ok_or_else(|| {
+        let names = Kernel::ALL.map(Kernel::name).join(", ");
+        format!("the kernels are {names}")
+    })
 }
 
 /// How finely the picture is traced.
@@ -30,15 +39,21 @@ enum Fineness {
     Smooth,
 }
 
-/// `sinew time FILE | --balls N [--pass P] [--size W H] [--soft on|off] [--rays N]`.
+/// `sinew time FILE | --balls N [--kernel K] [--apart D] [--pass P] [--size W H] [--soft on|off] [--rays N]`.
 #[derive(Args)]
 pub struct Time {
     /// The dataset
     #[arg(required_unless_present = "balls")]
     file: Option<PathBuf>,
-    /// Instead of a dataset: so many Gaussian balls spread evenly through a cube
+    /// Instead of a dataset: so many balls spread evenly through a cube
     #[arg(long, value_name = "N", conflicts_with = "file")]
     balls: Option<u32>,
+    /// Their kernel
+    #[arg(long, value_name = "K", default_value = "gauss", value_parser = kernel, requires = "balls")]
+    kernel: Kernel,
+    /// The mean distance of their middles, in radii: at 3 many touch and melt together
+    #[arg(long, value_name = "D", default_value_t = 3.0, requires = "balls")]
+    apart: f64,
     /// How finely
     #[arg(long, default_value = "full")]
     pass: Fineness,
@@ -63,7 +78,10 @@ impl Time {
                 let clean = report::to_stderr(&loaded);
                 (loaded.compiled.scene, clean)
             }
-            (None, count) => (balls::scene(count.unwrap_or(1)), true),
+            (None, count) => (
+                balls::scene(count.unwrap_or(1), self.kernel, self.apart),
+                true,
+            ),
         };
         if let Some(soft) = self.soft {
             scene.settings.soft = matches!(soft, Switch::On);
@@ -143,7 +161,7 @@ mod tests {
 
     #[test]
     fn balls_are_as_many_as_asked_for_and_apart() {
-        let scene = balls::scene(1000);
+        let scene = balls::scene(1000, Kernel::Gauss, 3.0);
         assert_eq!(scene.elements.len(), 1000);
         let surface = scene.soft_surface();
         assert_eq!(surface.field.primitives.len(), 1000);

@@ -13,7 +13,8 @@ pub use polygon::{Edge, Polygon};
 pub use segment::Segment;
 pub use triangle::Triangle;
 
-/// A skeletal element in its local frame.
+/// A skeletal element in its local frame. What many elements have in common pictures (points, segments, arcs)
+/// lies here; the larger rest lies elsewhere, so that a scene of a million points has room.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Bone<S> {
     /// The origin.
@@ -23,13 +24,13 @@ pub enum Bone<S> {
     /// An arc in the plane z = 0.
     Arc(Arc<S>),
     /// A triangle in the plane z = 0.
-    Triangle(Triangle<S>),
+    Triangle(Box<Triangle<S>>),
     /// A polygon in the plane z = 0.
-    Polygon(Polygon<S>),
+    Polygon(Box<Polygon<S>>),
     /// The plane z = 0.
     Plane,
     /// A cubic curve, or anything whose width varies along it.
-    Curve(Curve<S>),
+    Curve(Box<Curve<S>>),
 }
 
 impl<S: Copy> Bone<S> {
@@ -38,10 +39,10 @@ impl<S: Copy> Bone<S> {
             Self::Point => Bone::Point,
             Self::Segment(bone) => Bone::Segment(Segment { half: f(bone.half) }),
             Self::Arc(bone) => Bone::Arc(bone.cast(f)),
-            Self::Triangle(bone) => Bone::Triangle(bone.cast(f)),
-            Self::Polygon(bone) => Bone::Polygon(bone.cast(f)),
+            Self::Triangle(bone) => Bone::Triangle(Box::new(bone.cast(f))),
+            Self::Polygon(bone) => Bone::Polygon(Box::new(bone.cast(f))),
             Self::Plane => Bone::Plane,
-            Self::Curve(bone) => Bone::Curve(bone.cast(f)),
+            Self::Curve(bone) => Bone::Curve(Box::new(bone.cast(f))),
         }
     }
 }

@@ -4,24 +4,17 @@
 //! Both follow from the kernel's own: a field is an integral of kernels, so what bounds the kernel at
 //! a distance ([`envelope`](crate::envelope)) bounds the field, times the skeleton's length or area; or,
 //! if that is less, integrated over an infinite line or plane.
+mod place;
+
 use crate::envelope::{self, PEANO, Roughness};
 use crate::{Kernel, Primitive, Real, Skeleton, bounds, endless, plane};
 use glam::DVec3;
+use place::Place;
 
 /// Bounds of one primitive.
 #[derive(Clone, Debug)]
 pub struct Bound {
-    skeleton: Skeleton,
-    /// Unit normal of a triangle, unit axis of a segment, axis of an arc.
-    axis: DVec3,
-    /// Length of a segment.
-    length: f64,
-    /// Sine and cosine of an arc's angle.
-    turn: (f64, f64),
-    /// sin(φ/2)/(φ/2) for an arc's largest φ, see [`Bound::nearness`].
-    sag: f64,
-    /// Balls that hold the pieces of a curve.
-    balls: Vec<(DVec3, f64)>,
+    place: Place,
     /// Length and radius of an arc in kernel widths; 0 for others.
     coil: [f64; 2],
     kernel: Kernel,
@@ -64,6 +57,18 @@ pub struct Nearness {
     stretch: f64,
 }
 
+impl Nearness {
+    /// That of a place of which only its distance from the skeleton is known.
+    #[must_use]
+    pub fn at(distance: f64) -> Self {
+        Self {
+            distance,
+            within: false,
+            stretch: f64::INFINITY,
+        }
+    }
+}
+
 /// What is known of a primitive at some nearness.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimate {
@@ -72,6 +77,8 @@ pub struct Estimate {
     /// The cubic Hermite interpolant on a span of the given length is at most this far from f. With a
     /// profile, whose waves may have kinks and jumps where no such bound exists, an estimate.
     pub error: f64,
+    /// The fourth derivative of f along any line is at most this, where something is known of it; else infinite.
+    pub fourth: f64,
 }
 
 /// The length h of a span, as its error wants it: `cₘhᵐ` for the orders 2 to 4.
@@ -88,59 +95,28 @@ impl SpanLength {
             PEANO[2] * (h * h) * (h * h),
         ])
     }
+
+    /// What a bound on the fourth derivative is to be multiplied with.
+    #[must_use]
+    pub fn fourth(&self) -> f64 {
+        self.0[2]
+    }
 }
 
 impl Bound {
     /// The bounds of a primitive.
     #[must_use]
     pub fn new(primitive: &Primitive) -> Self {
-        use core::f64::consts::{PI, TAU};
-        let mut skeleton = primitive.skeleton.clone();
+        let skeleton = &primitive.skeleton;
         let measure = skeleton.measure();
         let dimension = skeleton.dimension();
-        let (mut axis, mut length, mut turn, mut sag) = (DVec3::ZERO, 0.0, (0.0, 1.0), 1.0);
-        let mut coil = [0.0; 2];
-        match &mut skeleton {
-            Skeleton::Point { .. } => (),
-            Skeleton::Segment { base, apex } => {
-                axis = (*apex - *base).normalize_or_zero();
-                length = measure;
-            }
-            Skeleton::Arc {
-                u,
-                v,
-                angle,
-                radius,
-                ..
-            } => {
-                coil = [measure, *radius].map(|x| x * primitive.width);
-                // As the field does it.
-                *u = u.try_normalize().unwrap_or(DVec3::X);
-                *v = (*v - *u * u.dot(*v))
-                    .try_normalize()
-                    .unwrap_or_else(|| u.any_orthonormal_vector());
-                *angle = angle.clamp(0.0, TAU);
-                axis = u.cross(*v);
-                turn = libm::sincos(*angle);
-                let half = 0.5 * angle.min(PI);
-                if half > 1e-9 {
-                    sag = libm::sin(half) / half;
-                }
-            }
-            Skeleton::Triangle { corners: [a, b, c] } => {
-                axis = (*b - *a).cross(*c - *a).normalize_or_zero();
-            }
-            Skeleton::Polygon { rings } => {
-                axis = crate::skeleton::area_vector(rings).normalize_or_zero();
-            }
-            Skeleton::Curve { .. } => (),
-            Skeleton::Plane { normal, .. } => {
-                *normal = normal.try_normalize().unwrap_or(DVec3::Z);
-            }
-        }
+        let mut coil = match skeleton {
+            Skeleton::Arc { radius, .. } => [measure, *radius].map(|x| x * primitive.width),
+            _ => [0.0; 2],
+        };
         let (kernel, finest) = (primitive.kernel, primitive.width);
         let mut width = finest;
-        let (low, high) = primitive.profile.map_or((1.0, 1.0), |p| {
+        let (low, high) = primitive.profile.as_ref().map_or((1.0, 1.0), |p| {
             let [a, b] = p.bounds.map(|b| b * p.times);
             (a.min(b), a.max(b))
         });
@@ -158,7 +134,7 @@ impl Bound {
             width *= thinness.sqrt();
             coil = [0.0; 2];
         }
-        let endless = match (dimension, &skeleton) {
+        let endless = match (dimension, skeleton) {
             // A curve may coil, so that it is nowhere near a straight line.
             (_, Skeleton::Curve { .. }) => f64::INFINITY,
             (_, Skeleton::Arc { .. }) if primitive.tapered.is_some() => f64::INFINITY,
@@ -169,7 +145,7 @@ impl Bound {
         let (middle, extent) = skeleton
             .bounding_sphere()
             .unwrap_or((DVec3::ZERO, f64::INFINITY));
-        let ripple = primitive.profile.map_or(0.0, |p| {
+        let ripple = primitive.profile.as_ref().map_or(0.0, |p| {
             let extent = if dimension == 2 {
                 measure.sqrt()
             } else {
@@ -178,13 +154,8 @@ impl Bound {
             p.scale[0].abs().max(p.scale[1].abs()).max(1.0) / extent.max(f64::MIN_POSITIVE)
         });
         Self {
-            skeleton,
-            axis,
-            length,
-            turn,
-            sag,
+            place: Place::of(primitive),
             coil,
-            balls: primitive.prepared.double.balls(),
             kernel,
             width,
             finest,
@@ -204,87 +175,13 @@ impl Bound {
     /// How near the points of a ball come to the skeleton.
     #[must_use]
     pub fn nearness(&self, center: DVec3, radius: f64) -> Nearness {
-        let mut stretch = 1.0;
-        let distance = match &self.skeleton {
-            Skeleton::Point { center: c } => center.distance(*c),
-            Skeleton::Segment { base, .. } => {
-                let d = center - *base;
-                let along = d.dot(self.axis).clamp(0.0, self.length);
-                d.distance(self.axis * along)
-            }
-            Skeleton::Arc {
-                center: c,
-                u,
-                v,
-                radius: sweep,
-                angle,
-            } => {
-                let (sweep, angle) = (*sweep, *angle);
-                let d = center - *c;
-                let (x, y, z) = (d.dot(*u), d.dot(*v), d.dot(self.axis));
-                let rho = (x * x + y * y).sqrt();
-                let (sin, cos) = self.turn;
-                let before = x * sin - y * cos >= 0.0;
-                let swept = if angle > core::f64::consts::PI {
-                    y >= 0.0 || before
-                } else {
-                    y >= 0.0 && before
-                };
-                if swept {
-                    // A point of the arc at angle φ from the foot is no nearer than if the arc
-                    // were straight but shorter by the factor sin(φ/2)/(φ/2)·√(ρ/sweep).
-                    let shrink = self.sag * ((rho - radius).max(0.0) / sweep).sqrt();
-                    stretch = (1.0 / shrink).max(1.0);
-                    let off = rho - sweep;
-                    (off * off + z * z).sqrt()
-                } else {
-                    stretch = f64::INFINITY;
-                    let start = (x - sweep) * (x - sweep) + y * y;
-                    let (ex, ey) = (x - sweep * cos, y - sweep * sin);
-                    (start.min(ex * ex + ey * ey) + z * z).sqrt()
-                }
-            }
-            Skeleton::Triangle { corners } => self.triangle_distance(*corners, center),
-            Skeleton::Polygon { .. } => self.skeleton.distance(center),
-            // Within a ball nothing is known of the distance, which a pole asks for.
-            // (Of two bends the search may take the wrong one, by half its step.)
-            Skeleton::Curve { control } if !self.kernel.falls_fast() => {
-                let fastest = control
-                    .windows(2)
-                    .fold(0.0_f64, |v, w| v.max(3.0 * w[0].distance(w[1])));
-                let step = fastest / f64::from(crate::skeleton::SAMPLES);
-                (self.skeleton.distance(center) - 0.5 * step).max(0.0)
-            }
-            Skeleton::Curve { .. } => {
-                let far = self.balls.iter().map(|(c, r)| center.distance(*c) - r);
-                far.fold(f64::INFINITY, f64::min).max(0.0)
-            }
-            Skeleton::Plane { point, normal } => (center - *point).dot(*normal).abs(),
-        };
+        let (distance, stretch) = self.place.nearness(self.kernel, center, radius);
         let within = self.kernel.is_compact()
             && (center.distance(self.middle) + radius + self.extent) * self.finest <= 1.0;
         Nearness {
             distance: (distance - radius).max(0.0),
             within,
             stretch,
-        }
-    }
-
-    fn triangle_distance(&self, corners: [DVec3; 3], p: DVec3) -> f64 {
-        let mut inside = true;
-        let mut nearest = f64::INFINITY;
-        for i in 0..3 {
-            let (a, b) = (corners[i], corners[(i + 1) % 3]);
-            let edge = b - a;
-            let d = p - a;
-            inside &= edge.cross(d).dot(self.axis) >= 0.0;
-            let along = (d.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
-            nearest = nearest.min(d.distance_squared(edge * along));
-        }
-        if inside {
-            (p - corners[0]).dot(self.axis).abs()
-        } else {
-            nearest.sqrt()
         }
     }
 
@@ -297,37 +194,53 @@ impl Bound {
         let magnitude = self.magnitude(near);
         // Derivatives by length instead of by kernel widths.
         let order = envelope::order(kernel);
-        let Roughness {
-            point,
-            line,
-            plane,
-            outward,
-        } = envelope::roughness(kernel, u);
-        let over_endless = match self.dimension {
-            0 => point,
-            1 if self.coil[0] > 0.0 => {
-                let [length, radius] = self.coil;
-                let at = |u| envelope::roughness(kernel, u).point;
-                (near.stretch * line).min(bounds::coiled(length, radius, u, at, |_, _| outward))
-            }
-            1 => line,
-            _ => plane,
-        };
         let by_width = [
             width * width,
             width * width * width,
             width * width * (width * width),
         ];
-        let rough = (self.endless * over_endless).min(self.whole * point);
-        let mut error = rough * by_width[order - 2] * length.0[order - 2];
+        let rough = if self.dimension == 0 {
+            self.whole * envelope::rough_point(kernel, u)
+        } else {
+            let Roughness {
+                point,
+                line,
+                plane,
+                outward,
+            } = envelope::roughness(kernel, u);
+            let over_endless = match self.dimension {
+                1 if self.coil[0] > 0.0 => {
+                    let [length, radius] = self.coil;
+                    let at = |u| envelope::rough_point(kernel, u);
+                    (near.stretch * line).min(bounds::coiled(length, radius, u, at, |_, _| outward))
+                }
+                1 => line,
+                _ => plane,
+            };
+            (self.endless * over_endless).min(self.whole * point)
+        };
+        let rough = rough * by_width[order - 2];
+        let mut error = rough * length.0[order - 2];
+        // Beyond a compact kernel's reach nothing is rough.
+        let mut fourth = if order == 4 || rough == 0.0 {
+            rough
+        } else {
+            f64::INFINITY
+        };
         if near.within {
-            let inside = self.whole * envelope::inside4(kernel);
-            error = error.min(inside * by_width[2] * length.0[2]);
+            let inside = self.whole * envelope::inside4(kernel) * by_width[2];
+            error = error.min(inside * length.0[2]);
+            fourth = fourth.min(inside);
         }
         if self.ripple4 > 0.0 {
             error += self.ripple4 * magnitude * length.0[2];
+            fourth = f64::INFINITY;
         }
-        Estimate { magnitude, error }
+        Estimate {
+            magnitude,
+            error,
+            fourth,
+        }
     }
 
     /// `|∇f|` is at most this at some nearness (a Lipschitz constant of the ball): where the profile,
@@ -338,12 +251,24 @@ impl Bound {
         self.derivative(near, 1) + self.magnitude(near) * self.ripple
     }
 
-    /// About the largest slope of f over its size, as far as single precision's rounding of coordinates asks for
-    /// it: that of a Gaussian three widths out, steeper than which is only what is small; with the profile's.
+    /// About the largest slope of f over its size at some nearness, as far as single precision's rounding of coordinates
+    /// asks for it: that of a Gaussian three widths out, steeper than which is only what is small; of what falls as
+    /// a power of the distance no more than that over the distance; with the profile's.
     #[inline]
     #[must_use]
-    pub fn relative_slope(&self) -> f64 {
-        8.0 * self.finest + self.ripple
+    pub fn relative_slope(&self, near: Nearness) -> f64 {
+        let steepest = 8.0 * self.finest + self.ripple;
+        steepest.min(self.power() / near.distance)
+    }
+
+    /// Where the field falls as a power of the distance, or slower, that power; else infinite.
+    #[inline]
+    #[must_use]
+    pub fn power(&self) -> f64 {
+        match self.kernel {
+            Kernel::Cauchy | Kernel::Inverse | Kernel::Squared if self.ripple == 0.0 => 4.0,
+            _ => f64::INFINITY,
+        }
     }
 
     /// The second derivative of f along any line is at most this at some nearness (a Lipschitz constant of
@@ -369,9 +294,9 @@ impl Bound {
             plane,
             outward,
         } = bounds_at(u);
-        let over_endless = match (self.dimension, &self.skeleton) {
+        let over_endless = match (self.dimension, &self.place) {
             (0, _) => point,
-            (1, Skeleton::Arc { .. }) => {
+            (1, Place::Arc(_)) => {
                 let [length, radius] = self.coil;
                 let at = |u| bounds_at(u).point;
                 // Without a length there is no coil, and no line either.
@@ -382,7 +307,7 @@ impl Bound {
             (1, _) => line,
             // Of planes of poles: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from above; it
             // jumps in the plane, and has a slope of less than 1 elsewhere.
-            (_, Skeleton::Plane { .. }) if kernel == Kernel::Inverse => match order {
+            (_, Place::Plane { .. }) if kernel == Kernel::Inverse => match order {
                 2 if u == 0.0 => f64::INFINITY,
                 _ => core::f64::consts::TAU,
             },
@@ -437,20 +362,21 @@ impl Bound {
     /// A distance from the skeleton beyond which `|f|` is at most `share`.
     #[must_use]
     pub fn distance_of(&self, share: f64) -> f64 {
-        let mut distance = self.influence.max(f64::MIN_POSITIVE);
-        // Every field falls at least as fast as 1/d², so this doubles a few times only.
+        let enough = |distance: f64| self.magnitude(Nearness::at(distance)) <= share;
+        let mut high = self.influence.max(f64::MIN_POSITIVE);
+        // The field falls at least as fast as 1/d, so this doubles some times only.
         for _ in 0..64 {
-            let near = Nearness {
-                distance,
-                within: false,
-                stretch: f64::INFINITY,
-            };
-            if self.magnitude(near) <= share {
+            if enough(high) {
                 break;
             }
-            distance *= 2.0;
+            high *= 2.0;
         }
-        distance
+        let mut low = 0.0;
+        for _ in 0..8 {
+            let middle = 0.5 * (low + high);
+            *(if enough(middle) { &mut high } else { &mut low }) = middle;
+        }
+        high
     }
 
     /// Whether the term can be above zero.
@@ -472,6 +398,12 @@ fn size(kernel: Kernel, u: f64) -> f64 {
     match kernel {
         // Single precision's exponential is right to 10⁻⁶, and 0 where it is below 10⁻³⁷.
         Kernel::Gauss if u < 9.0 => f64::from(Real::exp(-(u * u) as f32)) * (1.0 + 1e-5),
+        // e⁻⁸¹; there is nothing to know more exactly.
+        Kernel::Gauss => 7e-36,
+        Kernel::Cauchy => {
+            let root = 1.0 / (1.0 + u * u);
+            root * root
+        }
         _ => kernel.value(u),
     }
 }

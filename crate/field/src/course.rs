@@ -22,6 +22,8 @@ use glam::DVec3;
 const SHORT: f64 = 0.5;
 /// Amplitudes and width parameters of lumps are at most this.
 const LARGEST: f64 = 1e9;
+/// Newton's steps to a compact lump's surface.
+const NEWTON: usize = 5;
 /// From this half length on the further end of a Gaussian segment is not felt: erfc 4 = 1.5·10⁻⁸.
 const LONG: f64 = 4.0;
 
@@ -36,6 +38,8 @@ pub struct Course<R: Real> {
     least: R,
     /// … and grows by this times the square of the distance from there.
     pace: R,
+    /// `1/√pace`, or where that would be more than 10⁶ so much.
+    width: R,
     segment: Option<Abreast<R>>,
 }
 
@@ -63,6 +67,31 @@ pub struct Lump<S> {
 struct Rod<S> {
     half: S,
     axes: [[S; 3]; 3],
+}
+
+/// A bound on lumps' fields by the distance from their bones, one a lane: `peak·G(q)`, where
+/// `√q = scale·distance`; of compact kernels, which are convex in q, the chord 1−q.
+#[derive(Clone, Copy, Debug)]
+pub struct Ceiling<R> {
+    /// The field is nowhere more than this.
+    pub peak: R,
+    /// The kernel's width parameter.
+    pub scale: R,
+    /// 1 for compact kernels, 0 for the Gaussian.
+    pub compact: R,
+}
+
+impl<R: Real> Ceiling<R> {
+    /// At this distance ≥ 0 from the bone, and beyond it, fields are at most this.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, distance: R) -> R {
+        let zero = R::splat(0.0);
+        let away = distance * self.scale;
+        let square = away * away;
+        let chord = (R::splat(1.0) - square).max(zero);
+        self.peak * R::select(zero.lt(self.compact), chord, (-square).exp())
+    }
 }
 
 impl Primitive {
@@ -112,13 +141,38 @@ impl<S: Scalar> Lump<S> {
         if self.kernel != Kernel::Gauss {
             return 1.0;
         }
+        libm::log((self.peak() / level).max(1.0))
+    }
+
+    /// The field is nowhere more than this.
+    fn peak(&self) -> f64 {
         let amplitude = self.amplitude.lane(0);
-        let peak = match &self.segment {
+        match &self.segment {
             // The integral over an endless line.
             Some(_) => amplitude * core::f64::consts::PI.sqrt(),
             None => amplitude,
-        };
-        libm::log((peak / level).max(1.0))
+        }
+    }
+
+    /// What bounds the field by the distance from the bone. Beyond the ends of a segment of half length H, at
+    /// x along it, this holds because `erf(x+H) − erf(x−H) ≤ erfc(x−H) ≤ exp(−(x−H)²)`.
+    #[must_use]
+    pub fn ceiling(&self) -> Ceiling<f64> {
+        Ceiling {
+            peak: self.peak(),
+            scale: self.scale.lane(0),
+            compact: f64::from(u8::from(self.kernel != Kernel::Gauss)),
+        }
+    }
+
+    /// From the middle to the end of the segment; of a point 0.
+    #[must_use]
+    pub fn half(&self) -> DVec3 {
+        self.segment.map_or(DVec3::ZERO, |rod| {
+            let scale = self.scale.lane(0);
+            let along = DVec3::from_array(rod.axes[0].map(|x| x.lane(0)));
+            along * (rod.half.lane(0) / (scale * scale))
+        })
     }
 
     /// The radius of a ball around the middle that holds all places within this square of the distance.
@@ -128,14 +182,29 @@ impl<S: Scalar> Lump<S> {
         (half + square.sqrt()) / self.scale.lane(0)
     }
 
-    /// Where the lump alone would have its surface, given its [`Lump::reach`] for `level`; for compact kernels a guess.
+    /// The square of the distance at which the lump alone would have its surface, given its [`Lump::reach`] for
+    /// `level`; negative if it has none. A point's field is at least T from there inwards; near the ends of
+    /// a segment, and of a short one everywhere, it is less.
     #[must_use]
     pub fn core(&self, square: f64, level: f64) -> f64 {
         if self.kernel == Kernel::Gauss {
-            square + libm::log(level / THRESHOLD)
-        } else {
-            0.4 * square
+            return square + libm::log(level / THRESHOLD);
         }
+        let wanted = THRESHOLD / self.amplitude.lane(0);
+        if wanted >= 1.0 {
+            return -1.0;
+        }
+        // Kernels fall and are convex in q, so that Newton's steps from 0 never leave the inside.
+        (0..NEWTON).fold(0.0, |q, _| {
+            let [value, slope, ..] = self.kernel.derivatives(q).0;
+            (q + (wanted - value) / slope).min(1.0)
+        })
+    }
+
+    /// Whether it is a segment.
+    #[must_use]
+    pub fn is_segment(&self) -> bool {
+        self.segment.is_some()
     }
 
     /// Value and gradient at a position relative to the middle.
@@ -192,6 +261,7 @@ impl<S: Scalar> Lump<S> {
                 center,
                 least: y * y + z * z,
                 pace,
+                width: R::splat(1.0) / pace.max(R::splat(1e-12)).sqrt(),
                 segment: Some(Abreast {
                     half: R::lift(rod.half),
                     place: x,
@@ -210,6 +280,7 @@ impl<S: Scalar> Lump<S> {
             center: ox * dx + oy * dy + oz * dz,
             least: pace * (x * x + y * y + z * z),
             pace,
+            width: R::lift(S::splat(1.0) / self.scale.max(S::splat(1e-6))),
             segment: None,
         }
     }
@@ -284,7 +355,7 @@ impl<R: Real> Course<R> {
     #[must_use]
     pub fn within(&self, square: R) -> [R; 2] {
         let room = square - self.least;
-        let half = (room.max(R::splat(0.0)) / self.pace.max(R::splat(1e-12))).sqrt();
+        let half = room.max(R::splat(0.0)).sqrt() * self.width;
         let miss = room.lt(R::splat(0.0));
         let [mut near, mut far] = [self.center - half, self.center + half];
         if let Some(abreast) = &self.segment {

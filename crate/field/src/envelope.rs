@@ -72,6 +72,17 @@ pub fn roughness(kernel: Kernel, u: f64) -> Roughness {
     table(kernel)[index(u)]
 }
 
+/// The same at one point only.
+#[inline]
+#[must_use]
+pub fn rough_point(kernel: Kernel, u: f64) -> f64 {
+    if kernel == Kernel::Cauchy {
+        let x = 1.0 + u * u;
+        return cauchy_point(x, 1.0 / x);
+    }
+    roughness(kernel, u).point
+}
+
 /// Bounds on the slope along any line, at a distance of `u ≥ 0` or more.
 #[must_use]
 pub fn steepness(kernel: Kernel, u: f64) -> Roughness {

@@ -58,7 +58,7 @@ mod term;
 mod waves;
 
 pub use bound::Bound;
-pub use course::{Course, Lump};
+pub use course::{Ceiling, Course, Lump};
 pub use kernel::{Derivatives, Kernel};
 pub use primitive::{Jet, Primitive};
 pub use profile::{Profile, Wave};

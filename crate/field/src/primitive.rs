@@ -65,9 +65,9 @@ pub struct Primitive {
     /// Depth of influence: beyond this distance from the skeleton |f| < ε·T.
     pub influence: f64,
     /// The profile, if any.
-    pub profile: Option<Profile>,
+    pub profile: Option<Box<Profile>>,
     /// The shaping, if width and height vary along the skeleton.
-    pub tapered: Option<Shaping>,
+    pub tapered: Option<Box<Shaping>>,
     pub(crate) prepared: Prepared,
 }
 
@@ -126,7 +126,7 @@ impl Primitive {
             return None;
         }
         // A profile is read off the skeleton's own form, tapered or not.
-        let waves = profile.map(|profile| Waves::new(&profile, &form.bone));
+        let waves = profile.map(|profile| Box::new(Waves::new(&profile, &form.bone)));
         if let Some(shaping) = tapered {
             let law = |fraction: f64| {
                 let here = shaping.at(fraction);
@@ -135,7 +135,8 @@ impl Primitive {
                 [h.unwrap_or(height) / height, thin * thin]
             };
             let kernel = shaping.kernel;
-            form.bone = Bone::Curve(tapered_curve(&skeleton, &frame, kernel, &law));
+            let curve = tapered_curve(&skeleton, &frame, kernel, &law);
+            form.bone = Bone::Curve(Box::new(curve));
         }
         let level = THRESHOLD * shaping.influence.max(f64::MIN_POSITIVE);
         let influence = bounds::depth(&form, amplitude.abs() * peak, level) / width;
@@ -145,8 +146,8 @@ impl Primitive {
             width,
             height,
             influence,
-            profile,
-            tapered,
+            profile: profile.map(Box::new),
+            tapered: tapered.map(Box::new),
             prepared: Prepared::new(Term {
                 frame,
                 form,
@@ -196,7 +197,7 @@ impl Primitive {
     #[must_use]
     pub fn bound_at(&self, distance: f64) -> f64 {
         let term = &self.prepared.double;
-        let peak = self.profile.map_or(1.0, |p| p.largest());
+        let peak = self.profile.as_ref().map_or(1.0, |p| p.largest());
         let distance = (distance * self.width).max(0.0);
         term.amplitude.abs() * peak * bounds::bound_at(&term.form, distance)
     }
@@ -205,7 +206,7 @@ impl Primitive {
     /// height; and the smallest square of the width parameter in units of `width`'s. The first two
     /// from above, the third from below.
     pub(crate) fn taper_bounds(&self) -> Option<[f64; 3]> {
-        self.tapered?;
+        self.tapered.as_ref()?;
         let Bone::Curve(curve) = &self.prepared.double.form.bone else {
             return None;
         };

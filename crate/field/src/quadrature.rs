@@ -126,7 +126,8 @@ fn finest(kernel: Kernel) -> f64 {
 pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
     let factor = primitive
         .profile
-        .map_or(1.0, |profile| factor(&profile, &primitive.skeleton, point));
+        .as_ref()
+        .map_or(1.0, |profile| factor(profile, &primitive.skeleton, point));
     factor
         * match &primitive.tapered {
             Some(shaping) => over_tapered(primitive, shaping, point),

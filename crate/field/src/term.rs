@@ -62,7 +62,9 @@ pub struct Term<S> {
     pub(crate) form: Form<S>,
     /// Factor on the form.
     pub(crate) amplitude: S,
-    pub(crate) waves: Option<Waves<S>>,
+    /// The profile, if any; of its own place: few primitives have any, and its room would be most of a
+    /// primitive's.
+    pub(crate) waves: Option<Box<Waves<S>>>,
 }
 
 impl<S: Copy> Term<S> {
@@ -162,7 +164,10 @@ impl Prepared {
             frame: double.frame.cast(round),
             form: double.form.cast(round),
             amplitude: round(double.amplitude),
-            waves: double.waves.as_ref().map(|waves| waves.cast(round)),
+            waves: double
+                .waves
+                .as_ref()
+                .map(|waves| Box::new(waves.cast(round))),
         };
         Self { double, single }
     }
@@ -224,7 +229,7 @@ fn place_bone(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<
             });
             (
                 frame(origin, axes, s),
-                Bone::Triangle(Triangle::new(corners)),
+                Bone::Triangle(Box::new(Triangle::new(corners))),
             )
         }
         Skeleton::Polygon { ref rings } => {
@@ -244,14 +249,17 @@ fn place_bone(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<
                         .collect()
                 })
                 .collect();
-            (frame(origin, axes, s), Bone::Polygon(Polygon::new(flat)))
+            (
+                frame(origin, axes, s),
+                Bone::Polygon(Box::new(Polygon::new(flat))),
+            )
         }
         Skeleton::Curve { control } => {
             let origin = control.iter().sum::<DVec3>() / 4.0;
             let cubics = [cubic(control.map(|p| (p - origin) * s))];
             (
                 frame(origin, DMat3::IDENTITY, s),
-                Bone::Curve(Curve::new(kernel, &cubics, &cubics, None)),
+                Bone::Curve(Box::new(Curve::new(kernel, &cubics, &cubics, None))),
             )
         }
         Skeleton::Plane { point, normal } => {

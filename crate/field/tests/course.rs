@@ -86,6 +86,30 @@ tests! {
         }
     }
 
+    /// At no distance from the bone is the field larger than its ceiling, and near the middle of the bone it is about that.
+    fn ceilings_hold() {
+        let mut random = Random::new(53);
+        let mut tight = 0;
+        for (primitive, _, _) in cases() {
+            let lump: Lump<f64> = primitive.lump().expect("a lump");
+            let (ceiling, half) = (lump.ceiling(), lump.half());
+            let middle = primitive.lump_middle();
+            let [a, b] = [middle - half, middle + half];
+            for _ in 0..40 {
+                let along = random.range(-1.2, 1.2);
+                let point = middle + half * along + random.direction() * random.decades(-3.0, 0.7) / primitive.width;
+                // The nearest place of the bone.
+                let share = if half == DVec3::ZERO { 0.0 } else { ((point - middle).dot(half) / half.length_squared()).clamp(-1.0, 1.0) };
+                let distance = point.distance(middle + half * share);
+                assert!(distance <= point.distance(a).min(point.distance(b)) * (1.0 + 1e-9));
+                let (value, most) = (primitive.value(point.to_array()), ceiling.at(distance));
+                assert!(value <= most * (1.0 + 1e-9) + 1e-12, "{primitive:?} {point}: {value} {most}");
+                tight += u32::from(value > 0.9 * most && value > 1e-6);
+            }
+        }
+        assert!(tight > 1000, "{tight}");
+    }
+
     /// On any piece nothing is larger, nothing bends down more, and where a course says that it rises the end is the
     /// largest.
     fn bounds_on_pieces_hold() {

@@ -82,11 +82,27 @@ impl Projection {
     /// (right edge), `y` from 0 (top edge) to 1 (bottom edge).
     #[must_use]
     pub fn direction(&self, x: f64, y: f64) -> DVec3 {
+        self.view(x, y).normalize()
+    }
+
+    /// The same, one unit of length along the view's axis instead of one in all.
+    #[must_use]
+    pub fn view(&self, x: f64, y: f64) -> DVec3 {
         let view = DVec3::new(
             (2.0 * x - 1.0) * self.half_width + self.shift[0],
             (1.0 - 2.0 * y) * self.half_height + self.shift[1],
             -1.0,
         );
-        (self.world_from_view * view).normalize()
+        self.world_from_view * view
+    }
+
+    /// By how much [`Projection::view`] changes from the left edge of the picture to the right one, and from the top
+    /// edge to the bottom: two directions at right angles.
+    #[must_use]
+    pub fn across(&self) -> [DVec3; 2] {
+        [
+            self.world_from_view.x_axis * (2.0 * self.half_width),
+            self.world_from_view.y_axis * (-2.0 * self.half_height),
+        ]
     }
 }

@@ -142,8 +142,12 @@ impl Scene {
     /// The field of all soft elements.
     #[must_use]
     pub fn soft_surface(&self) -> SoftSurface {
-        let mut field = Field::default();
-        let mut indices = Vec::new();
+        // As many as there are, unless limbs are cut: growing lists would take up to twice the room.
+        let count = self.elements.iter().filter(|e| self.is_soft(e)).count();
+        let mut field = Field {
+            primitives: Vec::with_capacity(count),
+        };
+        let mut indices = Vec::with_capacity(count);
         for (index, element) in self.elements.iter().enumerate() {
             if !self.is_soft(element) {
                 continue;

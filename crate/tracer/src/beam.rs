@@ -12,6 +12,8 @@ pub struct Beam {
     pub radius: f64,
     /// Largest length of the difference between a ray's direction and the axis'.
     pub spread: f64,
+    /// Largest distance of a ray's origin from the axis' origin, measured along the axis.
+    pub ahead: f64,
 }
 
 /// Bounds are computed in floating point; this much is added to each so that they stay bounds.
@@ -25,6 +27,7 @@ impl Beam {
             axis,
             radius: 0.0,
             spread: 0.0,
+            ahead: 0.0,
         }
     }
 
@@ -44,6 +47,7 @@ impl Beam {
             axis: Ray { origin, direction },
             radius: furthest(&|r| r.origin.distance(origin)) * (1.0 + ROUNDING),
             spread: furthest(&|r| r.direction.distance(direction)) * (1.0 + ROUNDING),
+            ahead: furthest(&|r| (r.origin - origin).dot(direction).abs()) * (1.0 + ROUNDING),
         })
     }
 
@@ -51,6 +55,13 @@ impl Beam {
     #[must_use]
     pub fn width(&self, t: f64) -> f64 {
         self.radius + self.spread * t
+    }
+
+    /// How far rays can be ahead of the axis, or lag behind it, at a parameter: of two unit vectors the one is
+    /// shorter along the other by half the square of their difference.
+    #[must_use]
+    pub fn lag(&self, t: f64) -> f64 {
+        self.ahead + 0.5 * self.spread * self.spread * t
     }
 
     /// The same beam with parameters counted from `base` on.
@@ -63,6 +74,7 @@ impl Beam {
             },
             radius: self.width(base),
             spread: self.spread,
+            ahead: self.lag(base),
         }
     }
 

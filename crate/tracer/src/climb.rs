@@ -35,8 +35,11 @@ pub struct Way {
     pub from: f32x8,
     /// Where it ends.
     pub to: f32x8,
-    /// Where to look first: a guess at the crossing.
+    /// A guess at the crossing; infinite where there is none …
     pub guess: f32x8,
+    /// … and where to look first, at or before it: so far that the rest of the way to the guess can be told to hold no
+    /// more than one crossing.
+    pub first: f32x8,
     /// The rays that go, a bit each.
     pub alive: u32,
     /// Pieces shorter than this are not divided.
@@ -103,7 +106,7 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
     let mut high = f32x8::splat(f32::INFINITY);
     let (mut high_value, mut high_slope, mut high_bend) = (zero, zero, zero);
     let mut step = f32x8::splat(f32::INFINITY);
-    let mut next = way.guess.fast_min(way.to).fast_max(low);
+    let mut next = way.first.fast_min(way.to).fast_max(low);
     let mut met = 0;
     for _ in 0..MOST_ROUNDS {
         if evaluations > MOST_EVALUATIONS {
@@ -174,14 +177,16 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
         let fits = low.simd_lt(back) & back.simd_lt(high);
         let back = fits.select(back, middle);
         let known = high.simd_lt(f32x8::splat(f32::INFINITY));
-        next = known.select(back, way.to).fast_min(low + step);
+        let goal = low.simd_lt(way.guess).select(way.guess, way.to);
+        let goal = goal.fast_min(way.to);
+        next = known.select(back, goal).fast_min(low + step);
     }
     None
 }
 
-/// A mask from bits.
+/// A mask from bits, one a lane.
 #[inline(always)]
-fn mask(bits: u32) -> f32x8 {
+pub fn mask(bits: u32) -> f32x8 {
     let bit = wide::i32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
     let set = wide::i32x8::splat(bits as i32) & bit;
     wide::bytemuck::cast(set.simd_eq(bit))
@@ -191,12 +196,19 @@ fn mask(bits: u32) -> f32x8 {
 #[inline(always)]
 pub fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
     let mask = mask(bits);
-    let low = mask.select(a, f32x8::splat(f32::INFINITY)).to_array();
-    let high = mask.select(b, f32x8::splat(f32::NEG_INFINITY)).to_array();
-    (
-        low.into_iter().fold(f32::INFINITY, f32::min),
-        high.into_iter().fold(f32::NEG_INFINITY, f32::max),
-    )
+    let low = mask.select(a, f32x8::splat(f32::INFINITY));
+    let high = mask.select(b, f32x8::splat(f32::NEG_INFINITY));
+    (least(low), -least(-high))
+}
+
+/// The least of eight numbers.
+#[inline(always)]
+#[must_use]
+pub fn least(x: f32x8) -> f32 {
+    let [a, b]: [wide::f32x4; 2] = wide::bytemuck::cast(x);
+    let [a, b, c, d] = a.fast_min(b).to_array();
+    let less = |a: f32, b: f32| if a < b { a } else { b };
+    less(less(a, b), less(c, d))
 }
 
 /// The field at t, and its slope.
@@ -424,6 +436,7 @@ mod tests {
                 from: f32x8::splat(0.0),
                 to: f32x8::splat(3.9),
                 guess: f32x8::splat(f32::INFINITY),
+                first: f32x8::splat(f32::INFINITY),
                 alive: 255,
                 tolerance: 5e-5,
             };
@@ -471,6 +484,7 @@ mod tests {
             from: zero,
             to: f32x8::splat(1.0),
             guess: zero,
+            first: zero,
             alive: 255,
             tolerance: 5e-5,
         };

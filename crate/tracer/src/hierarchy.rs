@@ -29,16 +29,50 @@ const LEAF: usize = 4;
 impl Hierarchy {
     /// Builds the tree over items given as (number, centre, radius).
     #[must_use]
-    pub fn new(mut items: Vec<(u32, DVec3, f64)>) -> Self {
+    pub fn new(items: Vec<(u32, DVec3, f64)>) -> Self {
+        Self::with_leaves(items, LEAF)
+    }
+
+    /// The same with up to `leaf` items in a leaf.
+    #[must_use]
+    pub fn with_leaves(mut items: Vec<(u32, DVec3, f64)>, leaf: usize) -> Self {
         let mut nodes = Vec::new();
         if !items.is_empty() {
-            build(&mut items, 0, &mut nodes);
+            build(&mut items, 0, leaf, &mut nodes);
         }
         Self {
             nodes,
             balls: items.iter().map(|i| (i.1, i.2)).collect(),
             items: items.iter().map(|i| i.0).collect(),
         }
+    }
+
+    /// How many nodes the tree has; 0 is the root.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// A node's ball.
+    #[inline]
+    #[must_use]
+    pub fn ball(&self, node: usize) -> (DVec3, f64) {
+        let node = &self.nodes[node];
+        (node.center, node.radius)
+    }
+
+    /// The numbers of the items below a node.
+    #[must_use]
+    pub fn items(&self, node: usize) -> &[u32] {
+        let node = &self.nodes[node];
+        &self.items[node.first as usize..(node.first + node.count) as usize]
+    }
+
+    /// A node's two children, if it is not a leaf.
+    #[must_use]
+    pub fn children(&self, node: usize) -> Option<[usize; 2]> {
+        let right = self.nodes[node].right;
+        (right != 0).then_some([node + 1, right as usize])
     }
 
     /// Calls `found` with the number and ball of each item whose ball the beam may meet.
@@ -69,7 +103,7 @@ impl Hierarchy {
     }
 }
 
-fn build(items: &mut [(u32, DVec3, f64)], first: u32, nodes: &mut Vec<Node>) {
+fn build(items: &mut [(u32, DVec3, f64)], first: u32, leaf: usize, nodes: &mut Vec<Node>) {
     let low = items
         .iter()
         .fold(DVec3::INFINITY, |m, i| m.min(i.1 - DVec3::splat(i.2)));
@@ -89,7 +123,7 @@ fn build(items: &mut [(u32, DVec3, f64)], first: u32, nodes: &mut Vec<Node>) {
         count: items.len() as u32,
         right: 0,
     });
-    if items.len() <= LEAF {
+    if items.len() <= leaf {
         return;
     }
     let low = items.iter().fold(DVec3::INFINITY, |m, i| m.min(i.1));
@@ -104,9 +138,9 @@ fn build(items: &mut [(u32, DVec3, f64)], first: u32, nodes: &mut Vec<Node>) {
         a.1[axis].total_cmp(&b.1[axis]).then(a.0.cmp(&b.0))
     });
     let (left, right) = items.split_at_mut(half);
-    build(left, first, nodes);
+    build(left, first, leaf, nodes);
     nodes[index].right = nodes.len() as u32;
-    build(right, first + half as u32, nodes);
+    build(right, first + half as u32, leaf, nodes);
 }
 
 #[cfg(test)]
@@ -137,6 +171,7 @@ mod tests {
                 },
                 radius: if case % 2 == 0 { 0.0 } else { 0.05 },
                 spread: 0.05 * next().abs(),
+                ahead: 0.0,
             };
             let mut found = Vec::new();
             tree.search(&beam, |i, _, _| found.push(i));

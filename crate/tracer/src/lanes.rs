@@ -9,6 +9,8 @@ use wide::f32x8;
 pub trait Lanes: Real {
     /// One bit a lane: whether the number is less than the other. Never set for NaN.
     fn less(self, other: Self) -> u32;
+    /// A number of single precision, in all lanes.
+    fn single(value: f32) -> Self;
 }
 
 impl Lanes for f32x8 {
@@ -16,11 +18,21 @@ impl Lanes for f32x8 {
     fn less(self, other: Self) -> u32 {
         self.simd_lt(other).to_bitmask()
     }
+
+    #[inline(always)]
+    fn single(value: f32) -> Self {
+        Self::splat(value)
+    }
 }
 
 impl Lanes for f64 {
     #[inline]
     fn less(self, other: Self) -> u32 {
         u32::from(self < other)
+    }
+
+    #[inline(always)]
+    fn single(value: f32) -> Self {
+        Self::from(value)
     }
 }

@@ -20,7 +20,9 @@
 //! - The general way is the thesis' (chapter 4): `slabs` decides for a whole beam which primitive needs Hermite spans
 //!   of which length (`field::Bound` knows how large a field and the error of a span can be), and `walk` follows single
 //!   packets through the slabs, adds up their spans' cubics (`spans`) and takes their roots (`roots`); what those leave
-//!   in doubt `settle` decides. A square whose beam meets anything but lumps is traced so, and a packet of which a
+//!   in doubt `settle` decides. Nothing is cut off: what is far enough to be smooth across the beam is interpolated
+//!   once for all its rays (`shared`), and distant primitives are judged in groups (`clusters`). `flesh` says what the
+//!   surface is like at the hits. A square whose beam meets anything but lumps is traced so, and a packet of which a
 //!   ray starts inside.
 //!
 //! Other ways of finding crossings, for comparison, are in `digger`; `map` shows what a picture costs.
@@ -31,18 +33,17 @@
 //!
 //! # Limits
 //!
-//! - Of lumps no more than 10⁻⁵·T is left out, all together, whatever `influence` says; that and single precision (about
-//!   10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field. A packet near more than 2¹⁶ lumps,
-//!   or that makes more than 2²⁴ evaluations, goes the general way. Where that is taken for what else a square
-//!   holds, lumps too end at their depth of influence.
-//! - Of all else the soft surface of a picture is that of a field within 5·10⁻⁴·T of the true one, cut off at
-//!   each primitive's depth of influence; hits are then moved onto the (cut-off) field itself.
-//!   [`Picture::hits`] cuts nothing off; it may miss two crossings between which the field is
+//! - Of all primitives no more than 10⁻⁵·T is left out, all together, whatever `influence` says; that and single
+//!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field. A packet near more
+//!   than 2¹⁶ lumps, or that makes more than 2²⁴ evaluations, goes the general way.
+//! - There pictures show a field within 5·10⁻⁴·T of the true one, and what is shared adds at most 4·10⁻⁴·T; hits are then
+//!   moved onto the field itself, unless what is shared moves them by less than half the tolerance.
+//!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
-//! - So where much lies beyond the depth of influence, as in clusters of kernels without end, hits are off by
-//!   many tolerances, and rays that graze a surface can miss it: `examples/certify.rs` counts how often.
-//! - Where spans leave a ray in doubt it is settled alone (`settle`), on the field that is cut off; stretches
-//!   shorter than 5·10⁻⁷ of the scene are not looked into, and one packet looks at no more than 4096 pieces.
+//! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are
+//!   not looked into, and one packet looks at no more than 4096 pieces of 2048 stretches.
+//! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
+//!   shared and rounding leaves many rays in doubt: such pictures are slow.
 //! - A primitive whose profile has kinks or jumps has no certified spans; they are made short by
 //!   an estimate.
 //! - A packet looks at no more than 2¹⁷ list entries, or 64 times the primitives in its beam; after
@@ -55,10 +56,13 @@ mod beam;
 mod beams;
 mod cast;
 mod climb;
+mod clusters;
 mod digger;
+mod flesh;
 pub mod hard;
 mod hierarchy;
 mod lanes;
+mod lens;
 mod map;
 mod nearby;
 mod packet;
@@ -73,11 +77,13 @@ mod roots;
 mod sample;
 mod settle;
 mod shade;
+mod shared;
 mod slabs;
 mod soft;
 mod solids;
 mod spans;
 mod square;
+mod stock;
 #[cfg(test)]
 mod tests;
 pub mod tile;

@@ -1,9 +1,11 @@
 //! The lumps near a beam of rays, and those of them near a narrower one.
 //!
 //! Lists are in order of the distance at which a lump can first be met, their places relative to a point in
-//! the beam, so that single precision is enough for them; eight are judged at a time.
+//! the beam, so that single precision is enough for them; eight are judged at a time. Of each is known how near its bone
+//! comes to any ray of a beam, and so how much of a field it can add there: what adds next to nothing is left out,
+//! and a beam in which all together stay below T meets no surface.
 use crate::beam::Beam;
-use field::Lump;
+use field::{Ceiling, Lump};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -15,8 +17,9 @@ pub struct Nearby {
     /// … and ray parameters from this one.
     pub base: f64,
     lumps: Vec<Near>,
-    /// Centre and radius: x, y, z, radius of eight lumps at a time.
-    balls: Vec<[[f32; 8]; 4]>,
+    blocks: Vec<Block>,
+    /// Whether any of them is a segment.
+    rods: bool,
 }
 
 /// A lump in a list.
@@ -30,41 +33,142 @@ pub struct Near {
     pub square: f32,
     /// Alone it would have its surface there.
     pub core: f32,
+    /// This far before its own surface a ray is well outside of it.
+    pub lead: f32,
     /// Its material.
     pub material: u32,
+    /// No ray of the list's beam meets it before this parameter.
+    pub from: f32,
+}
+
+/// How far a lump reaches and how large its field can be; `R` is one number, or those of eight lumps.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent<R> {
+    /// The radius of the ball around its middle beyond which it is not followed.
+    pub radius: R,
+    /// From the middle to an end of its bone.
+    half: [R; 3],
+    peak: R,
+    scale: R,
+    compact: R,
+}
+
+/// Eight lumps side by side.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    middle: [[f32; 8]; 3],
+    extent: Extent<[f32; 8]>,
 }
 
 /// A ball that no beam meets.
 const NOWHERE: f32 = -1e30;
 
 /// Places are rounded to single precision: squares of distances are off by no more than this part of them.
-const ROUNDING: f32 = 1e-6;
+const ROUNDING: f32 = 2e-6;
+
+/// A segment whose direction across a beam is shorter than this part of it, as squares, runs along the beam: where it is
+/// nearest is not asked.
+const ALONG: f32 = 1e-4;
+
+/// Fields that are bounded by less than this are nowhere T.
+const BELOW: f32 = 0.999;
+
+impl Extent<f32> {
+    /// Of a lump, with the radius of its ball.
+    #[must_use]
+    pub fn of(lump: &Lump<f32>, radius: f64) -> Self {
+        let Ceiling {
+            peak,
+            scale,
+            compact,
+        } = lump.ceiling();
+        Self {
+            // Rounded outwards.
+            radius: radius as f32 * (1.0 + 1e-6),
+            half: lump.half().as_vec3().to_array(),
+            peak: peak as f32 * (1.0 + 1e-6),
+            scale: scale as f32 * (1.0 - 1e-6),
+            compact: compact as f32,
+        }
+    }
+}
+
+impl Block {
+    const EMPTY: Self = Self {
+        middle: [[0.0; 8]; 3],
+        extent: Extent {
+            radius: [NOWHERE; 8],
+            half: [[0.0; 8]; 3],
+            peak: [0.0; 8],
+            scale: [0.0; 8],
+            compact: [0.0; 8],
+        },
+    };
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, middle: [f32; 3], one: &Extent<f32>) {
+        let all = &mut self.extent;
+        for (row, x) in self.middle.iter_mut().zip(middle) {
+            row[lane] = x;
+        }
+        for (row, x) in all.half.iter_mut().zip(one.half) {
+            row[lane] = x;
+        }
+        all.radius[lane] = one.radius;
+        all.peak[lane] = one.peak;
+        all.scale[lane] = one.scale;
+        all.compact[lane] = one.compact;
+    }
+
+    #[inline(always)]
+    fn extent(&self, lane: usize) -> Extent<f32> {
+        let all = &self.extent;
+        Extent {
+            radius: all.radius[lane],
+            half: all.half.map(|row| row[lane]),
+            peak: all.peak[lane],
+            scale: all.scale[lane],
+            compact: all.compact[lane],
+        }
+    }
+}
+
+/// Which lumps of a list a beam may meet: a bit each, eight lumps a number.
+pub type Marks = Vec<u8>;
+
+/// The indices that are marked, in order.
+pub fn marked(marks: &Marks) -> impl Iterator<Item = usize> {
+    marks.iter().enumerate().flat_map(|(block, &bits)| {
+        let mut bits = bits;
+        core::iter::from_fn(move || {
+            (bits != 0).then(|| {
+                let lane = bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                block * 8 + lane
+            })
+        })
+    })
+}
 
 impl Nearby {
     /// Begins a list that is counted from a beam's axis at a parameter.
     pub fn begin(&mut self, middle: DVec3, base: f64) {
         (self.middle, self.base) = (middle, base);
         self.lumps.clear();
-        self.balls.clear();
+        self.rods = false;
+        self.blocks.clear();
     }
 
-    /// Adds a lump with the radius of its ball; its place is counted from [`Nearby::middle`].
-    pub fn push(&mut self, near: Near, radius: f64) {
-        let [x, y, z] = near.middle;
-        self.add(near, [x, y, z, radius as f32]);
-    }
-
+    /// Adds a lump; its place is counted from [`Nearby::middle`].
     #[inline(always)]
-    fn add(&mut self, near: Near, ball: [f32; 4]) {
+    pub fn push(&mut self, near: Near, extent: &Extent<f32>) {
+        self.rods |= extent.half != [0.0; 3];
         let lane = self.lumps.len() % 8;
         if lane == 0 {
-            self.balls
-                .push([[0.0; 8], [0.0; 8], [0.0; 8], [NOWHERE; 8]]);
+            self.blocks.push(Block::EMPTY);
         }
-        if let Some(last) = self.balls.last_mut() {
-            for (all, one) in last.iter_mut().zip(ball) {
-                all[lane] = one;
-            }
+        if let Some(last) = self.blocks.last_mut() {
+            last.set(lane, near.middle, extent);
         }
         self.lumps.push(near);
     }
@@ -82,19 +186,34 @@ impl Nearby {
         &self.lumps[index]
     }
 
-    /// Puts those lumps whose balls a ray of a beam may meet into another list. The beam's parameters start
-    /// at [`Nearby::base`].
-    pub fn narrow(&self, beam: &Beam, into: &mut Self) {
+    /// Puts those lumps that a ray of a beam may meet into another list, which stays empty if all together
+    /// are nowhere T; no more of the field than `left_out` is lost. The beam's parameters start at
+    /// [`Nearby::base`].
+    pub fn narrow(&self, beam: &Beam, left_out: f32, into: &mut Self) {
         into.begin(self.middle, self.base);
-        self.each_near(beam, |list, index| {
-            let ball = list.balls[index / 8].map(|row| row[index % 8]);
-            into.add(*list.get(index), ball);
-        });
+        let mut marks = Marks::new();
+        if self.mark(beam, left_out, &mut marks) {
+            for index in marked(&marks) {
+                into.push(*self.get(index), &self.blocks[index / 8].extent(index % 8));
+            }
+        }
     }
 
-    /// Calls `found` with the index of each lump that a ray of a beam may meet.
+    /// Marks the lumps that a ray of a beam may meet. False if all together are nowhere T on the beam's rays: then
+    /// there are no marks. Of the field no more is lost than `left_out`.
+    pub fn mark(&self, beam: &Beam, left_out: f32, marks: &mut Marks) -> bool {
+        if self.rods {
+            self.judge::<true>(beam, left_out, marks)
+        } else {
+            self.judge::<false>(beam, left_out, marks)
+        }
+    }
+
+    /// [`Nearby::mark`], with and without what only segments call for.
     #[inline(always)]
-    pub fn each_near(&self, beam: &Beam, mut found: impl FnMut(&Self, usize)) {
+    fn judge<const RODS: bool>(&self, beam: &Beam, left_out: f32, marks: &mut Marks) -> bool {
+        marks.clear();
+        let zero = f32x8::splat(0.0);
         let offset = (beam.axis.origin - self.middle).as_vec3();
         let axis = beam.axis.direction.as_vec3();
         let [ox, oy, oz] = offset.to_array().map(f32x8::splat);
@@ -103,34 +222,56 @@ impl Nearby {
         let grow = f32x8::splat((beam.spread / (1.0 - beam.spread.min(0.5))) as f32 * 1.001);
         let wide = f32x8::splat(beam.radius as f32 * 1.001 + 1e-7);
         let all = beam.spread >= 0.5;
-        for (block, [x, y, z, radius]) in self.balls.iter().enumerate() {
-            let [x, y, z] = [
-                f32x8::new(*x) - ox,
-                f32x8::new(*y) - oy,
-                f32x8::new(*z) - oz,
-            ];
-            let radius = f32x8::new(*radius);
+        let least = f32x8::splat(left_out / self.lumps.len().max(1) as f32);
+        let mut most = zero;
+        for Block { middle, extent } in &self.blocks {
+            let [x, y, z] = middle.map(f32x8::new);
+            let (x, y, z) = (x - ox, y - oy, z - oz);
+            let radius = f32x8::new(extent.radius);
+            let there = radius.simd_ge(zero);
             let square = x * x + y * y + z * z;
             let along = x * ax + y * ay + z * az;
-            let across = square - along * along;
             // A ray's point at t is within radius + spread·t of the axis' point, so in the ball t is at most
             // (along + reach)/(1 − spread).
-            let reach = radius + wide;
-            let ahead = along + reach;
-            let widest = reach + grow * ahead.fast_max(f32x8::splat(0.0));
-            let near = across.simd_le(widest * widest + square * f32x8::splat(ROUNDING))
-                & ahead.simd_ge(f32x8::splat(0.0))
-                & radius.simd_ge(f32x8::splat(0.0));
-            let mut bits = near.to_bitmask();
-            if all {
-                bits = radius.simd_ge(f32x8::splat(0.0)).to_bitmask();
+            let ahead = along + radius + wide;
+            let mut across = square - along * along;
+            let mut slack = wide + grow * ahead.fast_max(zero);
+            let mut room = square;
+            if RODS {
+                // Where the bone is nearest to the axis: at middle + share·half.
+                let [ux, uy, uz] = extent.half.map(f32x8::new);
+                let length = ux * ux + uy * uy + uz * uz;
+                let turn = ux * ax + uy * ay + uz * az;
+                let lean = x * ux + y * uy + z * uz - along * turn;
+                let tilt = length - turn * turn;
+                let runs = (length * f32x8::splat(ALONG)).simd_lt(tilt);
+                let one = f32x8::splat(1.0);
+                let share = runs.select(-lean / tilt, zero);
+                let share = share.fast_max(-one).fast_min(one);
+                across += share * (lean + lean + share * tilt);
+                let loose = runs.select(zero, length * f32x8::splat(1.01 * ALONG));
+                slack += loose.sqrt();
+                room += length;
             }
-            while bits != 0 {
-                let lane = bits.trailing_zeros() as usize;
-                bits &= bits - 1;
-                found(self, block * 8 + lane);
-            }
+            let across = across - room * f32x8::splat(ROUNDING);
+            let apart = across.fast_max(zero).sqrt() - slack;
+            let ceiling = Ceiling {
+                peak: f32x8::new(extent.peak),
+                scale: f32x8::new(extent.scale),
+                compact: f32x8::new(extent.compact),
+            };
+            let bound = ceiling.at(apart.fast_max(zero));
+            let near = there & ahead.simd_ge(zero) & least.simd_lt(bound);
+            most += near.select(bound, zero);
+            let bits = if all { there } else { near };
+            marks.push(bits.to_bitmask() as u8);
         }
+        let most: f32 = most.to_array().iter().sum();
+        if most < BELOW && !all {
+            marks.clear();
+            return false;
+        }
+        true
     }
 }
 
@@ -140,51 +281,86 @@ mod tests {
     use crate::ray::Ray;
     use field::{Kernel, Primitive, Shaping, Skeleton};
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn no_lump_that_a_ray_meets_is_left_out_and_most_others_are() {
+    /// What is left of an infinite kernel beyond its ball.
+    const BEYOND: f64 = 1e-9;
+
+    /// Random numbers between −1 and 1.
+    fn random() -> impl FnMut() -> f64 {
         let mut state = 17u64;
-        let mut next = || {
+        move || {
             state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
             (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
-        };
-        let shaping = Shaping {
-            kernel: Kernel::Gauss,
-            radius: 0.1,
-            blobbiness: -4.0,
-            blob_scale: field::BlobScale::Relative,
-            strength: 1.0,
-            influence: 1e-3,
-            taper: None,
-        };
-        let point = Skeleton::Point {
-            center: DVec3::ZERO,
-        };
-        let primitive = Primitive::new(point, &shaping, None).expect("flesh");
-        let lump = primitive.lump().expect("a lump");
-        let (mut kept, mut all) = (0, 0);
-        for _ in 0..60 {
+        }
+    }
+
+    /// Small lumps around a place.
+    fn primitives(
+        next: &mut impl FnMut() -> f64,
+        middle: DVec3,
+        count: usize,
+        strength: f64,
+    ) -> Vec<Primitive> {
+        let kernels = [
+            Kernel::Gauss,
+            Kernel::Gauss,
+            Kernel::Quartic,
+            Kernel::Metaballs,
+        ];
+        (0..count)
+            .filter_map(|i| {
+                let center = middle + 3.0 * DVec3::new(next(), next(), next());
+                let along = DVec3::new(next(), next(), next()) * next().abs();
+                let skeleton = if i % 4 == 1 {
+                    Skeleton::Segment {
+                        base: center - along,
+                        apex: center + along,
+                    }
+                } else {
+                    Skeleton::Point { center }
+                };
+                let shaping = Shaping {
+                    kernel: kernels[i % kernels.len()],
+                    radius: 0.005 + 0.1 * next().abs(),
+                    blobbiness: -4.0,
+                    blob_scale: field::BlobScale::Relative,
+                    strength: strength * (0.2 + next().abs()),
+                    influence: 1e-3,
+                    taper: None,
+                };
+                Primitive::new(skeleton, &shaping, None)
+            })
+            .filter(|p| p.lump::<f32>().is_some())
+            .collect()
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn lumps_left_out_add_next_to_nothing_and_most_are_left_out() {
+        const LEFT_OUT: f32 = 1e-5;
+        let mut next = random();
+        let (mut kept, mut all, mut empty, mut largest) = (0, 0, 0, 0.0f64);
+        for case in 0..120 {
             // Far from the origin, where single precision would not do without a place amid the lumps.
             let middle = DVec3::new(next(), next(), next()) * 1e4;
+            // Half of the lists are of lumps too weak to have a surface each.
+            let strength = if case % 2 == 0 { 1.0 } else { 0.15 };
+            let primitives = primitives(&mut next, middle, 3 + case * 2, strength);
             let mut list = Nearby::default();
             list.begin(middle, 0.0);
-            let balls: Vec<(DVec3, f64)> = (0..300)
-                .map(|_| {
-                    (
-                        middle + 3.0 * DVec3::new(next(), next(), next()),
-                        0.2 * next().abs(),
-                    )
-                })
-                .collect();
-            for (i, &(center, radius)) in balls.iter().enumerate() {
+            for (i, primitive) in primitives.iter().enumerate() {
+                let lump = primitive.lump::<f32>().expect("a lump");
+                let square = lump.reach(BEYOND);
+                let place = primitive.lump_middle() - middle;
                 let near = Near {
                     lump,
-                    middle: (center - middle).as_vec3().to_array(),
-                    square: 1.0,
+                    middle: place.as_vec3().to_array(),
+                    square: square as f32,
                     core: 1.0,
+                    lead: 0.0,
                     material: i as u32,
+                    from: 0.0,
                 };
-                list.push(near, radius);
+                list.push(near, &Extent::of(&lump, lump.radius(square)));
             }
             let beam = Beam {
                 axis: Ray {
@@ -192,25 +368,38 @@ mod tests {
                     direction: DVec3::new(next(), next(), next()).normalize(),
                 },
                 radius: 0.02 * next().abs(),
-                spread: 0.1 * next().abs(),
+                spread: 0.1 * next().abs() * next().abs(),
+                ahead: 0.0,
             };
             let mut narrow = Nearby::default();
-            list.narrow(&beam, &mut narrow);
+            list.narrow(&beam, LEFT_OUT, &mut narrow);
             let found: Vec<u32> = (0..narrow.len()).map(|i| narrow.get(i).material).collect();
+            let nowhere = found.is_empty();
+            empty += u32::from(nowhere);
             kept += found.len();
-            all += balls.len();
-            for _ in 0..200 {
+            all += primitives.len();
+            for _ in 0..60 {
                 let offset = DVec3::new(next(), next(), next()).normalize() * beam.radius * 0.999;
                 let turn = DVec3::new(next(), next(), next()).normalize() * beam.spread * 0.999;
                 let (origin, direction) = (beam.axis.origin + offset, beam.axis.direction + turn);
-                for (i, &(center, radius)) in balls.iter().enumerate() {
-                    let t = (center - origin).dot(direction).max(0.0) / direction.length_squared();
-                    if (origin + direction * t).distance(center) < radius * (1.0 - 1e-6) {
-                        assert!(found.contains(&(i as u32)), "{beam:?} {center} {radius}");
+                for i in 0..300 {
+                    let t = 0.03 * f64::from(i);
+                    let point = (origin + direction * t).to_array();
+                    let left = |i: &usize| !found.contains(&(*i as u32));
+                    let lost = (0..primitives.len()).filter(left);
+                    let lost: f64 = lost.map(|i| primitives[i].value(point)).sum();
+                    if nowhere {
+                        assert!(lost < 1.0, "{beam:?} {t}: {lost}");
+                        largest = largest.max(lost);
+                    } else {
+                        let most = f64::from(LEFT_OUT) + BEYOND * primitives.len() as f64;
+                        assert!(lost <= most, "{beam:?} {t}: {lost}");
                     }
                 }
             }
         }
-        assert!(kept * 5 < all, "{kept} of {all}");
+        assert!(kept * 3 < all, "{kept} of {all}");
+        assert!((10..112).contains(&empty), "{empty}");
+        assert!(largest > 0.05, "{largest}");
     }
 }

@@ -1,17 +1,21 @@
 //! Tracing a packet of rays: hits, shadows, colours.
 use crate::beam::Beam;
 use crate::beams::Beams;
+use crate::flesh::Flesh;
 use crate::hard::Crossing;
+use crate::lens::{Fan, Lens};
 use crate::map;
 use crate::nearby::Nearby;
 use crate::picture::{Picture, Stats};
+use crate::quick::Rays;
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::shade::{Finish, towards};
 use crate::slabs::Slabs;
-use crate::soft::{Flesh, PACKET, Scratch};
+use crate::soft::{PACKET, Scratch};
 use crate::walk::{Bundle, Quest};
 use glam::{DVec3, Vec3};
+use scene::LightKind;
 
 /// Where a ray hits, and what it hits.
 #[derive(Clone, Copy, Debug)]
@@ -31,10 +35,11 @@ pub(crate) struct Hit {
 pub(crate) enum Near<'n, 's> {
     /// There is none.
     Nothing,
-    /// Lumps alone.
-    Lumps(&'n Nearby),
-    /// The slabs of a beam around the rays, and the parameter at which they start.
-    Slabs(&'n mut (Slabs<'s>, f64)),
+    /// Lumps alone, and what makes rays for them, if they can be made so.
+    Lumps(&'n Nearby, Option<&'n Lens>),
+    /// The slabs of a beam around the rays, with the parameter at which they start; and the packet's number among
+    /// the beam's divisions.
+    Slabs(&'n mut (Slabs<'s>, f64), usize),
 }
 
 /// Working space of one thread.
@@ -45,12 +50,10 @@ pub struct Workspace {
 }
 
 impl Picture {
-    /// Traces the rays of one packet, which belong to the beam of `slabs`; `number` is the packet's
-    /// among the beam's divisions.
+    /// Traces the rays of one packet.
     pub(crate) fn packet(
         &self,
         rays: &[Ray; PACKET],
-        number: usize,
         near: Near<'_, '_>,
         work: &mut Workspace,
         stats: &mut Stats,
@@ -67,12 +70,52 @@ impl Picture {
         } else {
             match near {
                 Near::Nothing => {}
-                Near::Slabs((slabs, base)) => {
+                Near::Slabs((slabs, base), number) => {
                     self.soft_hits(rays, number, slabs, *base, work, &mut hits);
                 }
-                Near::Lumps(near) => self.lump_hits(rays, near, work, &mut hits),
+                Near::Lumps(near, _) => self.lump_hits(rays, near, work, &mut hits),
             }
         }
+        self.shine(rays, &hits, work, stats)
+    }
+
+    /// Traces the rays of one packet in a scene of lumps alone. `None` if this is not the way to do it.
+    pub(crate) fn lump_packet(
+        &self,
+        lens: &Lens,
+        fan: &Fan,
+        near: &Nearby,
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) -> Option<[Sample; PACKET]> {
+        let rays = lens.rays(fan, near);
+        let limits = [f64::INFINITY; PACKET];
+        let quick = &mut work.scratch.quick;
+        let looked = self
+            .soft
+            .quick(near, &rays, &limits, ALL, Quest::First, quick)?;
+        work.scratch.evaluations = looked.evaluations;
+        work.scratch.alone = [0; PACKET];
+        if looked.met == 0 {
+            stats.field_evaluations += looked.evaluations;
+            let cost = map::costs([1; PACKET], looked.evaluations, &work.scratch.alone);
+            let nothing = self.nothing();
+            return Some(cost.map(|cost| Sample { cost, ..nothing }));
+        }
+        let rays = lens.wide(fan);
+        let mut hits = [None; PACKET];
+        self.clothe(&rays, &looked.flesh, near.base, looked.met, &mut hits);
+        Some(self.shine(&rays, &hits, work, stats))
+    }
+
+    /// What rays see that hit something or nothing.
+    fn shine(
+        &self,
+        rays: &[Ray; PACKET],
+        hits: &[Option<Hit>; PACKET],
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) -> [Sample; PACKET] {
         let across = rays[0].direction.distance(rays[PACKET - 1].direction);
         let mut colours = [self.background; PACKET];
         let mut keys = [0u32; PACKET];
@@ -85,10 +128,14 @@ impl Picture {
         }
         for (which, light) in self.lights.iter().enumerate() {
             let mut lit = 0u32;
-            let mut way = [(DVec3::Z, 0.0); PACKET];
+            // From a distant light it is the same everywhere.
+            let mut way = [towards(light, DVec3::ZERO); PACKET];
+            let distant = matches!(light.kind, LightKind::Distant { .. });
             for i in 0..PACKET {
                 if let Some(hit) = &hits[i] {
-                    way[i] = towards(light, hit.position);
+                    if !distant {
+                        way[i] = towards(light, hit.position);
+                    }
                     if hit.normal.dot(way[i].0) > 0.0 {
                         lit |= 1 << i;
                     }
@@ -99,7 +146,7 @@ impl Picture {
                 for (i, cast) in cast.iter_mut().enumerate() {
                     *cast += lit >> i & 1;
                 }
-                lit &= !self.shadowed(&hits, &way, lit, across, work);
+                lit &= !self.shadowed(hits, &way, lit, across, work);
             }
             for i in 0..PACKET {
                 if let (Some(hit), true) = (&hits[i], lit >> i & 1 != 0) {
@@ -166,7 +213,7 @@ impl Picture {
         if found.is_empty() {
             return;
         }
-        let flesh = self.soft.flesh(slabs, &based, &found, scratch);
+        let flesh = self.soft.flesh(slabs, &based, base, &found, scratch);
         let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
         self.clothe(rays, &flesh, base, met, hits);
     }
@@ -181,9 +228,10 @@ impl Picture {
     ) {
         let limits = core::array::from_fn(|i| hits[i].map_or(f64::INFINITY, |h| h.t));
         let scratch = &mut work.scratch;
+        let lanes = Rays::new(rays, near);
         let Some(looked) =
             self.soft
-                .quick(near, rays, &limits, ALL, Quest::First, &mut scratch.quick)
+                .quick(near, &lanes, &limits, ALL, Quest::First, &mut scratch.quick)
         else {
             let beam = Beam::around(rays);
             let slabs = beam.and_then(|beam| {
@@ -219,14 +267,20 @@ impl Picture {
                 normal = -normal;
             }
             let t = base + flesh.t[lane];
-            let mut finish = Finish::default();
-            let total: f32 = flesh.weights.iter().map(|(_, w)| w[lane]).sum();
-            for (material, weight) in &flesh.weights {
-                let share = weight[lane] / total;
-                if share > 0.0 {
-                    finish.mix(&self.finishes[*material as usize], share);
+            let finish = match &flesh.weights[..] {
+                [(only, _)] => self.finishes[*only as usize],
+                several => {
+                    let mut finish = Finish::default();
+                    let total: f32 = several.iter().map(|(_, w)| w[lane]).sum();
+                    for (material, weight) in several {
+                        let share = weight[lane] / total;
+                        if share > 0.0 {
+                            finish.mix(&self.finishes[*material as usize], share);
+                        }
+                    }
+                    finish
                 }
-            }
+            };
             hits[lane] = Some(Hit {
                 t,
                 position: ray.at(t),

@@ -16,9 +16,11 @@ use crate::solids::Solids;
 use crate::square::{Lumps, Square};
 use crate::unit::Unit;
 use crate::{Pass, Tile};
+use field::Real;
 use glam::{DVec3, Vec3};
 use scene::{Light, Projection, Scene, Settings};
 use serde::{Deserialize, Serialize};
+use wide::f32x8;
 
 /// Counts of work done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,25 +79,29 @@ impl Picture {
         let (unit, scene) = Unit::fit(scene);
         let size = size.map(|n| n.max(1));
         let projection = scene.camera.projection(size[0], size[1]);
-        let mut soft = Soft::new(&scene);
+        let solids = Solids::new(&scene);
+        let finishes = scene.materials.iter().map(Finish::of).collect();
+        let (lights, settings) = (scene.lights.clone(), scene.settings);
+        let background = Vec3::from(scene.background);
+        let mut soft = Soft::new(scene);
         soft.pixel = 2.0 * projection.half_width / f64::from(size[0]);
         Self {
             size,
             unit,
             projection,
             soft,
-            solids: Solids::new(&scene),
-            finishes: scene.materials.iter().map(Finish::of).collect(),
-            lights: scene.lights.clone(),
-            background: Vec3::from(scene.background),
-            samples: scene.settings.samples.clamp(1, Settings::MAX_SAMPLES),
-            contrast: Vec3::from(scene.settings.contrast),
-            gamma: scene.settings.gamma,
-            digger: match scene.settings.digger {
+            solids,
+            finishes,
+            lights,
+            background,
+            samples: settings.samples.clamp(1, Settings::MAX_SAMPLES),
+            contrast: Vec3::from(settings.contrast),
+            gamma: settings.gamma,
+            digger: match settings.digger {
                 scene::Digger::Hermite => None,
                 other => Some(digger::of(other)),
             },
-            map: scene.settings.map.map(Map::new),
+            map: settings.map.map(Map::new),
         }
     }
 
@@ -203,9 +209,9 @@ impl Picture {
         stats: &mut Stats,
     ) -> Option<Samples> {
         let mut samples = Samples::new(area);
-        let square = SQUARE / scale;
-        let [columns, rows] = [square / PACKET_SIZE[0], square / PACKET_SIZE[1]];
-        for block in area.blocks([square; 2]) {
+        let side = SQUARE / scale;
+        let [columns, rows] = [side / PACKET_SIZE[0], side / PACKET_SIZE[1]];
+        for block in area.blocks([side; 2]) {
             if stop() {
                 return None;
             }
@@ -224,8 +230,7 @@ impl Picture {
                     continue;
                 }
                 stats.primary_rays += wanted as u64;
-                let number = packet_number([i, j], [columns, rows]);
-                let near = square.near([i, j], number);
+                let near = square.near([i, j], [columns, rows]);
                 let nothing = matches!(near, Near::Nothing);
                 if self.solids.is_empty() && self.digger.is_none() && nothing {
                     for (x, y) in pixels {
@@ -233,11 +238,30 @@ impl Picture {
                     }
                     continue;
                 }
-                let rays = pixels.map(|(x, y)| {
-                    let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
-                    self.ray(middle(x), middle(y))
+                // Places in pixels from the square's middle.
+                let middle = |c: f64| (c - 0.5 * f64::from(side)) * f64::from(scale);
+                let [left, top] = [i * PACKET_SIZE[0], j * PACKET_SIZE[1]].map(f64::from);
+                let [wide, high] = PACKET_SIZE.map(|n| 0.5 * f64::from(n));
+                let quick = match near {
+                    Near::Lumps(near, Some(lens)) if self.solids.is_empty() => {
+                        let x = |lane: usize| left + (lane % PACKET_SIZE[0] as usize) as f64 + 0.5;
+                        let y = |lane: usize| top + (lane / PACKET_SIZE[0] as usize) as f64 + 0.5;
+                        let places = [
+                            f32x8::from_lanes(|lane| middle(x(lane))),
+                            f32x8::from_lanes(|lane| middle(y(lane))),
+                        ];
+                        let fan = lens.fan(places, [middle(left + wide), middle(top + high)]);
+                        self.lump_packet(lens, &fan, near, work, stats)
+                    }
+                    _ => None,
+                };
+                let found = quick.unwrap_or_else(|| {
+                    let rays = pixels.map(|(x, y)| {
+                        let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
+                        self.ray(middle(x), middle(y))
+                    });
+                    self.packet(&rays, near, work, stats)
                 });
-                let found = self.packet(&rays, number, near, work, stats);
                 for ((x, y), sample) in pixels.into_iter().zip(found) {
                     samples.set(x, y, sample);
                 }
@@ -250,7 +274,7 @@ impl Picture {
     }
 
     /// What a ray sees that hits nothing.
-    fn nothing(&self) -> Sample {
+    pub(crate) fn nothing(&self) -> Sample {
         Sample {
             colour: self.background.max(Vec3::ZERO).min(Vec3::ONE),
             key: 0,
@@ -276,11 +300,9 @@ impl Picture {
             return Square::Empty;
         }
         let mut near = Nearby::default();
-        if self
-            .soft
-            .list_lumps(&self.beam(area), f64::INFINITY, &mut near)
-        {
-            return Square::Lumps(Lumps::new(self, area, packets, near));
+        let beam = self.beam(area);
+        if self.soft.list_lumps(&beam, f64::INFINITY, &mut near) {
+            return Square::Lumps(Lumps::new(self, area, packets, &beam, near));
         }
         match self.slabs(area, packets) {
             Some(slabs) => Square::Slabs(slabs),
@@ -317,6 +339,7 @@ impl Picture {
             axis,
             radius: 0.0,
             spread: spread * (1.0 + 1e-9),
+            ahead: 0.0,
         }
     }
 }

@@ -3,18 +3,20 @@
 //! The lumps near a square of pixels are listed once, those near each of its parts when a packet in it asks, those near
 //! the packet anew for each; then [`climb`](mod@crate::climb) follows the packet's rays.
 use crate::beam::Beam;
-use crate::climb::{Climbed, Step, Way, climb, extremes};
-use crate::nearby::Nearby;
+use crate::climb::{Climbed, Step, Way, climb, extremes, least};
+use crate::flesh::{Flesh, NEAR_ENOUGH};
+use crate::nearby::{Marks, Nearby, marked};
 use crate::ray::Ray;
-use crate::soft::{Flesh, NEAR_ENOUGH, PACKET, Soft};
+use crate::soft::{PACKET, Soft};
 use crate::walk::Quest;
 use field::Real;
 use glam::DVec3;
 use wide::f32x8;
 
-/// Each lump is followed until its field is below this much of T, divided by their number: all that is left out
-/// is at most this.
-pub const LEFT_OUT: f64 = 1e-5;
+/// What of the field, in units of T, is left out of the lists of a square's parts …
+pub const LEFT_OUT_OF_PARTS: f32 = 3e-6;
+/// … and of a packet's.
+const LEFT_OUT_OF_PACKETS: f32 = 5e-6;
 
 /// A lump is said to be strong up to this part of the way from its own surface to where its reach ends, as
 /// squares of distances.
@@ -25,6 +27,7 @@ const STRONG: f32 = 0.15;
 pub struct Quick {
     steps: Vec<Step>,
     list: Nearby,
+    marks: Marks,
 }
 
 /// What a packet's rays met.
@@ -39,9 +42,9 @@ pub struct Looked {
 }
 
 /// Half the least and the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), or less.
-const FINEST: f64 = 1e-6;
+pub const FINEST: f64 = 1e-6;
 /// See [`FINEST`].
-const COARSEST: f64 = 5e-5;
+pub const COARSEST: f64 = 5e-5;
 
 /// Looks at a packet's hits, each with a step of Newton's onto the surface.
 const MOST_LOOKS: usize = 12;
@@ -51,14 +54,19 @@ const ROUNDING: f32 = 2e-6;
 const MOST_STEPS: usize = 1 << 16;
 
 /// Rays of a packet, counted from a list's base.
-struct Rays {
-    origin: [f32x8; 3],
-    direction: [f32x8; 3],
-    beam: Beam,
+pub struct Rays {
+    /// Where they start, counted from the list's middle.
+    pub origin: [f32x8; 3],
+    /// Unit directions.
+    pub direction: [f32x8; 3],
+    /// A beam around them.
+    pub beam: Beam,
 }
 
 impl Rays {
-    fn new(rays: &[Ray; PACKET], near: &Nearby) -> Self {
+    /// Rays in double precision.
+    #[must_use]
+    pub fn new(rays: &[Ray; PACKET], near: &Nearby) -> Self {
         let start = rays.map(|ray| ray.at(near.base) - near.middle);
         let origin = core::array::from_fn(|k| f32x8::from_lanes(|i| start[i][k]));
         let direction = core::array::from_fn(|k| f32x8::from_lanes(|i| rays[i].direction[k]));
@@ -74,6 +82,7 @@ impl Rays {
             },
             radius,
             spread,
+            ahead: radius,
         };
         Self {
             origin,
@@ -88,8 +97,7 @@ fn around(places: [f32x8; 3]) -> (DVec3, f64) {
     // In the order of the lanes, which is the same everywhere.
     let middle = places.map(|x| x.to_array().iter().sum::<f32>() / PACKET as f32);
     let [x, y, z]: [f32x8; 3] = core::array::from_fn(|i| places[i] - f32x8::splat(middle[i]));
-    let square = (x * x + y * y + z * z).to_array();
-    let widest = square.into_iter().fold(0.0, f32::max);
+    let widest = -least(-(x * x + y * y + z * z));
     (
         DVec3::from_array(middle.map(f64::from)),
         f64::from(widest).sqrt() * 1.001 + 1e-7,
@@ -114,7 +122,8 @@ impl Soft {
         let beam = Beam::around(&followed)?;
         let mut list = core::mem::take(&mut work.list);
         let looked = if self.list_lumps(&beam, furthest, &mut list) {
-            self.quick(&list, rays, limits, alive, quest, work)
+            let rays = Rays::new(rays, &list);
+            self.quick(&list, &rays, limits, alive, quest, work)
         } else {
             None
         };
@@ -128,7 +137,7 @@ impl Soft {
     pub fn quick(
         &self,
         near: &Nearby,
-        rays: &[Ray; PACKET],
+        rays: &Rays,
         limits: &[f64; PACKET],
         alive: u32,
         quest: Quest,
@@ -137,23 +146,31 @@ impl Soft {
         if near.len() == 0 {
             return Some(Looked::default());
         }
-        let lanes = Rays::new(rays, near);
+        if !near.mark(&rays.beam, LEFT_OUT_OF_PACKETS, &mut work.marks) {
+            return Some(Looked::default());
+        }
         let far = f32x8::splat(f32::INFINITY);
-        let (mut from, mut to, mut guess) = (far, -far, far);
+        let (mut from, mut to, mut guess, mut first) = (far, -far, far, far);
         let mut evaluations = 0;
         work.steps.clear();
         let limit = f32x8::from_lanes(|i| (limits[i] - near.base).min(1e30));
-        near.each_near(&lanes.beam, |list, index| {
-            let near = list.get(index);
-            let middle = core::array::from_fn(|i| f32x8::splat(near.middle[i]) - lanes.origin[i]);
-            let course = near.lump.course(middle, lanes.direction);
+        // Every ray is inside by its own `sure`, and all are by `hidden`.
+        let (mut sure, mut hidden) = (far, f32::INFINITY);
+        for index in marked(&work.marks) {
+            let near = near.get(index);
+            // What rays meet only where they are inside of another.
+            if near.from > hidden {
+                break;
+            }
+            let middle = core::array::from_fn(|i| f32x8::splat(near.middle[i]) - rays.origin[i]);
+            let course = near.lump.course(middle, rays.direction);
             let [enters, leaves] = course.within(f32x8::splat(near.square));
             let enters = enters.fast_max(f32x8::splat(0.0));
             let leaves = leaves.fast_min(limit);
             let meets = enters.simd_le(leaves);
             evaluations += 8;
             if meets.to_bitmask() & alive == 0 {
-                return;
+                continue;
             }
             let step_from = meets.select(enters, far);
             let step_to = meets.select(leaves, -far);
@@ -163,7 +180,22 @@ impl Soft {
             let strong = course.within(f32x8::splat(strong));
             let [core, out] = course.within(f32x8::splat(near.core));
             let inside = meets & enters.simd_le(core) & core.simd_le(out);
-            guess = guess.fast_min(inside.select(core, far));
+            if inside.any() {
+                let core = inside.select(core, far);
+                first = core
+                    .simd_lt(guess)
+                    .select(core - f32x8::splat(near.lead), first);
+                guess = guess.fast_min(core);
+                // A segment may be weaker there than its core says.
+                let certain = if near.lump.is_segment() {
+                    let inside = f32x8::splat(1.0).simd_lt(course.at(core).0);
+                    inside.select(core, far)
+                } else {
+                    core
+                };
+                sure = sure.fast_min(certain);
+                hidden = extremes(sure, sure, alive).1;
+            }
             work.steps.push(Step {
                 course,
                 from: least(step_from),
@@ -171,7 +203,7 @@ impl Soft {
                 strong,
                 index: index as u32,
             });
-        });
+        }
         if work.steps.is_empty() {
             return Some(Looked::default());
         }
@@ -184,6 +216,7 @@ impl Soft {
             from,
             to,
             guess,
+            first,
             alive,
             tolerance: self.tolerance(near) as f32,
         };
@@ -195,7 +228,7 @@ impl Soft {
                 evaluations: evaluations + climbed.evaluations,
             });
         }
-        Some(self.look(near, &lanes, &climbed, evaluations, work))
+        Some(self.look(near, rays, &climbed, evaluations, work))
     }
 
     /// The tolerance for what is in a list, none of which is nearer to the rays' origins than its base.
@@ -275,11 +308,6 @@ impl Soft {
             evaluations,
         }
     }
-}
-
-/// The least of eight numbers.
-fn least(x: f32x8) -> f32 {
-    x.to_array().into_iter().fold(f32::INFINITY, f32::min)
 }
 
 #[cfg(test)]

@@ -4,11 +4,13 @@
 //! grid of n×n, whose mean replaces the single sample. Which pixels those are depends on the first
 //! samples only, so it does not matter in which order, or in which tile, pixels are treated.
 use crate::area::{Area, Samples};
-use crate::packet::Workspace;
-use crate::picture::{PACKET_SIZE, Picture, SQUARE, Stats, packet_number};
+use crate::packet::{Near, Workspace};
+use crate::picture::{PACKET_SIZE, Picture, SQUARE, Stats};
 use crate::sample::{Sample, differ};
 use crate::soft::PACKET;
+use field::Real;
 use glam::Vec3;
+use wide::f32x8;
 
 impl Picture {
     /// Replaces the samples of an area's pixels that differ from a neighbour by the mean of n×n.
@@ -40,25 +42,37 @@ impl Picture {
             for (x, y) in wanted {
                 let column = (x - block.left) / PACKET_SIZE[0];
                 let row = (y - block.top) / PACKET_SIZE[1];
-                let number = packet_number([column, row], packets);
                 let n = self.samples;
                 let (mut sum, mut cost) = (Vec3::ZERO, 0.0);
                 for first in (0..n * n).step_by(PACKET) {
                     let count = (n * n - first).min(PACKET as u32);
-                    let rays = core::array::from_fn(|i| {
+                    // Where in the pixel; the last one again where there are no more.
+                    let part = |i: usize| {
                         let i = first + (i as u32).min(count - 1);
-                        let at =
-                            |c: u32, k: u32| f64::from(c) + (f64::from(k) + 0.5) / f64::from(n);
-                        self.ray(at(x, i % n), at(y, i / n))
-                    });
+                        [i % n, i / n].map(|k| (f64::from(k) + 0.5) / f64::from(n))
+                    };
                     stats.primary_rays += u64::from(count);
-                    let found = self.packet(
-                        &rays,
-                        number,
-                        square.near([column, row], number),
-                        work,
-                        stats,
-                    );
+                    let near = square.near([column, row], packets);
+                    let quick = match near {
+                        Near::Lumps(near, Some(lens)) if self.solids.is_empty() => {
+                            let half = 0.5 * f64::from(SQUARE);
+                            let at = [x - block.left, y - block.top].map(|c| f64::from(c) - half);
+                            let place = |k: usize| f32x8::from_lanes(|lane| at[k] + part(lane)[k]);
+                            let middle =
+                                |k: usize| at[k] + 0.5 * (part(0)[k] + part(PACKET - 1)[k]);
+                            let places = [place(0), place(1)];
+                            let fan = lens.fan(places, [middle(0), middle(1)]);
+                            self.lump_packet(lens, &fan, near, work, stats)
+                        }
+                        _ => None,
+                    };
+                    let found = quick.unwrap_or_else(|| {
+                        let rays = core::array::from_fn(|i| {
+                            let [across, down] = part(i);
+                            self.ray(f64::from(x) + across, f64::from(y) + down)
+                        });
+                        self.packet(&rays, near, work, stats)
+                    });
                     let found = &found[..count as usize];
                     sum += found.iter().map(|s| s.colour).sum::<Vec3>();
                     cost += found.iter().map(|s| s.cost).sum::<f32>();

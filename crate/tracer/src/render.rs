@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Side of the tiles handed to the threads.
-const TILE: u32 = 32;
+const TILE: u32 = 64;
 
 /// Renders a scene with several threads and returns RGBA bytes (rows from the top).
 ///

@@ -1,17 +1,27 @@
 //! What the spans of a packet leave open: one ray at a time, in double precision.
 //!
 //! Where a ray grazes the surface, the field comes nearer to T than spans of single precision can tell.
-//! On such a stretch the whole field is interpolated by one cubic, which is halved until its error bound
-//! proves where the ray crosses, or the pieces are too short to matter.
+//! On such a stretch the field is interpolated by one cubic, and the stretch is halved until the error bound
+//! proves where the ray crosses, or the pieces are too short to matter. A primitive whose own error on a piece is next to
+//! nothing is *calm* there: its cubic stays, and the halves do not evaluate it any more.
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::slabs::LARGE_TERM;
 use crate::spans::{Node, Span};
+use core::ops::Range;
 use field::bound::SpanLength;
 use field::{Bound, Primitive, THRESHOLD};
 
 /// Pieces that one packet may have looked at; what is left is decided by the signs at its ends.
 const MOST_PIECES: u32 = 1 << 12;
+/// Stretches that one packet may have looked at; others are passed over.
+const MOST_STRETCHES: u32 = 1 << 11;
+/// Pieces halved so often are not halved further: lengths that are not finite would never be short.
+const DEEPEST: u32 = 50;
+/// A piece or stretch with so many primitives more counts as one more.
+const LONG: u32 = 64;
+/// Calm primitives together are off by at most this part of T.
+const CALM: f64 = 1e-9;
 /// Rounding of a field in double precision, relative to the sizes of its terms.
 const ROUNDING: f64 = 1e-12;
 /// The slope of a Hermite cubic is off by at most four times its error bound over its length (for bounds
@@ -25,6 +35,7 @@ pub struct Settler {
     /// The primitives that count on the stretch.
     pub list: Vec<u32>,
     pieces: u32,
+    stretches: u32,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
 }
@@ -34,16 +45,25 @@ impl Default for Settler {
         Self {
             list: Vec::new(),
             pieces: MOST_PIECES,
+            stretches: MOST_STRETCHES,
             evaluations: 0,
         }
     }
 }
 
-/// A place on the ray: F − T and its slope there.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    t: f64,
-    node: Node<f64>,
+/// A stretch of a ray that is being looked at.
+#[derive(Clone, Debug)]
+struct Piece {
+    from: f64,
+    to: f64,
+    /// How many times halved.
+    depth: u32,
+    /// What is calm, less T.
+    calm: Span<f64>,
+    /// The primitives that are not: a range of the list.
+    rest: Range<usize>,
+    /// What those add up to at both ends.
+    ends: [Node<f64>; 2],
 }
 
 /// The field along a ray.
@@ -68,62 +88,106 @@ impl Settler {
         [from, to]: [f64; 2],
         mut tell: impl FnMut(f64, bool) -> bool,
     ) {
-        let left = self.at(along, from);
-        if tell(from, left.node.value >= 0.0) {
-            let right = self.at(along, to);
-            self.between(along, left, right, &mut tell);
+        // A list is evaluated at both ends whatever comes.
+        self.stretches = self
+            .stretches
+            .saturating_sub(1 + self.list.len() as u32 / LONG);
+        if self.stretches == 0 {
+            return;
         }
-    }
-
-    /// F − T and its slope.
-    fn at(&mut self, along: &Along<'_>, t: f64) -> Place {
-        let point = along.ray.at(t).to_array();
-        let [dx, dy, dz] = along.ray.direction.to_array();
-        let mut node = Node {
-            value: -THRESHOLD,
-            slope: 0.0,
+        let rest = 0..self.list.len();
+        let ends = [from, to].map(|t| self.sum(along, &rest, t));
+        let piece = Piece {
+            from,
+            to,
+            depth: 0,
+            calm: Span([-THRESHOLD; 4]),
+            rest,
+            ends,
         };
-        for &p in &self.list {
-            let jet = along.primitives[p as usize].jet(point);
-            let [gx, gy, gz] = jet.gradient;
-            node.value += jet.value;
-            node.slope += gx * dx + gy * dy + gz * dz;
+        // What every primitive may be off by where it is calm.
+        let share = CALM * THRESHOLD / self.list.len().max(1) as f64;
+        if tell(from, ends[0].value >= THRESHOLD) {
+            self.between(along, share, piece, &mut tell);
         }
-        self.evaluations += self.list.len() as u64;
-        Place { t, node }
     }
 
-    /// The crossings between two places; whether more are wanted.
+    /// What some primitives of the list add up to.
+    fn sum(&mut self, along: &Along<'_>, range: &Range<usize>, t: f64) -> Node<f64> {
+        let point = along.ray.at(t).to_array();
+        let sum = self.list[range.clone()]
+            .iter()
+            .fold(Node::zero(), |sum, &p| sum.plus(along.node(p, point)));
+        self.evaluations += range.len() as u64;
+        sum
+    }
+
+    /// The crossings on a piece; whether more are wanted.
     fn between(
         &mut self,
         along: &Along<'_>,
-        left: Place,
-        right: Place,
+        share: f64,
+        mut piece: Piece,
         tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
-        let length = right.t - left.t;
-        let Some(pieces) = self.pieces.checked_sub(1) else {
-            return self.refine(along, left, right, tell);
-        };
-        self.pieces = pieces;
-        let center = along.ray.at(0.5 * (left.t + right.t));
+        self.pieces = self
+            .pieces
+            .saturating_sub(1 + piece.rest.len() as u32 / LONG);
+        if self.pieces == 0 {
+            return self.refine(along, &piece, tell);
+        }
+        let length = piece.to - piece.from;
+        let center = along.ray.at(0.5 * (piece.from + piece.to));
         let radius = 0.5 * length * (1.0 + 1e-9);
         let span_length = SpanLength::new(length);
-        let (mut above, mut size, mut error) = (0.0, THRESHOLD, 0.0);
-        for &p in &self.list {
+        let (mut above, mut size) = (0.0, THRESHOLD);
+        let mut error = CALM * THRESHOLD;
+        let places = [piece.from, piece.to].map(|t| along.ray.at(t).to_array());
+        let mut calm = [Node::zero(); 2];
+        let bottom = self.list.len();
+        for at in piece.rest.clone() {
+            let p = self.list[at];
             let bound = &along.bounds[p as usize];
             let estimate = bound.estimate(bound.nearness(center, radius), &span_length);
+            size += estimate.magnitude.min(LARGE_TERM);
+            if estimate.error <= share {
+                calm = [0, 1].map(|i| calm[i].plus(along.node(p, places[i])));
+                self.evaluations += 2;
+                continue;
+            }
+            self.list.push(p);
+            error += estimate.error;
             if bound.adds() {
                 above += estimate.magnitude;
             }
-            size += estimate.magnitude.min(LARGE_TERM);
-            error += estimate.error;
         }
-        if above < THRESHOLD {
+        piece.rest = bottom..self.list.len();
+        piece.calm = piece.calm.plus(Span::hermite(calm[0], calm[1], length));
+        for (end, calm) in piece.ends.iter_mut().zip(calm) {
+            end.value -= calm.value;
+            end.slope -= calm.slope;
+        }
+        let more = self.decide(along, share, &piece, above, error + ROUNDING * size, tell);
+        self.list.truncate(bottom);
+        more
+    }
+
+    /// The crossings on a piece of which all is known; whether more are wanted.
+    fn decide(
+        &mut self,
+        along: &Along<'_>,
+        share: f64,
+        piece: &Piece,
+        above: f64,
+        error: f64,
+        tell: &mut impl FnMut(f64, bool) -> bool,
+    ) -> bool {
+        let length = piece.to - piece.from;
+        if piece.calm.max() + above < -error {
             return true;
         }
-        let error = error + ROUNDING * size;
-        let span = Span::hermite(left.node, right.node, length);
+        let [left, right] = piece.ends;
+        let span = piece.calm.plus(Span::hermite(left, right, length));
         let [a, b, c, d] = span.0;
         if span.max() < -error || span.min() > error {
             return true;
@@ -131,30 +195,60 @@ impl Settler {
         let steep = STEEP * error;
         let turns = [b - a, c - b, d - c];
         let monotone = turns.iter().all(|x| *x > steep) || turns.iter().all(|x| *x < -steep);
-        if monotone || length <= along.resolution {
-            return self.refine(along, left, right, tell);
+        if monotone || length <= along.resolution || piece.depth >= DEEPEST {
+            return self.refine(along, piece, tell);
         }
-        let middle = self.at(along, 0.5 * (left.t + right.t));
-        self.between(along, left, middle, tell) && self.between(along, middle, right, tell)
+        let t = 0.5 * (piece.from + piece.to);
+        let middle = self.sum(along, &piece.rest, t);
+        let [near, far] = piece.calm.halves();
+        let near = Piece {
+            to: t,
+            depth: piece.depth + 1,
+            calm: near,
+            ends: [left, middle],
+            ..piece.clone()
+        };
+        let far = Piece {
+            from: t,
+            depth: piece.depth + 1,
+            calm: far,
+            ends: [middle, right],
+            ..piece.clone()
+        };
+        self.between(along, share, near, tell) && self.between(along, share, far, tell)
     }
 
-    /// The crossing between two places if they are on different sides.
+    /// The crossing on a piece if its ends are on different sides.
     fn refine(
         &mut self,
         along: &Along<'_>,
-        left: Place,
-        right: Place,
+        piece: &Piece,
         tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
-        let enters = right.node.value >= 0.0;
-        if (left.node.value >= 0.0) == enters {
+        let Piece { from, to, calm, .. } = *piece;
+        let enters = calm.0[3] + piece.ends[1].value >= 0.0;
+        if (calm.0[0] + piece.ends[0].value >= 0.0) == enters {
             return true;
         }
         let excess = |t: f64| {
-            let node = self.at(along, t).node;
-            (node.value, node.slope)
+            let rest = self.sum(along, &piece.rest, t);
+            let (value, slope) = calm.value_and_slope((t - from) / (to - from));
+            (rest.value + value, rest.slope + slope / (to - from))
         };
         let within = 1e-3 * along.resolution;
-        tell(bracketed(excess, left.t, right.t, within), enters)
+        tell(bracketed(excess, from, to, within), enters)
+    }
+}
+
+impl Along<'_> {
+    /// A primitive's field and its slope along the ray, at a place on it.
+    fn node(&self, primitive: u32, place: [f64; 3]) -> Node<f64> {
+        let jet = self.primitives[primitive as usize].jet(place);
+        let [gx, gy, gz] = jet.gradient;
+        let [dx, dy, dz] = self.ray.direction.to_array();
+        Node {
+            value: jet.value,
+            slope: gx * dx + gy * dy + gz * dz,
+        }
     }
 }

@@ -3,7 +3,7 @@
 //! The part of the beam that the soft surface can reach is halved again and again. In each slab a
 //! primitive is *resolved* when one Hermite span over the slab is certified to be near enough to
 //! it, for all rays of the beam; what is not yet resolved is *pending* and is handed to the halves.
-//! A primitive beyond its depth of influence from the slab is dropped there. So broad or distant
+//! What all rays of the beam can share is interpolated once for them, and what is next to nothing counts as error. So broad or distant
 //! primitives get few long spans and sharp near ones many short spans. The tree grows only where a
 //! ray asks for it, and is shared by all rays of the beam.
 //!
@@ -12,9 +12,12 @@
 //! packet of rays goes on in its own. In beams wider than a block of eight packets nothing is resolved, as
 //! spans would be made for rays that do not meet their primitives: they only show what is empty.
 use crate::beams::Beams;
+use crate::clusters::{Clusters, Members};
+use crate::shared::{Cell, Shared, Sums};
 use core::ops::Range;
-use field::THRESHOLD;
-use field::bound::{Bound, Estimate, SpanLength};
+use field::bound::{Bound, SpanLength};
+use field::{Primitive, THRESHOLD};
+use std::collections::BTreeMap;
 
 /// How exactly spans follow the field.
 #[derive(Clone, Copy, Debug)]
@@ -23,8 +26,9 @@ pub struct Precision {
     pub first: f64,
     /// … and within this before a slab in which the surface may lie is decided upon.
     pub last: f64,
-    /// Whether primitives are dropped beyond their depth of influence.
-    pub truncate: bool,
+    /// Beyond that, the interpolants that a beam's rays share are together within this of what they stand for: so
+    /// little that they are never made finer. 0: there are none.
+    pub shared: f64,
     /// Rounding of coordinates, and of values relative to a primitive's field.
     pub rounding: f64,
     /// Stretches of rays shorter than this need not be looked into, in units of the scene.
@@ -37,7 +41,7 @@ impl Precision {
     pub const PICTURE: Self = Self {
         first: 8e-3,
         last: 5e-4,
-        truncate: true,
+        shared: 4e-4,
         rounding: 2.5e-7,
         resolution: 5e-7,
     };
@@ -45,7 +49,7 @@ impl Precision {
     pub const EXACT: Self = Self {
         first: 8e-3,
         last: 1e-9,
-        truncate: false,
+        shared: 0.0,
         rounding: 0.0,
         resolution: 1e-12,
     };
@@ -53,15 +57,79 @@ impl Precision {
 
 /// The primitives that a beam can meet, and its slabs so far.
 pub struct Slabs<'a> {
-    bounds: &'a [Bound],
+    terms: Terms<'a>,
     beams: Beams<'a>,
     precision: Precision,
     /// Primitive of each local number.
     list: Vec<u32>,
+    /// The first local number of each group's members that have been looked at one by one.
+    opened: BTreeMap<u32, u32>,
     nodes: Vec<Slab>,
-    /// Local numbers; the slabs' lists are ranges of it.
+    /// Local numbers, and groups; the slabs' lists are ranges of it.
     ids: Vec<u32>,
-    scratch: Vec<(u32, f64, f64)>,
+    /// Those that are still to be looked at for a new slab.
+    stack: Vec<u32>,
+    blocks: Vec<Block>,
+    scratch: Vec<Candidate>,
+    /// Those of each fate.
+    lists: [Vec<u32>; 4],
+}
+
+/// The soft surface's primitives.
+#[derive(Clone, Copy)]
+pub struct Terms<'a> {
+    /// Their fields.
+    pub primitives: &'a [Primitive],
+    /// What is known of each.
+    pub bounds: &'a [Bound],
+    /// Each one's material.
+    pub materials: &'a [u32],
+    /// Those that have a place, in groups, if a beam's list consists of these.
+    pub clusters: Option<&'a Clusters>,
+    /// Where each is at most this, it is left out.
+    pub left_out: f64,
+}
+
+/// What in a list says that a number is a group's.
+const GROUP: u32 = 1 << 31;
+
+/// What a slab's shared primitives add up to.
+pub struct Block {
+    /// Where.
+    pub cell: Cell,
+    /// All of them.
+    pub total: Shared,
+    /// Those of each material.
+    pub of_each: Vec<(u32, Shared)>,
+    /// They add up to no more than this.
+    pub top: f64,
+}
+
+/// A primitive, or a group, in a slab that is being made.
+#[derive(Clone, Copy)]
+struct Candidate {
+    id: u32,
+    magnitude: f64,
+    /// What its span would be off by …
+    span: f64,
+    /// … and what it would add to the error of a shared interpolant.
+    shared: f64,
+    /// About its largest slope, over its size.
+    steepness: f64,
+    /// What rounding adds.
+    noise: f64,
+    adds: bool,
+    carves: bool,
+    /// What becomes of it.
+    fate: Fate,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    Shared,
+    Resolved,
+    Pending,
+    Dropped,
 }
 
 /// How a slab goes on.
@@ -80,11 +148,15 @@ pub struct Slab {
     pub from: f64,
     /// The far end.
     pub to: f64,
-    /// Local numbers of the primitives that get one span over this slab.
+    /// Local numbers of the primitives, and the groups, that have one interpolant for all rays together.
+    pub shared: Range<u32>,
+    /// Those that get one span over this slab for each ray.
     pub resolved: Range<u32>,
     /// Those handed to the halves.
     pub pending: Range<u32>,
-    /// All terms of this slab (resolved and pending) together are at most this …
+    /// Those whose fields are so small that they count as part of the error.
+    dropped: Range<u32>,
+    /// All terms of this slab (shared, resolved and pending) together are at most this …
     pub above: f64,
     /// … and at least minus this.
     pub below: f64,
@@ -95,11 +167,15 @@ pub struct Slab {
     /// Bound on the error of all spans over this slab: the resolved ones and the coarser ones, with
     /// the rounding of the arithmetic.
     pub error: f64,
-    /// What of it is rounding, which takes nothing from the budget.
-    noise: f64,
+    /// What that consists of.
+    pub spent: Spent,
     /// What the errors may add up to.
     budget: f64,
     parent: u32,
+    /// Whether what its parents resolved does not count.
+    anew: bool,
+    /// The interpolant of its shared primitives. [`NONE`]: not yet made.
+    block: u32,
     beam: usize,
     /// Its halves, or the same slab of both halves of the beam. 0: not yet made.
     children: [u32; 2],
@@ -109,7 +185,34 @@ pub struct Slab {
     pub depth: u32,
 }
 
+/// What the error of a slab's spans consists of.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Spent {
+    /// The rays' own spans.
+    spans: f64,
+    /// Shared interpolants.
+    pub shared: f64,
+    /// Rounding takes nothing from the budget.
+    noise: f64,
+}
+
+/// What a new slab takes from the one that it is made for.
+struct Heritage {
+    parent: u32,
+    anew: bool,
+    beam: usize,
+    depth: u32,
+    budget: f64,
+    pub spent: Spent,
+}
+
 const NONE: u32 = u32::MAX;
+
+/// Primitives that are at most this part of their share of the shared interpolants' error are left out of them.
+const LEAST: f64 = 0.5;
+
+/// Fewer primitives than this do not share an interpolant, whose evaluation costs a ray about as much as theirs.
+const FEWEST: u32 = 3;
 
 /// A slab is given to narrower beams when its beam is wider than this times its length.
 const NARROW: f64 = 0.5;
@@ -128,27 +231,50 @@ const LARGE: (usize, usize) = (1 << 16, 1 << 21);
 /// Slabs that [`Slabs::is_empty_for`] looks at.
 const MOST_LOOKS: u32 = 64;
 
+impl Slab {
+    /// Whether what its shared primitives add up to has been asked for.
+    #[must_use]
+    pub fn is_made(&self) -> bool {
+        self.block != NONE
+    }
+}
+
 impl<'a> Slabs<'a> {
-    /// The slabs of beams between two parameters. `list` holds the primitives they can meet.
+    /// The slabs of beams between two parameters. `list` holds the primitives they can meet; the groups are added.
     #[must_use]
     pub fn new(
-        bounds: &'a [Bound],
+        terms: Terms<'a>,
         list: Vec<u32>,
         beams: Beams<'a>,
         [from, to]: [f64; 2],
         precision: Precision,
     ) -> Self {
+        let groups = terms.clusters.and_then(Clusters::root);
         let mut slabs = Self {
-            bounds,
+            terms,
             beams,
             precision,
-            ids: (0..list.len() as u32).collect(),
+            ids: (0..list.len() as u32)
+                .chain(groups.map(|root| root | GROUP))
+                .collect(),
             list,
+            opened: BTreeMap::new(),
+            stack: Vec::new(),
             nodes: Vec::new(),
+            blocks: Vec::new(),
             scratch: Vec::new(),
+            lists: Default::default(),
         };
-        let all = 0..slabs.list.len() as u32;
-        slabs.add(all, from, to, 0, NONE, precision.first, [0.0; 2], 0);
+        let all = 0..slabs.ids.len() as u32;
+        let heritage = Heritage {
+            parent: NONE,
+            anew: true,
+            beam: 0,
+            depth: 0,
+            budget: precision.first,
+            spent: Spent::default(),
+        };
+        slabs.add(all, from, to, heritage);
         slabs
     }
 
@@ -170,7 +296,7 @@ impl<'a> Slabs<'a> {
         &self.ids[range.start as usize..range.end as usize]
     }
 
-    /// How many local numbers there are.
+    /// How many local numbers there are so far.
     #[must_use]
     pub fn len(&self) -> usize {
         self.list.len()
@@ -190,7 +316,9 @@ impl<'a> Slabs<'a> {
             let root = &mut self.nodes[0];
             root.children = [0; 2];
             root.finer = 0;
-            self.ids.truncate(root.pending.end as usize);
+            root.block = NONE;
+            self.ids.truncate(root.dropped.end as usize);
+            self.blocks.clear();
         }
     }
 
@@ -198,24 +326,83 @@ impl<'a> Slabs<'a> {
     /// anything.
     pub fn is_empty_for(&mut self, packet: usize) -> bool {
         self.tidy();
-        self.is_empty_from(self.root(), packet, &mut 0)
+        self.is_empty_from(self.root(), packet, 0.0, &mut 0)
     }
 
-    fn is_empty_from(&mut self, index: u32, packet: usize, looks: &mut u32) -> bool {
+    /// `base` is what the slabs above have at most.
+    fn is_empty_from(&mut self, index: u32, packet: usize, base: f64, looks: &mut u32) -> bool {
         let slab = self.slab(index);
-        if slab.above + slab.error < THRESHOLD {
+        let (above, error) = (slab.pending_above, slab.error);
+        if base + slab.above + error < THRESHOLD {
             return true;
         }
         *looks += 1 + (slab.pending.len() / 64) as u32;
         // Where there are spans, only rays can tell.
-        if !slab.resolved.is_empty() || slab.pending.is_empty() || *looks > MOST_LOOKS {
+        if !slab.resolved.is_empty() || *looks > MOST_LOOKS {
+            return false;
+        }
+        let nothing_left = slab.pending.is_empty();
+        let base = base + self.block(index).map_or(0.0, |block| block.top);
+        if base + above + error < THRESHOLD {
+            return true;
+        }
+        if nothing_left {
             return false;
         }
         match self.parts(index, packet) {
-            Parts::Narrower(same) => self.is_empty_from(same, packet, looks),
+            Parts::Narrower(same) => self.is_empty_from(same, packet, base, looks),
             Parts::Halves(left, right) => {
-                self.is_empty_from(left, packet, looks) && self.is_empty_from(right, packet, looks)
+                self.is_empty_from(left, packet, base, looks)
+                    && self.is_empty_from(right, packet, base, looks)
             }
+        }
+    }
+
+    /// What a slab's shared primitives add up to, if it has any.
+    pub fn block(&mut self, index: u32) -> Option<&Block> {
+        let slab = &self.nodes[index as usize];
+        if slab.shared.is_empty() {
+            return None;
+        }
+        if !slab.is_made() {
+            let cell = Cell::around(self.beams.get(slab.beam), slab.from, slab.to);
+            let mut sums = Sums::new(&cell);
+            for &id in self.locals(&slab.shared) {
+                self.each_of(id, |p| {
+                    let p = p as usize;
+                    sums.add(&self.terms.primitives[p], self.terms.materials[p]);
+                });
+            }
+            let (total, of_each) = sums.finish();
+            let made = self.blocks.len() as u32;
+            self.blocks.push(Block {
+                cell,
+                total,
+                of_each,
+                top: total.top(),
+            });
+            self.nodes[index as usize].block = made;
+        }
+        self.blocks.get(self.nodes[index as usize].block as usize)
+    }
+
+    /// Calls `f` with the blocks of a slab and of those above it, where they have been asked for.
+    pub fn each_block(&self, index: u32, mut f: impl FnMut(&Block)) {
+        self.up(index, |s, _| {
+            if let Some(block) = self.blocks.get(s.block as usize) {
+                f(block);
+            }
+        });
+    }
+
+    /// Calls `f` with a slab and those above it, and whether all that they have counts or what they share alone.
+    fn up(&self, index: u32, mut f: impl FnMut(&Slab, bool)) {
+        let (mut at, mut whole) = (index, true);
+        while at != NONE {
+            let s = self.slab(at);
+            f(s, whole);
+            whole &= !s.anew;
+            at = s.parent;
         }
     }
 
@@ -255,10 +442,17 @@ impl<'a> Slabs<'a> {
 
     fn inner(&mut self, parent: u32, from: f64, to: f64, beam: usize, depth: u32) -> u32 {
         let s = &self.nodes[parent as usize];
-        let (pending, budget) = (s.pending.clone(), s.budget);
-        let error = [s.error - s.noise, s.noise];
+        let pending = s.pending.clone();
+        let heritage = Heritage {
+            parent,
+            anew: false,
+            beam,
+            depth,
+            budget: s.budget,
+            spent: s.spent,
+        };
         let index = self.nodes.len() as u32;
-        self.add(pending, from, to, beam, parent, budget, error, depth);
+        self.add(pending, from, to, heritage);
         index
     }
 
@@ -266,7 +460,7 @@ impl<'a> Slabs<'a> {
     #[must_use]
     pub fn is_final(&self, index: u32) -> bool {
         let slab = self.slab(index);
-        slab.error - slab.noise <= self.precision.last || slab.budget <= self.precision.last
+        slab.spent.spans <= self.precision.last || slab.budget <= self.precision.last
     }
 
     /// Stretches of rays shorter than this need not be looked into.
@@ -275,137 +469,291 @@ impl<'a> Slabs<'a> {
         self.precision.resolution
     }
 
-    /// The same slab from anew, with all its primitives and a smaller error.
+    /// The same slab from anew, with all its primitives but the shared ones, and a smaller error.
     pub fn finer(&mut self, index: u32) -> u32 {
         if self.nodes[index as usize].finer == 0 {
             let start = self.ids.len() as u32;
-            let mut at = index;
             // What the path to this slab resolved, and what the slab leaves pending.
-            let pending = self.nodes[index as usize].pending.clone();
+            let s = &self.nodes[index as usize];
+            let pending = s.pending.clone();
+            let (from, to) = (s.from, s.to);
+            let budget = (s.spent.spans.min(s.budget) / 16.0).max(self.precision.last);
+            let heritage = Heritage {
+                parent: index,
+                anew: true,
+                beam: s.beam,
+                depth: s.depth + 1,
+                budget,
+                spent: Spent {
+                    spans: 0.0,
+                    ..s.spent
+                },
+            };
             self.ids
                 .extend_from_within(pending.start as usize..pending.end as usize);
+            let mut at = index;
             while at != NONE {
                 let s = &self.nodes[at as usize];
-                let r = s.resolved.clone();
-                at = s.parent;
-                self.ids
-                    .extend_from_within(r.start as usize..r.end as usize);
+                let r = s.resolved.start as usize..s.resolved.end as usize;
+                at = if s.anew { NONE } else { s.parent };
+                self.ids.extend_from_within(r);
             }
             let all = start..self.ids.len() as u32;
-            let s = &self.nodes[index as usize];
-            let (from, to, beam, depth) = (s.from, s.to, s.beam, s.depth + 1);
-            let budget = ((s.error - s.noise).min(s.budget) / 16.0).max(self.precision.last);
             let finer = self.nodes.len() as u32;
-            self.add(all, from, to, beam, NONE, budget, [0.0; 2], depth);
+            self.add(all, from, to, heritage);
             self.nodes[index as usize].finer = finer;
         }
         self.nodes[index as usize].finer
     }
 
-    /// Calls `f` with the local number of each primitive that counts in a slab.
-    pub fn each(&self, index: u32, mut f: impl FnMut(u32)) {
-        let s = self.slab(index);
-        self.locals(&s.pending).iter().for_each(|&i| f(i));
-        let mut at = index;
-        while at != NONE {
-            let s = self.slab(at);
-            self.locals(&s.resolved).iter().for_each(|&i| f(i));
-            at = s.parent;
+    /// Calls `f` with each primitive that counts in a slab; `all`: also with those that blocks stand for, and with the
+    /// small ones.
+    pub fn each(&self, index: u32, all: bool, mut f: impl FnMut(u32)) {
+        let mut each = |range: &Range<u32>| {
+            for &id in self.locals(range) {
+                self.each_of(id, &mut f);
+            }
+        };
+        each(&self.slab(index).pending);
+        self.up(index, |s, whole| {
+            if whole {
+                each(&s.resolved);
+            }
+            if all {
+                each(&s.shared);
+                each(&s.dropped);
+            }
+        });
+    }
+
+    /// Calls `f` with each primitive that an entry of a list stands for.
+    fn each_of(&self, id: u32, mut f: impl FnMut(u32)) {
+        match self.terms.clusters {
+            Some(clusters) if id & GROUP != 0 => {
+                clusters.all(id & !GROUP).iter().for_each(|&p| f(p));
+            }
+            _ => f(self.list[id as usize]),
         }
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn add(
-        &mut self,
-        candidates: Range<u32>,
-        from: f64,
-        to: f64,
-        beam: usize,
-        parent: u32,
-        budget: f64,
-        [error, mut noise]: [f64; 2],
-        depth: u32,
-    ) {
-        let (center, radius) = self.beams.get(beam).ball(from, to);
-        let h = to - from;
-        let length = SpanLength::new(h);
+    /// The local numbers of a group's members, if it is one of the smallest, or else its parts, onto the stack.
+    fn open(&mut self, clusters: &Clusters, group: u32) {
+        match clusters.members(group) {
+            Members::Groups(parts) => self.stack.extend(parts.map(|part| part | GROUP)),
+            Members::Primitives(members) => {
+                let list = &mut self.list;
+                let first = *self.opened.entry(group).or_insert_with(|| {
+                    let first = list.len() as u32;
+                    list.extend(members);
+                    first
+                });
+                self.stack.extend(first..first + members.len() as u32);
+            }
+        }
+    }
+
+    /// The local numbers of all members of a group.
+    fn open_all(&mut self, clusters: &Clusters, group: u32, mut f: impl FnMut(&mut Self, u32)) {
+        let bottom = self.stack.len();
+        self.open(clusters, group);
+        while self.stack.len() > bottom {
+            match self.stack.pop() {
+                Some(id) if id & GROUP != 0 => self.open(clusters, id & !GROUP),
+                Some(id) => f(self, id),
+                None => {}
+            }
+        }
+    }
+
+    fn add(&mut self, candidates: Range<u32>, from: f64, to: f64, heritage: Heritage) {
+        let Heritage {
+            parent,
+            anew,
+            beam: number,
+            depth,
+            budget,
+            mut spent,
+        } = heritage;
+        let beam = self.beams.get(number);
+        let levels_below = self.beams.levels_below(number);
+        let (center, mut radius) = beam.ball(from, to);
+        let mut roughness = f64::INFINITY;
+        if self.precision.shared > 0.0 {
+            let cell = Cell::around(beam, from, to);
+            roughness = cell.roughness();
+            radius = radius.max(cell.radius());
+        }
+        let length = SpanLength::new(to - from);
         let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);
         let rounding = self.precision.rounding;
         // Coordinates are rounded in the world and in the primitive's own frame.
         let misplaced = rounding * (center.abs().max_element() + radius + to).max(1.0);
         self.scratch.clear();
-        for &local in &self.ids[candidates.start as usize..candidates.end as usize] {
-            let bound = &self.bounds[self.list[local as usize] as usize];
-            let near = bound.nearness(center, radius);
-            if self.precision.truncate && near.distance >= bound.influence {
-                continue;
+        for at in candidates {
+            self.stack.push(self.ids[at as usize]);
+            while let Some(id) = self.stack.pop() {
+                let candidate =
+                    if let (Some(clusters), true) = (self.terms.clusters, id & GROUP != 0) {
+                        let group = id & !GROUP;
+                        let view = clusters.view(group, center, radius);
+                        if view.magnitude <= self.terms.left_out * view.count as f64 {
+                            continue;
+                        }
+                        // Of what has kinks only single primitives have spans.
+                        if view.near || view.fourth.is_infinite() && levels_below <= BLOCK {
+                            self.open(clusters, group);
+                            continue;
+                        }
+                        Candidate {
+                            id,
+                            magnitude: view.magnitude,
+                            span: length.fourth() * view.fourth,
+                            shared: view.fourth * roughness,
+                            steepness: view.steepness,
+                            noise: 0.0,
+                            adds: view.adds,
+                            carves: view.carves,
+                            fate: Fate::Pending,
+                        }
+                    } else {
+                        let bound = &self.terms.bounds[self.list[id as usize] as usize];
+                        let near = bound.nearness(center, radius);
+                        let estimate = bound.estimate(near, &length);
+                        if estimate.magnitude <= self.terms.left_out {
+                            continue;
+                        }
+                        Candidate {
+                            id,
+                            magnitude: estimate.magnitude,
+                            // A span is between the values' and slopes' extremes, so it is never further off than
+                            // its bound says; a NaN counts as far off.
+                            span: estimate.error,
+                            shared: estimate.fourth * roughness,
+                            steepness: bound.relative_slope(near),
+                            noise: 0.0,
+                            adds: bound.adds(),
+                            carves: bound.carves(),
+                            fate: Fate::Pending,
+                        }
+                    };
+                let magnitude = candidate.magnitude;
+                if candidate.adds {
+                    above += magnitude;
+                }
+                if candidate.carves {
+                    below += magnitude;
+                }
+                total += magnitude;
+                self.scratch.push(Candidate {
+                    noise: magnitude.min(LARGE_TERM)
+                        * (4.0 * rounding + misplaced * candidate.steepness),
+                    ..candidate
+                });
             }
-            let Estimate {
-                magnitude,
-                error: span_error,
-            } = bound.estimate(near, &length);
-            if bound.adds() {
-                above += magnitude;
-            }
-            if bound.carves() {
-                below += magnitude;
-            }
-            total += magnitude;
-            // A span is between the values' and slopes' extremes, so it is never further off than
-            // its bound says; a NaN counts as far off.
-            self.scratch.push((local, magnitude, span_error));
         }
-        // What is left of the budget is shared out half evenly, half by size. The shares add up
+        // What is left of a budget is shared out half evenly, half by size. The shares add up
         // to no more than the whole.
-        // In a wide beam a span would be evaluated for many rays that do not meet its primitive.
-        let wide = self.beams.levels_below(beam) > BLOCK;
-        let left = if wide {
-            f64::NEG_INFINITY
-        } else {
-            (budget - error).max(0.0)
+        let share = |budget: f64, spent: f64| {
+            let left = (budget - spent).max(0.0);
+            let even = 0.5 * left / self.scratch.len().max(1) as f64;
+            let by_size = 0.5 * left / total.max(f64::MIN_POSITIVE);
+            move |magnitude: f64| even + by_size * magnitude
         };
-        let even = 0.5 * left / self.scratch.len().max(1) as f64;
-        let by_size = 0.5 * left / total.max(f64::MIN_POSITIVE);
-        let start = self.ids.len() as u32;
-        let mut sum = error;
-        for &(local, magnitude, span_error) in &self.scratch {
-            if span_error <= even + by_size * magnitude {
-                self.ids.push(local);
-                sum += span_error;
-                let steep = self.bounds[self.list[local as usize] as usize].relative_slope();
-                noise += magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steep);
+        let for_spans = share(budget, spent.spans);
+        let for_shared = share(self.precision.shared, spent.shared);
+        let resolves = levels_below <= BLOCK;
+        let mut count = 0;
+        for candidate in &mut self.scratch {
+            let share = for_shared(candidate.magnitude);
+            if candidate.magnitude <= LEAST * share {
+                // What is as small as that is as good as interpolated by nothing.
+                candidate.fate = Fate::Dropped;
+            } else if candidate.shared <= share {
+                candidate.fate = Fate::Shared;
+                count += 1;
             }
         }
-        let middle = self.ids.len() as u32;
+        let few = count < FEWEST;
+        let (mut noise, mut steepest) = (0.0, 0.0f64);
+        let mut lists = core::mem::take(&mut self.lists);
+        lists.iter_mut().for_each(Vec::clear);
         let (mut pending_above, mut pending_below) = (0.0, 0.0);
-        for &(local, magnitude, span_error) in &self.scratch {
-            if span_error <= even + by_size * magnitude {
-                continue;
+        for candidate in &self.scratch {
+            let Candidate {
+                id,
+                magnitude,
+                span,
+                shared,
+                ..
+            } = *candidate;
+            let fate = match candidate.fate {
+                Fate::Dropped => Fate::Dropped,
+                Fate::Shared if !few => Fate::Shared,
+                _ if resolves && span <= for_spans(magnitude) => Fate::Resolved,
+                _ => Fate::Pending,
+            };
+            lists[fate as usize].push(id);
+            match fate {
+                Fate::Shared => spent.shared += shared,
+                Fate::Resolved => spent.spans += span,
+                Fate::Pending => {
+                    if candidate.adds {
+                        pending_above += magnitude;
+                    }
+                    if candidate.carves {
+                        pending_below += magnitude;
+                    }
+                    continue;
+                }
+                Fate::Dropped => {
+                    spent.shared += magnitude;
+                    continue;
+                }
             }
-            self.ids.push(local);
-            let bound = &self.bounds[self.list[local as usize] as usize];
-            if bound.adds() {
-                pending_above += magnitude;
-            }
-            if bound.carves() {
-                pending_below += magnitude;
-            }
+            noise += candidate.noise;
+            steepest = steepest.max(candidate.steepness);
         }
-        let end = self.ids.len() as u32;
+        // Where the field is T, what adds is together no more than that and what carves.
+        let most = (LARGE_TERM + below) * (4.0 * rounding + misplaced * steepest);
+        spent.noise += noise.min(most);
+        let mut ends = [self.ids.len() as u32; 5];
+        for (list, which) in lists.iter().zip(1..) {
+            match self.terms.clusters {
+                // Spans are those of single primitives.
+                Some(clusters) if which == 1 + Fate::Resolved as usize => {
+                    for &id in list {
+                        if id & GROUP == 0 {
+                            self.ids.push(id);
+                        } else {
+                            let push = |own: &mut Self, id: u32| own.ids.push(id);
+                            self.open_all(clusters, id & !GROUP, push);
+                        }
+                    }
+                }
+                _ => self.ids.extend(list),
+            }
+            ends[which] = self.ids.len() as u32;
+        }
+        self.lists = lists;
+        let [start, first, middle, end, last] = ends;
         self.nodes.push(Slab {
             from,
             to,
-            resolved: start..middle,
+            shared: start..first,
+            resolved: first..middle,
             pending: middle..end,
+            dropped: end..last,
             above,
             below,
             pending_above,
             pending_below,
-            error: sum + noise,
-            noise,
+            error: spent.spans + spent.shared + spent.noise,
+            spent,
             budget,
             parent,
-            beam,
+            anew,
+            block: NONE,
+            beam: number,
             children: [0; 2],
             finer: 0,
             depth,

@@ -120,13 +120,14 @@ impl Span<f64> {
         )
     }
 
-    /// The cubic's value at x in 0..=1.
-    #[cfg(test)]
+    /// The cubic's value at x in 0..=1, and its derivative by x.
     #[must_use]
-    pub fn value(self, x: f64) -> f64 {
+    pub fn value_and_slope(self, x: f64) -> (f64, f64) {
         let [a, b, c, d] = self.0;
         let y = 1.0 - x;
-        y * y * (y * a + 3.0 * x * b) + x * x * (3.0 * y * c + x * d)
+        let value = y * y * (y * a + 3.0 * x * b) + x * x * (3.0 * y * c + x * d);
+        let slope = y * (y * (b - a) + 2.0 * x * (c - b)) + x * x * (d - c);
+        (value, 3.0 * slope)
     }
 }
 
@@ -146,12 +147,13 @@ mod tests {
         };
         let span = Span::hermite(node(a), node(b), b - a);
         let [left, right] = span.halves();
+        let value = |span: Span<f64>, x| span.value_and_slope(x).0;
         for i in 0..=10 {
             let x = f64::from(i) / 10.0;
-            assert!((span.value(x) - f(a + x * (b - a))).abs() < 1e-12);
-            assert!((left.value(x) - span.value(0.5 * x)).abs() < 1e-12);
-            assert!((right.value(x) - span.value(0.5 + 0.5 * x)).abs() < 1e-12);
-            assert!(span.value(x) <= span.max() && span.value(x) >= span.min());
+            assert!((value(span, x) - f(a + x * (b - a))).abs() < 1e-12);
+            assert!((value(left, x) - value(span, 0.5 * x)).abs() < 1e-12);
+            assert!((value(right, x) - value(span, 0.5 + 0.5 * x)).abs() < 1e-12);
+            assert!(value(span, x) <= span.max() && value(span, x) >= span.min());
         }
         for &x in span.crossings(1.0).as_slice() {
             assert!((f(a + x * (b - a)) - 1.0).abs() < 1e-9);

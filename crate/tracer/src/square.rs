@@ -1,8 +1,11 @@
 //! What the packets of a square of pixels share.
 use crate::area::Area;
+use crate::beam::Beam;
+use crate::lens::Lens;
 use crate::nearby::Nearby;
 use crate::packet::Near;
-use crate::picture::Picture;
+use crate::picture::{Picture, packet_number};
+use crate::quick::LEFT_OUT_OF_PARTS;
 use crate::slabs::Slabs;
 
 /// What is known of the soft surface in a square of pixels.
@@ -16,20 +19,21 @@ pub(crate) enum Square<'a> {
 }
 
 impl<'a> Square<'a> {
-    /// What of it a packet needs, given by its column and row and its number.
-    pub fn near(&mut self, place: [u32; 2], number: usize) -> Near<'_, 'a> {
+    /// What of it a packet needs, given by its column and row among so many.
+    pub fn near(&mut self, place: [u32; 2], packets: [u32; 2]) -> Near<'_, 'a> {
         match self {
             Self::Empty => Near::Nothing,
             Self::Slabs(slabs) => {
+                let number = packet_number(place, packets);
                 if slabs.0.is_empty_for(number) {
                     Near::Nothing
                 } else {
-                    Near::Slabs(slabs)
+                    Near::Slabs(slabs, number)
                 }
             }
             Self::Lumps(lumps) => match lumps.near(place) {
-                near if near.len() == 0 => Near::Nothing,
-                near => Near::Lumps(near),
+                (near, _) if near.len() == 0 => Near::Nothing,
+                (near, lens) => Near::Lumps(near, lens),
             },
         }
     }
@@ -47,12 +51,21 @@ pub(crate) struct Lumps<'a> {
     area: Area,
     packets: [u32; 2],
     all: Nearby,
+    lens: Option<Lens>,
     parts: Vec<Option<Nearby>>,
 }
 
 impl<'a> Lumps<'a> {
-    pub fn new(picture: &'a Picture, area: Area, packets: [u32; 2], all: Nearby) -> Self {
+    /// `all` are those near the beam of the area.
+    pub fn new(
+        picture: &'a Picture,
+        area: Area,
+        packets: [u32; 2],
+        beam: &Beam,
+        all: Nearby,
+    ) -> Self {
         Self {
+            lens: Lens::new(picture, area, beam),
             picture,
             area,
             packets,
@@ -62,20 +75,21 @@ impl<'a> Lumps<'a> {
     }
 
     /// Those in the part that holds the packet in a column and row.
-    fn near(&mut self, [column, row]: [u32; 2]) -> &Nearby {
+    fn near(&mut self, [column, row]: [u32; 2]) -> (&Nearby, Option<&Lens>) {
         let [columns, rows] = self.packets;
         if self.all.len() == 0 || self.all.len() > MANY || columns < 2 * PARTS {
-            return &self.all;
+            return (&self.all, self.lens.as_ref());
         }
         let (i, j) = (column * PARTS / columns, row * PARTS / rows);
         let Self {
             picture,
             area,
             all,
+            lens,
             parts,
             ..
         } = self;
-        parts[(j * PARTS + i) as usize].get_or_insert_with(|| {
+        let part = parts[(j * PARTS + i) as usize].get_or_insert_with(|| {
             let [width, height] =
                 [area.right - area.left, area.bottom - area.top].map(|n| n / PARTS);
             let (left, top) = (area.left + i * width, area.top + j * height);
@@ -86,8 +100,10 @@ impl<'a> Lumps<'a> {
                 bottom: top + height,
             };
             let mut near = Nearby::default();
-            all.narrow(&picture.beam(part).from(all.base), &mut near);
+            let beam = picture.beam(part).from(all.base);
+            all.narrow(&beam, LEFT_OUT_OF_PARTS, &mut near);
             near
-        })
+        });
+        (part, lens.as_ref())
     }
 }

@@ -30,7 +30,7 @@ fn difference(scene: &Scene) -> [f64; 2] {
     picture.soft.precision = Precision {
         first: 1e-4,
         last: 2e-6,
-        truncate: false,
+        shared: 1e-6,
         ..Precision::PICTURE
     };
     let exact = trace(&picture);

@@ -73,7 +73,6 @@ pub struct Walk<'w, 's, L> {
     found: Vec<Found>,
     /// Work done, see [`MOST_WORK`].
     work: usize,
-    most: usize,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
 }
@@ -105,11 +104,15 @@ impl<L> Default for Memories<L> {
 
 impl<L: Lanes> Memories<L> {
     /// Forgets all.
-    fn begin(&mut self, count: usize) {
+    fn begin(&mut self) {
         if self.walk == u32::MAX {
             *self = Self::default();
         }
         self.walk += 1;
+    }
+
+    /// Makes space for so many primitives.
+    fn hold(&mut self, count: usize) {
         let blank = Memory {
             walk: 0,
             t: 0.0,
@@ -147,8 +150,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     ) -> Self {
         let Bundle { rays, limits, .. } = bundle;
         let ray = |i: usize| &rays[i.min(rays.len() - 1)];
-        let count = slabs.len();
-        memory.begin(count);
+        memory.begin();
         Self {
             primitives,
             bounds,
@@ -166,7 +168,6 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             settler: Settler::default(),
             found: Vec::new(),
             work: 0,
-            most: MOST_WORK.max(MOST_VISITS * count),
             evaluations: 0,
         }
     }
@@ -175,40 +176,48 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     #[must_use]
     pub fn run(mut self) -> (Vec<Found>, u64) {
         let root = self.slabs.root();
-        self.visit(root, Span::zero());
+        self.visit(root, Span::zero(), Span::zero());
         (self.found, self.evaluations)
     }
 
-    fn visit(&mut self, index: u32, base: Span<L>) {
-        let slab = self.slabs.slab(index).clone();
+    /// Follows the rays through a slab, given what the longer slabs around it share and have resolved.
+    fn visit(&mut self, index: u32, mut shared: Span<L>, mut base: Span<L>) {
+        let slab = self.slabs.slab(index);
+        let (error, depth, from) = (slab.error, slab.depth, slab.from);
+        let (above, below) = (slab.above, slab.below);
+        let pending = [slab.pending_above, slab.pending_below];
+        let resolves = !slab.resolved.is_empty();
+        let shares = !slab.shared.is_empty();
+        let done = slab.pending.is_empty();
+        self.work += 1 + slab.resolved.len() + slab.pending.len();
         // Rays that end before this slab have found nothing.
-        self.alive &= L::splat(slab.from).less(self.limit);
-        if self.alive == 0 || self.rejected(index, base, slab.above, slab.below, slab.error) {
+        self.alive &= L::splat(from).less(self.limit);
+        let mut span = shared.plus(base);
+        if self.alive == 0 || self.rejected(index, span, above, below, error) {
             return;
         }
-        self.work += 1 + slab.resolved.len() + slab.pending.len();
-        let mut span = base;
-        if !slab.resolved.is_empty() {
-            span = span.plus(self.span(index));
-            if self.rejected(
-                index,
-                span,
-                slab.pending_above,
-                slab.pending_below,
-                slab.error,
-            ) {
+        if shares {
+            shared = shared.plus(self.shared(index));
+        }
+        if resolves {
+            base = base.plus(self.span(index));
+        }
+        if shares || resolves {
+            span = shared.plus(base);
+            if self.rejected(index, span, pending[0], pending[1], error) {
                 return;
             }
         }
-        if self.work > self.most || slab.depth >= DEEPEST {
+        let most = MOST_WORK.max(MOST_VISITS * self.slabs.len());
+        if self.work > most || depth >= DEEPEST {
             self.settle(index, self.alive);
             return;
         }
-        if slab.pending.is_empty() {
-            let doubtful = self.doubtful(span, slab.error);
+        if done {
+            let doubtful = self.doubtful(span, error);
             if doubtful != 0 && !self.slabs.is_final(index) {
                 let finer = self.slabs.finer(index);
-                self.visit(finer, Span::zero());
+                self.visit(finer, shared, Span::zero());
             } else {
                 self.cross(index, span, !doubtful);
                 self.settle(index, doubtful);
@@ -217,14 +226,40 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
         match self.slabs.parts(index, self.packet) {
             Parts::Halves(left, right) => {
-                let [near, far] = span.halves();
-                self.visit(left, near);
+                let [near, far] = base.halves();
+                let [shared_near, shared_far] = shared.halves();
+                self.visit(left, shared_near, near);
                 if self.alive != 0 {
-                    self.visit(right, far);
+                    self.visit(right, shared_far, far);
                 }
             }
-            Parts::Narrower(same) => self.visit(same, span),
+            Parts::Narrower(same) => self.visit(same, shared, base),
         }
+    }
+
+    /// The span of a slab's shared primitives.
+    fn shared(&mut self, index: u32) -> Span<L> {
+        let s = self.slabs.slab(index);
+        let (from, to, count) = (s.from, s.to, s.shared.len());
+        let fresh = !s.is_made();
+        let Some(block) = self.slabs.block(index) else {
+            return Span::zero();
+        };
+        let steps = block.cell.steps(self.direction);
+        let node = |t: f64| {
+            let t = L::splat(t);
+            let place = core::array::from_fn(|k| self.origin[k] + self.direction[k] * t);
+            let (value, [x, y, z]) = block.total.jet(block.cell.local(place));
+            Node {
+                value,
+                slope: x * steps[0] + y * steps[1] + z * steps[2],
+            }
+        };
+        let span = Span::hermite(node(from), node(to), to - from);
+        if fresh {
+            self.evaluations += (8 * count) as u64;
+        }
+        span
     }
 
     /// Whether all rays are proved to stay on one side all through a slab; notes the side.
@@ -288,16 +323,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let e = L::splat(error);
         let never = span.max().less(level - e) | (level + e).less(span.min());
         let off = L::splat(steep);
-        let rises = a.less(level - e)
-            & (level + e).less(d)
-            & off.less(b - a)
-            & off.less(c - b)
-            & off.less(d - c);
-        let falls = d.less(level - e)
-            & (level + e).less(a)
-            & off.less(a - b)
-            & off.less(b - c)
-            & off.less(c - d);
+        let rises = off.less(b - a) & off.less(c - b) & off.less(d - c);
+        let falls = off.less(a - b) & off.less(b - c) & off.less(c - d);
         let open = lanes & !(never | rises | falls);
         if open == 0 || cuts == 0 {
             return open;
@@ -317,7 +344,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let (from, to) = (s.from, s.to);
         let (slabs, list) = (&*self.slabs, &mut self.settler.list);
         list.clear();
-        slabs.each(index, |local| list.push(slabs.primitive(local)));
+        slabs.each(index, true, |p| list.push(p));
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
             let bit = 1u32 << lane;
@@ -389,6 +416,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         };
         let places: [[L; 3]; 2] = [along(from), along(to)];
         let (mut left, mut right) = (Node::zero(), Node::zero());
+        self.memory.hold(self.slabs.len());
         for &local in self.slabs.locals(range) {
             let primitive = &self.primitives[self.slabs.primitive(local) as usize];
             let walk = self.memory.walk;

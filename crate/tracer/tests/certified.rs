@@ -49,7 +49,7 @@ const COMPACT: [Kernel; 4] = [
 
 /// Pictures of compact kernels have no hit that is off and lose no surface, not even where a ray grazes it.
 ///
-/// Of other kernels pictures leave out what lies beyond the depth of influence, and rays that graze a
+/// Of other kernels pictures may still miss some surface, as of squared points next to their poles, and rays that graze a
 /// surface can miss it: how much of that there is must not grow. `examples/certify.rs` lists what is left.
 fn certify(kinds: &[Kind], most_missed: f64, most_grazed: f64, most_off: f64) {
     let mut all = Row::default();

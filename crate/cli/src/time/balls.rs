@@ -4,13 +4,13 @@ use field::Kernel;
 use glam::DVec3;
 use scene::{Camera, Element, Light, LightKind, Material, Origin, Scene, Shape};
 
-/// Gaussian balls spread evenly through a cube of side 2, by the additive sequence of the three
-/// powers of 1/φ₃, φ₃ ≈ 1.2207 being the root of x⁴ = x + 1. Their radius is a third of their mean
-/// distance, so that many touch and melt together.
-pub fn scene(count: u32) -> Scene {
+/// Balls of a kernel spread evenly through a cube of side 2, by the additive sequence of the three
+/// powers of 1/φ₃, φ₃ ≈ 1.2207 being the root of x⁴ = x + 1. Their mean distance is `apart` radii: at 3
+/// many touch and melt together.
+pub fn scene(count: u32, kernel: Kernel, apart: f64) -> Scene {
     const PHI: f64 = 1.220_744_084_605_759_5;
     let step = DVec3::new(1.0 / PHI, 1.0 / (PHI * PHI), 1.0 / (PHI * PHI * PHI));
-    let radius = 2.0 / libm::cbrt(f64::from(count)) / 3.0;
+    let radius = 2.0 / libm::cbrt(f64::from(count)) / apart;
     let mut scene = Scene::default();
     scene.materials[0] = Material {
         blobbiness: -4.0,
@@ -23,7 +23,7 @@ pub fn scene(count: u32) -> Scene {
                 radius,
             },
             material: 0,
-            kernel: Kernel::Gauss,
+            kernel,
             origin: Origin::default(),
         })
         .collect();

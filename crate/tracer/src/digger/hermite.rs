@@ -65,7 +65,7 @@ impl Digger for Hermite {
         match quest {
             // Onto the surface itself, as in pictures.
             Quest::First => {
-                let flesh = soft.flesh(&slabs, &based, &found, scratch);
+                let flesh = soft.flesh(&slabs, &based, base, &found, scratch);
                 for hit in &found {
                     crossings[hit.lane] = Some(base + flesh.t[hit.lane]);
                 }

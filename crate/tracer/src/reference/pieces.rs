@@ -124,7 +124,7 @@ impl Pieces {
                 kernel: p.kernel,
                 adds: p.height > 0.0,
                 factor: Factor::of(p),
-                taper: p.tapered,
+                taper: p.tapered.as_deref().copied(),
                 skeleton: p.skeleton.clone(),
                 root: None,
                 rim: None,

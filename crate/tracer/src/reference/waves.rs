@@ -44,7 +44,7 @@ const MOST_KINKS: f64 = 4096.0;
 impl Factor {
     /// Of a primitive.
     pub fn of(primitive: &Primitive) -> Self {
-        let Some(profile) = primitive.profile else {
+        let Some(profile) = &primitive.profile else {
             return Self {
                 largest: [1.0, 0.0, 0.0],
                 turns: false,

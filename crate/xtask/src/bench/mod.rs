@@ -8,6 +8,7 @@ mod browser;
 mod certify;
 mod fields;
 mod goal;
+mod memory;
 mod models;
 mod ours;
 mod peers;
@@ -37,8 +38,10 @@ pub enum Part {
     Browser,
     /// Pictures against a certified reference.
     Certify,
-    /// Where the time goes, and the memory.
+    /// Where the time goes.
     Profile,
+    /// Memory of very many elements.
+    Memory,
     /// The formulas of the fields.
     Fields,
 }
@@ -132,6 +135,7 @@ fn title(part: Part) -> &'static str {
         Part::Browser => "The page in a browser",
         Part::Certify => "Certified",
         Part::Profile => "Where the time goes",
+        Part::Memory => "Memory",
         Part::Fields => "Fields",
     }
 }
@@ -144,6 +148,7 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
         Part::Browser => browser::measure(),
         Part::Certify => certify::measure(),
         Part::Profile => profile::measure(),
+        Part::Memory => memory::measure(),
         Part::Fields => fields::measure().map(|piece| (Vec::new(), piece)),
     };
     (title(part), result)

@@ -1,6 +1,6 @@
-//! Where the time goes: counts of work, the functions that the processor was seen in, and memory.
+//! Where the time goes: counts of work, the functions that the processor was seen in.
 
-use super::goal::{Goal, Wanted, short};
+use super::goal::short;
 use super::scenes::Scenes;
 use super::{Piece, ours};
 use crate::shell::{command, find, read};
@@ -18,13 +18,10 @@ const SCENES: [&str; 6] = [
     "seahorse",
     "tee",
 ];
-/// Elements of the scene that memory is measured with, and how much they may take, GiB.
-const MANY: &str = "1000000";
-const MEMORY: f64 = 1.5;
 /// Functions in which less of the time was spent are not listed, percent.
 const LEAST: f64 = 2.0;
 
-/// Counts, samples and measures.
+/// Counts and samples.
 pub fn measure() -> Result<Piece> {
     let scenes = Scenes::new()?;
     let mut page = String::from(
@@ -36,27 +33,7 @@ pub fn measure() -> Result<Piece> {
     } else {
         page += "Not sampled: `perf` is not installed.\n\n";
     }
-    let many = ours::time(&scenes.sinew, &["--balls", MANY])?;
-    let gib = many
-        .memory
-        .map(|bytes| bytes / f64::from(1 << 30))
-        .ok_or_else(|| String::from("this system does not tell"));
-    writeln!(
-        page,
-        "A scene of {MANY} Gaussian balls (`sinew time --balls {MANY}`): {} s, of which {} s for preparing it; \
-         at most {} GiB of memory.\n",
-        short(many.seconds),
-        short(many.prepare),
-        gib.as_ref().map_or("–".into(), |gib| short(*gib))
-    )?;
-    let goal = Goal {
-        what: format!("memory of {MANY} elements"),
-        against: "natively, one thread".into(),
-        wanted: Wanted::AtMost(MEMORY),
-        unit: " GiB",
-        measured: gib,
-    };
-    Ok((vec![goal], page))
+    Ok((Vec::new(), page))
 }
 
 fn counts(scenes: &Scenes, page: &mut String) -> Result<()> {

@@ -25,9 +25,10 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         .default("relative")
         .details("relative: a² = |B|/R²; absolute: a² = |B|, as the published datasets read.")
         .example(flesh!("blobscale absolute\nsphere Flesh 0.6, 0 0 0")),
-    row("influence", "share of the threshold below which a soft shape is ignored", run(options::influence))
+    row("influence", "share of the threshold below which the draft ignores a soft shape", run(options::influence))
         .takes(&[number("e", "the share of the threshold").from(1e-9, 0.5)])
         .default("0.001")
+        .details("Counts for the draft and for every digger but hermite: traced pictures ignore nothing that could be seen.")
         .example(flesh!("influence 1e-4\nsphere Flesh 0.6, 0 0 0")),
     row("curve", "cubic Bézier curve", run(primitives::curve))
         .takes(&[

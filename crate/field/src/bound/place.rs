@@ -1,0 +1,206 @@
+//! Where a primitive's skeleton is, as bounds want to know it: how near it comes to a ball.
+//!
+//! Points and segments lie in [`Place`] itself, as a scene may have a million of them; what else there is lies
+//! elsewhere in memory.
+use crate::skeleton::SAMPLES;
+use crate::{Kernel, Primitive, Skeleton};
+use core::f64::consts::{PI, TAU};
+use glam::DVec3;
+
+/// A skeleton's place.
+#[derive(Clone, Debug)]
+pub enum Place {
+    /// A point.
+    Point(DVec3),
+    /// A line segment.
+    Segment {
+        /// One end.
+        base: DVec3,
+        /// Unit vector to the other; 0 without a length.
+        axis: DVec3,
+        /// Length.
+        length: f64,
+    },
+    /// An infinite plane.
+    Plane {
+        /// A point of it.
+        point: DVec3,
+        /// Its unit normal.
+        normal: DVec3,
+    },
+    /// A circular arc.
+    Arc(Box<Sweep>),
+    /// A triangle: corners and unit normal.
+    Triangle(Box<([DVec3; 3], DVec3)>),
+    /// A polygon.
+    Polygon(Box<Skeleton>),
+    /// A curve.
+    Curve(Box<Course>),
+}
+
+/// An arc `center + radius·(cos t·u + sin t·v)`, `0 ≤ t ≤ angle`; u, v and axis are orthonormal.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    center: DVec3,
+    u: DVec3,
+    v: DVec3,
+    axis: DVec3,
+    radius: f64,
+    angle: f64,
+    /// Sine and cosine of the angle.
+    turn: (f64, f64),
+    /// sin(φ/2)/(φ/2) for the largest φ, see [`Sweep::nearness`].
+    sag: f64,
+}
+
+/// A curve.
+#[derive(Clone, Debug)]
+pub struct Course {
+    control: [DVec3; 4],
+    /// Balls that hold its pieces.
+    balls: Vec<(DVec3, f64)>,
+}
+
+impl Place {
+    /// A primitive's.
+    pub fn of(primitive: &Primitive) -> Self {
+        match &primitive.skeleton {
+            Skeleton::Point { center } => Self::Point(*center),
+            Skeleton::Segment { base, apex } => Self::Segment {
+                base: *base,
+                axis: (*apex - *base).normalize_or_zero(),
+                length: (*apex - *base).length(),
+            },
+            Skeleton::Arc {
+                center,
+                u,
+                v,
+                radius,
+                angle,
+            } => Self::Arc(Box::new(Sweep::new(*center, [*u, *v], *radius, *angle))),
+            Skeleton::Triangle { corners } => {
+                let [a, b, c] = *corners;
+                let normal = (b - a).cross(c - a).normalize_or_zero();
+                Self::Triangle(Box::new((*corners, normal)))
+            }
+            polygon @ Skeleton::Polygon { .. } => Self::Polygon(Box::new(polygon.clone())),
+            Skeleton::Curve { control } => Self::Curve(Box::new(Course {
+                control: *control,
+                balls: primitive.prepared.double.balls(),
+            })),
+            Skeleton::Plane { point, normal } => Self::Plane {
+                point: *point,
+                normal: normal.try_normalize().unwrap_or(DVec3::Z),
+            },
+        }
+    }
+
+    /// How near the middle of a ball is to the skeleton, or a distance from below; and the stretch of
+    /// [`Nearness`](super::Nearness).
+    pub fn nearness(&self, kernel: Kernel, center: DVec3, radius: f64) -> (f64, f64) {
+        let distance = match self {
+            Self::Point(point) => center.distance(*point),
+            Self::Segment { base, axis, length } => {
+                let d = center - *base;
+                let along = d.dot(*axis).clamp(0.0, *length);
+                d.distance(*axis * along)
+            }
+            Self::Arc(sweep) => return sweep.nearness(center, radius),
+            Self::Triangle(triangle) => triangle_distance(&triangle.0, triangle.1, center),
+            Self::Polygon(skeleton) => skeleton.distance(center),
+            Self::Curve(course) => course.distance(kernel, center),
+            Self::Plane { point, normal } => (center - *point).dot(*normal).abs(),
+        };
+        (distance, 1.0)
+    }
+}
+
+impl Sweep {
+    fn new(center: DVec3, [u, v]: [DVec3; 2], radius: f64, angle: f64) -> Self {
+        // As the field does it.
+        let u = u.try_normalize().unwrap_or(DVec3::X);
+        let v = (v - u * u.dot(v))
+            .try_normalize()
+            .unwrap_or_else(|| u.any_orthonormal_vector());
+        let angle = angle.clamp(0.0, TAU);
+        let half = 0.5 * angle.min(PI);
+        Self {
+            center,
+            u,
+            v,
+            axis: u.cross(v),
+            radius,
+            angle,
+            turn: libm::sincos(angle),
+            sag: if half > 1e-9 {
+                libm::sin(half) / half
+            } else {
+                1.0
+            },
+        }
+    }
+
+    fn nearness(&self, center: DVec3, radius: f64) -> (f64, f64) {
+        let (sweep, angle) = (self.radius, self.angle);
+        let d = center - self.center;
+        let (x, y, z) = (d.dot(self.u), d.dot(self.v), d.dot(self.axis));
+        let rho = (x * x + y * y).sqrt();
+        let (sin, cos) = self.turn;
+        let before = x * sin - y * cos >= 0.0;
+        let swept = if angle > PI {
+            y >= 0.0 || before
+        } else {
+            y >= 0.0 && before
+        };
+        if swept {
+            // A point of the arc at angle φ from the foot is no nearer than if the arc
+            // were straight but shorter by the factor sin(φ/2)/(φ/2)·√(ρ/sweep).
+            let shrink = self.sag * ((rho - radius).max(0.0) / sweep).sqrt();
+            let off = rho - sweep;
+            ((off * off + z * z).sqrt(), (1.0 / shrink).max(1.0))
+        } else {
+            let start = (x - sweep) * (x - sweep) + y * y;
+            let (ex, ey) = (x - sweep * cos, y - sweep * sin);
+            let distance = (start.min(ex * ex + ey * ey) + z * z).sqrt();
+            (distance, f64::INFINITY)
+        }
+    }
+}
+
+impl Course {
+    fn distance(&self, kernel: Kernel, center: DVec3) -> f64 {
+        // Within a ball nothing is known of the distance, which a pole asks for.
+        // (Of two bends the search may take the wrong one, by half its step.)
+        if !kernel.falls_fast() {
+            let fastest = self
+                .control
+                .windows(2)
+                .fold(0.0_f64, |v, w| v.max(3.0 * w[0].distance(w[1])));
+            let step = fastest / f64::from(SAMPLES);
+            let curve = Skeleton::Curve {
+                control: self.control,
+            };
+            return (curve.distance(center) - 0.5 * step).max(0.0);
+        }
+        let far = self.balls.iter().map(|(c, r)| center.distance(*c) - r);
+        far.fold(f64::INFINITY, f64::min).max(0.0)
+    }
+}
+
+fn triangle_distance(corners: &[DVec3; 3], normal: DVec3, p: DVec3) -> f64 {
+    let mut inside = true;
+    let mut nearest = f64::INFINITY;
+    for i in 0..3 {
+        let (a, b) = (corners[i], corners[(i + 1) % 3]);
+        let edge = b - a;
+        let d = p - a;
+        inside &= edge.cross(d).dot(normal) >= 0.0;
+        let along = (d.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+        nearest = nearest.min(d.distance_squared(edge * along));
+    }
+    if inside {
+        (p - corners[0]).dot(normal).abs()
+    } else {
+        nearest.sqrt()
+    }
+}

@@ -1,0 +1,257 @@
+//! Groups of neighbouring primitives, and what is known of each group at a distance.
+//!
+//! Groups form a binary tree. Of every group there is a ball that holds its members' skeletons, and a table: what the
+//! members' fields, and their fourth derivatives, add up to at most at a distance or more from the ball. So whatever
+//! is far away is judged, dropped, or interpolated as one, however many its members are.
+use crate::hierarchy::Hierarchy;
+use field::bound::{Bound, Nearness, SpanLength};
+use glam::DVec3;
+
+/// Entries in an octave of distances.
+const STEPS: usize = 4;
+/// The first entry stands for distances from 0 on, the second for those from 2 to the power of this on …
+const FIRST: i32 = -10;
+/// … and so many octaves follow: the scene is between 2 and 4 large.
+const OCTAVES: usize = 12;
+const ENTRIES: usize = 1 + OCTAVES * STEPS + 1;
+
+/// Members of the smallest groups, at most.
+const LEAF: usize = 8;
+
+/// The tree of groups.
+pub struct Clusters {
+    tree: Hierarchy,
+    facts: Vec<Facts>,
+}
+
+/// What is known of a group.
+#[derive(Clone, Debug)]
+struct Facts {
+    /// The sum of what the members' fields are at most, and of their fourth derivatives, by distance.
+    table: [[f32; 2]; ENTRIES],
+    /// Each member's field is steeper than so much of itself only where it is small …
+    steep: f32,
+    /// … or, of kernels that fall as a power of the distance, than so much over the distance.
+    power: f32,
+    adds: bool,
+    carves: bool,
+}
+
+/// A group as seen from a ball.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Its members together are at most this.
+    pub magnitude: f64,
+    /// The fourth derivative of their sum along any line is at most this; infinite where nothing is known.
+    pub fourth: f64,
+    /// About the largest slope, over the field's size.
+    pub steepness: f64,
+    /// Whether it is so near that its members had better be looked at one by one.
+    pub near: bool,
+    /// How many members it has.
+    pub count: usize,
+    /// Whether they may be above zero.
+    pub adds: bool,
+    /// Whether they may be below zero.
+    pub carves: bool,
+}
+
+/// What a group consists of.
+pub enum Members<'a> {
+    /// Two groups.
+    Groups([u32; 2]),
+    /// Primitives.
+    Primitives(&'a [u32]),
+}
+
+/// A group is near where its distance is less than this times its radius, and the ball that it is seen from is not
+/// much larger than the group.
+const NEAR: f64 = 2.0;
+/// See [`NEAR`].
+const WIDE: f64 = 0.3;
+
+impl Clusters {
+    /// Groups of primitives given as (number, centre, radius) of balls that hold their skeletons.
+    #[must_use]
+    pub fn new(balls: Vec<(u32, DVec3, f64)>, bounds: &[Bound]) -> Self {
+        let tree = Hierarchy::with_leaves(balls, LEAF);
+        let mut facts: Vec<Facts> = Vec::with_capacity(tree.len());
+        facts.resize(tree.len(), Facts::NONE);
+        // Children come after their parents.
+        for index in (0..tree.len()).rev() {
+            facts[index] = match tree.children(index) {
+                Some([left, right]) => facts[left].plus(&facts[right]),
+                None => Facts::of(tree.items(index).iter().map(|&i| &bounds[i as usize])),
+            };
+        }
+        Self { tree, facts }
+    }
+
+    /// The group of all, if there are any.
+    #[must_use]
+    pub fn root(&self) -> Option<u32> {
+        (self.tree.len() > 0).then_some(0)
+    }
+
+    /// A group as seen from a ball.
+    #[inline]
+    #[must_use]
+    pub fn view(&self, cluster: u32, center: DVec3, radius: f64) -> View {
+        let index = cluster as usize;
+        let (own, around) = self.tree.ball(index);
+        let distance = (center.distance(own) - radius - around).max(0.0);
+        let facts = &self.facts[index];
+        let [magnitude, fourth] = facts.table[entry(distance)].map(f64::from);
+        View {
+            magnitude,
+            fourth,
+            steepness: f64::from(facts.steep).min(f64::from(facts.power) / distance),
+            near: distance <= NEAR * around && around > WIDE * radius,
+            count: self.tree.items(index).len(),
+            adds: facts.adds,
+            carves: facts.carves,
+        }
+    }
+
+    /// What a group consists of.
+    #[must_use]
+    pub fn members(&self, cluster: u32) -> Members<'_> {
+        match self.tree.children(cluster as usize) {
+            Some(children) => Members::Groups(children.map(|c| c as u32)),
+            None => Members::Primitives(self.tree.items(cluster as usize)),
+        }
+    }
+
+    /// All primitives of a group.
+    #[must_use]
+    pub fn all(&self, cluster: u32) -> &[u32] {
+        self.tree.items(cluster as usize)
+    }
+}
+
+/// The entry of the largest distance in the table that is not above one.
+#[inline]
+fn entry(distance: f64) -> usize {
+    // From the exponent and the first bits of the mantissa.
+    let from = (1023 + i64::from(FIRST)) << 2;
+    let place = (distance.to_bits() >> 50) as i64 - from;
+    (place + 1).clamp(0, ENTRIES as i64 - 1) as usize
+}
+
+/// The distance that an entry stands for.
+fn place(entry: usize) -> f64 {
+    match entry.checked_sub(1) {
+        None => 0.0,
+        Some(i) => {
+            let (octave, step) = (i / STEPS, i % STEPS);
+            libm::exp2(f64::from(FIRST) + octave as f64) * (1.0 + step as f64 / STEPS as f64)
+        }
+    }
+}
+
+impl Facts {
+    const NONE: Self = Self {
+        table: [[0.0; 2]; ENTRIES],
+        steep: 0.0,
+        power: 0.0,
+        adds: false,
+        carves: false,
+    };
+
+    fn of<'b>(members: impl Iterator<Item = &'b Bound>) -> Self {
+        let length = SpanLength::new(1.0);
+        members.fold(Self::NONE, |sum, bound| {
+            let mut own = Self {
+                steep: bound.relative_slope(Nearness::at(0.0)) as f32,
+                power: bound.power() as f32,
+                adds: bound.adds(),
+                carves: bound.carves(),
+                ..Self::NONE
+            };
+            for (i, entry) in own.table.iter_mut().enumerate() {
+                let estimate = bound.estimate(Nearness::at(place(i)), &length);
+                // A NaN says nothing, as infinity does.
+                *entry = [estimate.magnitude, estimate.fourth]
+                    .map(|x| if x.is_nan() { f32::INFINITY } else { x as f32 });
+            }
+            sum.plus(&own)
+        })
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        // Sums are rounded; bounds stay bounds.
+        let sum = |a: f32, b: f32| (a + b) * (1.0 + 1e-6);
+        Self {
+            table: core::array::from_fn(|i| {
+                core::array::from_fn(|k| sum(self.table[i][k], other.table[i][k]))
+            }),
+            steep: self.steep.max(other.steep),
+            power: self.power.max(other.power),
+            adds: self.adds || other.adds,
+            carves: self.carves || other.carves,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use field::{Kernel, Primitive, Shaping, Skeleton};
+
+    /// No group adds up to more than its table says, and tables of distant groups say little more than that.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn a_view_bounds_what_a_group_adds_up_to() {
+        let mut state = 5u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31)
+        };
+        let primitives: Vec<Primitive> = (0..60)
+            .map(|i| {
+                let center = DVec3::new(next(), next(), next());
+                let shaping = Shaping {
+                    kernel: [Kernel::Cauchy, Kernel::Gauss, Kernel::Inverse, Kernel::Soft][i % 4],
+                    radius: 0.02 + 0.1 * next(),
+                    blobbiness: -1.0,
+                    blob_scale: field::BlobScale::Relative,
+                    strength: 1.0,
+                    influence: 1e-3,
+                    taper: None,
+                };
+                Primitive::new(Skeleton::Point { center }, &shaping, None).expect("flesh")
+            })
+            .collect();
+        let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
+        let ball = |(i, p): (usize, &Primitive)| {
+            let (center, around) = p.bounding_sphere().expect("a point");
+            (i as u32, center, around - p.influence)
+        };
+        let balls = primitives.iter().enumerate().map(ball).collect();
+        let clusters = Clusters::new(balls, &bounds);
+        let mut seen = 0;
+        let mut groups = vec![clusters.root().expect("a group")];
+        while let Some(group) = groups.pop() {
+            match clusters.members(group) {
+                Members::Groups(parts) => groups.extend(parts),
+                Members::Primitives(members) => seen += members.len(),
+            }
+            for _ in 0..40 {
+                let far = 4.0 * next() * next();
+                let center = DVec3::new(next(), next(), next()) * (1.0 + far);
+                let radius = 0.1 * next();
+                let view = clusters.view(group, center, radius);
+                assert_eq!(view.count, clusters.all(group).len());
+                let offset = DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5).normalize();
+                let place = (center + offset * radius).to_array();
+                let all = clusters.all(group).iter();
+                let sum: f64 = all.map(|&i| primitives[i as usize].value(place)).sum();
+                assert!(sum <= view.magnitude, "{sum} {view:?}");
+                if group == 0 && far > 2.0 {
+                    assert!(view.magnitude < 8.0 * sum, "{sum} {view:?}");
+                }
+            }
+        }
+        assert_eq!(seen, primitives.len());
+    }
+}

@@ -1,0 +1,244 @@
+//! What the soft surface is like where a packet's rays hit it: exactly where, how steep the field is, whose flesh it is.
+//!
+//! Spans say about where a ray crosses; here Newton's steps lead onto the surface. Shared interpolants stand for
+//! the primitives in them if what they are off by is within the tolerance; else those are looked at themselves.
+use crate::climb::mask;
+use crate::lanes::Lanes;
+use crate::quick::FINEST;
+use crate::ray::Ray;
+use crate::slabs::Slabs;
+use crate::soft::{PACKET, Scratch, Soft};
+use crate::walk::Found;
+use field::{Jet, Real, THRESHOLD};
+use glam::DVec3;
+use wide::f32x8;
+
+/// What the surface is like at the hits of a packet.
+#[derive(Default)]
+pub struct Flesh {
+    /// Ray parameter of each hit, polished.
+    pub t: [f64; PACKET],
+    /// Gradient of the field.
+    pub gradient: [DVec3; PACKET],
+    /// Materials met, and each one's share of the (positive) field in every lane.
+    pub weights: Vec<(u32, [f32; PACKET])>,
+}
+
+impl Flesh {
+    /// From lanes side by side.
+    pub fn new(t: f32x8, gradient: [f32x8; 3], weights: Vec<(u32, f32x8)>) -> Self {
+        let gradient = gradient.map(f32x8::to_array);
+        Self {
+            t: t.to_array().map(f64::from),
+            gradient: core::array::from_fn(|i| {
+                DVec3::from_array([0, 1, 2].map(|k| f64::from(gradient[k][i])))
+            }),
+            weights: weights
+                .into_iter()
+                .map(|(m, w)| (m, w.to_array()))
+                .collect(),
+        }
+    }
+}
+
+/// Half the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)).
+const COARSEST: f64 = 1e-4;
+
+/// Primitives that count at a packet's hits.
+#[derive(Default)]
+pub(crate) struct Active {
+    /// Each with its lanes, a bit each.
+    list: Vec<(u32, u32)>,
+    /// Where a primitive is in the list, for the packet of that number.
+    stamps: Vec<(u32, u32)>,
+    stamp: u32,
+}
+
+impl Active {
+    /// Lists the primitives that count in some slabs, each for its lanes; `shared`: also those that blocks
+    /// stand for.
+    fn collect(&mut self, slabs: &Slabs<'_>, places: &[(u32, u32)], shared: bool, count: usize) {
+        self.stamps.resize(count, (0, 0));
+        self.stamp = self.stamp.wrapping_add(1);
+        if self.stamp == 0 {
+            self.stamps.fill((0, 0));
+            self.stamp = 1;
+        }
+        self.list.clear();
+        for &(slab, lanes) in places {
+            slabs.each(slab, shared, |p| {
+                let (stamp, at) = &mut self.stamps[p as usize];
+                if *stamp == self.stamp {
+                    self.list[*at as usize].1 |= lanes;
+                } else {
+                    (*stamp, *at) = (self.stamp, self.list.len() as u32);
+                    self.list.push((p, lanes));
+                }
+            });
+        }
+        self.list.sort_unstable();
+    }
+}
+
+/// What a packet's rays hit.
+struct Hits<'a> {
+    slabs: &'a Slabs<'a>,
+    origin: [f32x8; 3],
+    direction: [f32x8; 3],
+    /// Where the spans cross.
+    start: f32x8,
+    /// The same, not rounded.
+    exact: [f64; PACKET],
+    /// How far that may be from the surface.
+    furthest: f32x8,
+    /// The slabs of the hits, each with its lanes.
+    places: &'a [(u32, u32)],
+    /// Lanes that hit, and those of them whose place is exact already.
+    met: u32,
+    settled: u32,
+}
+
+impl Soft {
+    /// Moves the hits of a packet onto the exact surface, and says what it is like there. Lanes
+    /// without a hit carry no meaning. Ray parameters are counted from `base`.
+    pub fn flesh(
+        &self,
+        slabs: &Slabs<'_>,
+        rays: &[Ray],
+        base: f64,
+        found: &[Found],
+        scratch: &mut Scratch,
+    ) -> Flesh {
+        let mut t = [0.0; PACKET];
+        let mut reach = [0.0; PACKET];
+        let mut places: [(u32, u32); PACKET] = [(0, 0); PACKET];
+        let (mut different, mut met, mut settled) = (0, 0, 0);
+        for hit in found {
+            let bit = 1 << hit.lane;
+            met |= bit;
+            settled |= if hit.settled { bit } else { 0 };
+            t[hit.lane] = hit.t;
+            let slab = slabs.slab(hit.slab);
+            reach[hit.lane] = slab.to - slab.from;
+            let known = &mut places[..different];
+            match known.iter_mut().find(|place| place.0 == hit.slab) {
+                Some(place) => place.1 |= bit,
+                None => {
+                    places[different] = (hit.slab, bit);
+                    different += 1;
+                }
+            }
+        }
+        let ray = |i: usize| &rays[i.min(rays.len() - 1)];
+        let hits = Hits {
+            slabs,
+            origin: core::array::from_fn(|k| f32x8::from_lanes(|i| ray(i).origin[k])),
+            direction: core::array::from_fn(|k| f32x8::from_lanes(|i| ray(i).direction[k])),
+            start: f32x8::from_lanes(|i| t[i]),
+            exact: t,
+            furthest: f32x8::from_lanes(|i| reach[i]),
+            places: &places[..different],
+            met,
+            settled,
+        };
+        let flesh = self.settle_on(&hits, true, scratch);
+        if self.is_near_enough(&hits, &flesh, base) {
+            flesh
+        } else {
+            self.settle_on(&hits, false, scratch)
+        }
+    }
+
+    /// Whether what blocks are off by moves no hit by more than the tolerance.
+    fn is_near_enough(&self, hits: &Hits<'_>, flesh: &Flesh, base: f64) -> bool {
+        hits.places.iter().all(|&(slab, lanes)| {
+            let off = hits.slabs.slab(slab).spent.shared;
+            let lanes = lanes & !hits.settled;
+            (0..PACKET).filter(|i| lanes >> i & 1 != 0).all(|i| {
+                let tolerance = 0.1 * self.pixel * (base + flesh.t[i]);
+                off <= tolerance.clamp(FINEST, COARSEST) * flesh.gradient[i].length()
+            })
+        })
+    }
+
+    /// Where the rays hit, and what it is like there: by the interpolants that are shared, or with all primitives themselves.
+    fn settle_on(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) -> Flesh {
+        let active = &mut scratch.active;
+        active.collect(hits.slabs, hits.places, !shared, self.primitives.len());
+        let &Hits {
+            origin,
+            direction,
+            start,
+            furthest,
+            ..
+        } = hits;
+        let mut at = start;
+        let mut weights: Vec<(u32, f32x8)> = Vec::new();
+        let mut gradient = [f32x8::splat(0.0); 3];
+        // What is settled stays where it is.
+        let free = mask(!hits.settled);
+        for _ in 0..MOST_POLISHING {
+            let point = core::array::from_fn(|k| origin[k] + direction[k] * at);
+            let mut value = f32x8::splat(0.0);
+            gradient = [f32x8::splat(0.0); 3];
+            weights.clear();
+            let mut add = |jet: Jet<f32x8>, lanes: u32, material: u32| {
+                let mask = mask(lanes);
+                let own = jet.value & mask;
+                value += own;
+                for (sum, slope) in gradient.iter_mut().zip(jet.gradient) {
+                    *sum += slope & mask;
+                }
+                let positive = Real::max(own, f32x8::splat(0.0));
+                match weights.last_mut() {
+                    Some((m, w)) if *m == material => *w += positive,
+                    _ => weights.push((material, positive)),
+                }
+            };
+            for &(p, lanes) in &active.list {
+                let jet = self.primitives[p as usize].jet(point);
+                add(jet, lanes, self.material[p as usize]);
+            }
+            for &(slab, lanes) in hits.places.iter().filter(|_| shared) {
+                hits.slabs.each_block(slab, |block| {
+                    let local = block.cell.local(point);
+                    for (material, shared) in &block.of_each {
+                        let (value, gradient) = shared.jet(local);
+                        let gradient = block.cell.world(gradient);
+                        add(Jet { value, gradient }, lanes, *material);
+                    }
+                });
+            }
+            scratch.evaluations += (active.list.len() * PACKET) as u64;
+            let slope = gradient[0] * direction[0]
+                + gradient[1] * direction[1]
+                + gradient[2] * direction[2];
+            let excess = value - f32x8::splat(THRESHOLD as f32);
+            let step = -excess / slope;
+            // Newton's step; where the ray only grazes the surface it may lead astray, and then
+            // the spans' crossing is kept.
+            let low = Real::max(start - furthest, f32x8::splat(0.0));
+            let next = at + step;
+            let good = next.simd_le(start + furthest) & next.simd_ge(low) & free;
+            at = good.select(next, at);
+            let off = f32x8::splat(NEAR_ENOUGH).less(excess.abs());
+            if off & hits.met & !hits.settled == 0 {
+                break;
+            }
+        }
+        let mut flesh = Flesh::new(at, gradient, weights);
+        for (i, own) in flesh.t.iter_mut().enumerate() {
+            if hits.settled >> i & 1 != 0 {
+                *own = hits.exact[i];
+            }
+        }
+        flesh
+    }
+}
+
+/// Evaluations at the hits. Newton's step from a place near the surface leads onto it as exactly as
+/// single precision can tell, but normal and colours are those of the place the step started from.
+const MOST_POLISHING: usize = 3;
+/// Where the field is within this of T, normal and colours are those of the surface: they change
+/// by about one part in a thousand on the way there, less than a picture shows.
+pub const NEAR_ENOUGH: f32 = 1e-3;

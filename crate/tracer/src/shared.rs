@@ -1,0 +1,414 @@
+//! What many primitives add up to in a piece of a beam, as one interpolant for all rays of the beam.
+//!
+//! Around the piece lies a box, along the beam's axis. At its eight corners all the primitives are evaluated once,
+//! side by side, with their gradients; in between values and slopes are interpolated: linearly across from the
+//! corners, and along each edge by the cubic with the values and slopes of its ends (Adini's element in three
+//! dimensions). Cubic polynomials are met exactly, and what is left is bounded by the fourth derivative, so that
+//! distant primitives, whose sum is smooth, cost a ray almost nothing however many they are.
+use crate::beam::Beam;
+use crate::lanes::Lanes;
+use field::Primitive;
+use glam::DVec3;
+use wide::f32x8;
+
+/// The box around a piece of a beam.
+#[derive(Clone, Copy, Debug)]
+pub struct Cell {
+    corner: DVec3,
+    /// Orthonormal; the last is the beam's.
+    axes: [DVec3; 3],
+    /// The box's extent along each.
+    size: [f64; 3],
+    /// How much further a ray can be from the axis at the piece's end than at its start, or nearer.
+    travel: f64,
+}
+
+/// The least extent across, over that along the beam.
+const THINNEST: f64 = 1.0 / 64.0;
+
+impl Cell {
+    /// Around all rays of a beam between two parameters.
+    #[must_use]
+    pub fn around(beam: &Beam, from: f64, to: f64) -> Self {
+        // Rays lag behind the axis, or are ahead of it, by a little.
+        let lag = beam.lag(to);
+        let length = to - from + 2.0 * lag;
+        let width = (2.0 * beam.width(to)).max(THINNEST * length);
+        let along = beam.axis.direction;
+        let (across, up) = along.any_orthonormal_pair();
+        let start = beam.axis.at(from) - along * lag;
+        Self {
+            corner: start - (across + up) * (0.5 * width),
+            axes: [across, up, along],
+            size: [width, width, length],
+            travel: beam.spread * (to - from),
+        }
+    }
+
+    /// The radius of the ball around the box.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        0.5 * DVec3::from_array(self.size).length() * (1.0 + 1e-9)
+    }
+
+    /// With D a bound on the fourth derivative along any line in the box, the cubic Hermite span of the interpolant
+    /// along a ray is at most D times this from the interpolated function.
+    ///
+    /// With A = 1 − L what linear and C = 1 − H what cubic interpolation leaves along an axis, the interpolant leaves
+    /// `ΣC₁L₂L₃ + ΣA₁A₂L₃ + A₁A₂A₃`, where |C| ≤ h⁴/384, |A| ≤ h²/8 times a derivative, and |L| ≤ 1. Along a ray that
+    /// moves across by s the interpolant is not quite cubic: the changes of its quadratic and cubic parts from edge to
+    /// edge, times s over the box's width, are its fourth derivative.
+    #[must_use]
+    pub fn roughness(&self) -> f64 {
+        let [b, _, h] = self.size;
+        let s = self.travel;
+        let (b2, h2, s2) = (b * b, h * h, s * s);
+        let inside = (h2 * h2 + 2.0 * b2 * b2) / 384.0 + (2.0 * h2 * b2 + 3.0 * b2 * b2) / 64.0;
+        let along =
+            s * h * h2 / 48.0 + s2 * h2 * (h / (32.0 * b) + 1.0 / 32.0) + s2 * s * (h + s) / 16.0;
+        inside + along
+    }
+
+    /// The corners; bits 0, 1, 2 of the lane's number are the steps along the axes.
+    fn corners(&self) -> [f32x8; 3] {
+        let place = |lane: usize| {
+            (0..3).fold(self.corner, |p, i| {
+                p + self.axes[i] * (self.size[i] * (lane >> i & 1) as f64)
+            })
+        };
+        let places: [DVec3; 8] = core::array::from_fn(place);
+        core::array::from_fn(|k| f32x8::new(places.map(|p| p[k] as f32)))
+    }
+
+    /// Places in the box: coordinates from 0 to 1.
+    #[inline(always)]
+    #[must_use]
+    pub fn local<L: Lanes>(&self, point: [L; 3]) -> [L; 3] {
+        let [x, y, z] = core::array::from_fn(|k| point[k] - L::splat(self.corner[k]));
+        self.axes_over_size()
+            .map(|a| x * L::splat(a.x) + y * L::splat(a.y) + z * L::splat(a.z))
+    }
+
+    /// A direction's steps in those coordinates.
+    #[inline(always)]
+    #[must_use]
+    pub fn steps<L: Lanes>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
+        self.axes_over_size()
+            .map(|a| x * L::splat(a.x) + y * L::splat(a.y) + z * L::splat(a.z))
+    }
+
+    /// The gradient in the world, of one in those coordinates.
+    #[inline(always)]
+    #[must_use]
+    pub fn world<L: Lanes>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
+        let [a, b, c] = self.axes_over_size();
+        core::array::from_fn(|k| x * L::splat(a[k]) + y * L::splat(b[k]) + z * L::splat(c[k]))
+    }
+
+    #[inline(always)]
+    fn axes_over_size(&self) -> [DVec3; 3] {
+        core::array::from_fn(|i| self.axes[i] / self.size[i])
+    }
+}
+
+/// An interpolant in a [`Cell`].
+#[derive(Clone, Copy, Debug)]
+pub struct Shared {
+    /// At the corners.
+    values: [f32; 8],
+    /// How much steeper than straight the edges along each axis are at the corners, times their lengths.
+    excess: [[f32; 8]; 3],
+}
+
+/// Value and gradient at the corners.
+#[derive(Clone, Copy)]
+struct Corners([f32x8; 4]);
+
+impl Corners {
+    const NONE: Self = Self([f32x8::ZERO; 4]);
+
+    fn plus(self, other: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+/// So many terms are summed by themselves before they are added to the rest: sums of very many terms would lose digits.
+const GROUP: usize = 32;
+
+/// The sum of primitives at a cell's corners, in the making.
+pub struct Sums<'c> {
+    cell: &'c Cell,
+    corners: [f32x8; 3],
+    /// Of each material: the sum so far, that of the present group, and its number of terms.
+    sums: Vec<(u32, Corners, Corners, usize)>,
+    last: usize,
+}
+
+impl<'c> Sums<'c> {
+    /// Of no primitives.
+    #[must_use]
+    pub fn new(cell: &'c Cell) -> Self {
+        Self {
+            cell,
+            corners: cell.corners(),
+            sums: Vec::new(),
+            last: 0,
+        }
+    }
+
+    /// Adds a primitive of some material.
+    #[inline(always)]
+    pub fn add(&mut self, primitive: &Primitive, material: u32) {
+        let jet = primitive.jet(self.corners);
+        let [x, y, z] = jet.gradient;
+        let sums = &mut self.sums;
+        if sums.get(self.last).is_none_or(|sum| sum.0 != material) {
+            let known = sums.iter().position(|sum| sum.0 == material);
+            self.last = known.unwrap_or_else(|| {
+                sums.push((material, Corners::NONE, Corners::NONE, 0));
+                sums.len() - 1
+            });
+        }
+        let (_, whole, group, count) = &mut sums[self.last];
+        *group = group.plus(Corners([jet.value, x, y, z]));
+        *count += 1;
+        if (*count).is_multiple_of(GROUP) {
+            *whole = whole.plus(*group);
+            *group = Corners::NONE;
+        }
+    }
+
+    /// The interpolant of all, and those of each material.
+    #[must_use]
+    pub fn finish(self) -> (Shared, Vec<(u32, Shared)>) {
+        let sums = || {
+            self.sums
+                .iter()
+                .map(|(m, whole, group, _)| (*m, whole.plus(*group)))
+        };
+        let total = sums().fold(Corners::NONE, |all, sum| all.plus(sum.1));
+        let total = Shared::new(self.cell, &total);
+        let of_each = match &self.sums[..] {
+            [only] => vec![(only.0, total)],
+            _ => sums()
+                .map(|(m, sum)| (m, Shared::new(self.cell, &sum)))
+                .collect(),
+        };
+        (total, of_each)
+    }
+}
+
+impl Shared {
+    fn new(cell: &Cell, sum: &Corners) -> Self {
+        let [values, x, y, z] = sum.0.map(f32x8::to_array);
+        let gradient =
+            |lane: usize| DVec3::new(f64::from(x[lane]), f64::from(y[lane]), f64::from(z[lane]));
+        let excess = core::array::from_fn(|axis| {
+            core::array::from_fn(|lane| {
+                let slope = gradient(lane).dot(cell.axes[axis]) * cell.size[axis];
+                let bit = 1 << axis;
+                let straight = f64::from(values[lane | bit]) - f64::from(values[lane & !bit]);
+                (slope - straight) as f32
+            })
+        });
+        Self { values, excess }
+    }
+
+    /// The interpolant is nowhere in the box above this.
+    #[must_use]
+    pub fn top(&self) -> f64 {
+        let largest = |all: &[f32; 8]| all.iter().fold(0.0f32, |m, x| m.max(x.abs()));
+        let value = self
+            .values
+            .iter()
+            .copied()
+            .fold(f32::NEG_INFINITY, f32::max);
+        // |x(1−x)²| + |x²(1−x)| ≤ ¼.
+        let bends: f32 = self.excess.iter().map(largest).sum();
+        (f64::from(value) + 0.25 * f64::from(bends)) * (1.0 + 1e-6)
+    }
+
+    /// Value and gradient at places in the box, given and told in its coordinates.
+    #[inline(always)]
+    #[must_use]
+    pub fn jet<L: Lanes>(&self, [x, y, z]: [L; 3]) -> (L, [L; 3]) {
+        let (x, y, z) = (Edge::at(x), Edge::at(y), Edge::at(z));
+        let [ex, ey, ez] = &self.excess;
+        let get = |from: &[f32; 8], i: usize| L::single(from[i]);
+        // Along x: the values, and what y and z add, with derivatives.
+        let row = |i: usize| {
+            let (low, high) = (2 * i, 2 * i + 1);
+            let (f0, f1) = (get(&self.values, low), get(&self.values, high));
+            let (a0, a1) = (get(ex, low), get(ex, high));
+            let (b0, b1) = (get(ey, low), get(ey, high));
+            let (c0, c1) = (get(ez, low), get(ez, high));
+            let values = (
+                x.line(f0, f1) + x.bend(a0, a1),
+                (f1 - f0) + x.bend_slope(a0, a1),
+            );
+            (values, (x.line(b0, b1), b1 - b0), (x.line(c0, c1), c1 - c0))
+        };
+        // Along y: value, slopes by x and y; the same of what z adds.
+        let face = |i: usize| {
+            let ((p0, p0x), (q0, q0x), (r0, r0x)) = row(2 * i);
+            let ((p1, p1x), (q1, q1x), (r1, r1x)) = row(2 * i + 1);
+            (
+                [
+                    y.line(p0, p1) + y.bend(q0, q1),
+                    y.line(p0x, p1x) + y.bend(q0x, q1x),
+                    (p1 - p0) + y.bend_slope(q0, q1),
+                ],
+                [y.line(r0, r1), y.line(r0x, r1x), r1 - r0],
+            )
+        };
+        let (s0, u0) = face(0);
+        let (s1, u1) = face(1);
+        let across = |i: usize| z.line(s0[i], s1[i]) + z.bend(u0[i], u1[i]);
+        let along = (s1[0] - s0[0]) + z.bend_slope(u0[0], u1[0]);
+        (across(0), [across(1), across(2), along])
+    }
+}
+
+/// The functions of one coordinate that values and slopes at the ends are multiplied with.
+#[derive(Clone, Copy)]
+struct Edge<L> {
+    near: L,
+    far: L,
+    bends: [L; 2],
+    slopes: [L; 2],
+}
+
+impl<L: Lanes> Edge<L> {
+    #[inline(always)]
+    fn at(x: L) -> Self {
+        let y = L::single(1.0) - x;
+        let xy = x * y;
+        let (two, three) = (L::single(2.0), L::single(3.0));
+        Self {
+            near: y,
+            far: x,
+            bends: [xy * y, -(xy * x)],
+            slopes: [y * (y - two * x), x * (three * x - two)],
+        }
+    }
+
+    #[inline(always)]
+    fn line(&self, a: L, b: L) -> L {
+        self.near * a + self.far * b
+    }
+
+    #[inline(always)]
+    fn bend(&self, a: L, b: L) -> L {
+        self.bends[0] * a + self.bends[1] * b
+    }
+
+    #[inline(always)]
+    fn bend_slope(&self, a: L, b: L) -> L {
+        self.slopes[0] * a + self.slopes[1] * b
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ray::Ray;
+    use crate::spans::{Node, Span};
+    use field::bound::SpanLength;
+    use field::{Bound, Kernel, Shaping, Skeleton};
+
+    fn random(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31)
+        }
+    }
+
+    fn primitive(kernel: Kernel, next: &mut impl FnMut() -> f64) -> Primitive {
+        let mut place = || DVec3::new(next(), next(), next()) * 2.0 - 1.0;
+        let (a, b) = (place(), place());
+        let skeleton = if next() < 0.5 {
+            Skeleton::Point { center: a }
+        } else {
+            Skeleton::Segment { base: a, apex: b }
+        };
+        let shaping = Shaping {
+            kernel,
+            radius: 0.1 + 0.4 * next(),
+            blobbiness: -1.0,
+            blob_scale: field::BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: None,
+        };
+        Primitive::new(skeleton, &shaping, None).expect("flesh")
+    }
+
+    /// Along rays of a beam, the cubic between the interpolant's ends is as near to the field as promised.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn no_ray_is_further_off_than_the_bound() {
+        let mut next = random(3);
+        let mut tightest = 0.0f64;
+        for case in 0..400 {
+            let kernel = [Kernel::Cauchy, Kernel::Gauss, Kernel::Squared][case % 3];
+            let primitive = primitive(kernel, &mut next);
+            let mut unit = || {
+                (DVec3::new(next(), next(), next()) - 0.5)
+                    .try_normalize()
+                    .unwrap_or(DVec3::X)
+            };
+            let axis = Ray {
+                origin: unit() * 2.0,
+                direction: unit(),
+            };
+            let (offset, turn) = (unit(), unit());
+            let (radius, spread) = (0.05 * next(), 0.05 * next() * next());
+            let direction = (axis.direction + turn * spread * 0.9).normalize();
+            let ray = Ray {
+                origin: axis.origin + offset * radius,
+                direction,
+            };
+            let beam = Beam::around(&[axis, ray]).expect("a beam");
+            let from = next();
+            let to = from + 0.05 + 0.5 * next();
+            let cell = Cell::around(&beam, from, to);
+            let (center, ball) = beam.ball(from, to);
+            let bound = Bound::new(&primitive);
+            let near = bound.nearness(center, ball.max(cell.radius()));
+            let estimate = bound.estimate(near, &SpanLength::new(to - from));
+            let most = estimate.fourth * cell.roughness();
+            if !most.is_finite() || most > 0.3 * estimate.magnitude {
+                continue;
+            }
+            let mut sums = Sums::new(&cell);
+            sums.add(&primitive, 0);
+            let (shared, _) = sums.finish();
+            let node = |t: f64| {
+                let (value, gradient) = shared.jet(cell.local(ray.at(t).to_array()));
+                let [x, y, z] = cell.steps(ray.direction.to_array());
+                Node {
+                    value,
+                    slope: gradient[0] * x + gradient[1] * y + gradient[2] * z,
+                }
+            };
+            let span = Span::hermite(node(from), node(to), to - from);
+            // Corners and values are rounded to single precision.
+            let rounding = 3e-6 * estimate.magnitude * (1.0 + bound.relative_slope(near));
+            for i in 0..=20 {
+                let x = f64::from(i) / 20.0;
+                let point = ray.at(from + x * (to - from));
+                let off = (span.value_and_slope(x).0 - primitive.value(point.to_array())).abs();
+                assert!(
+                    off <= most + rounding,
+                    "{case} {kernel:?}: {off} > {most} + {rounding}"
+                );
+                if rounding < 0.01 * most {
+                    tightest = tightest.max(off / most);
+                }
+                assert!(shared.jet(cell.local(point.to_array())).0 <= shared.top());
+            }
+        }
+        assert!(tightest > 0.02, "{tightest}");
+    }
+}
