@@ -39,7 +39,8 @@ enum Fineness {
     Smooth,
 }
 
-/// `sinew time FILE | --balls N [--kernel K] [--apart D] [--pass P] [--size W H] [--soft on|off] [--rays N]`.
+/// `sinew time FILE | --balls N [--kernel K] [--apart D] [--pass P] [--size W H] [--soft on|off] [--hierarchy on|off]
+/// [--rays N]`.
 #[derive(Args)]
 pub struct Time {
     /// The dataset
@@ -63,6 +64,10 @@ pub struct Time {
     /// Draw the convolution surface, or the offset surfaces of its elements
     #[arg(long)]
     soft: Option<Switch>,
+    /// Whether far primitives are judged in groups and interpolated for many rays at once, or (for comparison) each
+    /// is followed by itself
+    #[arg(long, default_value = "on")]
+    hierarchy: Switch,
     /// Instead of the dataset's `contrast`, the one with which about so many rays are sent from the
     /// eye (with `--pass smooth`)
     #[arg(long, value_name = "N")]
@@ -97,7 +102,13 @@ impl Time {
             Fineness::Full => Pass::Full,
             Fineness::Smooth => Pass::Smooth,
         };
-        let trace = |scene: &Scene| tracer::render(scene, size, 1, pass, &|_| ()).1;
+        let trace = |scene: &Scene| {
+            let mut picture = Picture::new(scene, size);
+            if matches!(self.hierarchy, Switch::Off) {
+                picture.forgo_hierarchy();
+            }
+            tracer::render_picture(&picture, 1, pass, &|_| ()).1
+        };
         if let Some(rays) = self.rays {
             choose_contrast(&mut scene, rays, |scene| trace(scene).primary_rays);
         }

@@ -191,7 +191,6 @@ impl Bound {
     pub fn estimate(&self, near: Nearness, length: &SpanLength) -> Estimate {
         let (kernel, width) = (self.kernel, self.finest);
         let u = near.distance * self.width;
-        let magnitude = self.magnitude(near);
         // Derivatives by length instead of by kernel widths.
         let order = envelope::order(kernel);
         let by_width = [
@@ -199,9 +198,16 @@ impl Bound {
             width * width * width,
             width * width * (width * width),
         ];
+        let magnitude;
         let rough = if self.dimension == 0 {
-            self.whole * envelope::rough_point(kernel, u)
+            let (point, rough) = match kernel {
+                Kernel::Cauchy => envelope::cauchy_point(u),
+                _ => (size(kernel, u), envelope::rough_point(kernel, u)),
+            };
+            magnitude = self.whole * point;
+            self.whole * rough
         } else {
+            magnitude = self.magnitude(near);
             let Roughness {
                 point,
                 line,
@@ -400,10 +406,7 @@ fn size(kernel: Kernel, u: f64) -> f64 {
         Kernel::Gauss if u < 9.0 => f64::from(Real::exp(-(u * u) as f32)) * (1.0 + 1e-5),
         // e⁻⁸¹; there is nothing to know more exactly.
         Kernel::Gauss => 7e-36,
-        Kernel::Cauchy => {
-            let root = 1.0 / (1.0 + u * u);
-            root * root
-        }
+        Kernel::Cauchy => envelope::cauchy_point(u).0,
         _ => kernel.value(u),
     }
 }

@@ -77,8 +77,7 @@ pub fn roughness(kernel: Kernel, u: f64) -> Roughness {
 #[must_use]
 pub fn rough_point(kernel: Kernel, u: f64) -> f64 {
     if kernel == Kernel::Cauchy {
-        let x = 1.0 + u * u;
-        return cauchy_point(x, 1.0 / x);
+        return cauchy_point(u).1;
     }
     roughness(kernel, u).point
 }
@@ -115,7 +114,7 @@ fn cauchy(u: f64) -> Roughness {
     let root = y.sqrt();
     let c = 1.0 - y;
     Roughness {
-        point: cauchy_point(x, y),
+        point: cauchy_rough(x, y),
         line: ((103.0 + 729.0 * c * c * c) * (y * y * y * root)).min(90.6),
         plane: ((121.0 + 775.0 * c * c * c) * (y * y * y)).min(112.0),
         // |k⁗| ≤ 840/(1+u²)⁴, and half the line's through the centre.
@@ -123,8 +122,17 @@ fn cauchy(u: f64) -> Roughness {
     }
 }
 
-#[inline]
-fn cauchy_point(x: f64, y: f64) -> f64 {
+/// The Cauchy kernel's value at a distance of u, and the bound on its fourth derivative.
+#[inline(always)]
+#[must_use]
+pub fn cauchy_point(u: f64) -> (f64, f64) {
+    let x = 1.0 + u * u;
+    let y = 1.0 / x;
+    (y * y, cauchy_rough(x, y))
+}
+
+#[inline(always)]
+fn cauchy_rough(x: f64, y: f64) -> f64 {
     let w = x - 1.0;
     let share = (35.0 * w * w - 42.0 * w + 3.0) * y * y;
     (24.0 * (1.005 * share).max(4.3) * (y * y) * (y * y)).min(72.0)

@@ -45,18 +45,18 @@ impl<'a> Beams<'a> {
         (self.made.len() + 1).ilog2() - (beam + 1).ilog2() - 1
     }
 
-    /// The half of a beam, if it has halves, in which a packet is.
+    /// The quarter of a beam in which a packet is (the half, if that is not divided further), and its number among
+    /// the beam's quarters. `None` if the beam is not divided.
     #[must_use]
-    pub fn half(&self, beam: usize, packet: usize) -> Option<usize> {
-        let left = 2 * beam + 1;
-        if left >= self.made.len() {
+    pub fn quarter(&self, beam: usize, packet: usize) -> Option<(usize, usize)> {
+        let deeper = self.levels_below(beam).min(2);
+        if deeper == 0 {
             return None;
         }
         // The packet's own beam is in the last level; its ancestors are found by halving.
-        let mut at = (self.made.len() / 2) + packet;
-        while at > left + 1 {
-            at = (at - 1) / 2;
-        }
-        Some(at)
+        let own = (self.made.len() / 2) + packet + 1;
+        let above = self.levels_below(beam) - deeper;
+        let quarter = (own >> above) - 1;
+        Some((quarter, (quarter + 1) & ((1 << deeper) - 1)))
     }
 }

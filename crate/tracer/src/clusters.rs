@@ -16,7 +16,7 @@ const OCTAVES: usize = 12;
 const ENTRIES: usize = 1 + OCTAVES * STEPS + 1;
 
 /// Members of the smallest groups, at most.
-const LEAF: usize = 8;
+const LEAF: usize = 16;
 
 /// The tree of groups.
 pub struct Clusters {
@@ -44,8 +44,8 @@ pub struct View {
     pub magnitude: f64,
     /// The fourth derivative of their sum along any line is at most this; infinite where nothing is known.
     pub fourth: f64,
-    /// About the largest slope, over the field's size.
-    pub steepness: f64,
+    /// No member is nearer than this.
+    pub distance: f64,
     /// Whether it is so near that its members had better be looked at one by one.
     pub near: bool,
     /// How many members it has.
@@ -105,12 +105,19 @@ impl Clusters {
         View {
             magnitude,
             fourth,
-            steepness: f64::from(facts.steep).min(f64::from(facts.power) / distance),
+            distance,
             near: distance <= NEAR * around && around > WIDE * radius,
             count: self.tree.items(index).len(),
             adds: facts.adds,
             carves: facts.carves,
         }
+    }
+
+    /// About the largest slope of a group's field at a distance, over its size.
+    #[must_use]
+    pub fn relative_slope(&self, cluster: u32, distance: f64) -> f64 {
+        let facts = &self.facts[cluster as usize];
+        f64::from(facts.steep).min(f64::from(facts.power) / distance)
     }
 
     /// What a group consists of.

@@ -94,5 +94,5 @@ pub use picture::{Hit, Picture, Stats};
 pub use ray::Ray;
 pub use reference::Reference;
 #[cfg(not(target_arch = "wasm32"))]
-pub use render::render;
+pub use render::{render, render_picture};
 pub use tile::{Pass, Tile, tiles};

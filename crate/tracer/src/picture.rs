@@ -105,6 +105,12 @@ impl Picture {
         }
     }
 
+    /// From now on each soft primitive is followed by itself wherever it counts, without groups and without
+    /// interpolants that rays share: slower, for comparison.
+    pub fn forgo_hierarchy(&mut self) {
+        self.soft.precision.shared = 0.0;
+    }
+
     /// Traces one tile and writes RGBA bytes (`4·width·height`, rows from the top, alpha 255).
     ///
     /// `stop` is asked now and then; when it says true the tile is given up and `None` comes back.

@@ -19,8 +19,18 @@ pub fn render(
     pass: Pass,
     progress: &(dyn Fn(f64) + Sync),
 ) -> (Vec<u8>, Stats) {
-    let picture = Picture::new(scene, size);
-    let [width, height] = size;
+    render_picture(&Picture::new(scene, size), threads, pass, progress)
+}
+
+/// The same of a picture that is made ready already.
+#[must_use]
+pub fn render_picture(
+    picture: &Picture,
+    threads: usize,
+    pass: Pass,
+    progress: &(dyn Fn(f64) + Sync),
+) -> (Vec<u8>, Stats) {
+    let [width, height] = picture.size;
     let tiles = tiles(width, height, TILE);
     let next = AtomicUsize::new(0);
     let done = AtomicUsize::new(0);

@@ -9,13 +9,13 @@
 //!
 //! Where a slab has become shorter than its beam is wide, halving it further would not bring the
 //! rays' surroundings closer together: the beam is then divided into narrower ones instead, and each
-//! packet of rays goes on in its own. In beams wider than a block of eight packets nothing is resolved, as
+//! packet of rays goes on in its own. In beams wider than a block of four packets nothing is resolved, as
 //! spans would be made for rays that do not meet their primitives: they only show what is empty.
 use crate::beams::Beams;
 use crate::clusters::{Clusters, Members};
 use crate::shared::{Cell, Shared, Sums};
 use core::ops::Range;
-use field::bound::{Bound, SpanLength};
+use field::bound::{Bound, Nearness, SpanLength};
 use field::{Primitive, THRESHOLD};
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ pub struct Precision {
     /// … and within this before a slab in which the surface may lie is decided upon.
     pub last: f64,
     /// Beyond that, the interpolants that a beam's rays share are together within this of what they stand for: so
-    /// little that they are never made finer. 0: there are none.
+    /// little that they are never made finer. 0: there are none, and no groups.
     pub shared: f64,
     /// Rounding of coordinates, and of values relative to a primitive's field.
     pub rounding: f64,
@@ -114,10 +114,8 @@ struct Candidate {
     span: f64,
     /// … and what it would add to the error of a shared interpolant.
     shared: f64,
-    /// About its largest slope, over its size.
-    steepness: f64,
-    /// What rounding adds.
-    noise: f64,
+    /// How near it is, at least.
+    distance: f64,
     adds: bool,
     carves: bool,
     /// What becomes of it.
@@ -177,8 +175,8 @@ pub struct Slab {
     /// The interpolant of its shared primitives. [`NONE`]: not yet made.
     block: u32,
     beam: usize,
-    /// Its halves, or the same slab of both halves of the beam. 0: not yet made.
-    children: [u32; 2],
+    /// Its halves, or the same slab of the beam's quarters. 0: not yet made.
+    children: [u32; 4],
     /// The same slab again with finer spans. 0: not yet made.
     finer: u32,
     /// How many times halved.
@@ -218,8 +216,8 @@ const FEWEST: u32 = 3;
 const NARROW: f64 = 0.5;
 /// The same of beams wider than a block.
 const WIDE: f64 = 0.4;
-/// Beams that are divided this many times further, into eight packets, are blocks.
-const BLOCK: u32 = 3;
+/// Beams that are divided this many times further, into four packets, are blocks.
+const BLOCK: u32 = 2;
 
 /// Where the field is T no term is much larger than that, unless others carve it away: what is known of rounding
 /// counts terms as no larger than this.
@@ -314,7 +312,7 @@ impl<'a> Slabs<'a> {
         if self.nodes.len() > LARGE.0 || self.ids.len() > LARGE.1 {
             self.nodes.truncate(1);
             let root = &mut self.nodes[0];
-            root.children = [0; 2];
+            root.children = [0; 4];
             root.finer = 0;
             root.block = NONE;
             self.ids.truncate(root.dropped.end as usize);
@@ -410,24 +408,23 @@ impl<'a> Slabs<'a> {
     pub fn parts(&mut self, index: u32, packet: usize) -> Parts {
         let s = &self.nodes[index as usize];
         let (from, to) = (s.from, s.to);
-        if let Some(beam) = self.beams.half(s.beam, packet)
+        if let Some((beam, quarter)) = self.beams.quarter(s.beam, packet)
             && self.beams.get(s.beam).width(to) > self.narrow(s.beam) * (to - from)
         {
-            let side = (beam - 1) % 2;
-            if s.children[side] == 0 {
+            if s.children[quarter] == 0 {
                 let child = self.inner(index, from, to, beam, s.depth);
-                self.nodes[index as usize].children[side] = child;
+                self.nodes[index as usize].children[quarter] = child;
             }
-            return Parts::Narrower(self.nodes[index as usize].children[side]);
+            return Parts::Narrower(self.nodes[index as usize].children[quarter]);
         }
-        if s.children == [0; 2] {
+        if s.children == [0; 4] {
             let (beam, depth) = (s.beam, s.depth + 1);
             let middle = 0.5 * (from + to);
             let left = self.inner(index, from, middle, beam, depth);
             let right = self.inner(index, middle, to, beam, depth);
-            self.nodes[index as usize].children = [left, right];
+            self.nodes[index as usize].children = [left, right, 0, 0];
         }
-        let [left, right] = self.nodes[index as usize].children;
+        let [left, right, ..] = self.nodes[index as usize].children;
         Parts::Halves(left, right)
     }
 
@@ -536,6 +533,17 @@ impl<'a> Slabs<'a> {
         }
     }
 
+    /// About the largest slope of an entry of a list at a distance, over its size.
+    fn relative_slope(&self, id: u32, distance: f64) -> f64 {
+        match self.terms.clusters {
+            Some(clusters) if id & GROUP != 0 => clusters.relative_slope(id & !GROUP, distance),
+            _ => {
+                let bound = &self.terms.bounds[self.list[id as usize] as usize];
+                bound.relative_slope(Nearness::at(distance))
+            }
+        }
+    }
+
     /// The local numbers of a group's members, if it is one of the smallest, or else its parts, onto the stack.
     fn open(&mut self, clusters: &Clusters, group: u32) {
         match clusters.members(group) {
@@ -609,8 +617,7 @@ impl<'a> Slabs<'a> {
                             magnitude: view.magnitude,
                             span: length.fourth() * view.fourth,
                             shared: view.fourth * roughness,
-                            steepness: view.steepness,
-                            noise: 0.0,
+                            distance: view.distance,
                             adds: view.adds,
                             carves: view.carves,
                             fate: Fate::Pending,
@@ -629,8 +636,7 @@ impl<'a> Slabs<'a> {
                             // its bound says; a NaN counts as far off.
                             span: estimate.error,
                             shared: estimate.fourth * roughness,
-                            steepness: bound.relative_slope(near),
-                            noise: 0.0,
+                            distance: near.distance,
                             adds: bound.adds(),
                             carves: bound.carves(),
                             fate: Fate::Pending,
@@ -644,11 +650,7 @@ impl<'a> Slabs<'a> {
                     below += magnitude;
                 }
                 total += magnitude;
-                self.scratch.push(Candidate {
-                    noise: magnitude.min(LARGE_TERM)
-                        * (4.0 * rounding + misplaced * candidate.steepness),
-                    ..candidate
-                });
+                self.scratch.push(candidate);
             }
         }
         // What is left of a budget is shared out half evenly, half by size. The shares add up
@@ -710,8 +712,9 @@ impl<'a> Slabs<'a> {
                     continue;
                 }
             }
-            noise += candidate.noise;
-            steepest = steepest.max(candidate.steepness);
+            let steepness = self.relative_slope(id, candidate.distance);
+            noise += magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steepness);
+            steepest = steepest.max(steepness);
         }
         // Where the field is T, what adds is together no more than that and what carves.
         let most = (LARGE_TERM + below) * (4.0 * rounding + misplaced * steepest);
@@ -754,7 +757,7 @@ impl<'a> Slabs<'a> {
             anew,
             block: NONE,
             beam: number,
-            children: [0; 2],
+            children: [0; 4],
             finer: 0,
             depth,
         });

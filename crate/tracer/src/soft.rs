@@ -147,7 +147,7 @@ impl Soft {
         if !(beam.axis.origin.is_finite() && beam.axis.direction.is_finite()) {
             return None;
         }
-        let list = self.everywhere.clone();
+        let mut list = self.everywhere.clone();
         let mut range = if list.is_empty() {
             [f64::INFINITY, 0.0]
         } else {
@@ -165,7 +165,12 @@ impl Soft {
         // Parameters are counted from where the first primitive starts to count, so that single
         // precision does not lose digits to a distant eye.
         let range = [0.0, to - from];
-        let terms = self.terms(self.left_out, Some(&groups.clusters));
+        let mut clusters = Some(&groups.clusters);
+        if self.precision.shared == 0.0 {
+            clusters = None;
+            self.tree.search(&beam, |i, _, _| list.push(i));
+        }
+        let terms = self.terms(self.left_out, clusters);
         let slabs = Slabs::new(terms, list, beams(from), range, self.precision);
         (slabs.slab(slabs.root()).above >= THRESHOLD).then_some((slabs, from))
     }

@@ -89,6 +89,7 @@ pub fn measure() -> Result<Piece> {
         against_povray(programs, smooth, &mut goals, &mut page, &mut best)?;
     }
     growth(&best, &mut goals);
+    hierarchy(&scenes, &mut goals, &mut page)?;
     diggers(&scenes, &mut goals, &mut page)?;
     Ok((goals, page))
 }
@@ -232,6 +233,34 @@ fn growth(best: &Best, goals: &mut Vec<Goal>) {
         unit: "×",
         measured: of("").ok_or_else(|| String::from("not timed")),
     });
+}
+
+/// What groups of far primitives, and interpolants that rays share, are worth.
+fn hierarchy(scenes: &Scenes, goals: &mut Vec<Goal>, page: &mut String) -> Result<()> {
+    let dataset = scenes.dataset("flake-820-cauchy");
+    let with = [dataset.as_str()];
+    let without = [dataset.as_str(), "--hierarchy=off"];
+    let mut with = || Ok(ours::time(&scenes.sinew, &with)?.seconds);
+    let mut without = || Ok(ours::time(&scenes.sinew, &without)?.seconds);
+    let [with, without] = alternate(3, [&mut with, &mut without])?;
+    let ratio = without.best() / with.best();
+    writeln!(
+        page,
+        "### Far fields\n\nThe sphereflake of 820 balls with the Cauchy kernel, which nowhere ends: far balls judged in \
+         groups and interpolated for many rays at once, or each followed by itself (`--hierarchy off`).\n\n\
+         | with | without | ratio |\n|--:|--:|--:|\n| {} | {} | {} |\n",
+        with.text(),
+        without.text(),
+        short(ratio)
+    )?;
+    goals.push(Goal {
+        what: "sphereflake 820, Cauchy".into(),
+        against: "our own without far-field hierarchy".into(),
+        wanted: Wanted::AtLeast(5.0),
+        unit: "×",
+        measured: Ok(ratio),
+    });
+    Ok(())
 }
 
 /// Our root finder against that of Kalra and Barr, on the thesis's series (table 4.4).
