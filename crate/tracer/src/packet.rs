@@ -236,10 +236,12 @@ impl Picture {
             let beam = Beam::around(rays);
             let slabs = beam.and_then(|beam| {
                 let whole = |base: f64| Beams::one(beam.from(base));
-                self.soft.slabs(beam, whole, f64::INFINITY)
+                self.soft
+                    .slabs(beam, whole, f64::INFINITY, &mut scratch.spaces)
             });
             if let Some((mut slabs, base)) = slabs {
                 self.soft_hits(rays, 0, &mut slabs, base, work, hits);
+                work.scratch.spaces.push(slabs.into_space());
             }
             return;
         };
@@ -373,7 +375,10 @@ impl Picture {
         };
         let furthest = limits.iter().copied().fold(0.0, f64::max);
         let whole = |base: f64| Beams::one(beam.from(base));
-        let Some((mut slabs, base)) = self.soft.slabs(beam, whole, furthest) else {
+        let Some((mut slabs, base)) =
+            self.soft
+                .slabs(beam, whole, furthest, &mut work.scratch.spaces)
+        else {
             return 0;
         };
         // Lanes not in use repeat the first one.
@@ -391,6 +396,7 @@ impl Picture {
         let found = self
             .soft
             .walk(&mut slabs, bundle, Quest::Entry, &mut work.scratch);
+        work.scratch.spaces.push(slabs.into_space());
         found.iter().fold(0, |m, hit| m | 1 << hit.lane)
     }
 }

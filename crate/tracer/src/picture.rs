@@ -221,7 +221,7 @@ impl Picture {
             if stop() {
                 return None;
             }
-            let mut square = self.square(block.times(scale), [columns, rows]);
+            let mut square = self.square(block.times(scale), [columns, rows], work);
             for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
                 let cell = |lane: usize| {
                     let lane = lane as u32;
@@ -275,6 +275,7 @@ impl Picture {
                     return None;
                 }
             }
+            square.leave(work);
         }
         Some(samples)
     }
@@ -301,7 +302,7 @@ impl Picture {
 
     /// What is known of the soft surface in a square of pixels, divided into columns and rows (powers of
     /// two) of packets.
-    pub(crate) fn square(&self, area: Area, packets: [u32; 2]) -> Square<'_> {
+    pub(crate) fn square(&self, area: Area, packets: [u32; 2], work: &mut Workspace) -> Square<'_> {
         if self.soft.is_empty() || self.digger.is_some() {
             return Square::Empty;
         }
@@ -310,7 +311,7 @@ impl Picture {
         if self.soft.list_lumps(&beam, f64::INFINITY, &mut near) {
             return Square::Lumps(Lumps::new(self, area, packets, &beam, near));
         }
-        match self.slabs(area, packets) {
+        match self.slabs(area, packets, work) {
             Some(slabs) => Square::Slabs(slabs),
             None => Square::Empty,
         }
@@ -318,7 +319,12 @@ impl Picture {
 
     /// The slabs of the beam through a rectangle of pixels, divided into columns and rows (powers of
     /// two) of packets.
-    pub(crate) fn slabs(&self, area: Area, packets: [u32; 2]) -> Option<(Slabs<'_>, f64)> {
+    pub(crate) fn slabs(
+        &self,
+        area: Area,
+        packets: [u32; 2],
+        work: &mut Workspace,
+    ) -> Option<(Slabs<'_>, f64)> {
         if self.soft.is_empty() || self.digger.is_some() {
             return None;
         }
@@ -328,7 +334,12 @@ impl Picture {
                 self.beam(division(area, packets, number)).from(base)
             })
         };
-        self.soft.slabs(self.beam(area), beams, f64::INFINITY)
+        self.soft.slabs(
+            self.beam(area),
+            beams,
+            f64::INFINITY,
+            &mut work.scratch.spaces,
+        )
     }
 
     /// The beam of all rays through a rectangle of pixels.

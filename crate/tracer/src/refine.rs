@@ -38,7 +38,7 @@ impl Picture {
             }
             // The pixels' rays run in the same beams as the packets that they belong to.
             let packets = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
-            let mut square = self.square(block, packets);
+            let mut square = self.square(block, packets, work);
             for (x, y) in wanted {
                 let column = (x - block.left) / PACKET_SIZE[0];
                 let row = (y - block.top) / PACKET_SIZE[1];
@@ -80,6 +80,7 @@ impl Picture {
                 let all = (n * n) as f32;
                 means.push((x, y, sum / all, cost / all));
             }
+            square.leave(work);
         }
         for (x, y, colour, cost) in means {
             let mut sample = *samples.get(x, y);

@@ -19,6 +19,8 @@ pub struct Cell {
     axes: [DVec3; 3],
     /// The box's extent along each.
     size: [f64; 3],
+    /// The axes, each over the extent along it.
+    scaled: [DVec3; 3],
     /// How much further a ray can be from the axis at the piece's end than at its start, or nearer.
     travel: f64,
 }
@@ -37,10 +39,12 @@ impl Cell {
         let along = beam.axis.direction;
         let (across, up) = along.any_orthonormal_pair();
         let start = beam.axis.at(from) - along * lag;
+        let inverse = 1.0 / width;
         Self {
             corner: start - (across + up) * (0.5 * width),
             axes: [across, up, along],
             size: [width, width, length],
+            scaled: [across * inverse, up * inverse, along / length],
             travel: beam.spread * (to - from),
         }
     }
@@ -85,15 +89,14 @@ impl Cell {
     #[must_use]
     pub fn local<L: Lanes>(&self, point: [L; 3]) -> [L; 3] {
         let [x, y, z] = core::array::from_fn(|k| point[k] - L::splat(self.corner[k]));
-        self.axes_over_size()
-            .map(|a| x * L::splat(a.x) + y * L::splat(a.y) + z * L::splat(a.z))
+        self.steps([x, y, z])
     }
 
     /// A direction's steps in those coordinates.
     #[inline(always)]
     #[must_use]
     pub fn steps<L: Lanes>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
-        self.axes_over_size()
+        self.scaled
             .map(|a| x * L::splat(a.x) + y * L::splat(a.y) + z * L::splat(a.z))
     }
 
@@ -101,13 +104,8 @@ impl Cell {
     #[inline(always)]
     #[must_use]
     pub fn world<L: Lanes>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
-        let [a, b, c] = self.axes_over_size();
+        let [a, b, c] = self.scaled;
         core::array::from_fn(|k| x * L::splat(a[k]) + y * L::splat(b[k]) + z * L::splat(c[k]))
-    }
-
-    #[inline(always)]
-    fn axes_over_size(&self) -> [DVec3; 3] {
-        core::array::from_fn(|i| self.axes[i] / self.size[i])
     }
 }
 

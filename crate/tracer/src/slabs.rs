@@ -75,6 +75,18 @@ pub struct Slabs<'a> {
     lists: [Vec<u32>; 4],
 }
 
+/// The space of slabs that are not needed any more, kept for others.
+#[derive(Default)]
+pub struct Space {
+    list: Vec<u32>,
+    nodes: Vec<Slab>,
+    ids: Vec<u32>,
+    stack: Vec<u32>,
+    blocks: Vec<Block>,
+    scratch: Vec<Candidate>,
+    lists: [Vec<u32>; 4],
+}
+
 /// The soft surface's primitives.
 #[derive(Clone, Copy)]
 pub struct Terms<'a> {
@@ -242,26 +254,41 @@ impl<'a> Slabs<'a> {
     #[must_use]
     pub fn new(
         terms: Terms<'a>,
-        list: Vec<u32>,
+        list: &[u32],
         beams: Beams<'a>,
         [from, to]: [f64; 2],
         precision: Precision,
+        mut space: Space,
     ) -> Self {
         let groups = terms.clusters.and_then(Clusters::root);
+        space.list.clear();
+        space.list.extend(list);
+        space.ids.clear();
+        space.ids.extend(0..list.len() as u32);
+        space.ids.extend(groups.map(|root| root | GROUP));
+        space.nodes.clear();
+        space.blocks.clear();
+        let Space {
+            list,
+            nodes,
+            ids,
+            stack,
+            blocks,
+            scratch,
+            lists,
+        } = space;
         let mut slabs = Self {
             terms,
             beams,
             precision,
-            ids: (0..list.len() as u32)
-                .chain(groups.map(|root| root | GROUP))
-                .collect(),
             list,
             opened: BTreeMap::new(),
-            stack: Vec::new(),
-            nodes: Vec::new(),
-            blocks: Vec::new(),
-            scratch: Vec::new(),
-            lists: Default::default(),
+            nodes,
+            ids,
+            stack,
+            blocks,
+            scratch,
+            lists,
         };
         let all = 0..slabs.ids.len() as u32;
         let heritage = Heritage {
@@ -274,6 +301,20 @@ impl<'a> Slabs<'a> {
         };
         slabs.add(all, from, to, heritage);
         slabs
+    }
+
+    /// The space that these took.
+    #[must_use]
+    pub fn into_space(self) -> Space {
+        Space {
+            list: self.list,
+            nodes: self.nodes,
+            ids: self.ids,
+            stack: self.stack,
+            blocks: self.blocks,
+            scratch: self.scratch,
+            lists: self.lists,
+        }
     }
 
     /// The first slab, over the whole range.
@@ -598,8 +639,8 @@ impl<'a> Slabs<'a> {
         let misplaced = rounding * (center.abs().max_element() + radius + to).max(1.0);
         self.scratch.clear();
         for at in candidates {
-            self.stack.push(self.ids[at as usize]);
-            while let Some(id) = self.stack.pop() {
+            let mut first = Some(self.ids[at as usize]);
+            while let Some(id) = first.take().or_else(|| self.stack.pop()) {
                 let candidate =
                     if let (Some(clusters), true) = (self.terms.clusters, id & GROUP != 0) {
                         let group = id & !GROUP;

@@ -9,7 +9,7 @@ use crate::nearby::Nearby;
 use crate::quick::Quick;
 use crate::ray::Ray;
 use crate::roots::bracketed;
-use crate::slabs::{Precision, Slabs, Terms};
+use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::stock::Stock;
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
 use field::{Bound, Primitive, THRESHOLD};
@@ -60,6 +60,8 @@ const FAR: f64 = 1e4;
 #[derive(Default)]
 pub struct Scratch {
     memory: Memories<f32x8>,
+    /// That of slabs that are not needed any more.
+    pub(crate) spaces: Vec<Space>,
     pub(crate) active: Active,
     pub(crate) quick: Quick,
     /// Evaluations of one primitive's field at one point, so far.
@@ -137,12 +139,13 @@ impl Soft {
     /// The slabs of a beam, up to a parameter; with them the parameter at which the first starts
     /// to count. `None` if no primitive reaches the beam, or all together never reach T.
     ///
-    /// `beams` divides the beam, given the parameter at which to start.
+    /// `beams` divides the beam, given the parameter at which to start; `spaces` is what there is of used space.
     pub fn slabs<'a>(
         &'a self,
         beam: Beam,
         beams: impl FnOnce(f64) -> Beams<'a>,
         limit: f64,
+        spaces: &mut Vec<Space>,
     ) -> Option<(Slabs<'a>, f64)> {
         if !(beam.axis.origin.is_finite() && beam.axis.direction.is_finite()) {
             return None;
@@ -171,8 +174,13 @@ impl Soft {
             self.tree.search(&beam, |i, _, _| list.push(i));
         }
         let terms = self.terms(self.left_out, clusters);
-        let slabs = Slabs::new(terms, list, beams(from), range, self.precision);
-        (slabs.slab(slabs.root()).above >= THRESHOLD).then_some((slabs, from))
+        let space = spaces.pop().unwrap_or_default();
+        let slabs = Slabs::new(terms, &list, beams(from), range, self.precision, space);
+        if slabs.slab(slabs.root()).above >= THRESHOLD {
+            return Some((slabs, from));
+        }
+        spaces.push(slabs.into_space());
+        None
     }
 
     fn group(&self) -> Groups {
@@ -267,10 +275,11 @@ impl Soft {
         };
         let mut slabs = Slabs::new(
             self.terms(0.0, None),
-            (0..count as u32).collect(),
+            &(0..count as u32).collect::<Vec<u32>>(),
             Beams::one(Beam::of_ray(based)),
             [0.0, to - from],
             Precision::EXACT,
+            Space::default(),
         );
         let (found, _) = Walk::<f64>::new(
             &self.primitives,

@@ -3,7 +3,7 @@ use crate::area::Area;
 use crate::beam::Beam;
 use crate::lens::Lens;
 use crate::nearby::Nearby;
-use crate::packet::Near;
+use crate::packet::{Near, Workspace};
 use crate::picture::{Picture, packet_number};
 use crate::quick::LEFT_OUT_OF_PARTS;
 use crate::slabs::Slabs;
@@ -35,6 +35,15 @@ impl<'a> Square<'a> {
                 (near, _) if near.len() == 0 => Near::Nothing,
                 (near, lens) => Near::Lumps(near, lens),
             },
+        }
+    }
+}
+
+impl Square<'_> {
+    /// Leaves the space that it took to others.
+    pub fn leave(self, work: &mut Workspace) {
+        if let Self::Slabs((slabs, _)) = self {
+            work.scratch.spaces.push(slabs.into_space());
         }
     }
 }

@@ -37,8 +37,10 @@ impl Digger for Hermite {
         let rays: Vec<Ray> = (0..PACKET).filter(alive).map(|i| packet.rays[i]).collect();
         let furthest = (0..PACKET).filter(alive).map(|i| packet.limits[i]);
         let furthest = furthest.fold(0.0, f64::max);
-        let slabs = Beam::around(&rays)
-            .and_then(|beam| soft.slabs(beam, |base| Beams::one(beam.from(base)), furthest));
+        let slabs = Beam::around(&rays).and_then(|beam| {
+            let whole = |base: f64| Beams::one(beam.from(base));
+            soft.slabs(beam, whole, furthest, &mut scratch.spaces)
+        });
         let mut crossings = [None; PACKET];
         let Some((mut slabs, base)) = slabs else {
             return crossings;
