@@ -361,7 +361,7 @@ mod tests {
             for j in 0..n {
                 let v = (f64::from(j) + 0.5) / f64::from(n) * reach;
                 let dv = reach / f64::from(n);
-                let here = cauchy_point(x + v * v, 1.0 / (x + v * v));
+                let here = cauchy_rough(x + v * v, 1.0 / (x + v * v));
                 line += 2.0 * dv * here;
                 plane += TAU * v * dv * here;
             }

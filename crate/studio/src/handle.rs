@@ -19,13 +19,13 @@
 //! `status()` gives `phase` (`"idle"`, `"waiting"` for a pause in typing, `"tracing"`, `"done"`,
 //! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null), `remaining`
 //! (seconds or null), `fresh` (whether the picture on the screen is of the present text and camera),
-//! `picture` (`{width, height}` or null), `errors` (how many), `diagnostics` (each `{severity,
-//! message, file, span, line, column, hint, related, command}`), `hot` (names of the sliders), `assets`
-//! (names of the images and meshes), `frame` (of an animated work, else null), `backend` (`"webgpu"`,
-//! `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`, `timings` (seconds:
-//! `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays, fieldEvaluations}`), `revision`
-//! (rises with each change of the text), `name`, `saved` (whether all changes are in the browser's
-//! storage).
+//! `picture` (`{width, height}` or null), `errors` (how many), `elements` (how many the text makes),
+//! `diagnostics` (each `{severity, message, file, span, line, column, hint, related, command}`), `hot`
+//! (names of the sliders), `assets` (names of the images and meshes), `frame` (of an animated work, else
+//! null), `backend` (`"webgpu"`, `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`,
+//! `timings` (seconds: `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays,
+//! fieldEvaluations}`), `revision` (rises with each change of the text), `name`, `saved` (whether all
+//! changes are in the browser's storage).
 //!
 //! `lab()` gives `lesson` (the word in its link, as in `#lab=kernels`), `title`, `waiting` (small
 //! pictures still to be traced), `drawn` (small pictures there), `refused` (texts that the language

@@ -106,6 +106,7 @@ impl App {
             self.reported = Some(text);
             state.diagnostics = session.diagnostics().into();
             state.errors = session.errors();
+            state.elements = session.compiled().scene.elements.len();
             state.timings.compile = session.compile_seconds();
             let hot = &session.compiled().hot;
             state.hot = hot.iter().map(|variable| variable.name.clone()).collect();

@@ -30,6 +30,8 @@ pub struct Report {
     pub fresh: bool,
     /// How many of the diagnostics are errors.
     pub errors: usize,
+    /// Elements of the scene that the text now makes.
+    pub elements: usize,
     /// What the compiler says.
     pub diagnostics: Vec<Diagnostic>,
     /// Milestones of the picture.
