@@ -13,9 +13,9 @@ use field::bound::SpanLength;
 use field::{Bound, Primitive, THRESHOLD};
 
 /// Pieces that one packet may have looked at; what is left is decided by the signs at its ends.
-const MOST_PIECES: u32 = 1 << 12;
+const MOST_PIECES: u32 = 1 << 14;
 /// Stretches that one packet may have looked at; others are passed over.
-const MOST_STRETCHES: u32 = 1 << 11;
+const MOST_STRETCHES: u32 = 1 << 14;
 /// Pieces halved so often are not halved further: lengths that are not finite would never be short.
 const DEEPEST: u32 = 50;
 /// A piece or stretch with so many primitives more counts as one more.
