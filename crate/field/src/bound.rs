@@ -267,6 +267,19 @@ impl Bound {
         steepest.min(self.power() / near.distance)
     }
 
+    /// What formulas of faces add up to the field may be as large as this, however small the field is: they sum over
+    /// edges, and beside a face those sums cancel. Rounding is relative to it.
+    #[inline]
+    #[must_use]
+    pub fn cancels(&self) -> f64 {
+        if self.dimension == 2 && self.whole.is_finite() && self.kernel.falls_fast() {
+            let plane = self.endless * plane::jet(self.kernel, [0.0; 3]).value;
+            plane.min(self.whole)
+        } else {
+            0.0
+        }
+    }
+
     /// Where the field falls as a power of the distance, or slower, that power; else infinite.
     #[inline]
     #[must_use]
@@ -383,6 +396,13 @@ impl Bound {
             *(if enough(middle) { &mut high } else { &mut low }) = middle;
         }
         high
+    }
+
+    /// Whether there is a profile, whose [kinks](crate::kinks) no bound on a derivative tells of.
+    #[inline]
+    #[must_use]
+    pub fn has_profile(&self) -> bool {
+        self.ripple > 0.0
     }
 
     /// Whether the term can be above zero.

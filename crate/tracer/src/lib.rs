@@ -41,11 +41,12 @@
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
 //! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are
-//!   not looked into, and one packet looks at no more than 4096 pieces of 2048 stretches.
+//!   not looked into, and one packet looks at no more than 16384 pieces of as many stretches.
 //! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
 //!   shared and rounding leaves many rays in doubt: such pictures are slow.
-//! - A primitive whose profile has kinks or jumps has no certified spans; they are made short by
-//!   an estimate.
+//! - A primitive with a profile has spans by an estimate of the profile's derivatives. Where its kinks and jumps
+//!   (`field::kinks`; polygons and curves have none) meet a slab, rays are settled alone,
+//!   each in pieces from kink to kink.
 //! - A packet looks at no more than 2¹⁷ list entries, or 64 times the primitives in its beam; after
 //!   that its slabs are settled as they are, and where that looks at too many pieces what is left is
 //!   decided by the signs at its ends. A slab is no shorter than 2⁻⁴⁰ of its beam.

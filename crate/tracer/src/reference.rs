@@ -17,10 +17,10 @@ mod tests;
 mod waves;
 
 use crate::ray::Ray;
-use field::{Primitive, THRESHOLD};
+use field::{Kink, Primitive, THRESHOLD};
 use glam::DVec3;
 use pieces::Pieces;
-use waves::{Factor, Kink};
+use waves::Factor;
 
 /// The field of some primitives, ready to be searched.
 #[derive(Clone, Debug)]
@@ -200,7 +200,7 @@ impl Reference {
 
     /// Where a ray crosses planes on which the field is not smooth, in order.
     fn kinks_along(&self, ray: &Ray, to: f64) -> Vec<f64> {
-        let crossing = |k: &Kink| k.normal.dot(k.point - ray.origin) / k.normal.dot(ray.direction);
+        let crossing = |k: &Kink| k.along(ray.origin, ray.direction);
         let mut found: Vec<f64> = self
             .kinks
             .iter()

@@ -3,10 +3,12 @@
 //! Where a ray grazes the surface, the field comes nearer to T than spans of single precision can tell.
 //! On such a stretch the field is interpolated by one cubic, and the stretch is halved until the error bound
 //! proves where the ray crosses, or the pieces are too short to matter. A primitive whose own error on a piece is next to
-//! nothing is *calm* there: its cubic stays, and the halves do not evaluate it any more.
+//! nothing is *calm* there: its cubic stays, and the halves do not evaluate it any more. Where a profile has a kink
+//! or a jump the ray is cut.
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::slabs::LARGE_TERM;
+use crate::soft::Kinks;
 use crate::spans::{Node, Span};
 use core::ops::Range;
 use field::bound::SpanLength;
@@ -66,13 +68,22 @@ struct Piece {
     ends: [Node<f64>; 2],
 }
 
-/// The field along a ray.
+/// The primitives, and what is known of them.
 #[derive(Clone, Copy, Debug)]
-pub struct Along<'a> {
+pub struct Sight<'a> {
     /// All primitives.
     pub primitives: &'a [Primitive],
     /// Their bounds.
     pub bounds: &'a [Bound],
+    /// Where they are not smooth.
+    pub kinks: &'a Kinks,
+}
+
+/// The field along a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Along<'a> {
+    /// What makes it.
+    pub sight: Sight<'a>,
     /// The ray, its direction of unit length.
     pub ray: Ray,
     /// Pieces shorter than this are not looked into.
@@ -95,21 +106,56 @@ impl Settler {
         if self.stretches == 0 {
             return;
         }
-        let rest = 0..self.list.len();
-        let ends = [from, to].map(|t| self.sum(along, &rest, t));
-        let piece = Piece {
-            from,
-            to,
-            depth: 0,
-            calm: Span([-THRESHOLD; 4]),
-            rest,
-            ends,
-        };
         // What every primitive may be off by where it is calm.
         let share = CALM * THRESHOLD / self.list.len().max(1) as f64;
-        if tell(from, ends[0].value >= THRESHOLD) {
-            self.between(along, share, piece, &mut tell);
+        let mut start = from;
+        for end in self.kinks(along, [from, to]) {
+            // Next to a kink, not on it.
+            let gap = |t: f64| (1e-3 * along.resolution).max(1e-13 * (1.0 + t));
+            let first = if start > from {
+                start + gap(start)
+            } else {
+                from
+            };
+            let last = if end < to { end - gap(end) } else { to };
+            start = end;
+            if first >= last {
+                continue;
+            }
+            let rest = 0..self.list.len();
+            let ends = [first, last].map(|t| self.sum(along, &rest, t));
+            let piece = Piece {
+                from: first,
+                to: last,
+                depth: 0,
+                calm: Span([-THRESHOLD; 4]),
+                rest,
+                ends,
+            };
+            if !tell(first, ends[0].value >= THRESHOLD)
+                || !self.between(along, share, piece, &mut tell)
+            {
+                return;
+            }
         }
+    }
+
+    /// Where the primitives of the list are not smooth between two parameters, and the second of these, in order.
+    fn kinks(&self, along: &Along<'_>, [from, to]: [f64; 2]) -> Vec<f64> {
+        let mut found = vec![to];
+        if along.sight.kinks.is_empty() {
+            return found;
+        }
+        for &p in &self.list {
+            for kink in along.sight.kinks.of(p) {
+                let t = kink.along(along.ray.origin, along.ray.direction);
+                if t > from && t < to {
+                    found.push(t);
+                }
+            }
+        }
+        found.sort_by(f64::total_cmp);
+        found
     }
 
     /// What some primitives of the list add up to.
@@ -147,7 +193,7 @@ impl Settler {
         let bottom = self.list.len();
         for at in piece.rest.clone() {
             let p = self.list[at];
-            let bound = &along.bounds[p as usize];
+            let bound = &along.sight.bounds[p as usize];
             let estimate = bound.estimate(bound.nearness(center, radius), &span_length);
             size += estimate.magnitude.min(LARGE_TERM);
             if estimate.error <= share {
@@ -243,7 +289,7 @@ impl Settler {
 impl Along<'_> {
     /// A primitive's field and its slope along the ray, at a place on it.
     fn node(&self, primitive: u32, place: [f64; 3]) -> Node<f64> {
-        let jet = self.primitives[primitive as usize].jet(place);
+        let jet = self.sight.primitives[primitive as usize].jet(place);
         let [gx, gy, gz] = jet.gradient;
         let [dx, dy, dz] = self.ray.direction.to_array();
         Node {

@@ -14,6 +14,7 @@
 use crate::beams::Beams;
 use crate::clusters::{Clusters, Members};
 use crate::shared::{Cell, Shared, Sums};
+use crate::soft::Kinks;
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
 use field::{Primitive, THRESHOLD};
@@ -96,6 +97,8 @@ pub struct Terms<'a> {
     pub bounds: &'a [Bound],
     /// Each one's material.
     pub materials: &'a [u32],
+    /// Where they are not smooth.
+    pub kinks: &'a Kinks,
     /// Those that have a place, in groups, if a beam's list consists of these.
     pub clusters: Option<&'a Clusters>,
     /// Where each is at most this, it is left out.
@@ -130,6 +133,8 @@ struct Candidate {
     distance: f64,
     adds: bool,
     carves: bool,
+    /// Whether it is not smooth here, so that no span follows it.
+    kinked: bool,
     /// What becomes of it.
     fate: Fate,
 }
@@ -184,6 +189,8 @@ pub struct Slab {
     parent: u32,
     /// Whether what its parents resolved does not count.
     anew: bool,
+    /// Whether what is pending is not smooth here, and nothing else is pending.
+    pub kinked: bool,
     /// The interpolant of its shared primitives. [`NONE`]: not yet made.
     block: u32,
     beam: usize,
@@ -661,10 +668,12 @@ impl<'a> Slabs<'a> {
                             distance: view.distance,
                             adds: view.adds,
                             carves: view.carves,
+                            kinked: false,
                             fate: Fate::Pending,
                         }
                     } else {
-                        let bound = &self.terms.bounds[self.list[id as usize] as usize];
+                        let primitive = self.list[id as usize];
+                        let bound = &self.terms.bounds[primitive as usize];
                         let near = bound.nearness(center, radius);
                         let estimate = bound.estimate(near, &length);
                         if estimate.magnitude <= self.terms.left_out {
@@ -680,6 +689,10 @@ impl<'a> Slabs<'a> {
                             distance: near.distance,
                             adds: bound.adds(),
                             carves: bound.carves(),
+                            kinked: bound.has_profile() && {
+                                let kinks = self.terms.kinks.of(primitive);
+                                kinks.iter().any(|kink| kink.cuts(center, radius))
+                            },
                             fate: Fate::Pending,
                         }
                     };
@@ -721,6 +734,8 @@ impl<'a> Slabs<'a> {
         let mut lists = core::mem::take(&mut self.lists);
         lists.iter_mut().for_each(Vec::clear);
         let (mut pending_above, mut pending_below) = (0.0, 0.0);
+        // Whether something is pending that spans will follow, and something that they will not.
+        let (mut left, mut kinked) = (false, false);
         for candidate in &self.scratch {
             let Candidate {
                 id,
@@ -732,9 +747,13 @@ impl<'a> Slabs<'a> {
             let fate = match candidate.fate {
                 Fate::Dropped => Fate::Dropped,
                 Fate::Shared if !few => Fate::Shared,
-                _ if resolves && span <= for_spans(magnitude) => Fate::Resolved,
+                _ if resolves && !candidate.kinked && span <= for_spans(magnitude) => {
+                    Fate::Resolved
+                }
                 _ => Fate::Pending,
             };
+            left |= fate == Fate::Pending && !candidate.kinked;
+            kinked |= fate == Fate::Pending && candidate.kinked;
             lists[fate as usize].push(id);
             match fate {
                 Fate::Shared => spent.shared += shared,
@@ -752,6 +771,10 @@ impl<'a> Slabs<'a> {
                     spent.shared += magnitude;
                     continue;
                 }
+            }
+            if id & GROUP == 0 {
+                let bound = &self.terms.bounds[self.list[id as usize] as usize];
+                spent.noise += rounding * bound.cancels();
             }
             let steepness = self.relative_slope(id, candidate.distance);
             noise += magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steepness);
@@ -796,6 +819,7 @@ impl<'a> Slabs<'a> {
             budget,
             parent,
             anew,
+            kinked: kinked && !left && resolves,
             block: NONE,
             beam: number,
             children: [0; 4],

@@ -9,12 +9,14 @@ use crate::nearby::Nearby;
 use crate::quick::Quick;
 use crate::ray::Ray;
 use crate::roots::bracketed;
+use crate::settle::Sight;
 use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::stock::Stock;
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
-use field::{Bound, Primitive, THRESHOLD};
+use field::{Bound, Kink, Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::Scene;
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 use wide::f32x8;
 
@@ -48,6 +50,33 @@ struct Groups {
     /// Balls outside which the field is below T.
     strong: Hierarchy,
     clusters: Clusters,
+    kinks: Kinks,
+}
+
+/// Where the primitives that have profiles are not smooth.
+#[derive(Debug, Default)]
+pub struct Kinks(BTreeMap<u32, Vec<Kink>>);
+
+impl Kinks {
+    fn new(primitives: &[Primitive]) -> Self {
+        let own = |(i, p): (usize, &Primitive)| {
+            p.profile.as_ref()?;
+            Some((i as u32, field::kinks::of(p)))
+        };
+        Self(primitives.iter().enumerate().filter_map(own).collect())
+    }
+
+    /// Those of a primitive.
+    #[must_use]
+    pub fn of(&self, primitive: u32) -> &[Kink] {
+        self.0.get(&primitive).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether there are none at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
 }
 
 /// What is left out of all primitives but lumps, together, in T.
@@ -156,7 +185,7 @@ impl Soft {
         } else {
             [0.0, FAR]
         };
-        let groups = self.groups.get_or_init(|| self.group());
+        let groups = self.groups();
         groups.strong.search(&beam, |_, center, radius| {
             let [near, far] = beam.reach(center, radius);
             range = [range[0].min(near), range[1].max(far)];
@@ -183,6 +212,10 @@ impl Soft {
         None
     }
 
+    fn groups(&self) -> &Groups {
+        self.groups.get_or_init(|| self.group())
+    }
+
     fn group(&self) -> Groups {
         let share = THRESHOLD / self.primitives.len().max(1) as f64;
         let (mut strong, mut skeletons) = (Vec::new(), Vec::new());
@@ -199,6 +232,15 @@ impl Soft {
         Groups {
             strong: Hierarchy::new(strong),
             clusters: Clusters::new(skeletons, self.bounds()),
+            kinks: Kinks::new(&self.primitives),
+        }
+    }
+
+    fn sight(&self) -> Sight<'_> {
+        Sight {
+            primitives: &self.primitives,
+            bounds: self.bounds(),
+            kinks: &self.groups().kinks,
         }
     }
 
@@ -208,6 +250,7 @@ impl Soft {
             bounds: self.bounds(),
             materials: &self.material,
             clusters,
+            kinks: &self.groups().kinks,
             left_out,
         }
     }
@@ -230,15 +273,8 @@ impl Soft {
         scratch: &mut Scratch,
     ) -> Vec<Found> {
         slabs.tidy();
-        let (found, evaluations) = Walk::<f32x8>::new(
-            &self.primitives,
-            self.bounds(),
-            slabs,
-            bundle,
-            quest,
-            &mut scratch.memory,
-        )
-        .run();
+        let (found, evaluations) =
+            Walk::<f32x8>::new(self.sight(), slabs, bundle, quest, &mut scratch.memory).run();
         scratch.evaluations += evaluations;
         found
     }
@@ -282,8 +318,7 @@ impl Soft {
             Space::default(),
         );
         let (found, _) = Walk::<f64>::new(
-            &self.primitives,
-            self.bounds(),
+            self.sight(),
             &mut slabs,
             Bundle {
                 rays: &[based],

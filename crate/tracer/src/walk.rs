@@ -8,10 +8,10 @@
 //! hit is ever interpolated.
 use crate::lanes::Lanes;
 use crate::ray::Ray;
-use crate::settle::{Along, STEEP, Settler};
+use crate::settle::{Along, STEEP, Settler, Sight};
 use crate::slabs::{Parts, Slabs};
 use crate::spans::{Node, Span};
-use field::{Bound, Primitive, THRESHOLD};
+use field::{Primitive, THRESHOLD};
 
 /// What the rays look for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,8 +53,7 @@ pub struct Found {
 
 /// Some rays on their way through the slabs of their beam.
 pub struct Walk<'w, 's, L> {
-    primitives: &'w [Primitive],
-    bounds: &'w [Bound],
+    sight: Sight<'w>,
     slabs: &'w mut Slabs<'s>,
     packet: usize,
     quest: Quest,
@@ -141,8 +140,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     /// Rays at the start of the slabs. `memory` is scratch space.
     #[must_use]
     pub fn new(
-        primitives: &'w [Primitive],
-        bounds: &'w [Bound],
+        sight: Sight<'w>,
         slabs: &'w mut Slabs<'s>,
         bundle: Bundle<'w>,
         quest: Quest,
@@ -152,8 +150,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let ray = |i: usize| &rays[i.min(rays.len() - 1)];
         memory.begin();
         Self {
-            primitives,
-            bounds,
+            sight,
             slabs,
             packet: bundle.number,
             quest,
@@ -188,7 +185,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let pending = [slab.pending_above, slab.pending_below];
         let resolves = !slab.resolved.is_empty();
         let shares = !slab.shared.is_empty();
-        let done = slab.pending.is_empty();
+        let (done, kinked) = (slab.pending.is_empty(), slab.kinked);
         self.work += 1 + slab.resolved.len() + slab.pending.len();
         // Rays that end before this slab have found nothing.
         self.alive &= L::splat(from).less(self.limit);
@@ -209,7 +206,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             }
         }
         let most = MOST_WORK.max(MOST_VISITS * self.slabs.len());
-        if self.work > most || depth >= DEEPEST {
+        if kinked || self.work > most || depth >= DEEPEST {
             self.settle(index, self.alive);
             return;
         }
@@ -350,8 +347,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             let bit = 1u32 << lane;
             lanes &= !bit;
             let along = Along {
-                primitives: self.primitives,
-                bounds: self.bounds,
+                sight: self.sight,
                 ray: self.rays[lane.min(self.rays.len() - 1)],
                 resolution: self.slabs.resolution(),
             };
@@ -418,7 +414,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let (mut left, mut right) = (Node::zero(), Node::zero());
         self.memory.hold(self.slabs.len());
         for &local in self.slabs.locals(range) {
-            let primitive = &self.primitives[self.slabs.primitive(local) as usize];
+            let primitive = &self.sight.primitives[self.slabs.primitive(local) as usize];
             let walk = self.memory.walk;
             let memory = &mut self.memory.last[local as usize];
             if memory.walk != walk || memory.t != from {

@@ -1,10 +1,6 @@
-//! Profiles along a ray: how large they and their derivatives can be, and where they are not smooth.
-//!
-//! The factor is smooth but for the places where a wave has a kink or a jump and where a parameter is
-//! cut to [0, 1]. Those lie on planes: across a segment or a triangle, or through the axis of an arc. So
-//! on a ray they are single places, at which the reference divides it.
-use field::{Primitive, Skeleton, Wave};
-use glam::DVec3;
+//! Profiles along a ray: how large they and their derivatives can be between the places where they are not smooth
+//! ([`field::kinks`]), at which the reference divides it.
+use field::{Kink, Primitive, Skeleton, Wave, kinks};
 
 /// What is known of a primitive's profile.
 #[derive(Clone, Debug)]
@@ -16,30 +12,6 @@ pub struct Factor {
     /// Where it is not smooth.
     pub kinks: Vec<Kink>,
 }
-
-/// A plane on which a factor is not smooth.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kink {
-    /// A point of the plane.
-    pub point: DVec3,
-    /// Its unit normal.
-    pub normal: DVec3,
-    /// Whether the factor itself may jump there, not only its slope.
-    pub jumps: bool,
-}
-
-impl Kink {
-    fn new(point: DVec3, normal: DVec3, jumps: bool) -> Self {
-        Self {
-            point,
-            normal: normal.normalize_or_zero(),
-            jumps,
-        }
-    }
-}
-
-/// Kinks of one wave along a bone; waves finer than that have no reference.
-const MOST_KINKS: f64 = 4096.0;
 
 impl Factor {
     /// Of a primitive.
@@ -54,7 +26,6 @@ impl Factor {
         let ends = profile.bounds.map(|b| b * profile.times);
         let size = ends[0].abs().max(ends[1].abs());
         let rise = (ends[1] - ends[0]).abs();
-        let mut kinks = Vec::new();
         // First and second derivative of the waves' product.
         let (mut first, mut second) = (0.0, 0.0);
         let mut restricted = [0.0; 2];
@@ -70,14 +41,10 @@ impl Factor {
             let p = (profile.scale[i] * rate).abs();
             (a * p, b * p * p)
         };
-        let jumps = |i: usize| matches!(profile.waves[i], Wave::Saw | Wave::Step);
         match &primitive.skeleton {
             Skeleton::Segment { base, apex } => {
                 let axis = *apex - *base;
                 (first, second) = steep(0, 1.0 / axis.length());
-                for u in breaks(profile.waves[0], profile.scale[0]) {
-                    kinks.push(Kink::new(*base + axis * u, axis, jumps(0)));
-                }
             }
             Skeleton::Triangle { corners: [a, b, c] } => {
                 let (e1, e2) = (*b - *a, *c - *a);
@@ -91,43 +58,18 @@ impl Factor {
                 let (v1, v2) = steep(1, rate);
                 first = u1 + v1;
                 second = u2 + v2 + 2.0 * u1 * v1;
-                for (i, gradient, edge) in [(0, by_u, e1), (1, by_v, e2)] {
-                    for u in breaks(profile.waves[i], profile.scale[i]) {
-                        kinks.push(Kink::new(*a + edge * u, gradient, jumps(i)));
-                    }
-                }
                 if profile.restriction != 0.0 {
-                    kinks.push(Kink::new(*b, by_u + by_v, false));
                     let r = 27.0 * profile.restriction.abs();
                     restricted = [0.75 * r * rate, 6.0 * r * rate * rate];
                 }
             }
-            Skeleton::Arc {
-                center,
-                u,
-                v,
-                radius,
-                angle,
-            } => {
-                let x = u.try_normalize().unwrap_or(DVec3::X);
-                let y = (*v - x * x.dot(*v))
-                    .try_normalize()
-                    .unwrap_or_else(|| x.any_orthonormal_vector());
+            Skeleton::Arc { radius, angle, .. } => {
                 // With t = ρ/radius the waves count as g = (2t/(1+t²))², and the angle changes by 1/ρ:
                 // g/t ≤ 1.3, g/t² ≤ 4, |g′| ≤ 1.8, |g′|/t ≤ 8, |g″| ≤ 8.
                 let (w1, w2) = steep(0, 1.0 / angle.max(f64::MIN_POSITIVE));
                 let i = 1.0 / radius;
                 first = (1.3 * w1 + 1.8) * i;
                 second = (4.0 * (w2 + w1) + 16.0 * w1 + 8.0) * i * i;
-                let mut at = |azimuth: f64, jumps: bool| {
-                    let (sine, cosine) = libm::sincos(azimuth);
-                    kinks.push(Kink::new(*center, y * cosine - x * sine, jumps));
-                };
-                // In the middle of the gap the parameter jumps from end to end.
-                at(0.5 * angle + core::f64::consts::PI, true);
-                for u in breaks(profile.waves[0], profile.scale[0]) {
-                    at(u * angle, jumps(0));
-                }
             }
             // These have no parameters.
             Skeleton::Point { .. }
@@ -143,22 +85,7 @@ impl Factor {
                 rise * second * kept + 2.0 * rise * first * restricted[0] + size * restricted[1],
             ],
             turns: ends[0] < 0.0 || ends[1] < 0.0 || profile.restriction > 1.0,
-            kinks,
+            kinks: kinks::of(primitive),
         }
     }
-}
-
-/// The parameters at which a wave is not smooth, the ends of [0, 1] among them.
-fn breaks(wave: Wave, scale: f64) -> Vec<f64> {
-    let mut found = vec![0.0, 1.0];
-    let step = match wave {
-        Wave::X => 1.0,
-        Wave::Saw | Wave::Hat | Wave::Step => 0.5,
-        Wave::One | Wave::Sin | Wave::Cos | Wave::Sin2 | Wave::Cos2 => return found,
-    };
-    let count = (scale.abs() / step).min(MOST_KINKS);
-    for k in 1..=count as u32 {
-        found.push(f64::from(k) * step / scale.abs());
-    }
-    found
 }

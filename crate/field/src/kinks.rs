@@ -1,0 +1,209 @@
+//! Where a profile is not smooth: the places where a wave has a kink or a jump and where a parameter is cut to
+//! [0, 1]. They lie on planes, across a segment or a triangle, or through the axis of an arc: so on a ray they are
+//! single places, between which the field is smooth.
+use crate::{Primitive, Skeleton, Wave};
+use glam::DVec3;
+
+/// A plane on which a profile is not smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kink {
+    /// A point of the plane.
+    pub point: DVec3,
+    /// Its unit normal.
+    pub normal: DVec3,
+    /// Whether the profile itself may jump there, not only its slope.
+    pub jumps: bool,
+}
+
+/// Kinks of one wave along a bone; what is finer is not told.
+const MOST_KINKS: f64 = 4096.0;
+
+impl Kink {
+    fn new(point: DVec3, normal: DVec3, jumps: bool) -> Self {
+        Self {
+            point,
+            normal: normal.normalize_or_zero(),
+            jumps,
+        }
+    }
+
+    /// Whether a ball meets the plane.
+    #[must_use]
+    pub fn cuts(&self, center: DVec3, radius: f64) -> bool {
+        (center - self.point).dot(self.normal).abs() <= radius
+    }
+
+    /// Where a ray crosses the plane: infinite or not a number if it runs along it.
+    #[must_use]
+    pub fn along(&self, origin: DVec3, direction: DVec3) -> f64 {
+        self.normal.dot(self.point - origin) / self.normal.dot(direction)
+    }
+}
+
+/// The kinks of a primitive's profile.
+#[must_use]
+pub fn of(primitive: &Primitive) -> Vec<Kink> {
+    let mut kinks = Vec::new();
+    let Some(profile) = &primitive.profile else {
+        return kinks;
+    };
+    let jumps = |i: usize| matches!(profile.waves[i], Wave::Saw | Wave::Step);
+    match &primitive.skeleton {
+        Skeleton::Segment { base, apex } => {
+            let axis = *apex - *base;
+            for u in breaks(profile.waves[0], profile.scale[0]) {
+                kinks.push(Kink::new(*base + axis * u, axis, jumps(0)));
+            }
+        }
+        Skeleton::Triangle { corners: [a, b, c] } => {
+            let (e1, e2) = (*b - *a, *c - *a);
+            let normal = e1.cross(e2);
+            // Along the gradients of u, of v and of what is left.
+            let (by_u, by_v) = (e2.cross(normal), normal.cross(e1));
+            for (i, gradient, edge) in [(0, by_u, e1), (1, by_v, e2)] {
+                for u in breaks(profile.waves[i], profile.scale[i]) {
+                    kinks.push(Kink::new(*a + edge * u, gradient, jumps(i)));
+                }
+            }
+            if profile.restriction != 0.0 {
+                for (corner, gradient) in [(*a, by_u), (*a, by_v), (*b, by_u + by_v)] {
+                    kinks.push(Kink::new(corner, gradient, false));
+                }
+            }
+        }
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            angle,
+            ..
+        } if profile.waves[0] != Wave::One => {
+            let x = u.try_normalize().unwrap_or(DVec3::X);
+            let y = (*v - x * x.dot(*v))
+                .try_normalize()
+                .unwrap_or_else(|| x.any_orthonormal_vector());
+            let mut at = |azimuth: f64, jumps: bool| {
+                let (sine, cosine) = libm::sincos(azimuth);
+                kinks.push(Kink::new(*center, y * cosine - x * sine, jumps));
+            };
+            // In the middle of the gap the parameter jumps from end to end.
+            at(0.5 * angle + core::f64::consts::PI, true);
+            for u in breaks(profile.waves[0], profile.scale[0]) {
+                at(u * angle, jumps(0));
+            }
+        }
+        // These have no parameters, or none that counts.
+        Skeleton::Point { .. }
+        | Skeleton::Arc { .. }
+        | Skeleton::Polygon { .. }
+        | Skeleton::Curve { .. }
+        | Skeleton::Plane { .. } => (),
+    }
+    kinks
+}
+
+/// The parameters at which a wave is not smooth, the ends of [0, 1] among them.
+fn breaks(wave: Wave, scale: f64) -> Vec<f64> {
+    if wave == Wave::One {
+        return Vec::new();
+    }
+    let mut found = vec![0.0, 1.0];
+    let step = match wave {
+        Wave::X => 1.0,
+        Wave::Saw | Wave::Hat | Wave::Step => 0.5,
+        _ => return found,
+    };
+    let count = (scale.abs() / step).min(MOST_KINKS);
+    for k in 1..=count as u32 {
+        found.push(f64::from(k) * step / scale.abs());
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BlobScale, Kernel, Profile, Shaping};
+
+    /// A step along a ray.
+    const STEP: f64 = 1e-4;
+    /// Second differences over the step's square: what is smooth here has less, a kink or a jump mostly more.
+    const SHARP: f64 = 4e3;
+
+    fn wavy(which: usize, next: &mut impl FnMut() -> f64) -> Primitive {
+        let mut place = || DVec3::new(next(), next(), next()) * 2.0 - 1.0;
+        let [a, b, c] = [place(), place(), place()];
+        let skeleton = match which % 3 {
+            0 => Skeleton::Segment { base: a, apex: b },
+            1 => Skeleton::Triangle { corners: [a, b, c] },
+            _ => Skeleton::Arc {
+                center: a * 0.3,
+                u: b,
+                v: c,
+                radius: 0.7,
+                angle: 1.0 + 4.0 * next(),
+            },
+        };
+        let waves = [
+            Wave::One,
+            Wave::X,
+            Wave::Saw,
+            Wave::Hat,
+            Wave::Step,
+            Wave::Sin,
+        ];
+        let profile = Profile {
+            waves: [waves[which / 3 % 6], waves[which / 18 % 6]],
+            scale: [1.0 + 3.0 * next(), 1.0 + 3.0 * next()],
+            bounds: [0.2, 1.0],
+            times: 1.0,
+            restriction: if which % 2 == 0 { 0.0 } else { 0.8 },
+        };
+        let shaping = Shaping {
+            kernel: Kernel::Cauchy,
+            radius: 0.5,
+            blobbiness: -0.5,
+            blob_scale: BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: None,
+        };
+        Primitive::new(skeleton, &shaping, Some(profile)).expect("flesh")
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn between_the_kinks_a_field_is_smooth() {
+        let mut state = 9u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31)
+        };
+        let (mut sharp, mut told) = (0, 0);
+        for which in 0..108 {
+            let primitive = wavy(which, &mut next);
+            let kinks = of(&primitive);
+            let mut unit = || DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5).normalize();
+            let (direction, offset) = (unit(), unit() * 0.4);
+            let origin = offset - direction;
+            let at =
+                |i: i32| primitive.value((origin + direction * (STEP * f64::from(i))).to_array());
+            let places: Vec<f64> = kinks.iter().map(|k| k.along(origin, direction)).collect();
+            told += places.iter().filter(|t| (0.0..2.0).contains(*t)).count();
+            let (mut before, mut here) = (at(0), at(1));
+            for i in 2..20_000 {
+                let after = at(i);
+                let bend = (after - 2.0 * here + before).abs() / (STEP * STEP);
+                (before, here) = (here, after);
+                if bend > SHARP {
+                    sharp += 1;
+                    let t = STEP * f64::from(i - 1);
+                    let near = |place: &f64| (place - t).abs() <= 1.5 * STEP;
+                    assert!(places.iter().any(near), "{which} {t}: {bend} {places:?}");
+                }
+            }
+        }
+        // Most kinks are sharp, of two or three differences each; and few are told that are none.
+        assert!(sharp > 100 && told < 3 * sharp, "{sharp} {told}");
+    }
+}
