@@ -128,7 +128,7 @@ mod tests {
     /// A step along a ray.
     const STEP: f64 = 1e-4;
     /// Second differences over the step's square: what is smooth here has less, a kink or a jump mostly more.
-    const SHARP: f64 = 4e3;
+    const SHARP: f64 = 1e3;
 
     fn wavy(which: usize, next: &mut impl FnMut() -> f64) -> Primitive {
         let mut place = || DVec3::new(next(), next(), next()) * 2.0 - 1.0;

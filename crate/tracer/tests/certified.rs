@@ -47,12 +47,11 @@ const COMPACT: [Kernel; 4] = [
     Kernel::Compact6,
 ];
 
-/// Pictures of compact kernels have no hit that is off and lose no surface, not even where a ray grazes it.
-///
-/// Of other kernels pictures may still miss some surface, as of squared points next to their poles, and rays that graze a
-/// surface can miss it: how much of that there is must not grow. `examples/certify.rs` lists what is left.
-fn certify(kinds: &[Kind], most_missed: f64, most_grazed: f64, most_off: f64) {
+/// Pictures have no hit that is off and miss no surface. Of kernels that do not end they may miss what rays graze, as
+/// next to the poles of squared polygons: that must stay as rare as it is. `examples/certify.rs` lists what is left.
+fn certify(kinds: &[Kind], most_grazed: f64) {
     let mut all = Row::default();
+    let mut faults = String::new();
     for kernel in Kernel::ALL {
         let (row, told) = run(&[kernel], kinds, 3, 4, &|trial, picture| {
             picture.cast(&trial.rays)
@@ -60,15 +59,15 @@ fn certify(kinds: &[Kind], most_missed: f64, most_grazed: f64, most_off: f64) {
         if COMPACT.contains(&kernel) {
             assert!(row.faults() == 0, "{kernel:?} {row:?}\n{told}");
         }
+        faults += &told;
         all.add(&row);
     }
     let scenes = (3 * kinds.len() * Kernel::ALL.len()) as u64;
     assert!(all.rays > 14 * scenes && all.hits > 8 * scenes, "{all:?}");
     assert!(all.uncertain * 200 < all.rays, "{all:?}");
-    let share = |count: u64| count as f64 / all.rays as f64;
-    assert!(share(all.missed) <= most_missed, "{all:?}");
-    assert!(share(all.grazed) <= most_grazed, "{all:?}");
-    assert!(share(all.invented) <= most_off, "{all:?}");
+    assert!(all.missed == 0 && all.invented == 0, "{all:?}\n{faults}");
+    let grazed = all.grazed as f64 / all.rays as f64;
+    assert!(grazed <= most_grazed, "{all:?}\n{faults}");
 }
 
 /// Points that go the quick way have no fault at all.
@@ -86,28 +85,27 @@ fn pictures_of_lumps_are_within_the_tolerance() {
 
 #[test]
 fn pictures_of_points_and_lines_are_within_the_tolerance() {
-    certify(
-        &[Kind::Segment, Kind::Arc, Kind::Curve, Kind::Taper],
-        0.002,
-        0.015,
-        0.02,
-    );
-    certify(&[Kind::Point], 0.0, 0.008, 0.0);
+    certify(&[Kind::Segment, Kind::Arc, Kind::Curve, Kind::Taper], 0.002);
+    certify(&[Kind::Point], 0.0);
 }
 
 #[test]
 fn pictures_of_faces_are_within_the_tolerance() {
     certify(
-        &[Kind::Triangle, Kind::Polygon, Kind::Restricted],
-        0.0,
-        0.001,
-        0.0,
+        &[Kind::Triangle, Kind::Polygon, Kind::Plane, Kind::Restricted],
+        0.002,
     );
 }
 
 #[test]
-fn pictures_of_clusters_are_no_further_off_than_they_were() {
-    certify(&[Kind::Cluster], 0.03, 0.02, 0.25);
+fn pictures_of_profiles_are_within_the_tolerance() {
+    certify(&[Kind::Waves, Kind::Kinks], 0.0);
+}
+
+#[test]
+fn pictures_of_mixtures_and_clusters_are_within_the_tolerance() {
+    certify(&[Kind::Mixed], 0.002);
+    certify(&[Kind::Cluster], 0.0);
 }
 
 /// Kinds whose pictures any of the following faults would spoil.
