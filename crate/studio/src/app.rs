@@ -14,7 +14,7 @@ use crate::help::Help;
 use crate::keyboard::Keyboard;
 use crate::lab::{Lab, Lesson};
 use crate::notice::Notice;
-use crate::pool::Pool;
+use crate::pool::{News, Pool};
 use crate::render::{Phase, Renderer};
 use crate::report::Shared;
 use crate::request::Requests;
@@ -113,6 +113,8 @@ pub struct App {
     pub(crate) forced_size: Option<[u32; 2]>,
     pub(crate) parts: Parts,
     saved_settings: Settings,
+    /// Seconds that new tiles wait to be shown, see [`REST`].
+    rest: f32,
     /// The text, and whether it was compiled, that the diagnostics in the outbox are about.
     pub(crate) reported: Option<(u64, bool)>,
     started: Option<f64>,
@@ -122,6 +124,21 @@ pub struct App {
     /// Who waits for the picture to be finished.
     pub(crate) finished: Vec<Box<dyn FnOnce()>>,
     pub(crate) touch: Option<bool>,
+}
+
+/// Seconds that tiles wait to be shown where the processor that traces them draws the page, too: each time it does
+/// keeps the workers waiting.
+const REST: f32 = 0.4;
+
+fn is_drawn_by_processor(backend: Backend, state: Option<&egui_wgpu::RenderState>) -> bool {
+    let by_software = |state: &egui_wgpu::RenderState| {
+        let info = state.adapter.get_info();
+        let name = info.name.to_lowercase();
+        info.device_type == egui_wgpu::wgpu::DeviceType::Cpu
+            || name.contains("swiftshader")
+            || name.contains("llvmpipe")
+    };
+    backend == Backend::None || state.is_some_and(by_software)
 }
 
 impl App {
@@ -146,8 +163,16 @@ impl App {
         ctx.add_plugin(Keyboard::default());
         let settings: Settings = parts.shelf.borrow().settings();
         ctx.set_theme(settings.theme);
+        let rest = if is_drawn_by_processor(backend, render_state.as_ref()) {
+            REST
+        } else {
+            0.0
+        };
         let repaint = ctx.clone();
-        let pool = Pool::new(move || repaint.request_repaint());
+        let pool = Pool::new(move |news| {
+            let wait = if news == News::Some { rest } else { 0.0 };
+            repaint.request_repaint_after_secs(wait);
+        });
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
         let mut app = Self {
@@ -157,6 +182,7 @@ impl App {
                 .filter(|_| backend != Backend::None)
                 .map(Draft::new),
             backend,
+            rest,
             editor: Editor::default(),
             asset_view: AssetView::default(),
             sliders: Sliders::default(),
@@ -283,7 +309,9 @@ impl App {
             waits.push(Some(started + HEALTHY - now));
         }
         // The progress bar and the remaining time move even while no tile comes.
-        waits.push((self.renderer.phase() == Phase::Tracing).then_some(0.25));
+        waits.push(
+            (self.renderer.phase() == Phase::Tracing).then_some(f64::from(self.rest).max(0.25)),
+        );
         if let Some(wait) = waits
             .into_iter()
             .flatten()
