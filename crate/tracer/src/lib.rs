@@ -44,9 +44,10 @@
 //!   not looked into, and one packet looks at no more than 16384 pieces of as many stretches.
 //! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
 //!   shared and rounding leaves many rays in doubt: such pictures are slow.
-//! - A primitive with a profile has spans by an estimate of the profile's derivatives. Where its kinks and jumps
-//!   (`field::kinks`; polygons and curves have none) meet a slab, rays are settled alone,
-//!   each in pieces from kink to kink.
+//! - A primitive with a profile has spans by an estimate of the profile's derivatives. In scenes of at most 16
+//!   primitives, where its kinks and jumps (`field::kinks`; polygons and curves have none) meet a slab, rays are settled
+//!   alone, each in pieces from kink to kink; that would take too long in larger ones, so that thin flesh next to a
+//!   kink may be missed there, and a hit be off.
 //! - A packet looks at no more than 2¹⁷ list entries, or 64 times the primitives in its beam; after
 //!   that its slabs are settled as they are, and where that looks at too many pieces what is left is
 //!   decided by the signs at its ends. A slab is no shorter than 2⁻⁴⁰ of its beam.

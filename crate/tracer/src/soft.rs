@@ -53,12 +53,18 @@ struct Groups {
     kinks: Kinks,
 }
 
-/// Where the primitives that have profiles are not smooth.
+/// Where the primitives that have profiles are not smooth; nothing is known of it in scenes of very many.
 #[derive(Debug, Default)]
 pub struct Kinks(BTreeMap<u32, Vec<Kink>>);
 
+/// In larger scenes kinks are not looked for: a ray that meets one is settled alone, by all primitives.
+const FEW: usize = 16;
+
 impl Kinks {
     fn new(primitives: &[Primitive]) -> Self {
+        if primitives.len() > FEW {
+            return Self::default();
+        }
         let own = |(i, p): (usize, &Primitive)| {
             p.profile.as_ref()?;
             Some((i as u32, field::kinks::of(p)))
