@@ -157,7 +157,7 @@ mod tests {
             scale: [1.0 + 3.0 * next(), 1.0 + 3.0 * next()],
             bounds: [0.2, 1.0],
             times: 1.0,
-            restriction: if which % 2 == 0 { 0.0 } else { 0.8 },
+            restriction: if which.is_multiple_of(2) { 0.0 } else { 0.8 },
         };
         let shaping = Shaping {
             kernel: Kernel::Cauchy,
