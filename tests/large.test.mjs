@@ -37,7 +37,7 @@ test('a hundred thousand elements open, and are those that the program draws', a
   await sinew.keep('large');
   await sinew.resize(...SIZE);
   const [traced, expected] = [await sinew.image(), await native(MODEL, SIZE)];
-  assert.ok(colours(traced) > 1000, 'the picture is not blank');
+  assert.ok(colours(traced) > 100, 'the picture is not blank');
   const difference = meanDeltaE(traced, expected);
   assert.ok(difference < UNSEEN, `ΔE ${difference}`);
   // It can be worked on.
