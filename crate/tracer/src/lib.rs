@@ -79,6 +79,7 @@ mod roots;
 mod sample;
 mod settle;
 mod shade;
+mod shadows;
 mod shared;
 mod slabs;
 mod soft;

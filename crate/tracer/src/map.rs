@@ -18,14 +18,11 @@ use std::sync::OnceLock;
 /// Packets are sampled this far apart, in pixels.
 const APART: u32 = 16;
 
-/// The costs of a packet's rays: of the rays themselves and those they sent to lights, and of
-/// evaluations, some of which were made for one ray alone.
-pub(crate) fn costs(cast: [u32; PACKET], evaluations: u64, alone: &[u64; PACKET]) -> [f32; PACKET] {
+/// The costs of so many rays of a packet: the rays themselves, and evaluations, some of which were made for one ray
+/// alone.
+pub(crate) fn costs(rays: usize, evaluations: u64, alone: &[u64; PACKET]) -> [f32; PACKET] {
     let shared = evaluations - alone.iter().sum::<u64>();
-    core::array::from_fn(|i| {
-        let own = u64::from(cast[i]) + alone[i];
-        own as f32 + shared as f32 / PACKET as f32
-    })
+    alone.map(|own| (1 + own) as f32 + shared as f32 / rays as f32)
 }
 
 /// How costs are shown.

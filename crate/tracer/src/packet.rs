@@ -1,4 +1,4 @@
-//! Tracing a packet of rays: hits, shadows, colours.
+//! What the rays of a packet hit.
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::flesh::Flesh;
@@ -10,12 +10,12 @@ use crate::picture::{Picture, Stats};
 use crate::quick::Rays;
 use crate::ray::Ray;
 use crate::sample::Sample;
-use crate::shade::{Finish, towards};
+use crate::shade::Finish;
+use crate::shadows::Shadow;
 use crate::slabs::Slabs;
 use crate::soft::{PACKET, Scratch};
 use crate::walk::{Bundle, Quest};
-use glam::{DVec3, Vec3};
-use scene::LightKind;
+use glam::DVec3;
 
 /// Where a ray hits, and what it hits.
 #[derive(Clone, Copy, Debug)]
@@ -42,11 +42,49 @@ pub(crate) enum Near<'n, 's> {
     Slabs(&'n mut (Slabs<'s>, f64), usize),
 }
 
+/// What the rays of a packet see.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "it is taken apart where it is made"
+)]
+pub(crate) enum View {
+    /// Nothing, and what finding that cost each.
+    Nothing([f32; PACKET]),
+    /// Something.
+    Hits(Seen),
+}
+
+/// Rays that hit something, some of them at least.
+pub(crate) struct Seen {
+    pub rays: [Ray; PACKET],
+    pub hits: [Option<Hit>; PACKET],
+    /// What finding them cost.
+    pub costs: [f32; PACKET],
+}
+
 /// Working space of one thread.
 #[derive(Default)]
 pub struct Workspace {
     pub(crate) scratch: Scratch,
-    crossings: Vec<Crossing>,
+    pub(crate) crossings: Vec<Crossing>,
+    /// Rays to a light.
+    pub(crate) shadows: Vec<Shadow>,
+    /// What is near those of a patch.
+    pub(crate) around: Nearby,
+    pub(crate) samples: Vec<[Sample; PACKET]>,
+}
+
+impl Workspace {
+    /// Counts from nothing again what is made for a packet.
+    pub(crate) fn begin(&mut self) {
+        self.scratch.evaluations = 0;
+        self.scratch.alone = [0; PACKET];
+    }
+
+    /// What that cost each of the packet's first rays.
+    pub(crate) fn costs(&self, rays: usize) -> [f32; PACKET] {
+        map::costs(rays, self.scratch.evaluations, &self.scratch.alone)
+    }
 }
 
 impl Picture {
@@ -57,9 +95,8 @@ impl Picture {
         near: Near<'_, '_>,
         work: &mut Workspace,
         stats: &mut Stats,
-    ) -> [Sample; PACKET] {
-        work.scratch.evaluations = 0;
-        work.scratch.alone = [0; PACKET];
+    ) -> View {
+        work.begin();
         let mut hits = if self.solids.is_empty() {
             [None; PACKET]
         } else {
@@ -76,7 +113,16 @@ impl Picture {
                 Near::Lumps(near, _) => self.lump_hits(rays, near, work, &mut hits),
             }
         }
-        self.shine(rays, &hits, work, stats)
+        stats.field_evaluations += work.scratch.evaluations;
+        let costs = work.costs(PACKET);
+        if hits.iter().all(Option::is_none) {
+            return View::Nothing(costs);
+        }
+        View::Hits(Seen {
+            rays: *rays,
+            hits,
+            costs,
+        })
     }
 
     /// Traces the rays of one packet in a scene of lumps alone. `None` if this is not the way to do it.
@@ -87,87 +133,24 @@ impl Picture {
         near: &Nearby,
         work: &mut Workspace,
         stats: &mut Stats,
-    ) -> Option<[Sample; PACKET]> {
+    ) -> Option<View> {
         let rays = lens.rays(fan, near);
         let limits = [f64::INFINITY; PACKET];
+        work.begin();
         let quick = &mut work.scratch.quick;
         let looked = self
             .soft
             .quick(near, &rays, &limits, ALL, Quest::First, quick)?;
         work.scratch.evaluations = looked.evaluations;
-        work.scratch.alone = [0; PACKET];
+        stats.field_evaluations += looked.evaluations;
+        let costs = work.costs(PACKET);
         if looked.met == 0 {
-            stats.field_evaluations += looked.evaluations;
-            let cost = map::costs([1; PACKET], looked.evaluations, &work.scratch.alone);
-            let nothing = self.nothing();
-            return Some(cost.map(|cost| Sample { cost, ..nothing }));
+            return Some(View::Nothing(costs));
         }
         let rays = lens.wide(fan);
         let mut hits = [None; PACKET];
         self.clothe(&rays, &looked.flesh, near.base, looked.met, &mut hits);
-        Some(self.shine(&rays, &hits, work, stats))
-    }
-
-    /// What rays see that hit something or nothing.
-    fn shine(
-        &self,
-        rays: &[Ray; PACKET],
-        hits: &[Option<Hit>; PACKET],
-        work: &mut Workspace,
-        stats: &mut Stats,
-    ) -> [Sample; PACKET] {
-        let across = rays[0].direction.distance(rays[PACKET - 1].direction);
-        let mut colours = [self.background; PACKET];
-        let mut keys = [0u32; PACKET];
-        let mut cast = [1u32; PACKET];
-        for i in 0..PACKET {
-            if let Some(hit) = &hits[i] {
-                colours[i] = hit.finish.glow();
-                keys[i] = hit.thing << 8;
-            }
-        }
-        for (which, light) in self.lights.iter().enumerate() {
-            let mut lit = 0u32;
-            // From a distant light it is the same everywhere.
-            let mut way = [towards(light, DVec3::ZERO); PACKET];
-            let distant = matches!(light.kind, LightKind::Distant { .. });
-            for i in 0..PACKET {
-                if let Some(hit) = &hits[i] {
-                    if !distant {
-                        way[i] = towards(light, hit.position);
-                    }
-                    if hit.normal.dot(way[i].0) > 0.0 {
-                        lit |= 1 << i;
-                    }
-                }
-            }
-            if light.shadow && lit != 0 {
-                stats.shadow_rays += u64::from(lit.count_ones());
-                for (i, cast) in cast.iter_mut().enumerate() {
-                    *cast += lit >> i & 1;
-                }
-                lit &= !self.shadowed(hits, &way, lit, across, work);
-            }
-            for i in 0..PACKET {
-                if let (Some(hit), true) = (&hits[i], lit >> i & 1 != 0) {
-                    colours[i] += hit.finish.lit(
-                        Vec3::from(light.colour),
-                        hit.normal.as_vec3(),
-                        way[i].0.as_vec3(),
-                        rays[i].direction.as_vec3(),
-                    );
-                    keys[i] ^= 1 << (which % 8);
-                }
-            }
-        }
-        stats.field_evaluations += work.scratch.evaluations;
-        let cost = map::costs(cast, work.scratch.evaluations, &work.scratch.alone);
-        core::array::from_fn(|i| Sample {
-            colour: colours[i].max(Vec3::ZERO).min(Vec3::ONE),
-            key: keys[i],
-            depth: hits[i].map_or(f32::INFINITY, |h| h.t as f32),
-            cost: cost[i],
-        })
+        Some(View::Hits(Seen { rays, hits, costs }))
     }
 
     fn hard_hit(&self, ray: &Ray, work: &mut Workspace) -> Option<Hit> {
@@ -293,116 +276,7 @@ impl Picture {
             });
         }
     }
-
-    /// Which of the lit hits have something between them and the light. `across` is the packet's
-    /// width per unit of distance.
-    fn shadowed(
-        &self,
-        hits: &[Option<Hit>; PACKET],
-        way: &[(DVec3, f64); PACKET],
-        lit: u32,
-        across: f64,
-        work: &mut Workspace,
-    ) -> u32 {
-        let mut rays = [None; PACKET];
-        let mut limits = [0.0; PACKET];
-        let mut dark = 0;
-        for i in 0..PACKET {
-            if let (Some(hit), true) = (&hits[i], lit >> i & 1 != 0) {
-                let ray = Ray {
-                    origin: hit.position + hit.normal * hit.lift,
-                    direction: way[i].0,
-                };
-                limits[i] = way[i].1;
-                if self
-                    .solids
-                    .first(&ray, limits[i], &mut work.crossings)
-                    .is_some()
-                {
-                    dark |= 1 << i;
-                } else {
-                    rays[i] = Some(ray);
-                }
-            }
-        }
-        // Hits on different parts of the surface would make a beam that is wide from its start:
-        // each patch of neighbouring hits gets its own.
-        let mut left = rays;
-        while let Some(leader) = left.iter().position(Option::is_some) {
-            let (Some(first), Some(hit)) = (left[leader], &hits[leader]) else {
-                break;
-            };
-            let patch = PATCH * across * hit.t;
-            let mut group = [None; PACKET];
-            for (member, ray) in group.iter_mut().zip(&mut left) {
-                if ray.is_some_and(|r| r.origin.distance(first.origin) <= patch) {
-                    *member = ray.take();
-                }
-            }
-            // The leader is in its own group even where its position is not a number.
-            group[leader] = group[leader].or(left[leader].take());
-            dark |= self.occluded(&group, &limits, work);
-        }
-        dark
-    }
-
-    /// Which of some rays (those that are there) enter the soft surface before their limits.
-    fn occluded(
-        &self,
-        rays: &[Option<Ray>; PACKET],
-        limits: &[f64; PACKET],
-        work: &mut Workspace,
-    ) -> u32 {
-        if let Some(digger) = &self.digger {
-            return self.dug_shadows(&**digger, rays, limits, work);
-        }
-        let alive: Vec<Ray> = rays.iter().flatten().copied().collect();
-        let Some(any) = alive.first() else {
-            return 0;
-        };
-        let followed = (0..PACKET).fold(0, |m, i| m | u32::from(rays[i].is_some()) << i);
-        let filled = rays.map(|ray| ray.unwrap_or(*any));
-        let quick = &mut work.scratch.quick;
-        if let Some((looked, _)) =
-            self.soft
-                .quick_alone(&filled, limits, followed, Quest::Entry, quick)
-        {
-            work.scratch.evaluations += looked.evaluations;
-            return looked.met;
-        }
-        let Some(beam) = Beam::around(&alive) else {
-            return 0;
-        };
-        let furthest = limits.iter().copied().fold(0.0, f64::max);
-        let whole = |base: f64| Beams::one(beam.from(base));
-        let Some((mut slabs, base)) =
-            self.soft
-                .slabs(beam, whole, furthest, &mut work.scratch.spaces)
-        else {
-            return 0;
-        };
-        // Lanes not in use repeat the first one.
-        let based = filled.map(|ray| Ray {
-            origin: ray.at(base),
-            direction: ray.direction,
-        });
-        let limits = limits.map(|l| l - base);
-        let bundle = Bundle {
-            rays: &based,
-            limits: &limits,
-            alive: followed,
-            number: 0,
-        };
-        let found = self
-            .soft
-            .walk(&mut slabs, bundle, Quest::Entry, &mut work.scratch);
-        work.scratch.spaces.push(slabs.into_space());
-        found.iter().fold(0, |m, hit| m | 1 << hit.lane)
-    }
 }
-
-/// Hits further apart than this times the packet's width there are on different patches.
-const PATCH: f64 = 3.0;
 
 /// All lanes of a packet.
 const ALL: u32 = (1 << PACKET) - 1;

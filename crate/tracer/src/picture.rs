@@ -6,7 +6,7 @@ use crate::digger::{self, Digger};
 use crate::hard::Crossing;
 use crate::map::Map;
 use crate::nearby::Nearby;
-use crate::packet::{Near, Workspace};
+use crate::packet::{Near, View, Workspace};
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::shade::{self, Finish};
@@ -146,14 +146,22 @@ impl Picture {
                 pixels.show(area, |x, y| *samples.get(x / BLOCK, y / BLOCK));
             }
             Pass::Smooth if self.samples > 1 => {
+                // Pixels of one packet are refined together.
+                let [across, down] = PACKET_SIZE;
+                let whole = Area {
+                    left: area.left / across * across,
+                    top: area.top / down * down,
+                    right: area.right.next_multiple_of(across),
+                    bottom: area.bottom.next_multiple_of(down),
+                };
                 let wide = Area {
-                    left: area.left.saturating_sub(1),
-                    top: area.top.saturating_sub(1),
-                    right: (area.right + 1).min(self.size[0].max(area.right)),
-                    bottom: (area.bottom + 1).min(self.size[1].max(area.bottom)),
+                    left: whole.left.saturating_sub(1),
+                    top: whole.top.saturating_sub(1),
+                    right: (whole.right + 1).min(self.size[0].max(whole.right)),
+                    bottom: (whole.bottom + 1).min(self.size[1].max(whole.bottom)),
                 };
                 let mut samples = self.sample(wide, 1, stop, &mut work, stats)?;
-                self.refine(area, &mut samples, stop, &mut work, stats)?;
+                self.refine(whole, &mut samples, stop, &mut work, stats)?;
                 pixels.show(area, |x, y| *samples.get(x, y));
             }
             Pass::Full | Pass::Smooth => {
@@ -268,8 +276,21 @@ impl Picture {
                     });
                     self.packet(&rays, near, work, stats)
                 });
-                for ((x, y), sample) in pixels.into_iter().zip(found) {
-                    samples.set(x, y, sample);
+                match found {
+                    View::Nothing(costs) => {
+                        let nothing = self.nothing();
+                        for ((x, y), cost) in pixels.into_iter().zip(costs) {
+                            samples.set(x, y, Sample { cost, ..nothing });
+                        }
+                    }
+                    View::Hits(seen) => {
+                        let [first, .., last] = seen.rays;
+                        let across = first.direction.distance(last.direction);
+                        self.shine(&[seen], across, work, stats);
+                        for ((x, y), sample) in pixels.into_iter().zip(work.samples[0]) {
+                            samples.set(x, y, sample);
+                        }
+                    }
                 }
                 if stop() {
                     return None;

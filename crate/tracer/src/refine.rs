@@ -4,17 +4,21 @@
 //! grid of n×n, whose mean replaces the single sample. Which pixels those are depends on the first
 //! samples only, so it does not matter in which order, or in which tile, pixels are treated.
 use crate::area::{Area, Samples};
-use crate::packet::{Near, Workspace};
+use crate::packet::{Near, View, Workspace};
 use crate::picture::{PACKET_SIZE, Picture, SQUARE, Stats};
 use crate::sample::{Sample, differ};
 use crate::soft::PACKET;
+use crate::square::Square;
 use field::Real;
 use glam::Vec3;
 use wide::f32x8;
 
+/// Packets of a square.
+const PACKETS: [u32; 2] = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
+
 impl Picture {
-    /// Replaces the samples of an area's pixels that differ from a neighbour by the mean of n×n.
-    /// `samples` must hold the pixels around the area too. `None` when asked to stop.
+    /// Replaces the samples of an area's pixels that differ from a neighbour by the mean of n×n. The area consists of
+    /// whole packets, and `samples` must hold the pixels around it too. `None` when asked to stop.
     pub(crate) fn refine(
         &self,
         area: Area,
@@ -24,73 +28,122 @@ impl Picture {
         stats: &mut Stats,
     ) -> Option<()> {
         let mut means = Vec::new();
+        // What the rays of one packet's pixels hit, and the number of each one's pixel among the means.
+        let (mut seen, mut owners) = (Vec::new(), Vec::new());
         for block in area.blocks([SQUARE; 2]) {
             if stop() {
                 return None;
             }
-            let mut wanted = block
-                .meet(area)
-                .pixels()
-                .filter(|&(x, y)| self.needs_more(samples, x, y))
-                .peekable();
-            if wanted.peek().is_none() {
-                continue;
-            }
-            // The pixels' rays run in the same beams as the packets that they belong to.
-            let packets = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
-            let mut square = self.square(block, packets, work);
-            for (x, y) in wanted {
-                let column = (x - block.left) / PACKET_SIZE[0];
-                let row = (y - block.top) / PACKET_SIZE[1];
-                let n = self.samples;
-                let (mut sum, mut cost) = (Vec3::ZERO, 0.0);
-                for first in (0..n * n).step_by(PACKET) {
-                    let count = (n * n - first).min(PACKET as u32);
-                    // Where in the pixel; the last one again where there are no more.
-                    let part = |i: usize| {
-                        let i = first + (i as u32).min(count - 1);
-                        [i % n, i / n].map(|k| (f64::from(k) + 0.5) / f64::from(n))
-                    };
-                    stats.primary_rays += u64::from(count);
-                    let near = square.near([column, row], packets);
-                    let quick = match near {
-                        Near::Lumps(near, Some(lens)) if self.solids.is_empty() => {
-                            let half = 0.5 * f64::from(SQUARE);
-                            let at = [x - block.left, y - block.top].map(|c| f64::from(c) - half);
-                            let place = |k: usize| f32x8::from_lanes(|lane| at[k] + part(lane)[k]);
-                            let middle =
-                                |k: usize| at[k] + 0.5 * (part(0)[k] + part(PACKET - 1)[k]);
-                            let places = [place(0), place(1)];
-                            let fan = lens.fan(places, [middle(0), middle(1)]);
-                            self.lump_packet(lens, &fan, near, work, stats)
-                        }
-                        _ => None,
-                    };
-                    let found = quick.unwrap_or_else(|| {
-                        let rays = core::array::from_fn(|i| {
-                            let [across, down] = part(i);
-                            self.ray(f64::from(x) + across, f64::from(y) + down)
-                        });
-                        self.packet(&rays, near, work, stats)
-                    });
-                    let found = &found[..count as usize];
-                    sum += found.iter().map(|s| s.colour).sum::<Vec3>();
-                    cost += found.iter().map(|s| s.cost).sum::<f32>();
+            let mut square = None;
+            for packet in block.meet(area).blocks(PACKET_SIZE) {
+                let wanted = packet
+                    .pixels()
+                    .filter(|&(x, y)| self.needs_more(samples, x, y));
+                for (x, y) in wanted {
+                    // The pixels' rays run in the same beams as the packets that they belong to.
+                    let square = square.get_or_insert_with(|| self.square(block, PACKETS, work));
+                    let mut sum = (Vec3::ZERO, 0.0);
+                    self.look_closer(
+                        block,
+                        square,
+                        [x, y],
+                        work,
+                        stats,
+                        |view, count| match view {
+                            View::Nothing(costs) => {
+                                sum.0 += self.nothing().colour * count as f32;
+                                sum.1 += costs[..count].iter().sum::<f32>();
+                            }
+                            View::Hits(mut hits) => {
+                                // The last ones are repeated.
+                                hits.hits[count..].fill(None);
+                                owners.push((means.len(), count));
+                                seen.push(hits);
+                            }
+                        },
+                    );
+                    means.push((x, y, sum.0, sum.1));
                 }
-                let all = (n * n) as f32;
-                means.push((x, y, sum / all, cost / all));
+                if seen.is_empty() {
+                    continue;
+                }
+                let corner = |x, y| self.ray(f64::from(x), f64::from(y)).direction;
+                let across =
+                    corner(packet.left, packet.top).distance(corner(packet.right, packet.bottom));
+                self.shine(&seen, across, work, stats);
+                for (found, &(owner, count)) in work.samples.iter().zip(&owners) {
+                    let (_, _, sum, cost) = &mut means[owner];
+                    *sum += found[..count].iter().map(|s| s.colour).sum::<Vec3>();
+                    *cost += found[..count].iter().map(|s| s.cost).sum::<f32>();
+                }
+                seen.clear();
+                owners.clear();
+                if stop() {
+                    return None;
+                }
             }
-            square.leave(work);
+            if let Some(square) = square {
+                square.leave(work);
+            }
         }
+        let all = (self.samples * self.samples) as f32;
         for (x, y, colour, cost) in means {
             let mut sample = *samples.get(x, y);
-            (sample.colour, sample.cost) = (colour, cost);
+            (sample.colour, sample.cost) = (colour / all, cost / all);
             samples.set(x, y, sample);
         }
         Some(())
     }
 
+    /// Sends a pixel's n×n rays, and tells what each eight of them see, and how many of those count.
+    fn look_closer<'a>(
+        &'a self,
+        block: Area,
+        square: &mut Square<'a>,
+        [x, y]: [u32; 2],
+        work: &mut Workspace,
+        stats: &mut Stats,
+        mut tell: impl FnMut(View, usize),
+    ) {
+        let column = (x - block.left) / PACKET_SIZE[0];
+        let row = (y - block.top) / PACKET_SIZE[1];
+        let n = self.samples;
+        for first in (0..n * n).step_by(PACKET) {
+            let count = (n * n - first).min(PACKET as u32);
+            // Where in the pixel; the last one again where there are no more.
+            let part = |i: usize| {
+                let i = first + (i as u32).min(count - 1);
+                [i % n, i / n].map(|k| (f64::from(k) + 0.5) / f64::from(n))
+            };
+            stats.primary_rays += u64::from(count);
+            let near = square.near([column, row], PACKETS);
+            let quick = match near {
+                Near::Lumps(near, Some(lens)) if self.solids.is_empty() => {
+                    let half = 0.5 * f64::from(SQUARE);
+                    let at = [x - block.left, y - block.top].map(|c| f64::from(c) - half);
+                    let place = |k: usize| f32x8::from_lanes(|lane| at[k] + part(lane)[k]);
+                    let middle = |k: usize| at[k] + 0.5 * (part(0)[k] + part(PACKET - 1)[k]);
+                    let places = [place(0), place(1)];
+                    let fan = lens.fan(places, [middle(0), middle(1)]);
+                    self.lump_packet(lens, &fan, near, work, stats)
+                }
+                _ => None,
+            };
+            let view = quick.unwrap_or_else(|| {
+                let rays = core::array::from_fn(|i| {
+                    let [across, down] = part(i);
+                    self.ray(f64::from(x) + across, f64::from(y) + down)
+                });
+                self.packet(&rays, near, work, stats)
+            });
+            tell(view, count as usize);
+        }
+    }
+
     fn needs_more(&self, samples: &Samples, x: u32, y: u32) -> bool {
+        if x >= self.size[0] || y >= self.size[1] {
+            return false;
+        }
         let here = samples.get(x, y);
         // On a plane seen at 80° from its normal, neighbouring pixels' distances differ by
         // tan 80° times the pixel's size.
