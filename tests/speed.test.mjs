@@ -27,6 +27,23 @@ function open(cores) {
   return browser.open({ before: (page) => page.addInitScript(pretend, cores) });
 }
 
+/** Clicks into the editor, as often as it takes until keys reach the text's end: a busy page may lose the first. */
+async function reachEditor(sinew) {
+  for (let attempt = 0; attempt < 10; attempt++) {
+    const { revision } = await sinew.status();
+    const editor = await sinew.place('editor');
+    await sinew.page.mouse.click(editor.x + editor.w / 2, editor.y + editor.h / 2);
+    await sinew.page.keyboard.press('Control+End');
+    await sinew.page.keyboard.press('1');
+    for (let wait = 0; wait < 100; wait++) {
+      const status = await sinew.status();
+      if (status.revision > revision && status.phase === 'done') return;
+      await new Promise((done) => setTimeout(done, 100));
+    }
+  }
+  assert.fail('no key reaches the editor');
+}
+
 /** Types a key and gives the milliseconds until each pass is on the screen. */
 async function keystroke(sinew, key) {
   const times = sinew.page.evaluate(() => {
@@ -78,12 +95,10 @@ for (const name of MODELS) {
       await sinew.load(`${text}\ngamma 1.0`);
       await sinew.resize(...SIZE);
       assert.equal((await sinew.status()).workers, workers);
-      const editor = await sinew.place('editor');
-      await sinew.page.mouse.click(editor.x + editor.w / 2, editor.y + editor.h / 2);
-      await sinew.page.keyboard.press('Control+End');
+      await reachEditor(sinew);
       const best = { workers };
       for (let round = 0; round < ROUNDS; round++) {
-        const times = await keystroke(sinew, '1');
+        const times = await keystroke(sinew, round % 2 === 0 ? '1' : 'Backspace');
         assert.ok(times.tracing <= times.smooth, JSON.stringify(times));
         for (const [key, time] of Object.entries(times)) {
           best[key] = Math.min(best[key] ?? Infinity, time);

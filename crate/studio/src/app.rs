@@ -114,7 +114,7 @@ pub struct App {
     pub(crate) parts: Parts,
     saved_settings: Settings,
     /// Seconds that new tiles wait to be shown, see [`REST`].
-    rest: f32,
+    pub(crate) rest: f32,
     /// The text, and whether it was compiled, that the diagnostics in the outbox are about.
     pub(crate) reported: Option<(u64, bool)>,
     started: Option<f64>,

@@ -325,7 +325,15 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let now = platform::now(ui.ctx());
     let session = &app.work.session;
     let draft = match &mut app.draft {
-        Some(draft) if view::needs_draft(app.settings.show, session, &app.renderer, now) => {
+        Some(draft)
+            if view::needs_draft(
+                app.settings.show,
+                session,
+                &app.renderer,
+                app.rest > 0.0,
+                now,
+            ) =>
+        {
             draft.texture(session, app.place)
         }
         _ => None,

@@ -124,8 +124,7 @@ impl Renderer {
             }
             self.halt();
             self.phase = Phase::Waiting;
-            let quick = self.coarse <= QUICK;
-            self.due = now + if quick { 0.0 } else { DEBOUNCE };
+            self.due = now + if self.is_within(QUICK) { 0.0 } else { DEBOUNCE };
         } else if self.phase != Phase::Cancelled {
             self.phase = Phase::Waiting;
             // Nothing is on the screen yet: the window is only finding its size.
@@ -253,6 +252,12 @@ impl Renderer {
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.phase
+    }
+
+    /// Whether a coarse picture of a change is expected within so many seconds of work.
+    #[must_use]
+    pub fn is_within(&self, seconds: f64) -> bool {
+        self.coarse <= seconds
     }
 
     /// How far the running picture is.

@@ -28,6 +28,9 @@ pub enum Show {
     Traced,
 }
 
+/// Seconds to the coarse picture, beside which a processor's draft would take long.
+const SOON: f64 = 1.0;
+
 /// What the view needs to know beside the session.
 pub struct Scenery<'a> {
     /// The user's work.
@@ -56,9 +59,16 @@ pub fn fit(place: Rect, frame: [u32; 2]) -> Rect {
     Rect::from_center_size(place.center(), frame * scale)
 }
 
-/// Whether the draft is to be drawn at all.
+/// Whether the draft is to be drawn at all. `slow`: the processor draws it, for which the workers have to wait. Then it
+/// is left out where a coarse picture comes [`SOON`], and the last picture stands in instead.
 #[must_use]
-pub fn needs_draft(show: Show, session: &Session, renderer: &Renderer, now: f64) -> bool {
+pub fn needs_draft(
+    show: Show,
+    session: &Session,
+    renderer: &Renderer,
+    slow: bool,
+    now: f64,
+) -> bool {
     match show {
         Show::Draft => true,
         Show::Traced => false,
@@ -66,7 +76,8 @@ pub fn needs_draft(show: Show, session: &Session, renderer: &Renderer, now: f64)
             let fresh = renderer
                 .texture()
                 .is_some_and(|(_, generation)| generation == session.generation());
-            !fresh || renderer.faded(now) < 1.0
+            let behind = !fresh || renderer.faded(now) < 1.0;
+            behind && !(slow && renderer.is_within(SOON) && renderer.texture().is_some())
         }
     }
 }

@@ -9,8 +9,9 @@
 //! [`picture`] cuts a tile into squares of pixels, and those into packets of eight rays. What the packets of a
 //! square share is in `square`: lists of what is near them, or beams that bounds are known of; packets that meet
 //! nothing send no rays. `packet` finds what the rays of a packet hit, first among the hard elements (`solids`,
-//! [`hard`]), then on the soft surface (`soft`), asks for shadows and mixes colours (`shade`).
-//! `refine` sends more rays where neighbouring pixels differ.
+//! [`hard`]), then on the soft surface (`soft`). `shadows` asks which lights the hits see and adds up colours
+//! (`shade`). `refine` sends more rays where neighbouring pixels differ; the hits of all those of one packet's pixels
+//! share beams to the lights.
 //!
 //! The soft surface is found in one of two ways, both certified.
 //!

@@ -130,6 +130,7 @@ impl Picture {
         stats: &mut Stats,
     ) {
         for shadow in &mut *shadows {
+            shadow.cost = 1.0;
             let (ray, limit) = (&shadow.ray, shadow.limit);
             if self.solids.first(ray, limit, &mut work.crossings).is_some() {
                 shadow.state = State::Dark;
@@ -251,7 +252,7 @@ fn darken(packet: &mut [&mut Shadow], dark: u32, work: &Workspace, stats: &mut S
     stats.field_evaluations += work.scratch.evaluations;
     let costs = work.costs(packet.len());
     for (i, (shadow, cost)) in packet.iter_mut().zip(costs).enumerate() {
-        shadow.cost += cost;
+        shadow.cost = cost;
         shadow.state = if dark >> i & 1 == 0 {
             State::Lit
         } else {
