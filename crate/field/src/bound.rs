@@ -185,6 +185,17 @@ impl Bound {
         }
     }
 
+    /// A span along a direction, or one that differs from it by no more than `spread`, is as near to the field as one
+    /// so many times as long may be: at most 1. Along an infinite plane the field does not change.
+    #[inline]
+    #[must_use]
+    pub fn shortened(&self, direction: DVec3, spread: f64) -> f64 {
+        match &self.place {
+            Place::Plane { normal, .. } => (normal.dot(direction).abs() + spread + 1e-9).min(1.0),
+            _ => 1.0,
+        }
+    }
+
     /// The bounds at some nearness, for spans of some length.
     #[inline(always)] // Pictures spend their time here.
     #[must_use]

@@ -254,6 +254,12 @@ impl Slab {
     pub fn is_made(&self) -> bool {
         self.block != NONE
     }
+
+    /// Whether rounding may be so large that no span ever shows that there is nothing here.
+    #[must_use]
+    pub fn is_blurred(&self) -> bool {
+        self.spent.noise >= THRESHOLD
+    }
 }
 
 impl<'a> Slabs<'a> {
@@ -505,7 +511,9 @@ impl<'a> Slabs<'a> {
     #[must_use]
     pub fn is_final(&self, index: u32) -> bool {
         let slab = self.slab(index);
-        slab.spent.spans <= self.precision.last || slab.budget <= self.precision.last
+        // Rounding is what it is: spans much nearer to the field than that would tell no more.
+        let last = self.precision.last.max(slab.spent.noise);
+        slab.spent.spans <= last || slab.budget <= last
     }
 
     /// Stretches of rays shorter than this need not be looked into.
@@ -640,6 +648,7 @@ impl<'a> Slabs<'a> {
             radius = radius.max(cell.radius());
         }
         let length = SpanLength::new(to - from);
+        let (direction, spread) = (beam.axis.direction, beam.spread);
         let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);
         let rounding = self.precision.rounding;
         // Coordinates are rounded in the world and in the primitive's own frame.
@@ -675,6 +684,12 @@ impl<'a> Slabs<'a> {
                         let primitive = self.list[id as usize];
                         let bound = &self.terms.bounds[primitive as usize];
                         let near = bound.nearness(center, radius);
+                        let shortened = bound.shortened(direction, spread);
+                        let length = if shortened < 1.0 {
+                            SpanLength::new(shortened * (to - from))
+                        } else {
+                            length
+                        };
                         let estimate = bound.estimate(near, &length);
                         if estimate.magnitude <= self.terms.left_out {
                             continue;
