@@ -787,11 +787,12 @@ impl<'a> Slabs<'a> {
                     continue;
                 }
             }
+            let steepness = self.relative_slope(id, candidate.distance);
             if id & GROUP == 0 {
                 let bound = &self.terms.bounds[self.list[id as usize] as usize];
-                spent.noise += rounding * bound.cancels();
+                let cancels = bound.cancels(candidate.distance);
+                spent.noise += cancels * (rounding + misplaced * steepness);
             }
-            let steepness = self.relative_slope(id, candidate.distance);
             noise += magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steepness);
             steepest = steepest.max(steepness);
         }
