@@ -15,11 +15,13 @@ use field::bound::SpanLength;
 use field::{Bound, Primitive, THRESHOLD};
 
 /// Pieces that one packet may have looked at; what is left is decided by the signs at its ends. A stretch may have this
-/// part of those that are left, and either half of a piece half of what the piece may: where a ray runs along the
-/// surface no number would do, and what comes behind must not go short.
+/// part of those that are left, and the near half of a piece half of what the piece may, unless that is few: where a ray
+/// runs along the surface no number would do, and what comes behind must not go short.
 const MOST_PIECES: u32 = 1 << 14;
 /// See [`MOST_PIECES`].
 const AT_ONCE: u32 = 4;
+/// See [`MOST_PIECES`]: so many tell a few crossings apart.
+const FEW: u32 = 256;
 /// Pieces halved so often are not halved further: lengths that are not finite would never be short.
 const DEEPEST: u32 = 50;
 /// A piece with so many primitives more counts as one more.
@@ -254,7 +256,7 @@ impl Settler {
         let near = Piece {
             to: t,
             depth: piece.depth + 1,
-            most: piece.most / 2,
+            most: (piece.most / 2).max(FEW).min(piece.most),
             calm: near,
             ends: [left, middle],
             ..piece.clone()

@@ -231,6 +231,10 @@ const LEAST: f64 = 0.5;
 /// Fewer primitives than this do not share an interpolant, whose evaluation costs a ray about as much as theirs.
 const FEWEST: u32 = 3;
 
+/// Slabs of infinitely wide primitives that end further out than this, in units of half the scene's size, are halved
+/// rather than rounded much.
+const REMOTE: f64 = 16.0;
+
 /// A slab is given to narrower beams when its beam is wider than this times its length.
 const NARROW: f64 = 0.5;
 /// The same of beams wider than a block.
@@ -733,6 +737,11 @@ impl<'a> Slabs<'a> {
         let for_spans = share(budget, spent.spans);
         let for_shared = share(self.precision.shared, spent.shared);
         let resolves = levels_below <= BLOCK;
+        // Of a slab that reaches far out, most are nearer than its end, and halves are rounded less.
+        let remote = to > REMOTE && to - from > 0.5 * to;
+        let rounded = |magnitude: f64, steepness: f64| {
+            magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steepness)
+        };
         let mut count = 0;
         for candidate in &mut self.scratch {
             let share = for_shared(candidate.magnitude);
@@ -762,7 +771,13 @@ impl<'a> Slabs<'a> {
             let fate = match candidate.fate {
                 Fate::Dropped => Fate::Dropped,
                 Fate::Shared if !few => Fate::Shared,
-                _ if resolves && !candidate.kinked && span <= for_spans(magnitude) => {
+                _ if resolves
+                    && !candidate.kinked
+                    && span <= for_spans(magnitude)
+                    && !(remote
+                        && rounded(magnitude, self.relative_slope(id, candidate.distance))
+                            > for_spans(magnitude)) =>
+                {
                     Fate::Resolved
                 }
                 _ => Fate::Pending,
@@ -793,7 +808,7 @@ impl<'a> Slabs<'a> {
                 let cancels = bound.cancels(candidate.distance);
                 spent.noise += cancels * (rounding + misplaced * steepness);
             }
-            noise += magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steepness);
+            noise += rounded(magnitude, steepness);
             steepest = steepest.max(steepness);
         }
         // Where the field is T, what adds is together no more than that and what carves.
