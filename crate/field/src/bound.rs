@@ -7,7 +7,7 @@
 mod place;
 
 use crate::envelope::{self, PEANO, Roughness};
-use crate::{Kernel, Primitive, Real, Skeleton, bounds, endless, plane};
+use crate::{Kernel, Primitive, Real, Skeleton, Wave, bounds, endless, plane};
 use core::f64::consts::FRAC_1_SQRT_2;
 use glam::DVec3;
 use place::Place;
@@ -147,12 +147,10 @@ impl Bound {
             .bounding_sphere()
             .unwrap_or((DVec3::ZERO, f64::INFINITY));
         let ripple = primitive.profile.as_ref().map_or(0.0, |p| {
-            let extent = if dimension == 2 {
-                measure.sqrt()
-            } else {
-                measure
-            };
-            p.scale[0].abs().max(p.scale[1].abs()).max(1.0) / extent.max(f64::MIN_POSITIVE)
+            let [u, v] = steps(skeleton);
+            let [a, b] = [0, 1].map(|i| pitch(p.waves[i]) * p.scale[i].abs());
+            // Of what changes slowly, a restriction too, about the form's own size.
+            (a * u + b * v).max(u.max(v))
         });
         Self {
             place: Place::of(primitive),
@@ -434,6 +432,32 @@ impl Bound {
     #[must_use]
     pub fn carves(&self) -> bool {
         self.negative
+    }
+}
+
+/// How fast a skeleton's parameters change, if it has any: 1 over its length, or over a triangle's heights.
+fn steps(skeleton: &Skeleton) -> [f64; 2] {
+    let one_over = |x: f64| 1.0 / x.max(f64::MIN_POSITIVE);
+    match skeleton {
+        Skeleton::Triangle { corners: [a, b, c] } => {
+            let (e1, e2) = (*b - *a, *c - *a);
+            let inverse = one_over(e1.cross(e2).length());
+            [e2.length() * inverse, e1.length() * inverse]
+        }
+        Skeleton::Segment { .. } | Skeleton::Arc { .. } => [one_over(skeleton.measure()), 0.0],
+        Skeleton::Point { .. }
+        | Skeleton::Polygon { .. }
+        | Skeleton::Curve { .. }
+        | Skeleton::Plane { .. } => [0.0; 2],
+    }
+}
+
+/// A wave's frequency, in radians per unit of what it is a function of.
+fn pitch(wave: Wave) -> f64 {
+    match wave {
+        Wave::One => 0.0,
+        Wave::X | Wave::Sin | Wave::Cos | Wave::Saw | Wave::Hat | Wave::Step => 1.0,
+        Wave::Sin2 | Wave::Cos2 => 2.0,
     }
 }
 

@@ -17,7 +17,7 @@ use field::{Bound, Primitive, THRESHOLD};
 /// Pieces that one packet may have looked at; what is left is decided by the signs at its ends. A stretch may have this
 /// part of those that are left, and the near half of a piece half of what the piece may, unless that is few: where a ray
 /// runs along the surface no number would do, and what comes behind must not go short.
-const MOST_PIECES: u32 = 1 << 14;
+const MOST_PIECES: u32 = 1 << 16;
 /// See [`MOST_PIECES`].
 const AT_ONCE: u32 = 4;
 /// See [`MOST_PIECES`]: so many tell a few crossings apart.
