@@ -8,7 +8,6 @@ mod place;
 
 use crate::envelope::{self, PEANO, Roughness};
 use crate::{Kernel, Primitive, Real, Skeleton, Wave, bounds, endless, plane};
-use core::f64::consts::FRAC_1_SQRT_2;
 use glam::DVec3;
 use place::Place;
 
@@ -277,21 +276,14 @@ impl Bound {
         steepest.min(self.power() / near.distance)
     }
 
-    /// What formulas of faces add up to the field at a distance may be as large as this, however small the field is: they
-    /// sum over edges, and beside a face those sums cancel. Rounding is relative to it.
-    ///
-    /// Of the Gaussian's terms of an end of an edge, h from the edge's line and t along it, none is larger than
-    /// `exp(−max(h, t)²)`, and `max(h, t)² ≥ (h² + t²)/2`; of [`gauss::polygon`](crate::gauss::polygon).
+    /// What formulas of faces add up to the field may be as large as this, however small the field is: they sum over
+    /// edges, and beside a face those sums cancel. Rounding is relative to it.
     #[inline]
     #[must_use]
-    pub fn cancels(&self, distance: f64) -> f64 {
+    pub fn cancels(&self) -> f64 {
         if self.dimension == 2 && self.whole.is_finite() && self.kernel.falls_fast() {
             let plane = self.endless * plane::jet(self.kernel, [0.0; 3]).value;
-            let far = match self.kernel {
-                Kernel::Gauss => size(Kernel::Gauss, distance * self.width * FRAC_1_SQRT_2),
-                _ => 1.0,
-            };
-            plane.min(self.whole) * far
+            plane.min(self.whole)
         } else {
             0.0
         }

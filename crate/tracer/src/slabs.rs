@@ -805,8 +805,7 @@ impl<'a> Slabs<'a> {
             let steepness = self.relative_slope(id, candidate.distance);
             if id & GROUP == 0 {
                 let bound = &self.terms.bounds[self.list[id as usize] as usize];
-                let cancels = bound.cancels(candidate.distance);
-                spent.noise += cancels * (rounding + misplaced * steepness);
+                spent.noise += 2.0 * rounding * bound.cancels();
             }
             noise += rounded(magnitude, steepness);
             steepest = steepest.max(steepness);

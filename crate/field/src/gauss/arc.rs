@@ -13,11 +13,12 @@
 //! window. It has one peak and no other feature, of width L times less than the window's: its
 //! Chebyshev coefficients fall like those of e^(−L²x²), which are `e^(−L²/2)·I_k(L²/2)` for the even
 //! degrees 2k. With n nodes those up to degree 2n−1 count exactly, and the rest is about 10⁻⁷ (L = 3.6,
-//! n = 16) or 10⁻¹⁵ (L = 6.3, n = 40) of the peak. Only opposite of a piece, where both ends are about as near and
-//! the window has two parts, what is integrated reaches further out than L.
+//! n = 16) or 10⁻¹⁵ (L = 6.3, n = 40) of the peak; of one that falls off from an end less. Where the window would be
+//! wider than a half circle, what is integrated may reach further out than L: there it is up to 10⁻⁶ and 10⁻¹².
 //!
 //! Azimuths jump by 2π somewhere. An arc of at most a half circle whose middle is at |u| ≤ π
-//! reaches |u| = 3π/2 at most: besides |u| ≤ w the window is |u| ≥ 2π − w there. A longer arc is the sum of its halves: all terms are positive, and nothing cancels
+//! reaches |u| = 3π/2 at most: the window is either narrower than π/2 and meets it in one piece, or
+//! takes it whole. A longer arc is the sum of its halves: all terms are positive, and nothing cancels
 //! in a gap or on the axis. Azimuths are measured from that of the origin, the arc's or the gap's
 //! middle, so short arcs of huge circles and narrow gaps keep their digits.
 //!
@@ -26,7 +27,7 @@
 use crate::angle::direction;
 use crate::bone::Arc;
 use crate::{Jet, Real, legendre};
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
 const SINGLE: [(f64, f64); 8] = legendre::pairs();
 const DOUBLE: [(f64, f64); 20] = legendre::pairs();
@@ -55,8 +56,17 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     ];
 
     let coupling = two * two * radius * rho;
+    // Of the square of the distance from an end, or from what is opposite the gap: what is not that of the gap ρ − r.
+    let beyond = |end_x: R, end_y: R| {
+        let (dx, dy) = (x - end_x, beside - end_y);
+        (dx * dx + dy * dy - gap * gap).max(R::splat(0.0))
+    };
+    let end_x = -(radius * R::lift(arc.versine));
+    let end_y = radius * R::lift(arc.sine);
+    // The other end is further away, as y ≥ 0.
+    let near_end = beyond(end_x, end_y);
     let sums = if arc.side.lane(0) > 0.0 {
-        piece(coupling, -azimuth, [-half_angle, half_angle])
+        piece(coupling, near_end, -azimuth, [-half_angle, half_angle])
     } else {
         // Azimuths count from the gap's middle. The halves meet opposite, at the same bits of u;
         // the other ends keep the digits of a small gap.
@@ -66,7 +76,13 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
             <R::Scalar as Real>::splat(1.0) - arc.versine,
         ));
         let seam = R::splat(PI) - azimuth;
-        let one = piece(coupling, zero, [half_gap - azimuth, seam]);
+        let opposite = beyond(-(radius + radius), zero);
+        let one = piece(
+            coupling,
+            near_end.min(opposite),
+            zero,
+            [half_gap - azimuth, seam],
+        );
         let end = -half_gap - azimuth;
         let turn = R::splat(TAU);
         // The middle of the other half, (seam + end + 2π)/2, beyond π?
@@ -75,7 +91,8 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
             R::select(wraps, seam - turn, seam),
             R::select(wraps, end, end + turn),
         ];
-        let other = piece(coupling, zero, other);
+        let far_end = beyond(end_x, -end_y);
+        let other = piece(coupling, far_end.min(opposite), zero, other);
         [one[0] + other[0], one[1] + other[1], one[2] + other[2]]
     };
 
@@ -93,48 +110,36 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     }
 }
 
-/// The window's w, given `sin²(v/2)`: past all if it is all.
+/// The window's w, or a little more; past all if that exceeds π/2. Given `4rρ·sin²(v/2)`.
 #[inline(always)]
 fn window<R: Real>(coupling: R, nearest: R) -> R {
-    let one = R::splat(1.0);
     let (around, beyond) = if R::DOUBLE {
         (39.7, 39.7)
     } else {
         (13.0, 15.5)
     };
     let at_end = R::splat(0.0).lt(nearest);
-    let cut = R::select(at_end, R::splat(beyond), R::splat(around));
-    let square = nearest + cut / coupling.max(R::splat(1e-30));
-    let within = square.min(one);
-    let half = direction(within.sqrt(), (one - within).sqrt());
-    R::select(square.lt(one), half + half, R::splat(1.5 * PI + 0.1))
+    let cut = nearest + R::select(at_end, R::splat(beyond), R::splat(around));
+    let sine = (cut / coupling.max(R::splat(1e-30))).sqrt();
+    // arcsin s ≤ s(1 + 0.2215s²) up to s = √½: the quotient (arcsin s − s)/s³ rises.
+    let narrow = R::splat(2.0) * sine * (R::splat(1.0) + R::splat(0.2215) * sine * sine);
+    R::select(
+        sine.lt(R::splat(FRAC_1_SQRT_2)),
+        narrow,
+        R::splat(1.5 * PI + 0.1),
+    )
 }
 
 /// The integrals of `e^(−coupling·s²)·(1, s², s·c)`, s and c the sine and cosine of u/2, over what of
-/// `from + limits` is in the window; `from` apart, lest a short piece lose its length's digits.
+/// `from + limits` is in the window; `from` apart, lest a short piece lose its length's digits. `ends` is what
+/// coupling·s² is at the nearer of the limits.
 #[inline(always)]
-fn piece<R: Real>(coupling: R, from: R, [low, high]: [R; 2]) -> [R; 3] {
+fn piece<R: Real>(coupling: R, ends: R, from: R, [low, high]: [R; 2]) -> [R; 3] {
     let zero = R::splat(0.0);
-    let (first, last) = (from + low, from + high);
-    // |u| ≤ 3π/2: an eighth is in the first octant.
-    let square = |u: R| {
-        let (sine, _) = double(double((R::splat(0.125) * u).sin_cos_octant()));
-        sine * sine
-    };
-    let abreast = R::both(first.lt(zero), zero.lt(last));
-    let nearest = R::select(abreast, zero, square(first).min(square(last)));
-    let reach = window(coupling, nearest);
-    let other = R::splat(TAU) - reach;
-    let low = R::select(
-        reach.lt(first),
-        low.max(other - from),
-        R::select((-other).lt(first), low.max(-reach - from), low),
-    );
-    let high = R::select(
-        last.lt(-reach),
-        high.min(-other - from),
-        R::select(last.lt(other), high.min(reach - from), high),
-    );
+    let abreast = R::both((from + low).lt(zero), zero.lt(from + high));
+    let reach = window(coupling, R::select(abreast, zero, ends));
+    let low = low.max(-reach - from);
+    let high = high.min(reach - from);
     // Mean and half the difference of the limits of u/2.
     let quarter = R::splat(0.25);
     let mean = R::splat(0.5) * from + quarter * (high + low);
