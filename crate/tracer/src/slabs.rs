@@ -191,6 +191,8 @@ pub struct Slab {
     anew: bool,
     /// Whether what is pending is not smooth here, and nothing else is pending.
     pub kinked: bool,
+    /// Whether rounding of something that is pending may be as large as T.
+    blurring: bool,
     /// The interpolant of its shared primitives. [`NONE`]: not yet made.
     block: u32,
     beam: usize,
@@ -246,6 +248,9 @@ const BLOCK: u32 = 2;
 /// counts terms as no larger than this.
 pub const LARGE_TERM: f64 = 4.0 * THRESHOLD;
 
+/// Rays are settled at once, by all primitives, in slabs with no more than this many.
+const MOST_BLURRED: usize = 32;
+
 /// Slabs and list entries above which a tree is thrown away between two packets.
 const LARGE: (usize, usize) = (1 << 16, 1 << 21);
 
@@ -259,10 +264,11 @@ impl Slab {
         self.block != NONE
     }
 
-    /// Whether rounding may be so large that no span ever shows that there is nothing here.
+    /// Whether rounding is so large, or will be of some pending primitive, that no span shows that there is nothing here.
     #[must_use]
     pub fn is_blurred(&self) -> bool {
         self.spent.noise >= THRESHOLD
+            || self.blurring && self.pending.len() + self.resolved.len() <= MOST_BLURRED
     }
 }
 
@@ -759,7 +765,7 @@ impl<'a> Slabs<'a> {
         lists.iter_mut().for_each(Vec::clear);
         let (mut pending_above, mut pending_below) = (0.0, 0.0);
         // Whether something is pending that spans will follow, and something that they will not.
-        let (mut left, mut kinked) = (false, false);
+        let (mut left, mut kinked, mut blurring) = (false, false, false);
         for candidate in &self.scratch {
             let Candidate {
                 id,
@@ -794,6 +800,10 @@ impl<'a> Slabs<'a> {
                     }
                     if candidate.carves {
                         pending_below += magnitude;
+                    }
+                    if id & GROUP == 0 {
+                        let bound = &self.terms.bounds[self.list[id as usize] as usize];
+                        blurring |= 2.0 * rounding * bound.cancels() >= THRESHOLD;
                     }
                     continue;
                 }
@@ -850,6 +860,7 @@ impl<'a> Slabs<'a> {
             parent,
             anew,
             kinked: kinked && !left && resolves,
+            blurring: blurring && resolves,
             block: NONE,
             beam: number,
             children: [0; 4],
