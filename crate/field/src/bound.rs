@@ -7,7 +7,7 @@
 mod place;
 
 use crate::envelope::{self, PEANO, Roughness};
-use crate::{Kernel, Primitive, Real, Skeleton, bounds, endless, plane};
+use crate::{Kernel, Primitive, Real, Skeleton, Wave, bounds, endless, plane};
 use glam::DVec3;
 use place::Place;
 
@@ -146,12 +146,10 @@ impl Bound {
             .bounding_sphere()
             .unwrap_or((DVec3::ZERO, f64::INFINITY));
         let ripple = primitive.profile.as_ref().map_or(0.0, |p| {
-            let extent = if dimension == 2 {
-                measure.sqrt()
-            } else {
-                measure
-            };
-            p.scale[0].abs().max(p.scale[1].abs()).max(1.0) / extent.max(f64::MIN_POSITIVE)
+            let [u, v] = steps(skeleton);
+            let [a, b] = [0, 1].map(|i| pitch(p.waves[i]) * p.scale[i].abs());
+            // Of what changes slowly, a restriction too, about the form's own size.
+            (a * u + b * v).max(u.max(v))
         });
         Self {
             place: Place::of(primitive),
@@ -182,6 +180,17 @@ impl Bound {
             distance: (distance - radius).max(0.0),
             within,
             stretch,
+        }
+    }
+
+    /// A span along a direction, or one that differs from it by no more than `spread`, is as near to the field as one
+    /// so many times as long may be: at most 1. Along an infinite plane the field does not change.
+    #[inline]
+    #[must_use]
+    pub fn shortened(&self, direction: DVec3, spread: f64) -> f64 {
+        match &self.place {
+            Place::Plane { normal, .. } => (normal.dot(direction).abs() + spread + 1e-9).min(1.0),
+            _ => 1.0,
         }
     }
 
@@ -415,6 +424,32 @@ impl Bound {
     #[must_use]
     pub fn carves(&self) -> bool {
         self.negative
+    }
+}
+
+/// How fast a skeleton's parameters change, if it has any: 1 over its length, or over a triangle's heights.
+fn steps(skeleton: &Skeleton) -> [f64; 2] {
+    let one_over = |x: f64| 1.0 / x.max(f64::MIN_POSITIVE);
+    match skeleton {
+        Skeleton::Triangle { corners: [a, b, c] } => {
+            let (e1, e2) = (*b - *a, *c - *a);
+            let inverse = one_over(e1.cross(e2).length());
+            [e2.length() * inverse, e1.length() * inverse]
+        }
+        Skeleton::Segment { .. } | Skeleton::Arc { .. } => [one_over(skeleton.measure()), 0.0],
+        Skeleton::Point { .. }
+        | Skeleton::Polygon { .. }
+        | Skeleton::Curve { .. }
+        | Skeleton::Plane { .. } => [0.0; 2],
+    }
+}
+
+/// A wave's frequency, in radians per unit of what it is a function of.
+fn pitch(wave: Wave) -> f64 {
+    match wave {
+        Wave::One => 0.0,
+        Wave::X | Wave::Sin | Wave::Cos | Wave::Saw | Wave::Hat | Wave::Step => 1.0,
+        Wave::Sin2 | Wave::Cos2 => 2.0,
     }
 }
 

@@ -42,14 +42,16 @@
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
 //! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are
-//!   not looked into, and one packet looks at no more than 16384 pieces of as many stretches.
+//!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left,
+//!   and what comes after its share is used up is decided by the signs at its ends.
 //! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
 //!   shared and rounding leaves many rays in doubt: such pictures are slow.
 //! - A primitive with a profile has spans by an estimate of the profile's derivatives. In scenes of at most 16
 //!   primitives, where its kinks and jumps (`field::kinks`; polygons and curves have none) meet a slab, rays are settled
 //!   alone, each in pieces from kink to kink; that would take too long in larger ones, so that thin flesh next to a
 //!   kink may be missed there, and a hit be off.
-//! - A packet looks at no more than 2¹⁷ list entries, or 64 times the primitives in its beam; after
+//! - Where rounding may be as large as T, as beside Gaussian faces of blobbiness 20 and more, rays are settled alone at once.
+//! - A packet looks at no more than 2¹⁷ list entries (what is evaluated to settle rays counts, too), or 64 times the primitives in its beam; after
 //!   that its slabs are settled as they are, and where that looks at too many pieces what is left is
 //!   decided by the signs at its ends. A slab is no shorter than 2⁻⁴⁰ of its beam.
 //! - Soft planes are followed up to 10⁴ times the scene's size.

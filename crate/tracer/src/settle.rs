@@ -14,13 +14,17 @@ use core::ops::Range;
 use field::bound::SpanLength;
 use field::{Bound, Primitive, THRESHOLD};
 
-/// Pieces that one packet may have looked at; what is left is decided by the signs at its ends.
-const MOST_PIECES: u32 = 1 << 14;
-/// Stretches that one packet may have looked at; others are passed over.
-const MOST_STRETCHES: u32 = 1 << 14;
+/// Pieces that one packet may have looked at; what is left is decided by the signs at its ends. A stretch may have this
+/// part of those that are left, and the near half of a piece half of what the piece may, unless that is few: where a ray
+/// runs along the surface no number would do, and what comes behind must not go short.
+const MOST_PIECES: u32 = 1 << 16;
+/// See [`MOST_PIECES`].
+const AT_ONCE: u32 = 4;
+/// See [`MOST_PIECES`]: so many tell a few crossings apart.
+const FEW: u32 = 256;
 /// Pieces halved so often are not halved further: lengths that are not finite would never be short.
 const DEEPEST: u32 = 50;
-/// A piece or stretch with so many primitives more counts as one more.
+/// A piece with so many primitives more counts as one more.
 const LONG: u32 = 64;
 /// Calm primitives together are off by at most this part of T.
 const CALM: f64 = 1e-9;
@@ -37,7 +41,6 @@ pub struct Settler {
     /// The primitives that count on the stretch.
     pub list: Vec<u32>,
     pieces: u32,
-    stretches: u32,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
 }
@@ -47,7 +50,6 @@ impl Default for Settler {
         Self {
             list: Vec::new(),
             pieces: MOST_PIECES,
-            stretches: MOST_STRETCHES,
             evaluations: 0,
         }
     }
@@ -60,6 +62,8 @@ struct Piece {
     to: f64,
     /// How many times halved.
     depth: u32,
+    /// How many pieces may be looked at in it.
+    most: u32,
     /// What is calm, less T.
     calm: Span<f64>,
     /// The primitives that are not: a range of the list.
@@ -99,17 +103,12 @@ impl Settler {
         [from, to]: [f64; 2],
         mut tell: impl FnMut(f64, bool) -> bool,
     ) {
-        // A list is evaluated at both ends whatever comes.
-        self.stretches = self
-            .stretches
-            .saturating_sub(1 + self.list.len() as u32 / LONG);
-        if self.stretches == 0 {
-            return;
-        }
         // What every primitive may be off by where it is calm.
         let share = CALM * THRESHOLD / self.list.len().max(1) as f64;
         let mut start = from;
-        for end in self.kinks(along, [from, to]) {
+        let parts = self.kinks(along, [from, to]);
+        let most = self.pieces / AT_ONCE / parts.len() as u32;
+        for end in parts {
             // Next to a kink, not on it.
             let gap = |t: f64| (1e-3 * along.resolution).max(1e-13 * (1.0 + t));
             let first = if start > from {
@@ -128,6 +127,7 @@ impl Settler {
                 from: first,
                 to: last,
                 depth: 0,
+                most,
                 calm: Span([-THRESHOLD; 4]),
                 rest,
                 ends,
@@ -176,12 +176,12 @@ impl Settler {
         mut piece: Piece,
         tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
-        self.pieces = self
-            .pieces
-            .saturating_sub(1 + piece.rest.len() as u32 / LONG);
-        if self.pieces == 0 {
+        let cost = 1 + piece.rest.len() as u32 / LONG;
+        if piece.most < cost {
             return self.refine(along, &piece, tell);
         }
+        piece.most -= cost;
+        self.pieces = self.pieces.saturating_sub(cost);
         let length = piece.to - piece.from;
         let center = along.ray.at(0.5 * (piece.from + piece.to));
         let radius = 0.5 * length * (1.0 + 1e-9);
@@ -194,6 +194,12 @@ impl Settler {
         for at in piece.rest.clone() {
             let p = self.list[at];
             let bound = &along.sight.bounds[p as usize];
+            let shortened = bound.shortened(along.ray.direction, 0.0);
+            let span_length = if shortened < 1.0 {
+                SpanLength::new(shortened * length)
+            } else {
+                span_length
+            };
             let estimate = bound.estimate(bound.nearness(center, radius), &span_length);
             size += estimate.magnitude.min(LARGE_TERM);
             if estimate.error <= share {
@@ -250,18 +256,25 @@ impl Settler {
         let near = Piece {
             to: t,
             depth: piece.depth + 1,
+            most: (piece.most / 2).max(FEW).min(piece.most),
             calm: near,
             ends: [left, middle],
             ..piece.clone()
         };
+        let before = self.pieces;
+        if !self.between(along, share, near, tell) {
+            return false;
+        }
+        // What the near half left is the far one's.
         let far = Piece {
             from: t,
             depth: piece.depth + 1,
+            most: piece.most.saturating_sub(before - self.pieces),
             calm: far,
             ends: [middle, right],
             ..piece.clone()
         };
-        self.between(along, share, near, tell) && self.between(along, share, far, tell)
+        self.between(along, share, far, tell)
     }
 
     /// The crossing on a piece if its ends are on different sides.

@@ -191,6 +191,8 @@ pub struct Slab {
     anew: bool,
     /// Whether what is pending is not smooth here, and nothing else is pending.
     pub kinked: bool,
+    /// Whether rounding of something that is pending may be as large as T.
+    blurring: bool,
     /// The interpolant of its shared primitives. [`NONE`]: not yet made.
     block: u32,
     beam: usize,
@@ -231,6 +233,10 @@ const LEAST: f64 = 0.5;
 /// Fewer primitives than this do not share an interpolant, whose evaluation costs a ray about as much as theirs.
 const FEWEST: u32 = 3;
 
+/// Slabs of infinitely wide primitives that end further out than this, in units of half the scene's size, are halved
+/// rather than rounded much.
+const REMOTE: f64 = 16.0;
+
 /// A slab is given to narrower beams when its beam is wider than this times its length.
 const NARROW: f64 = 0.5;
 /// The same of beams wider than a block.
@@ -241,6 +247,9 @@ const BLOCK: u32 = 2;
 /// Where the field is T no term is much larger than that, unless others carve it away: what is known of rounding
 /// counts terms as no larger than this.
 pub const LARGE_TERM: f64 = 4.0 * THRESHOLD;
+
+/// Rays are settled at once, by all primitives, in slabs with no more than this many.
+const MOST_BLURRED: usize = 32;
 
 /// Slabs and list entries above which a tree is thrown away between two packets.
 const LARGE: (usize, usize) = (1 << 16, 1 << 21);
@@ -253,6 +262,13 @@ impl Slab {
     #[must_use]
     pub fn is_made(&self) -> bool {
         self.block != NONE
+    }
+
+    /// Whether rounding is so large, or will be of some pending primitive, that no span shows that there is nothing here.
+    #[must_use]
+    pub fn is_blurred(&self) -> bool {
+        self.spent.noise >= THRESHOLD
+            || self.blurring && self.pending.len() + self.resolved.len() <= MOST_BLURRED
     }
 }
 
@@ -505,7 +521,9 @@ impl<'a> Slabs<'a> {
     #[must_use]
     pub fn is_final(&self, index: u32) -> bool {
         let slab = self.slab(index);
-        slab.spent.spans <= self.precision.last || slab.budget <= self.precision.last
+        // Rounding is what it is: spans much nearer to the field than that would tell no more.
+        let last = self.precision.last.max(slab.spent.noise);
+        slab.spent.spans <= last || slab.budget <= last
     }
 
     /// Stretches of rays shorter than this need not be looked into.
@@ -640,6 +658,7 @@ impl<'a> Slabs<'a> {
             radius = radius.max(cell.radius());
         }
         let length = SpanLength::new(to - from);
+        let (direction, spread) = (beam.axis.direction, beam.spread);
         let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);
         let rounding = self.precision.rounding;
         // Coordinates are rounded in the world and in the primitive's own frame.
@@ -675,6 +694,12 @@ impl<'a> Slabs<'a> {
                         let primitive = self.list[id as usize];
                         let bound = &self.terms.bounds[primitive as usize];
                         let near = bound.nearness(center, radius);
+                        let shortened = bound.shortened(direction, spread);
+                        let length = if shortened < 1.0 {
+                            SpanLength::new(shortened * (to - from))
+                        } else {
+                            length
+                        };
                         let estimate = bound.estimate(near, &length);
                         if estimate.magnitude <= self.terms.left_out {
                             continue;
@@ -718,6 +743,11 @@ impl<'a> Slabs<'a> {
         let for_spans = share(budget, spent.spans);
         let for_shared = share(self.precision.shared, spent.shared);
         let resolves = levels_below <= BLOCK;
+        // Of a slab that reaches far out, most are nearer than its end, and halves are rounded less.
+        let remote = to > REMOTE && to - from > 0.5 * to;
+        let rounded = |magnitude: f64, steepness: f64| {
+            magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steepness)
+        };
         let mut count = 0;
         for candidate in &mut self.scratch {
             let share = for_shared(candidate.magnitude);
@@ -735,7 +765,7 @@ impl<'a> Slabs<'a> {
         lists.iter_mut().for_each(Vec::clear);
         let (mut pending_above, mut pending_below) = (0.0, 0.0);
         // Whether something is pending that spans will follow, and something that they will not.
-        let (mut left, mut kinked) = (false, false);
+        let (mut left, mut kinked, mut blurring) = (false, false, false);
         for candidate in &self.scratch {
             let Candidate {
                 id,
@@ -747,7 +777,13 @@ impl<'a> Slabs<'a> {
             let fate = match candidate.fate {
                 Fate::Dropped => Fate::Dropped,
                 Fate::Shared if !few => Fate::Shared,
-                _ if resolves && !candidate.kinked && span <= for_spans(magnitude) => {
+                _ if resolves
+                    && !candidate.kinked
+                    && span <= for_spans(magnitude)
+                    && !(remote
+                        && rounded(magnitude, self.relative_slope(id, candidate.distance))
+                            > for_spans(magnitude)) =>
+                {
                     Fate::Resolved
                 }
                 _ => Fate::Pending,
@@ -765,6 +801,10 @@ impl<'a> Slabs<'a> {
                     if candidate.carves {
                         pending_below += magnitude;
                     }
+                    if id & GROUP == 0 {
+                        let bound = &self.terms.bounds[self.list[id as usize] as usize];
+                        blurring |= 2.0 * rounding * bound.cancels() >= THRESHOLD;
+                    }
                     continue;
                 }
                 Fate::Dropped => {
@@ -772,12 +812,12 @@ impl<'a> Slabs<'a> {
                     continue;
                 }
             }
+            let steepness = self.relative_slope(id, candidate.distance);
             if id & GROUP == 0 {
                 let bound = &self.terms.bounds[self.list[id as usize] as usize];
-                spent.noise += rounding * bound.cancels();
+                spent.noise += 2.0 * rounding * bound.cancels();
             }
-            let steepness = self.relative_slope(id, candidate.distance);
-            noise += magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steepness);
+            noise += rounded(magnitude, steepness);
             steepest = steepest.max(steepness);
         }
         // Where the field is T, what adds is together no more than that and what carves.
@@ -820,6 +860,7 @@ impl<'a> Slabs<'a> {
             parent,
             anew,
             kinked: kinked && !left && resolves,
+            blurring: blurring && resolves,
             block: NONE,
             beam: number,
             children: [0; 4],

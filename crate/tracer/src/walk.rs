@@ -186,6 +186,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let resolves = !slab.resolved.is_empty();
         let shares = !slab.shared.is_empty();
         let (done, kinked) = (slab.pending.is_empty(), slab.kinked);
+        let blurred = slab.is_blurred();
         self.work += 1 + slab.resolved.len() + slab.pending.len();
         // Rays that end before this slab have found nothing.
         self.alive &= L::splat(from).less(self.limit);
@@ -206,7 +207,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             }
         }
         let most = MOST_WORK.max(MOST_VISITS * self.slabs.len());
-        if kinked || self.work > most || depth >= DEEPEST {
+        if kinked || blurred || self.work > most || depth >= DEEPEST {
             self.settle(index, self.alive);
             return;
         }
@@ -357,6 +358,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 self.arrive(index, t, side(!inside), side(inside), true);
                 self.alive & bit != 0
             });
+            // What is settled is work, too: many short slabs would take far longer than a few long ones.
+            self.work += settler.evaluations as usize;
             self.evaluations += core::mem::take(&mut settler.evaluations);
             self.settler = settler;
         }

@@ -6,13 +6,15 @@
 //!
 //! `f = r·e^(−z²−(ρ−r)²)·∫ e^(−4rρ·sin²(u/2)) du`.
 //!
-//! Where 4rρ is large, only a window around u = 0 counts, `4rρ·sin²(u/2) ≤ L²`: what lies outside is
-//! below erfc L of the whole circle's field. The integral runs over the part of the arc within that
+//! Where 4rρ is large, only a window counts around the place of the piece that is nearest, where u is v:
+//! `4rρ·(sin²(u/2) − sin²(v/2)) ≤ L²`. What lies outside is below erfc L of the field, or, where the nearest place is
+//! an end, below e^(−L²) of it: so beyond the ends, where the field is a tiny part of the whole circle's, it keeps
+//! its digits. The integral runs over the part of the piece within that
 //! window. It has one peak and no other feature, of width L times less than the window's: its
 //! Chebyshev coefficients fall like those of e^(−L²x²), which are `e^(−L²/2)·I_k(L²/2)` for the even
 //! degrees 2k. With n nodes those up to degree 2n−1 count exactly, and the rest is about 10⁻⁷ (L = 3.6,
-//! n = 16) or 10⁻¹⁵ (L = 6.3, n = 40) of the peak. Where the window would be a little wider than a half
-//! circle, what is integrated may reach further out than L: there it is up to 10⁻⁶ and 10⁻¹².
+//! n = 16) or 10⁻¹⁵ (L = 6.3, n = 40) of the peak; of one that falls off from an end less. Where the window would be
+//! wider than a half circle, what is integrated may reach further out than L: there it is up to 10⁻⁶ and 10⁻¹².
 //!
 //! Azimuths jump by 2π somewhere. An arc of at most a half circle whose middle is at |u| ≤ π
 //! reaches |u| = 3π/2 at most: the window is either narrower than π/2 and meets it in one piece, or
@@ -54,9 +56,17 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     ];
 
     let coupling = two * two * radius * rho;
-    let reach = window(coupling);
+    // Of the square of the distance from an end, or from what is opposite the gap: what is not that of the gap ρ − r.
+    let beyond = |end_x: R, end_y: R| {
+        let (dx, dy) = (x - end_x, beside - end_y);
+        (dx * dx + dy * dy - gap * gap).max(R::splat(0.0))
+    };
+    let end_x = -(radius * R::lift(arc.versine));
+    let end_y = radius * R::lift(arc.sine);
+    // The other end is further away, as y ≥ 0.
+    let near_end = beyond(end_x, end_y);
     let sums = if arc.side.lane(0) > 0.0 {
-        piece(coupling, reach, -azimuth, [-half_angle, half_angle])
+        piece(coupling, near_end, -azimuth, [-half_angle, half_angle])
     } else {
         // Azimuths count from the gap's middle. The halves meet opposite, at the same bits of u;
         // the other ends keep the digits of a small gap.
@@ -66,7 +76,13 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
             <R::Scalar as Real>::splat(1.0) - arc.versine,
         ));
         let seam = R::splat(PI) - azimuth;
-        let one = piece(coupling, reach, zero, [half_gap - azimuth, seam]);
+        let opposite = beyond(-(radius + radius), zero);
+        let one = piece(
+            coupling,
+            near_end.min(opposite),
+            zero,
+            [half_gap - azimuth, seam],
+        );
         let end = -half_gap - azimuth;
         let turn = R::splat(TAU);
         // The middle of the other half, (seam + end + 2π)/2, beyond π?
@@ -75,7 +91,8 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
             R::select(wraps, seam - turn, seam),
             R::select(wraps, end, end + turn),
         ];
-        let other = piece(coupling, reach, zero, other);
+        let far_end = beyond(end_x, -end_y);
+        let other = piece(coupling, far_end.min(opposite), zero, other);
         [one[0] + other[0], one[1] + other[1], one[2] + other[2]]
     };
 
@@ -93,12 +110,17 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     }
 }
 
-/// Half the window: the angle w of `√coupling·sin(w/2) = L`, or a little more; past all if that
-/// exceeds π/2.
+/// The window's w, or a little more; past all if that exceeds π/2. Given `4rρ·sin²(v/2)`.
 #[inline(always)]
-fn window<R: Real>(coupling: R) -> R {
-    let cut = R::splat(if R::DOUBLE { 6.3 } else { 3.6 });
-    let sine = cut / coupling.sqrt().max(R::splat(1e-15));
+fn window<R: Real>(coupling: R, nearest: R) -> R {
+    let (around, beyond) = if R::DOUBLE {
+        (39.7, 39.7)
+    } else {
+        (13.0, 15.5)
+    };
+    let at_end = R::splat(0.0).lt(nearest);
+    let cut = nearest + R::select(at_end, R::splat(beyond), R::splat(around));
+    let sine = (cut / coupling.max(R::splat(1e-30))).sqrt();
     // arcsin s ≤ s(1 + 0.2215s²) up to s = √½: the quotient (arcsin s − s)/s³ rises.
     let narrow = R::splat(2.0) * sine * (R::splat(1.0) + R::splat(0.2215) * sine * sine);
     R::select(
@@ -108,13 +130,16 @@ fn window<R: Real>(coupling: R) -> R {
     )
 }
 
-/// The integrals of `e^(−coupling·s²)·(1, s², s·c)`, s and c the sine and cosine of u/2, over
-/// `from + limits` within ± `reach`; `from` apart, lest a short piece lose its length's digits.
+/// The integrals of `e^(−coupling·s²)·(1, s², s·c)`, s and c the sine and cosine of u/2, over what of
+/// `from + limits` is in the window; `from` apart, lest a short piece lose its length's digits. `ends` is what
+/// coupling·s² is at the nearer of the limits.
 #[inline(always)]
-fn piece<R: Real>(coupling: R, reach: R, from: R, limits: [R; 2]) -> [R; 3] {
+fn piece<R: Real>(coupling: R, ends: R, from: R, [low, high]: [R; 2]) -> [R; 3] {
     let zero = R::splat(0.0);
-    let low = limits[0].max(-reach - from);
-    let high = limits[1].min(reach - from);
+    let abreast = R::both((from + low).lt(zero), zero.lt(from + high));
+    let reach = window(coupling, R::select(abreast, zero, ends));
+    let low = low.max(-reach - from);
+    let high = high.min(reach - from);
     // Mean and half the difference of the limits of u/2.
     let quarter = R::splat(0.25);
     let mean = R::splat(0.5) * from + quarter * (high + low);
