@@ -50,10 +50,11 @@
 //!   primitives, where its kinks and jumps (`field::kinks`; polygons and curves have none) meet a slab, rays are settled
 //!   alone, each in pieces from kink to kink; that would take too long in larger ones, so that thin flesh next to a
 //!   kink may be missed there, and a hit be off.
-//! - Where rounding may be as large as T, as beside Gaussian faces of blobbiness 20 and more, rays are settled alone at once.
-//! - A packet looks at no more than 2¹⁷ list entries (what is evaluated to settle rays counts, too), or 64 times the primitives in its beam; after
-//!   that its slabs are settled as they are, and where that looks at too many pieces what is left is
-//!   decided by the signs at its ends. A slab is no shorter than 2⁻⁴⁰ of its beam.
+//! - Where rounding may be as large as T, as beside Gaussian faces of blobbiness 20 and more, rays are settled alone at
+//!   once.
+//! - A packet looks at no more than 2¹⁷ list entries (what is evaluated to settle rays counts, too), or 64 times as
+//!   many as there are primitives but never more than 2²²; after that its slabs are settled as they are, and where
+//!   that looks at too many pieces what is left is decided by the signs at its ends. A slab is no shorter than 2⁻⁴⁰ of its beam.
 //! - Soft planes are followed up to 10⁴ times the scene's size.
 
 mod area;

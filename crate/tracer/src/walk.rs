@@ -129,12 +129,14 @@ const DEEPEST: u32 = 40;
 /// How many times a slab's cubics are halved to tell their crossings apart.
 const CUTS: u32 = 4;
 
-/// When walking one packet has looked at this many list entries, or at [`MOST_VISITS`] times all
-/// primitives of the beam, the slabs left are not halved further but settled ray by ray, within limits of
+/// When walking one packet has looked at this many list entries, or at [`MOST_VISITS`] times as many as there are
+/// primitives (and not only those that other packets of its beam have found, which depend on the tiles), the slabs left are not halved further but settled ray by ray, within limits of
 /// that, so that no scene can take unlimited time or memory. A packet of the published scenes looks at a few hundred.
 const MOST_WORK: usize = 1 << 17;
 /// See [`MOST_WORK`].
 const MOST_VISITS: usize = 64;
+/// See [`MOST_WORK`]: where there are very many primitives.
+const MOST_WORK_OF_MANY: usize = 1 << 22;
 
 impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     /// Rays at the start of the slabs. `memory` is scratch space.
@@ -206,7 +208,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 return;
             }
         }
-        let most = MOST_WORK.max(MOST_VISITS * self.slabs.len());
+        let all = self.sight.primitives.len();
+        let most = (MOST_VISITS * all).clamp(MOST_WORK, MOST_WORK_OF_MANY);
         if kinked || blurred || self.work > most || depth >= DEEPEST {
             self.settle(index, self.alive);
             return;
