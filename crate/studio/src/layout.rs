@@ -323,17 +323,14 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     ];
     places::note(ui.ctx(), "picture", rect);
     let now = platform::now(ui.ctx());
+    let slow = app.rest > 0.0;
+    if slow && app.renderer.is_near(view::SOON, now) {
+        // If it does not come then the draft is drawn.
+        ui.ctx().request_repaint_after_secs(view::SOON as f32);
+    }
     let session = &app.work.session;
     let draft = match &mut app.draft {
-        Some(draft)
-            if view::needs_draft(
-                app.settings.show,
-                session,
-                &app.renderer,
-                app.rest > 0.0,
-                now,
-            ) =>
-        {
+        Some(draft) if view::needs_draft(app.settings.show, session, &app.renderer, slow, now) => {
             draft.texture(session, app.place)
         }
         _ => None,

@@ -124,7 +124,7 @@ impl Renderer {
             }
             self.halt();
             self.phase = Phase::Waiting;
-            self.due = now + if self.is_within(QUICK) { 0.0 } else { DEBOUNCE };
+            self.due = now + if self.coarse <= QUICK { 0.0 } else { DEBOUNCE };
         } else if self.phase != Phase::Cancelled {
             self.phase = Phase::Waiting;
             // Nothing is on the screen yet: the window is only finding its size.
@@ -254,10 +254,20 @@ impl Renderer {
         self.phase
     }
 
-    /// Whether a coarse picture of a change is expected within so many seconds of work.
+    /// Whether the picture on the screen may stand in for one that is wanted: it has its size, and a coarse one is expected
+    /// within so many seconds of work, which are not over yet.
     #[must_use]
-    pub fn is_within(&self, seconds: f64) -> bool {
-        self.coarse <= seconds
+    pub fn is_near(&self, seconds: f64, now: f64) -> bool {
+        let coming = match self.phase {
+            Phase::Waiting => true,
+            Phase::Tracing => now - self.running.1 <= seconds,
+            Phase::Idle | Phase::Done | Phase::Cancelled => false,
+        };
+        let size = self.image().map(|image| image.size);
+        coming
+            && self.coarse <= seconds
+            && self.texture.is_some()
+            && size == self.wanted.map(|(_, size)| size)
     }
 
     /// How far the running picture is.

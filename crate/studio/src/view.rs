@@ -29,7 +29,7 @@ pub enum Show {
 }
 
 /// Seconds to the coarse picture, beside which a processor's draft would take long.
-const SOON: f64 = 1.0;
+pub const SOON: f64 = 1.0;
 
 /// What the view needs to know beside the session.
 pub struct Scenery<'a> {
@@ -59,8 +59,8 @@ pub fn fit(place: Rect, frame: [u32; 2]) -> Rect {
     Rect::from_center_size(place.center(), frame * scale)
 }
 
-/// Whether the draft is to be drawn at all. `slow`: the processor draws it, for which the workers have to wait. Then it
-/// is left out where a coarse picture comes [`SOON`], and the last picture stands in instead.
+/// Whether the draft is to be drawn at all. `slow`: the processor draws it, for which the workers have to wait. Then the
+/// last picture stands in for it where a coarse one comes [`SOON`], and none is faded out.
 #[must_use]
 pub fn needs_draft(
     show: Show,
@@ -76,8 +76,11 @@ pub fn needs_draft(
             let fresh = renderer
                 .texture()
                 .is_some_and(|(_, generation)| generation == session.generation());
-            let behind = !fresh || renderer.faded(now) < 1.0;
-            behind && !(slow && renderer.is_within(SOON) && renderer.texture().is_some())
+            if slow {
+                !fresh && !renderer.is_near(SOON, now)
+            } else {
+                !fresh || renderer.faded(now) < 1.0
+            }
         }
     }
 }

@@ -37,12 +37,13 @@
 //! - Of all primitives no more than 10⁻⁵·T is left out, all together, whatever `influence` says; that and single
 //!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field. A packet near more
 //!   than 2¹⁶ lumps, or that makes more than 2²⁴ evaluations, goes the general way.
-//! - There pictures show a field within 5·10⁻⁴·T of the true one, and what is shared adds at most 4·10⁻⁴·T; hits are then
+//! - There pictures show a field within 5·10⁻⁴·T of the true one, or as near as rounding lets it come where that is
+//!   less, and what is shared adds at most 4·10⁻⁴·T; hits are then
 //!   moved onto the field itself, unless what is shared moves them by less than half the tolerance.
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
 //! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are
-//!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left,
+//!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left (shared out from kink to kink),
 //!   and what comes after its share is used up is decided by the signs at its ends.
 //! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
 //!   shared and rounding leaves many rays in doubt: such pictures are slow.

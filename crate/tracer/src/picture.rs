@@ -151,14 +151,14 @@ impl Picture {
                 let whole = Area {
                     left: area.left / across * across,
                     top: area.top / down * down,
-                    right: area.right.next_multiple_of(across),
-                    bottom: area.bottom.next_multiple_of(down),
+                    right: area.right.min(self.size[0]).next_multiple_of(across),
+                    bottom: area.bottom.min(self.size[1]).next_multiple_of(down),
                 };
                 let wide = Area {
                     left: whole.left.saturating_sub(1),
                     top: whole.top.saturating_sub(1),
-                    right: (whole.right + 1).min(self.size[0].max(whole.right)),
-                    bottom: (whole.bottom + 1).min(self.size[1].max(whole.bottom)),
+                    right: (whole.right + 1).min(self.size[0]).max(area.right),
+                    bottom: (whole.bottom + 1).min(self.size[1]).max(area.bottom),
                 };
                 let mut samples = self.sample(wide, 1, stop, &mut work, stats)?;
                 self.refine(whole, &mut samples, stop, &mut work, stats)?;

@@ -14,13 +14,13 @@ use core::ops::Range;
 use field::bound::SpanLength;
 use field::{Bound, Primitive, THRESHOLD};
 
-/// Pieces that one packet may have looked at; what is left is decided by the signs at its ends. A stretch may have this
-/// part of those that are left, and the near half of a piece half of what the piece may, unless that is few: where a ray
-/// runs along the surface no number would do, and what comes behind must not go short.
+/// Pieces that one packet may have looked at; what is left is decided by the signs at its ends.
 const MOST_PIECES: u32 = 1 << 16;
-/// See [`MOST_PIECES`].
+/// A stretch may have the pieces that are left over this, shared out evenly from kink to kink: where a ray runs along
+/// the surface no number would do, and what comes behind must not go short.
 const AT_ONCE: u32 = 4;
-/// See [`MOST_PIECES`]: so many tell a few crossings apart.
+/// The near half of a piece may have half of what the piece may, but no fewer than these, if it has them: so many tell a
+/// few crossings apart.
 const FEW: u32 = 256;
 /// Pieces halved so often are not halved further: lengths that are not finite would never be short.
 const DEEPEST: u32 = 50;

@@ -217,7 +217,8 @@ impl Picture {
                         let count = PACKET << (levels - path.ilog2());
                         let first = count * (path - (1 << path.ilog2()));
                         let part = first..starts.len().min(first + count);
-                        Beam::around(&starts[part]).unwrap_or(beam).from(base)
+                        let part = starts.get(part).and_then(Beam::around);
+                        part.unwrap_or(beam).from(base)
                     })
                 };
                 self.soft

@@ -233,8 +233,8 @@ const LEAST: f64 = 0.5;
 /// Fewer primitives than this do not share an interpolant, whose evaluation costs a ray about as much as theirs.
 const FEWEST: u32 = 3;
 
-/// Slabs of infinitely wide primitives that end further out than this, in units of half the scene's size, are halved
-/// rather than rounded much.
+/// Slabs that end further out than this, in units of half the scene's size, as only infinitely wide primitives have
+/// them, are halved rather than rounded much.
 const REMOTE: f64 = 16.0;
 
 /// A slab is given to narrower beams when its beam is wider than this times its length.
@@ -248,7 +248,7 @@ const BLOCK: u32 = 2;
 /// counts terms as no larger than this.
 pub const LARGE_TERM: f64 = 4.0 * THRESHOLD;
 
-/// Rays are settled at once, by all primitives, in slabs with no more than this many.
+/// Where rounding tells nothing rays are settled at once in slabs that no more primitives than this count in.
 const MOST_BLURRED: usize = 32;
 
 /// Slabs and list entries above which a tree is thrown away between two packets.
@@ -262,13 +262,6 @@ impl Slab {
     #[must_use]
     pub fn is_made(&self) -> bool {
         self.block != NONE
-    }
-
-    /// Whether rounding is so large, or will be of some pending primitive, that no span shows that there is nothing here.
-    #[must_use]
-    pub fn is_blurred(&self) -> bool {
-        self.spent.noise >= THRESHOLD
-            || self.blurring && self.pending.len() + self.resolved.len() <= MOST_BLURRED
     }
 }
 
@@ -515,6 +508,19 @@ impl<'a> Slabs<'a> {
         let index = self.nodes.len() as u32;
         self.add(pending, from, to, heritage);
         index
+    }
+
+    /// Whether rounding is so large, or will be of something pending, that no span shows that there is nothing here, and
+    /// there are so few primitives that rays had better be settled at once.
+    #[must_use]
+    pub fn is_blurred(&self, index: u32) -> bool {
+        let slab = self.slab(index);
+        if slab.spent.noise < THRESHOLD && !slab.blurring {
+            return false;
+        }
+        let mut count = 0;
+        self.each(index, true, |_| count += 1);
+        count <= MOST_BLURRED
     }
 
     /// Whether a slab's spans are as fine as they get.

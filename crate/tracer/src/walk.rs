@@ -129,9 +129,10 @@ const DEEPEST: u32 = 40;
 /// How many times a slab's cubics are halved to tell their crossings apart.
 const CUTS: u32 = 4;
 
-/// When walking one packet has looked at this many list entries, or at [`MOST_VISITS`] times as many as there are
-/// primitives (and not only those that other packets of its beam have found, which depend on the tiles), the slabs left are not halved further but settled ray by ray, within limits of
-/// that, so that no scene can take unlimited time or memory. A packet of the published scenes looks at a few hundred.
+/// When walking one packet has looked at this many list entries, or at [`MOST_VISITS`] times as many as the scene has
+/// primitives, the slabs left are not halved further but settled ray by ray, within limits of that, so that no scene can
+/// take unlimited time or memory. A packet of the published scenes looks at a few hundred. The limit must not depend on
+/// what other packets of the beam have looked at, which differs with the tiles.
 const MOST_WORK: usize = 1 << 17;
 /// See [`MOST_WORK`].
 const MOST_VISITS: usize = 64;
@@ -188,7 +189,6 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let resolves = !slab.resolved.is_empty();
         let shares = !slab.shared.is_empty();
         let (done, kinked) = (slab.pending.is_empty(), slab.kinked);
-        let blurred = slab.is_blurred();
         self.work += 1 + slab.resolved.len() + slab.pending.len();
         // Rays that end before this slab have found nothing.
         self.alive &= L::splat(from).less(self.limit);
@@ -210,7 +210,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
         let all = self.sight.primitives.len();
         let most = (MOST_VISITS * all).clamp(MOST_WORK, MOST_WORK_OF_MANY);
-        if kinked || blurred || self.work > most || depth >= DEEPEST {
+        if kinked || self.work > most || depth >= DEEPEST || self.slabs.is_blurred(index) {
             self.settle(index, self.alive);
             return;
         }

@@ -216,7 +216,7 @@ fn what_was_missed_once_is_found() {
         let mut told = String::new();
         let row = check(kernel, kind, seed, 8, &cast, &mut told);
         assert!(
-            row.faults() == 0,
+            row.faults() == 0 && row.hits > row.rays / 4,
             "{kernel:?} {kind:?} {seed} {row:?}\n{told}"
         );
     }

@@ -156,6 +156,19 @@ fn smoothing_touches_edges_only_and_tends_to_the_true_coverage() {
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
+fn where_nothing_differs_each_pixel_has_one_ray() {
+    let mut scene = empty();
+    scene.settings.samples = 2;
+    for size in [[5, 5], [13, 1], [2, 7]] {
+        for pass in [Pass::Full, Pass::Smooth] {
+            let (_, stats) = whole(&scene, size, 64, pass);
+            assert_eq!(stats.primary_rays, u64::from(size[0] * size[1]), "{pass:?}");
+        }
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_ball_casts_a_shadow_on_a_slab_and_not_on_itself() {
     for material in [0, 1] {
         let mut scene = empty();
