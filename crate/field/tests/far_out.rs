@@ -2,7 +2,7 @@
 //! it must be right.
 mod common;
 
-use common::{Kind, Random, primitive, single};
+use common::{Kind, Random, primitive, single, span_error};
 use core::f64::consts::TAU;
 use field::bound::{Nearness, SpanLength};
 use field::{BlobScale, Bound, Kernel, Primitive, Profile, Shaping, Skeleton, Wave, quadrature};
@@ -78,17 +78,10 @@ tests! {
             let shortened = bound.shortened(direction, 0.0);
             let near = bound.nearness(start + direction * (0.5 * length), 0.5 * length * shortened);
             let error = bound.estimate(near, &SpanLength::new(length * shortened)).error;
-            let at = |t: f64| plane.along_ray(start, direction, t);
-            let ((a, da), (b, db)) = (at(0.0), at(length));
-            for i in 1..16 {
-                let t = f64::from(i) / 16.0;
-                let (u, v) = (1.0 - t, t);
-                let cubic = a * u * u * (1.0 + 2.0 * t)
-                    + b * v * v * (3.0 - 2.0 * t)
-                    + length * (da * u * u * t - db * v * v * u);
-                let off = (cubic - at(length * t).0).abs();
-                assert!(off <= error * (1.0 + 1e-6) + 1e-9 * (1.0 + a.abs() + b.abs()), "{off} > {error} {plane:?}");
-            }
+            let off = span_error(&plane, start, direction, length);
+            let ends = [0.0, length].map(|t| plane.value((start + direction * t).to_array()));
+            let size = ends[0].abs() + ends[1].abs();
+            assert!(off <= error * (1.0 + 1e-6) + 1e-9 * (1.0 + size), "{off} > {error} {plane:?}");
         }
     }
 
@@ -107,10 +100,7 @@ tests! {
         let bound = Bound::new(&needle);
         // Across it, where both parameters are between 0 and 1.
         let (start, length) = (DVec3::new(1.6, 0.001, 0.1), 0.018);
-        let at = |t: f64| needle.along_ray(start, DVec3::Y, t);
-        let ((a, da), (b, db)) = (at(0.0), at(length));
-        let cubic = 0.5 * (a + b) + 0.125 * length * (da - db);
-        let off = (cubic - at(0.5 * length).0).abs();
+        let off = span_error(&needle, start, DVec3::Y, length);
         let near = bound.nearness(start + DVec3::Y * (0.5 * length), 0.5 * length);
         let error = bound.estimate(near, &SpanLength::new(length)).error;
         assert!(off > 1e-4 && off <= error, "{off} {error}");

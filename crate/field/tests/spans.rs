@@ -1,7 +1,7 @@
 //! What [`field::Bound`] promises: no field exceeds it, no Hermite span is further off than it says.
 mod common;
 
-use common::{ALL_KINDS, Kind, Random, primitive};
+use common::{ALL_KINDS, Kind, Random, primitive, span_error};
 use field::bound::{Bound, Estimate, SpanLength};
 use field::{Kernel, Primitive, Shaping};
 use glam::DVec3;
@@ -15,22 +15,6 @@ fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind) -> Primitiv
         ..random.shaping(1.0)
     };
     primitive(skeleton, &shaping, None)
-}
-
-/// The largest distance between a primitive and its interpolant on a span.
-fn span_error(primitive: &Primitive, start: DVec3, direction: DVec3, h: f64) -> f64 {
-    let at = |t: f64| primitive.along_ray(start, direction, t);
-    let ((a, da), (b, db)) = (at(0.0), at(h));
-    let mut worst = 0.0_f64;
-    for i in 1..16 {
-        let t = f64::from(i) / 16.0;
-        let (u, v) = (1.0 - t, t);
-        let cubic = a * u * u * (1.0 + 2.0 * t)
-            + b * v * v * (3.0 - 2.0 * t)
-            + h * (da * u * u * t - db * v * v * u);
-        worst = worst.max((cubic - at(h * t).0).abs());
-    }
-    worst
 }
 
 fn bounds_hold(kernel: Kernel) {
