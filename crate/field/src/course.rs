@@ -1,7 +1,8 @@
 //! A lump's field along rays, with its largest value on any piece of them.
 //!
 //! A *lump* is a primitive whose course along a ray is so simple that bounds on it need no search: a
-//! point, of a compact or the Gaussian kernel, or a Gaussian segment; above zero, without a profile, of one width. For these
+//! point, of a compact or the Gaussian kernel, or a Gaussian segment; above zero, of one width, and without a profile but for
+//! one that rises evenly along the segment ([`Ramp`]). For these
 //! `q(t) = q₀ + k(t−c)²`, the square of the distance from the point, or from the segment's line, in
 //! units of the kernel's width, is a parabola. Beside it the share W of a segment that is abreast depends on the
 //! position x along it, which is linear in t.
@@ -9,8 +10,10 @@
 //! On an interval of t the field is at most its value with the least q and the most central x of the
 //! interval. Its second derivative is at least `−2k·amplitude·|G′(q)|`, with the least q: for
 //! `g″ = amplitude·(2k·G′ + 4k²(t−c)²·G″)`, and all kernels G of q fall and are convex, so G″ ≥ 0 and |G′| falls.
-//! A segment is a sum of such points, and a Gaussian has |G′| = G.
+//! A segment is a sum of such points, and a Gaussian has |G′| = G. With a ramp r the field is `g·r`, so that −(gr)″ is at
+//! most `−g″·r + 2|g′||r′|` between the ramp's kinks; in a kink the slope falls by no more than `g·|r′|`.
 use crate::bone::{Bone, Segment};
+use crate::ramp::Ramp;
 use crate::real::Scalar;
 use crate::term::Frame;
 use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
@@ -43,13 +46,25 @@ pub struct Course<R: Real> {
     segment: Option<Abreast<R>>,
 }
 
+/// What bounds a lump's field on a piece of a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits<R> {
+    /// It is nowhere more than this.
+    pub most: R,
+    /// Minus its second derivative is nowhere more than this, but in kinks.
+    pub bend: R,
+    /// In kinks its slope falls by no more than this, together.
+    pub kink: R,
+}
+
 /// Where along a segment a ray is: at `x = place + rate·t`, the segment is |x| ≤ half.
 #[derive(Clone, Copy, Debug)]
-struct Abreast<R> {
+struct Abreast<R: Real> {
     half: R,
     place: R,
     rate: R,
     long: bool,
+    ramp: Option<Ramp<R::Scalar>>,
 }
 
 /// A lump: a primitive whose course along rays is simple.
@@ -67,6 +82,7 @@ pub struct Lump<S> {
 struct Rod<S> {
     half: S,
     axes: [[S; 3]; 3],
+    ramp: Option<Ramp<S>>,
 }
 
 /// A bound on lumps' fields by the distance from their bones, one a lane: `peak·G(q)`, where
@@ -100,20 +116,26 @@ impl Primitive {
     pub fn lump<S: Scalar>(&self) -> Option<Lump<S>> {
         let term = S::prepared(&self.prepared);
         let ends = self.kernel == Kernel::Gauss || self.kernel.is_compact();
-        let plain = ends && term.waves.is_none() && self.tapered.is_none();
+        let plain = ends && self.tapered.is_none();
         let amplitude = self.prepared.double.amplitude;
         // Larger ones leave single precision no room for derivatives.
         if !(plain && amplitude > 0.0 && amplitude <= LARGEST && self.width <= LARGEST) {
             return None;
         }
+        let waves = self.prepared.double.waves.as_ref();
         let segment = match &term.form.bone {
-            Bone::Point => None,
+            Bone::Point if waves.is_none() => None,
             Bone::Segment(Segment { half })
                 if self.kernel == Kernel::Gauss && half.lane(0) >= SHORT =>
             {
+                let ramp = match waves {
+                    Some(waves) => Some(Ramp::of(waves, half.lane(0))?.cast(S::round)),
+                    None => None,
+                };
                 Some(Rod {
                     half: *half,
                     axes: term.frame.axes,
+                    ramp,
                 })
             }
             _ => return None,
@@ -149,7 +171,12 @@ impl<S: Scalar> Lump<S> {
         let amplitude = self.amplitude.lane(0);
         match &self.segment {
             // The integral over an endless line.
-            Some(_) => amplitude * core::f64::consts::PI.sqrt(),
+            Some(rod) => {
+                let factor = rod
+                    .ramp
+                    .map_or(1.0, |ramp| ramp.cast(|x| x.lane(0)).largest());
+                amplitude * factor * core::f64::consts::PI.sqrt()
+            }
             None => amplitude,
         }
     }
@@ -226,7 +253,14 @@ impl<S: Scalar> Lump<S> {
             axes: rod.axes,
         };
         let segment = Segment { half: rod.half };
-        let jet = gauss::segment::jet(&segment, frame.local(position)).times(amplitude);
+        let place = frame.local(position);
+        let mut jet = gauss::segment::jet(&segment, place).times(amplitude);
+        if let Some(ramp) = &rod.ramp {
+            let (factor, rise) = ramp.at(place[0]);
+            let rise = rise * jet.value;
+            jet = jet.times(factor);
+            jet.gradient[0] = jet.gradient[0] + rise;
+        }
         Jet {
             value: jet.value,
             gradient: frame.world(jet.gradient),
@@ -267,6 +301,7 @@ impl<S: Scalar> Lump<S> {
                     place: x,
                     rate,
                     long: rod.half.lane(0) >= LONG,
+                    ramp: rod.ramp,
                 }),
             };
         }
@@ -300,7 +335,14 @@ impl<R: Real> Course<R> {
         };
         let beside = self.amplitude * value;
         let (share, change) = abreast.share(t);
-        (beside * share, beside * (change - (swift + swift) * share))
+        let (value, slope) = (beside * share, beside * (change - (swift + swift) * share));
+        match &abreast.ramp {
+            None => (value, slope),
+            Some(ramp) => {
+                let (factor, rise) = ramp.at(abreast.place + abreast.rate * t);
+                (value * factor, slope * factor + value * rise * abreast.rate)
+            }
+        }
     }
 
     /// The same with what [`Course::most`] says of the second derivative at t alone.
@@ -322,21 +364,41 @@ impl<R: Real> Course<R> {
         )
     }
 
-    /// Upper bounds, between two parameters, on the value and on minus the second derivative.
+    /// Upper bounds between two parameters.
     #[inline(always)]
     #[must_use]
-    pub fn most(&self, from: R, to: R) -> (R, R) {
+    pub fn most(&self, from: R, to: R) -> Limits<R> {
         let nearest = self.center.max(from).min(to);
         let away = nearest - self.center;
         let (value, slope) = self.kernel.pair(self.least + self.pace * away * away);
         let twice = self.pace + self.pace;
         match &self.segment {
-            None => (self.amplitude * value, -(self.amplitude * slope * twice)),
+            None => Limits {
+                most: self.amplitude * value,
+                bend: -(self.amplitude * slope * twice),
+                kink: R::splat(0.0),
+            },
             Some(abreast) => {
-                let most = self.amplitude * value * abreast.most(from, to);
+                let beside = self.amplitude * value;
+                let share = abreast.most(from, to);
+                let most = beside * share;
+                let rate = abreast.rate.abs();
                 // Along the segment the points' distances change too, at most at the full rate.
-                let rate = abreast.rate * abreast.rate;
-                (most, most * (twice + rate + rate))
+                let bend = most * (twice + R::splat(2.0) * rate * rate);
+                let Some(ramp) = &abreast.ramp else {
+                    let kink = R::splat(0.0);
+                    return Limits { most, bend, kink };
+                };
+                let [a, b] = [from, to].map(|t| abreast.place + abreast.rate * t);
+                let [factor, steep, kink] = ramp.most(a, b);
+                // |g′|, by what is beside the segment and what abreast; a bell is at most 1.
+                let away = (from - self.center).abs().max((to - self.center).abs());
+                let slope = most * twice * away + beside * rate * R::splat(FRAC_2_SQRT_PI);
+                Limits {
+                    most: most * factor,
+                    bend: bend * factor + R::splat(2.0) * slope * steep * rate,
+                    kink: most * kink * rate,
+                }
             }
         }
     }

@@ -29,10 +29,10 @@ pub(crate) enum Parameters<S> {
 /// A profile, prepared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Waves<S> {
-    waves: [Wave; 2],
-    scale: [S; 2],
-    low: S,
-    rise: S,
+    pub waves: [Wave; 2],
+    pub scale: [S; 2],
+    pub low: S,
+    pub rise: S,
     /// See [`Profile`]; 0 but on triangles.
     restriction: S,
     parameters: Parameters<S>,

@@ -2,7 +2,7 @@
 mod common;
 
 use common::{Random, primitive};
-use field::{Kernel, Lump, Primitive, Real, Skeleton};
+use field::{Kernel, Limits, Lump, Primitive, Profile, Real, Skeleton, Wave};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -37,7 +37,14 @@ fn cases() -> Vec<(Primitive, DVec3, DVec3)> {
             kernel,
             ..random.shaping(size)
         };
-        let primitive = primitive(skeleton, &shaping, None);
+        let ramp = Profile {
+            waves: [Wave::X, Wave::One],
+            scale: [random.pick(&[1.0, 0.6, 3.0]), 1.0],
+            bounds: [random.range(0.0, 3.0), random.range(0.0, 3.0)],
+            ..Profile::default()
+        };
+        let profile = (i % 8 == 0).then_some(ramp);
+        let primitive = primitive(skeleton, &shaping, profile);
         if primitive.lump::<f64>().is_none() {
             continue;
         }
@@ -120,7 +127,7 @@ tests! {
             for _ in 0..20 {
                 let from = random.range(0.0, 20.0) / primitive.width;
                 let to = from + random.decades(-3.0, 1.0) / primitive.width;
-                let (most, bend) = course.most(from, to);
+                let Limits { most, bend, kink } = course.most(from, to);
                 let (mut largest, mut bent) = (0.0f64, 0.0f64);
                 let step = (to - from) / 40.0;
                 let at = |i: u32| from + step * f64::from(i);
@@ -133,7 +140,8 @@ tests! {
                 let room = 1e-9 * (1.0 + largest);
                 assert!(largest <= most + room, "{primitive:?} {from} {to}: {largest} {most}");
                 let steep = primitive.width * primitive.width;
-                assert!(bent <= bend * (1.0 + 1e-6) + 1e-6 * steep, "{primitive:?} {from} {to}: {bent} {bend}");
+                let most_bent = bend * (1.0 + 1e-6) + 1e-6 * steep + kink / step;
+                assert!(bent <= most_bent, "{primitive:?} {from} {to}: {bent} {bend} {kink}");
                 tight += u32::from(most <= largest * 1.001 + 1e-12);
                 let (value, slope, here) = course.bent(to);
                 let (same, change) = course.at(to);
@@ -144,6 +152,33 @@ tests! {
             }
         }
         assert!(tight > 2000, "{tight}");
+    }
+
+    /// Where a ramp stops to rise the slope falls by what is said, and where it begins to it does not fall.
+    fn kinks_of_ramps_are_told() {
+        let mut random = Random::new(54);
+        let mut falls = 0;
+        for (primitive, ..) in cases() {
+            let lump: Lump<f64> = primitive.lump().expect("a lump");
+            let half = lump.half();
+            if primitive.profile.is_none() {
+                continue;
+            }
+            for end in [-1.0, 1.0] {
+                let direction = random.direction();
+                let aside = random.vector(1.0 / primitive.width);
+                // The ray passes the plane at the end of the segment here.
+                let place = primitive.lump_middle() + half * end + (aside - half.normalize() * aside.dot(half.normalize()));
+                let away = 3.0 / primitive.width;
+                let course = course::<f64>(&primitive, place - direction * away, direction);
+                let near = 1e-6 / primitive.width;
+                let Limits { bend, kink, .. } = course.most(away - near, away + near);
+                let fall = course.at(away - near).1 - course.at(away + near).1;
+                assert!(fall <= kink + 2.0 * near * bend + 1e-12 * primitive.width, "{primitive:?}: {fall} {kink}");
+                falls += u32::from(kink > 1e-6 * primitive.width && fall > 0.4 * kink);
+            }
+        }
+        assert!(falls > 10, "{falls}");
     }
 
     /// What single precision has no room for is no lump, nor what is not simple.

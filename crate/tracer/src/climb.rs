@@ -4,13 +4,13 @@
 //! down (`field::course`). So a ray outside the surface may go on from `from` to `to`
 //!
 //! - if the largest values on that piece add up to less than T, or
-//! - if the field is below T at both ends and `max(F(from), F(to)) + h²/8·N < T`, where h is the length and
-//!   N ≥ −F″ on the piece: a chord's error.
+//! - if the field is below T at both ends and `max(F(from), F(to)) + h²/8·N + h/4·K < T`, where h is the length,
+//!   N ≥ −F″ on the piece, and in kinks the slope falls by no more than K: a chord's error.
 //!
-//! If F(to) ≥ T there is a crossing on the piece, and when `N·h² < 2(T − F(from))` it is the only one: a
+//! If F(to) ≥ T there is a crossing on the piece, and when `N·h² + 2K·h < 2(T − F(from))` it is the only one: a
 //! second one before it would need more bending. Then Newton's steps lead to it. All else halves the piece, but no
 //! further than to the tolerance. Eight rays go in step; each has its own pieces.
-use field::{Course, Real};
+use field::{Course, Limits, Real};
 use wide::f32x8;
 
 /// A lump on the way of a packet's rays.
@@ -76,6 +76,7 @@ struct Sum {
     slope: f32x8,
     most: f32x8,
     bend: f32x8,
+    kink: f32x8,
     /// The largest of the values that make up `most`, and where its lump is strong.
     largest: f32x8,
     strong: [f32x8; 2],
@@ -104,7 +105,7 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
     }
     // And above T at `high`, if that is finite.
     let mut high = f32x8::splat(f32::INFINITY);
-    let (mut high_value, mut high_slope, mut high_bend) = (zero, zero, zero);
+    let (mut high_value, mut high_slope, mut high_bend, mut high_kink) = (zero, zero, zero, zero);
     let mut step = f32x8::splat(f32::INFINITY);
     let mut next = way.first.fast_min(way.to).fast_max(low);
     let mut met = 0;
@@ -133,8 +134,9 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
         let length = next - low;
         let short = length.simd_le(tolerance).to_bitmask();
         let above = level.simd_le(sum.value).to_bitmask() & going;
-        let chord =
-            low_value.fast_max(sum.value) + f32x8::splat(0.125) * length * length * sum.bend;
+        let bulge =
+            length * (f32x8::splat(0.125) * length * sum.bend + f32x8::splat(0.25) * sum.kink);
+        let chord = low_value.fast_max(sum.value) + bulge;
         let below = going & !above;
         let calm = below & (sum.most.simd_lt(level) | chord.simd_lt(level)).to_bitmask();
         let passed = calm | below & short;
@@ -157,9 +159,11 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
         high_value = mask.select(sum.value, high_value);
         high_slope = mask.select(sum.slope, high_slope);
         high_bend = mask.select(sum.bend, high_bend);
+        high_kink = mask.select(sum.kink, high_kink);
         let width = high - low;
-        let only = (high_bend * width * width).simd_lt(f32x8::splat(2.0) * (level - low_value))
-            | width.simd_le(tolerance);
+        let bulge = width * (high_bend * width + f32x8::splat(2.0) * high_kink);
+        let only =
+            bulge.simd_lt(f32x8::splat(2.0) * (level - low_value)) | width.simd_le(tolerance);
         let settled = only.to_bitmask() & level.simd_le(high_value).to_bitmask() & going;
         met |= settled;
         going &= !settled;
@@ -241,6 +245,7 @@ impl Sum {
             slope: zero,
             most: zero,
             bend: zero,
+            kink: zero,
             largest: zero,
             strong: [zero; 2],
         };
@@ -253,8 +258,12 @@ impl Sum {
             }
             let course = &lump.course;
             let (value, slope, here) = course.bent(to);
-            let (most, bend) = if course.rises_until(to) {
-                (value, here)
+            let Limits { most, bend, kink } = if course.rises_until(to) {
+                Limits {
+                    most: value,
+                    bend: here,
+                    kink: zero,
+                }
             } else {
                 *evaluations += 8;
                 course.most(from, to)
@@ -264,6 +273,7 @@ impl Sum {
             sum.slope += slope;
             sum.most += most;
             sum.bend += bend;
+            sum.kink += kink;
             let larger = sum.largest.simd_lt(most);
             sum.largest = larger.select(most, sum.largest);
             for (own, other) in sum.strong.iter_mut().zip(lump.strong) {
