@@ -17,7 +17,7 @@ use crate::ramp::Ramp;
 use crate::real::Scalar;
 use crate::term::Frame;
 use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
-use core::f64::consts::FRAC_2_SQRT_PI;
+use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI};
 use glam::DVec3;
 
 /// Half the length, in kernel widths, from which on a segment is a lump: from there the two error functions
@@ -29,6 +29,11 @@ const LARGEST: f64 = 1e9;
 const NEWTON: usize = 5;
 /// From this half length on the further end of a Gaussian segment is not felt: erfc 4 = 1.5·10⁻⁸.
 const LONG: f64 = 4.0;
+
+/// Rays that far from the ends of a segment, beside it, feel little of them …
+const INNER: f64 = 3.0;
+/// … as e^(−9) is less than this.
+const INNER_BELL: f64 = 1.3e-4;
 
 /// A lump along rays `origin + t·direction` of unit direction, one a lane.
 #[derive(Clone, Copy, Debug)]
@@ -152,6 +157,18 @@ impl Primitive {
     #[must_use]
     pub fn lump_middle(&self) -> DVec3 {
         DVec3::from_array(self.prepared.double.frame.origin)
+    }
+}
+
+impl Lump<f32> {
+    /// A Gaussian point of such a width parameter, and such a field at its centre, if that leaves room for derivatives.
+    pub(crate) fn point(scale: f64, amplitude: f64) -> Option<Self> {
+        (amplitude > 0.0 && amplitude <= LARGEST && scale <= LARGEST).then_some(Self {
+            kernel: Kernel::Gauss,
+            scale: scale as f32,
+            amplitude: amplitude as f32,
+            segment: None,
+        })
     }
 }
 
@@ -357,11 +374,20 @@ impl<R: Real> Course<R> {
         let swift = self.pace * away;
         let (value, slope) = self.kernel.pair(self.least + swift * away);
         let steep = self.amplitude * slope;
-        (
-            self.amplitude * value,
-            steep * (swift + swift),
-            -(steep * (self.pace + self.pace)),
-        )
+        let bend = -(steep * (self.pace + self.pace)) * self.share_bent(away);
+        (self.amplitude * value, steep * (swift + swift), bend)
+    }
+
+    /// At no less than so far from where q is least −g″ is no more than this part of what it may be there: a
+    /// Gaussian's is `g·2k(1 − 2k(t−c)²)`, which is below 0 from the inflection on.
+    #[inline(always)]
+    fn share_bent(&self, away: R) -> R {
+        let one = R::splat(1.0);
+        if self.kernel == Kernel::Gauss {
+            (one - R::splat(2.0) * self.pace * away * away).max(R::splat(0.0))
+        } else {
+            one
+        }
     }
 
     /// Upper bounds between two parameters.
@@ -375,25 +401,31 @@ impl<R: Real> Course<R> {
         match &self.segment {
             None => Limits {
                 most: self.amplitude * value,
-                bend: -(self.amplitude * slope * twice),
+                bend: -(self.amplitude * slope * twice) * self.share_bent(away),
                 kink: R::splat(0.0),
             },
             Some(abreast) => {
                 let beside = self.amplitude * value;
-                let share = abreast.most(from, to);
+                let (share, [bell, tail]) = abreast.most(from, to);
                 let most = beside * share;
                 let rate = abreast.rate.abs();
-                // Along the segment the points' distances change too, at most at the full rate.
-                let bend = most * (twice + R::splat(2.0) * rate * rate);
+                let furthest = (from - self.center).abs().max((to - self.center).abs());
+                // Each of the segment's points bends so much, as their distances change at most at the full rate; or, of
+                // what is beside the segment and what abreast, both bend, and their slopes' product counts twice.
+                let points = most * (twice + R::splat(2.0) * rate * rate);
+                let two = R::splat(2.0);
+                let ends = two * twice * furthest * bell + two * two * rate * tail;
+                let ends = R::splat(FRAC_2_SQRT_PI) * beside * rate * ends;
+                let bend = points.min(most * twice * self.share_bent(away) + ends);
                 let Some(ramp) = &abreast.ramp else {
                     let kink = R::splat(0.0);
                     return Limits { most, bend, kink };
                 };
                 let [a, b] = [from, to].map(|t| abreast.place + abreast.rate * t);
                 let [factor, steep, kink] = ramp.most(a, b);
-                // |g′|, by what is beside the segment and what abreast; a bell is at most 1.
-                let away = (from - self.center).abs().max((to - self.center).abs());
-                let slope = most * twice * away + beside * rate * R::splat(FRAC_2_SQRT_PI);
+                // |g′|, by what is beside the segment and what abreast.
+                let slope =
+                    most * twice * furthest + beside * bell * rate * R::splat(FRAC_2_SQRT_PI);
                 Limits {
                     most: most * factor,
                     bend: bend * factor + R::splat(2.0) * slope * steep * rate,
@@ -442,6 +474,10 @@ impl<R: Real> Abreast<R> {
         let x = self.place + self.rate * t;
         let side = x.abs();
         let near = side - self.half;
+        if !R::any(R::splat(-LONG).lt(near)) {
+            // No ray feels an end.
+            return (R::splat(2.0), R::splat(0.0));
+        }
         let bell = (-(near * near)).exp();
         let mut share = reach(near, bell);
         let mut change = -bell;
@@ -455,15 +491,29 @@ impl<R: Real> Abreast<R> {
         (share, change)
     }
 
-    /// A bound on the share between two parameters.
+    /// Between two parameters: bounds on the share, and on `e^(−y²)` and `|y|e^(−y²)`, where y is how far along the segment
+    /// it is from either of its ends.
     #[inline(always)]
-    fn most(&self, from: R, to: R) -> R {
+    fn most(&self, from: R, to: R) -> (R, [R; 2]) {
         let (a, b) = (self.place + self.rate * from, self.place + self.rate * to);
-        // The position nearest to the middle.
+        // The position nearest to the middle, and that furthest from it.
+        let last = a.abs().max(b.abs()) - self.half;
+        if !R::any(R::splat(-INNER).lt(last)) {
+            return (
+                R::splat(2.0),
+                [R::splat(INNER_BELL), R::splat(INNER * INNER_BELL)],
+            );
+        }
         let zero = R::splat(0.0);
         let x = zero.max(a.min(b)).min(a.max(b));
         let near = x.abs() - self.half;
-        reach(near, (-(near * near)).exp())
+        let bell = (-(near * near)).exp();
+        // What is nearest to an end of the segment; from the other end it is further.
+        let apart = near.max(-last).max(zero);
+        let at_end = (-(apart * apart)).exp();
+        // y·e^(−y²) is largest at √½, and falls from there.
+        let steepest = apart.max(R::splat(FRAC_1_SQRT_2));
+        (reach(near, bell), [at_end, steepest * at_end])
     }
 }
 

@@ -23,6 +23,7 @@
 //! Of a Cauchy triangle the slope across its plane is lost more than 100 widths away.
 
 mod angle;
+pub mod beads;
 mod bone;
 pub mod bound;
 mod bounds;
@@ -59,6 +60,7 @@ pub mod sum;
 mod term;
 mod waves;
 
+pub use beads::Bead;
 pub use bound::Bound;
 pub use course::{Ceiling, Course, Limits, Lump};
 pub use kernel::{Derivatives, Kernel};

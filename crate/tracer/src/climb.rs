@@ -65,6 +65,12 @@ const LEVEL: f32 = 1.0 - 1e-6;
 /// A field of this much is deep inside.
 const DEEP: f32 = 1.5;
 
+/// A piece of length h would have served, as a chord, if `N·h²` had been 8 times the room left below T; a little less is tried
+/// next …
+const SERVES: f32 = 6.0;
+/// … but no less than this part of the piece, as on a shorter one N will be less.
+const LEAST: f32 = 0.1;
+
 /// Evaluations after which a packet is given up; those of the published scenes need some thousand.
 const MOST_EVALUATIONS: u64 = 1 << 24;
 /// Rounds after which a packet is given up.
@@ -152,7 +158,13 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
         let arrived = passed & way.to.simd_le(low).to_bitmask();
         going &= !arrived;
         // Those that must look closer.
-        step = self::mask(failed).select(sum.closer(low, next, tolerance) - low, step);
+        let room = level - low_value.fast_max(sum.value);
+        let served = (f32x8::splat(SERVES) * room.fast_max(zero) / sum.bend).sqrt();
+        let served = served
+            .fast_min(f32x8::splat(0.5) * length)
+            .fast_max(f32x8::splat(LEAST) * length);
+        let closer = sum.closer(low, next, low + served, tolerance) - low;
+        step = self::mask(failed).select(closer, step);
         // Those that know of a crossing.
         let mask = self::mask(above);
         high = mask.select(next, high);
@@ -284,15 +296,14 @@ impl Sum {
     }
 
     /// Where to look instead on a piece about which nothing can be told: up to where the largest lump begins to be strong,
-    /// or to where it ends, or half as far.
+    /// or to where it ends, or so far as may serve.
     #[inline(always)]
-    fn closer(&self, from: f32x8, to: f32x8, tolerance: f32x8) -> f32x8 {
+    fn closer(&self, from: f32x8, to: f32x8, served: f32x8, tolerance: f32x8) -> f32x8 {
         let [near, far] = self.strong;
         let strong = near.simd_lt(far);
-        let middle = f32x8::splat(0.5) * (from + to);
         let ends = strong & (from + tolerance).simd_lt(far) & far.simd_lt(to);
         let begins = strong & (from + tolerance).simd_lt(near) & near.simd_lt(to);
-        begins.select(near, ends.select(far, middle))
+        begins.select(near, ends.select(far, served))
     }
 }
 

@@ -31,8 +31,10 @@ pub struct Near {
     pub middle: [f32; 3],
     /// It is followed up to this square of the distance from its bone, in kernel widths.
     pub square: f32,
-    /// Alone it would have its surface there.
+    /// Alone it would have its surface there …
     pub core: f32,
+    /// … or, of a bead, its bone would.
+    pub part: bool,
     /// This far before its own surface a ray is well outside of it.
     pub lead: f32,
     /// Its material.
@@ -356,6 +358,7 @@ mod tests {
                     middle: place.as_vec3().to_array(),
                     square: square as f32,
                     core: 1.0,
+                    part: false,
                     lead: 0.0,
                     material: i as u32,
                     from: 0.0,

@@ -187,7 +187,9 @@ impl Soft {
                     .select(core - f32x8::splat(near.lead), first);
                 guess = guess.fast_min(core);
                 // A segment may be weaker there than its core says.
-                let certain = if near.lump.is_segment() {
+                let certain = if near.part {
+                    far
+                } else if near.lump.is_segment() {
                     let inside = f32x8::splat(1.0).simd_lt(course.at(core).0);
                     inside.select(core, far)
                 } else {

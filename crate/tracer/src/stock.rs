@@ -2,8 +2,9 @@
 use crate::beam::Beam;
 use crate::hierarchy::Hierarchy;
 use crate::nearby::{Extent, Near, Nearby};
-use field::{Primitive, THRESHOLD};
+use field::{Bead, Lump, Primitive, THRESHOLD};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Each lump is followed until its field is below this much of T, divided by the scene's number of primitives.
 const LEFT_OUT: f64 = 2e-6;
@@ -12,10 +13,12 @@ const LEFT_OUT: f64 = 2e-6;
 /// allows ([`climb`](mod@crate::climb)).
 const LEAD: f64 = 0.6;
 
-/// Of each of a scene's primitives what lists of lumps say of it, if it is one.
+/// Of each of a scene's primitives what lists of lumps say of it, if it is one, or is as good as a sum of them.
 #[derive(Default)]
 pub struct Stock {
-    lumps: Vec<Option<Item>>,
+    items: Vec<Item>,
+    /// Where each primitive's items end; they start where those of the primitive before it do.
+    ends: Vec<u32>,
 }
 
 struct Item {
@@ -24,39 +27,78 @@ struct Item {
     extent: Extent<f32>,
 }
 
+/// Bones are cut into beads until there are this many in a scene.
+const MOST_BEADS: usize = 1 << 17;
+
 impl Stock {
     /// Looks at a scene's primitives, given with their materials.
     #[must_use]
     pub fn new(primitives: &[Primitive], material: &[u32]) -> Self {
-        let left_out = LEFT_OUT * THRESHOLD / primitives.len().max(1) as f64;
-        let item = |(p, material): (&Primitive, &u32)| {
-            let lump = p.lump::<f32>()?;
-            let square = lump.reach(left_out);
-            Some(Item {
-                middle: p.lump_middle(),
+        let mut beads = 0;
+        let strings: BTreeMap<usize, Vec<Bead>> = primitives
+            .iter()
+            .enumerate()
+            .filter_map(|(i, p)| {
+                let own = (beads < MOST_BEADS).then(|| p.beads()).flatten()?;
+                beads += own.len();
+                Some((i, own))
+            })
+            .collect();
+        let left_out = LEFT_OUT * THRESHOLD / (primitives.len() + beads).max(1) as f64;
+        let mut stock = Self {
+            items: Vec::with_capacity(primitives.len() + beads),
+            ends: Vec::with_capacity(primitives.len()),
+        };
+        for (i, p) in primitives.iter().enumerate() {
+            let item = |lump: Lump<f32>, middle: DVec3, core: f64, part: bool| Item {
+                middle,
                 near: Near {
                     lump,
                     middle: [0.0; 3],
-                    square: square as f32,
+                    square: lump.reach(left_out) as f32,
                     // A little inside, so that rounding does not put it outside.
-                    core: lump.core(square, left_out) as f32 - 1e-4,
+                    core: core as f32 - 1e-4,
+                    part,
                     lead: (LEAD / lump.ceiling().scale) as f32,
-                    material: *material,
+                    material: material[i],
                     from: 0.0,
                 },
-                extent: Extent::of(&lump, lump.radius(square)),
-            })
-        };
-        Self {
-            lumps: primitives.iter().zip(material).map(item).collect(),
+                extent: Extent::of(&lump, lump.radius(lump.reach(left_out))),
+            };
+            if let Some(lump) = p.lump::<f32>() {
+                let core = lump.core(lump.reach(left_out), left_out);
+                stock.items.push(item(lump, p.lump_middle(), core, false));
+            } else if let Some(beads) = strings.get(&i) {
+                let lumps: Option<Vec<_>> = beads.iter().map(Bead::lump).collect();
+                let own = lumps.into_iter().flatten().zip(beads).map(|(lump, bead)| {
+                    // Where the bone has its surface if it goes on as it is there.
+                    let value = p.value(bead.center.to_array());
+                    let core = libm::log(value / THRESHOLD).min(lump.reach(left_out));
+                    item(lump, bead.center, core, true)
+                });
+                stock.items.extend(own);
+            }
+            stock.ends.push(stock.items.len() as u32);
         }
+        stock
     }
 
-    /// The ball (middle, radius) beyond which a primitive is not followed, if it is a lump.
+    /// The items of a primitive.
+    fn of(&self, primitive: usize) -> &[Item] {
+        let start = primitive
+            .checked_sub(1)
+            .map_or(0, |before| self.ends[before]);
+        &self.items[start as usize..self.ends[primitive] as usize]
+    }
+
+    /// The ball (middle, radius) beyond which a primitive is not followed, if it is a lump or some.
     #[must_use]
     pub fn ball(&self, primitive: usize) -> Option<(DVec3, f64)> {
-        let item = self.lumps[primitive].as_ref()?;
-        Some((item.middle, f64::from(item.extent.radius)))
+        let items = self.of(primitive);
+        let middle = items.iter().map(|item| item.middle).sum::<DVec3>() / items.len() as f64;
+        let reach = |item: &Item| item.middle.distance(middle) + f64::from(item.extent.radius);
+        let radius = items.iter().map(reach).reduce(f64::max)?;
+        Some((middle, radius))
     }
 
     /// Lists the lumps near a beam, up to a parameter; none if all together are nowhere T. False if the beam meets
@@ -65,10 +107,18 @@ impl Stock {
         let mut found = Vec::new();
         let mut plain = true;
         tree.search(beam, |i, center, radius| {
-            let near = beam.reach(center, radius)[0];
-            if near < limit && plain {
-                plain = self.lumps[i as usize].is_some();
-                found.push((near, i));
+            if beam.reach(center, radius)[0] >= limit || !plain {
+                return;
+            }
+            let items = self.of(i as usize);
+            plain = !items.is_empty();
+            let first = self.ends[i as usize] as usize - items.len();
+            for (k, item) in items.iter().enumerate() {
+                let radius = f64::from(item.extent.radius);
+                let near = beam.reach(item.middle, radius)[0];
+                if near < limit && (items.len() == 1 || beam.meets(item.middle, radius)) {
+                    found.push((near, (first + k) as u32));
+                }
             }
         });
         if !plain {
@@ -78,19 +128,18 @@ impl Stock {
         let base = found.first().map_or(0.0, |lump| lump.0);
         list.begin(beam.axis.at(base), base);
         for (near, i) in found {
-            if let Some(item) = &self.lumps[i as usize] {
-                let middle = (item.middle - list.middle).as_vec3().to_array();
-                let from = (near - base) as f32;
-                list.push(
-                    Near {
-                        middle,
-                        // Rounded down.
-                        from: from - from * 1e-6,
-                        ..item.near
-                    },
-                    &item.extent,
-                );
-            }
+            let item = &self.items[i as usize];
+            let middle = (item.middle - list.middle).as_vec3().to_array();
+            let from = (near - base) as f32;
+            list.push(
+                Near {
+                    middle,
+                    // Rounded down.
+                    from: from - from * 1e-6,
+                    ..item.near
+                },
+                &item.extent,
+            );
         }
         true
     }

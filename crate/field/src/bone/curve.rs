@@ -647,7 +647,7 @@ fn horner(p: &[f64], t: f64) -> f64 {
 
 /// Nodes in (−1, 1) and weights of the Gauss–Legendre rule of n points: the zeros of Pₙ, by Newton's
 /// method from Tricomi's approximation.
-fn gauss_legendre(n: usize) -> Vec<[f64; 2]> {
+pub(crate) fn gauss_legendre(n: usize) -> Vec<[f64; 2]> {
     (0..n)
         .map(|i| {
             let mut x = libm::cos(PI * (i as f64 + 0.75) / (n as f64 + 0.5));
