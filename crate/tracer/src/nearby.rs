@@ -17,9 +17,24 @@ pub struct Nearby {
     /// … and ray parameters from this one.
     pub base: f64,
     lumps: Vec<Near>,
+    /// Primitives near the beam that are no lumps.
+    pub others: Vec<Other>,
     blocks: Vec<Block>,
     /// Whether any of them is a segment.
     rods: bool,
+}
+
+/// A primitive that is no lump, within a ball.
+#[derive(Clone, Copy, Debug)]
+pub struct Other {
+    /// Its number.
+    pub primitive: u32,
+    /// The ball's middle.
+    pub center: DVec3,
+    /// Its radius.
+    pub radius: f64,
+    /// It is followed up to this distance from its bone.
+    pub reach: f64,
 }
 
 /// A lump in a list.
@@ -157,6 +172,7 @@ impl Nearby {
     pub fn begin(&mut self, middle: DVec3, base: f64) {
         (self.middle, self.base) = (middle, base);
         self.lumps.clear();
+        self.others.clear();
         self.rods = false;
         self.blocks.clear();
     }
@@ -193,6 +209,8 @@ impl Nearby {
     /// [`Nearby::base`].
     pub fn narrow(&self, beam: &Beam, left_out: f32, into: &mut Self) {
         into.begin(self.middle, self.base);
+        let met = |other: &&Other| beam.meets(other.center, other.radius);
+        into.others.extend(self.others.iter().filter(met));
         let mut marks = Marks::new();
         if self.mark(beam, left_out, &mut marks) {
             for index in marked(&marks) {

@@ -244,7 +244,7 @@ impl Picture {
                     continue;
                 }
                 stats.primary_rays += wanted as u64;
-                let near = square.near([i, j], [columns, rows]);
+                let near = square.near([i, j], [columns, rows], work);
                 let nothing = matches!(near, Near::Nothing);
                 if self.solids.is_empty() && self.digger.is_none() && nothing {
                     for (x, y) in pixels {

@@ -121,7 +121,9 @@ impl Soft {
         let furthest = furthest.fold(0.0, f64::max);
         let beam = Beam::around(&followed)?;
         let mut list = core::mem::take(&mut work.list);
-        let looked = if self.list_lumps(&beam, furthest, &mut list) {
+        let looked = if self.list_lumps(&beam, furthest, &mut list)
+            && !self.meets_any(&list.others, &beam, furthest)
+        {
             let rays = Rays::new(rays, &list);
             self.quick(&list, &rays, limits, alive, quest, work)
         } else {

@@ -116,7 +116,7 @@ impl Picture {
                 [i % n, i / n].map(|k| (f64::from(k) + 0.5) / f64::from(n))
             };
             stats.primary_rays += u64::from(count);
-            let near = square.near([column, row], PACKETS);
+            let near = square.near([column, row], PACKETS, work);
             let quick = match near {
                 Near::Lumps(near, Some(lens)) if self.solids.is_empty() => {
                     let half = 0.5 * f64::from(SQUARE);

@@ -187,7 +187,8 @@ impl Picture {
         };
         let furthest = patch.iter().map(|shadow| shadow.limit).fold(0.0, f64::max);
         let mut near = core::mem::take(&mut work.around);
-        let quick = self.soft.list_lumps(&beam, furthest, &mut near);
+        let quick = self.soft.list_lumps(&beam, furthest, &mut near)
+            && !self.soft.meets_any(&near.others, &beam, furthest);
         let mut slabs = None;
         for (number, packet) in patch.chunks_mut(PACKET).enumerate() {
             work.begin();

@@ -5,7 +5,7 @@ use crate::beams::Beams;
 use crate::clusters::Clusters;
 use crate::flesh::Active;
 use crate::hierarchy::Hierarchy;
-use crate::nearby::Nearby;
+use crate::nearby::{Nearby, Other};
 use crate::quick::Quick;
 use crate::ray::Ray;
 use crate::roots::bracketed;
@@ -90,6 +90,11 @@ const LEFT_OUT: f64 = 1e-5;
 
 /// Rays from infinitely wide primitives are followed this far (in units of the scene's size).
 const FAR: f64 = 1e4;
+
+/// Strides along a beam after which it is taken to come near a primitive …
+const MOST_STRIDES: usize = 32;
+/// … and how long each is at least: so little further away it would not matter.
+const SHORTEST_STRIDE: f64 = 1e-4;
 
 /// Scratch space that is worth keeping between packets.
 #[derive(Default)]
@@ -261,13 +266,41 @@ impl Soft {
         }
     }
 
-    /// Lists the lumps near a beam, up to a parameter. False if the beam meets anything else.
+    /// Lists the lumps near a beam, up to a parameter, and the few other primitives there. False if those are more than a few.
     pub fn list_lumps(&self, beam: &Beam, limit: f64, list: &mut Nearby) -> bool {
         let finite = beam.axis.origin.is_finite() && beam.axis.direction.is_finite();
         if !self.everywhere.is_empty() || !finite {
             return false;
         }
-        self.stock.list(&self.tree, beam, limit, list)
+        // The tree's balls reach as far beyond those of the skeletons.
+        let reach = |i: u32, radius: f64| {
+            let p = &self.primitives[i as usize];
+            let around = p.bounding_sphere().map_or(0.0, |(_, around)| around);
+            radius - (around - p.influence)
+        };
+        self.stock.list(&self.tree, beam, limit, reach, list)
+    }
+
+    /// Whether a ray of a beam may come so near to one of some primitives, up to a parameter, that it counts.
+    pub fn meets_any(&self, others: &[Other], beam: &Beam, limit: f64) -> bool {
+        others.iter().any(|other| {
+            let [mut t, far] = beam.reach(other.center, other.radius);
+            let far = far.min(limit);
+            let bound = &self.bounds()[other.primitive as usize];
+            for _ in 0..MOST_STRIDES {
+                if t > far {
+                    return false;
+                }
+                // No ray that is at t is further from the axis than its width there.
+                let away = bound.nearness(beam.axis.at(t), beam.width(t)).distance - other.reach;
+                if away <= 0.0 {
+                    break;
+                }
+                // As it goes on a ray comes nearer by no more than it goes.
+                t += away.max(SHORTEST_STRIDE) / (1.0 + beam.spread);
+            }
+            true
+        })
     }
 
     /// Walks a bundle through the slabs of its beam.

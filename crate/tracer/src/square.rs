@@ -12,7 +12,7 @@ use crate::slabs::Slabs;
 pub(crate) enum Square<'a> {
     /// There is none.
     Empty,
-    /// Lumps alone.
+    /// Lumps, and few other primitives if any.
     Lumps(Lumps<'a>),
     /// Slabs, and the parameter at which they start.
     Slabs((Slabs<'a>, f64)),
@@ -20,21 +20,37 @@ pub(crate) enum Square<'a> {
 
 impl<'a> Square<'a> {
     /// What of it a packet needs, given by its column and row among so many.
-    pub fn near(&mut self, place: [u32; 2], packets: [u32; 2]) -> Near<'_, 'a> {
-        match self {
-            Self::Empty => Near::Nothing,
-            Self::Slabs(slabs) => {
-                let number = packet_number(place, packets);
-                if slabs.0.is_empty_for(number) {
-                    Near::Nothing
-                } else {
-                    Near::Slabs(slabs, number)
+    pub fn near(
+        &mut self,
+        place: [u32; 2],
+        packets: [u32; 2],
+        work: &mut Workspace,
+    ) -> Near<'_, 'a> {
+        let slabs = match self {
+            Self::Empty => return Near::Nothing,
+            Self::Slabs(slabs) => slabs,
+            Self::Lumps(lumps) => {
+                if !lumps.meets_others(place) {
+                    return match lumps.near(place) {
+                        (near, _) if near.len() == 0 => Near::Nothing,
+                        (near, lens) => Near::Lumps(near, lens),
+                    };
+                }
+                let (picture, area) = (lumps.picture, lumps.area);
+                let slabs = lumps
+                    .slabs
+                    .get_or_insert_with(|| picture.slabs(area, packets, work));
+                match slabs {
+                    Some(slabs) => slabs,
+                    None => return Near::Nothing,
                 }
             }
-            Self::Lumps(lumps) => match lumps.near(place) {
-                (near, _) if near.len() == 0 => Near::Nothing,
-                (near, lens) => Near::Lumps(near, lens),
-            },
+        };
+        let number = packet_number(place, packets);
+        if slabs.0.is_empty_for(number) {
+            Near::Nothing
+        } else {
+            Near::Slabs(slabs, number)
         }
     }
 }
@@ -42,7 +58,12 @@ impl<'a> Square<'a> {
 impl Square<'_> {
     /// Leaves the space that it took to others.
     pub fn leave(self, work: &mut Workspace) {
-        if let Self::Slabs((slabs, _)) = self {
+        let slabs = match self {
+            Self::Slabs(slabs) => Some(slabs),
+            Self::Lumps(lumps) => lumps.slabs.flatten(),
+            Self::Empty => None,
+        };
+        if let Some((slabs, _)) = slabs {
             work.scratch.spaces.push(slabs.into_space());
         }
     }
@@ -54,7 +75,7 @@ const PARTS: u32 = 4;
 /// Longer lists have none for parts, which would need much space where lumps are large.
 const MANY: usize = 1 << 15;
 
-/// The lumps in a square, and in each of its parts.
+/// The lumps in a square, and in each of its parts; and its slabs, for packets near anything else.
 pub(crate) struct Lumps<'a> {
     picture: &'a Picture,
     area: Area,
@@ -62,6 +83,7 @@ pub(crate) struct Lumps<'a> {
     all: Nearby,
     lens: Option<Lens>,
     parts: Vec<Option<Nearby>>,
+    slabs: Option<Option<(Slabs<'a>, f64)>>,
 }
 
 impl<'a> Lumps<'a> {
@@ -80,7 +102,33 @@ impl<'a> Lumps<'a> {
             packets,
             all,
             parts: vec![None; (PARTS * PARTS) as usize],
+            slabs: None,
         }
+    }
+
+    /// Whether the packet in a column and row comes near anything that is no lump.
+    fn meets_others(&mut self, [column, row]: [u32; 2]) -> bool {
+        if self.all.others.is_empty() {
+            return false;
+        }
+        let (picture, area, packets, base) = (self.picture, self.area, self.packets, self.all.base);
+        let (near, _) = self.near([column, row]);
+        if near.others.is_empty() {
+            return false;
+        }
+        let [width, height] = [
+            (area.right - area.left) / packets[0],
+            (area.bottom - area.top) / packets[1],
+        ];
+        let (left, top) = (area.left + column * width, area.top + row * height);
+        let packet = Area {
+            left,
+            top,
+            right: left + width,
+            bottom: top + height,
+        };
+        let beam = picture.beam(packet).from(base);
+        picture.soft.meets_any(&near.others, &beam, f64::INFINITY)
     }
 
     /// Those in the part that holds the packet in a column and row.

@@ -1,7 +1,7 @@
 //! A scene's lumps, ready to be listed: what lists say of each is computed once.
 use crate::beam::Beam;
 use crate::hierarchy::Hierarchy;
-use crate::nearby::{Extent, Near, Nearby};
+use crate::nearby::{Extent, Near, Nearby, Other};
 use field::{Bead, Lump, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -26,6 +26,9 @@ struct Item {
     near: Near,
     extent: Extent<f32>,
 }
+
+/// Where there are more primitives that are no lumps, most packets meet one.
+const MOST_OTHERS: usize = 16;
 
 /// Bones are cut into beads until there are this many in a scene.
 const MOST_BEADS: usize = 1 << 17;
@@ -101,17 +104,32 @@ impl Stock {
         Some((middle, radius))
     }
 
-    /// Lists the lumps near a beam, up to a parameter; none if all together are nowhere T. False if the beam meets
-    /// anything else. `tree` holds the balls of all primitives.
-    pub fn list(&self, tree: &Hierarchy, beam: &Beam, limit: f64, list: &mut Nearby) -> bool {
+    /// Lists the lumps near a beam, up to a parameter, and the few other primitives there. False if those are more than a few.
+    /// `tree` holds the balls of all primitives, `reach` tells how far from its bone one is followed, given its ball's radius.
+    pub fn list(
+        &self,
+        tree: &Hierarchy,
+        beam: &Beam,
+        limit: f64,
+        reach: impl Fn(u32, f64) -> f64,
+        list: &mut Nearby,
+    ) -> bool {
         let mut found = Vec::new();
-        let mut plain = true;
+        let mut others = core::mem::take(&mut list.others);
+        others.clear();
         tree.search(beam, |i, center, radius| {
-            if beam.reach(center, radius)[0] >= limit || !plain {
+            if beam.reach(center, radius)[0] >= limit || others.len() > MOST_OTHERS {
                 return;
             }
             let items = self.of(i as usize);
-            plain = !items.is_empty();
+            if items.is_empty() {
+                others.push(Other {
+                    primitive: i,
+                    center,
+                    radius,
+                    reach: reach(i, radius),
+                });
+            }
             let first = self.ends[i as usize] as usize - items.len();
             for (k, item) in items.iter().enumerate() {
                 let radius = f64::from(item.extent.radius);
@@ -121,12 +139,14 @@ impl Stock {
                 }
             }
         });
-        if !plain {
+        if others.len() > MOST_OTHERS {
+            list.others = others;
             return false;
         }
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let base = found.first().map_or(0.0, |lump| lump.0);
         list.begin(beam.axis.at(base), base);
+        list.others = others;
         for (near, i) in found {
             let item = &self.items[i as usize];
             let middle = (item.middle - list.middle).as_vec3().to_array();
