@@ -4,8 +4,10 @@
 //! down (`field::course`). So a ray outside the surface may go on from `from` to `to`
 //!
 //! - if the largest values on that piece add up to less than T, or
-//! - if the field is below T at both ends and `max(F(from), F(to)) + h²/8·N + h/4·K < T`, where h is the length,
-//!   N ≥ −F″ on the piece, and in kinks the slope falls by no more than K: a chord's error.
+//! - if the field is below T at both ends, and on no place of the chord between them the parabola
+//!   `(N/2 + K/h)·x(h−x)` reaches from there up to T, where h is the length, N ≥ −F″ on the piece, and in kinks the slope falls
+//!   by no more than K. With `P = h²/2·N + h·K` and D the difference of the values at the ends, the sum is largest at an end if
+//!   P ≤ D; else it is larger than there by (P−D)²/4P.
 //!
 //! If F(to) ≥ T there is a crossing on the piece, and when `N·h² + 2K·h < 2(T − F(from))` it is the only one: a
 //! second one before it would need more bending. Then Newton's steps lead to it. All else halves the piece, but no
@@ -65,9 +67,16 @@ const LEVEL: f32 = 1.0 - 1e-6;
 /// A field of this much is deep inside.
 const DEEP: f32 = 1.5;
 
+/// From where the field is more than this a step is no longer than …
+const NEARLY: f32 = 0.15;
+/// … this part of what leads along the tangent to T: Gaussians are convex where they rise, and are at T before.
+const TANGENT: f32 = 1.1;
+
 /// A piece of length h would have served, as a chord, if `N·h²` had been 8 times the room left below T; a little less is tried
 /// next …
 const SERVES: f32 = 6.0;
+/// … or, where the field falls from the start, as far as this times what the bend can turn; …
+const FALLS: f32 = 1.8;
 /// … but no less than this part of the piece, as on a shorter one N will be less.
 const LEAST: f32 = 0.1;
 
@@ -97,14 +106,15 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
     let zero = f32x8::splat(0.0);
     let level = f32x8::splat(LEVEL);
     let tolerance = f32x8::splat(way.tolerance);
+    let tiny = f32x8::splat(f32::MIN_POSITIVE);
     let mut evaluations = 0;
     // Known: below T up to `low`, with these values there.
     let mut low = way.from;
     let mut going = way.alive & low.simd_lt(way.to).to_bitmask();
     // Where rays come from outside of all lumps' reach there is nothing yet.
-    let mut low_value = zero;
+    let (mut low_value, mut low_slope) = (zero, zero);
     if low.simd_le(zero).to_bitmask() & going != 0 {
-        (low_value, _) = values(lumps, low, way.alive, &mut evaluations);
+        (low_value, low_slope) = values(lumps, low, way.alive, &mut evaluations);
     }
     if level.simd_le(low_value).to_bitmask() & going != 0 {
         return None;
@@ -140,8 +150,10 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
         let length = next - low;
         let short = length.simd_le(tolerance).to_bitmask();
         let above = level.simd_le(sum.value).to_bitmask() & going;
-        let bulge =
-            length * (f32x8::splat(0.125) * length * sum.bend + f32x8::splat(0.25) * sum.kink);
+        // Above the chord by no more than a parabola, whose sum with the chord is largest inside only if it is steeper.
+        let parabola = length * (f32x8::splat(0.5) * length * sum.bend + sum.kink);
+        let steeper = (parabola - (sum.value - low_value).abs()).fast_max(zero);
+        let bulge = f32x8::splat(0.25) * steeper * steeper / parabola.fast_max(tiny);
         let chord = low_value.fast_max(sum.value) + bulge;
         let below = going & !above;
         let calm = below & (sum.most.simd_lt(level) | chord.simd_lt(level)).to_bitmask();
@@ -152,15 +164,23 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
         let mask = mask(passed);
         low = mask.select(next, low);
         low_value = mask.select(sum.value, low_value);
+        low_slope = mask.select(sum.slope, low_slope);
         // A length that served may be doubled.
         let doubled = f32x8::splat(2.0) * step.fast_min(length.fast_max(tolerance));
+        // Where the field rises towards T a tangent leads a little beyond the crossing.
+        let room = f32x8::splat(TANGENT) * (level - sum.value);
+        let rises = f32x8::splat(NEARLY).simd_lt(sum.value) & zero.simd_lt(sum.slope);
+        let tangent = (room / sum.slope).fast_max(tolerance);
+        let doubled = rises.select(doubled.fast_min(tangent), doubled);
         step = self::mask(passed & moved).select(doubled, step);
         let arrived = passed & way.to.simd_le(low).to_bitmask();
         going &= !arrived;
         // Those that must look closer.
         let room = level - low_value.fast_max(sum.value);
         let served = (f32x8::splat(SERVES) * room.fast_max(zero) / sum.bend).sqrt();
+        let down = f32x8::splat(FALLS) * -low_slope / sum.bend;
         let served = served
+            .fast_max(down)
             .fast_min(f32x8::splat(0.5) * length)
             .fast_max(f32x8::splat(LEAST) * length);
         let closer = sum.closer(low, next, low + served, tolerance) - low;
