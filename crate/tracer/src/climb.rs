@@ -20,14 +20,42 @@ use wide::f32x8;
 pub struct Step {
     /// Its field along the rays.
     pub course: Course<f32x8>,
-    /// No ray meets it before this …
-    pub from: f32,
-    /// … nor after this.
-    pub to: f32,
     /// Where it is strong, on each ray; the first is greater than the second where it never is.
     pub strong: [f32x8; 2],
     /// Its index in the list.
     pub index: u32,
+}
+
+/// Where rays meet a lump.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    /// No ray meets it before this …
+    pub from: f32,
+    /// … nor after this.
+    pub to: f32,
+    /// Which of the steps it is.
+    pub step: u32,
+}
+
+/// The lumps on the way of a packet's rays, and the order in which they are met: that is sorted, as steps are large.
+#[derive(Clone, Copy, Debug)]
+pub struct Stairs<'a> {
+    /// Each lump.
+    pub steps: &'a [Step],
+    /// In order of `from`.
+    pub turns: &'a [Turn],
+}
+
+impl<'a> Stairs<'a> {
+    /// The lumps that a ray may meet between two parameters.
+    #[inline(always)]
+    pub fn between(self, first: f32, last: f32) -> impl Iterator<Item = &'a Step> {
+        self.turns
+            .iter()
+            .take_while(move |turn| turn.from <= last)
+            .filter(move |turn| turn.to >= first)
+            .map(move |turn| &self.steps[turn.step as usize])
+    }
 }
 
 /// Where rays climb.
@@ -98,11 +126,9 @@ struct Sum {
 }
 
 /// Climbs. `None` if a ray starts inside or none of this ends, which is for others to deal with.
-///
-/// The lumps are in order of `from`.
 #[inline(never)]
 #[must_use]
-pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
+pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
     let zero = f32x8::splat(0.0);
     let level = f32x8::splat(LEVEL);
     let tolerance = f32x8::splat(way.tolerance);
@@ -249,16 +275,10 @@ pub fn least(x: f32x8) -> f32 {
 
 /// The field at t, and its slope.
 #[inline(always)]
-fn values(lumps: &[Step], t: f32x8, bits: u32, evaluations: &mut u64) -> (f32x8, f32x8) {
+fn values(lumps: Stairs<'_>, t: f32x8, bits: u32, evaluations: &mut u64) -> (f32x8, f32x8) {
     let (first, last) = extremes(t, t, bits);
     let (mut value, mut slope) = (f32x8::splat(0.0), f32x8::splat(0.0));
-    for lump in lumps {
-        if lump.from > last {
-            break;
-        }
-        if lump.to < first {
-            continue;
-        }
+    for lump in lumps.between(first, last) {
         *evaluations += 8;
         let (v, s) = lump.course.at(t);
         value += v;
@@ -269,7 +289,7 @@ fn values(lumps: &[Step], t: f32x8, bits: u32, evaluations: &mut u64) -> (f32x8,
 
 impl Sum {
     #[inline(always)]
-    fn on(lumps: &[Step], from: f32x8, to: f32x8, bits: u32, evaluations: &mut u64) -> Self {
+    fn on(lumps: Stairs<'_>, from: f32x8, to: f32x8, bits: u32, evaluations: &mut u64) -> Self {
         let (first, last) = extremes(from, to, bits);
         let zero = f32x8::splat(0.0);
         let mut sum = Self {
@@ -281,13 +301,7 @@ impl Sum {
             largest: zero,
             strong: [zero; 2],
         };
-        for lump in lumps {
-            if lump.from > last {
-                break;
-            }
-            if lump.to < first {
-                continue;
-            }
+        for lump in lumps.between(first, last) {
             let course = &lump.course;
             let (value, slope, here) = course.bent(to);
             let Limits { most, bend, kink } = if course.rises_until(to) {
@@ -331,7 +345,7 @@ impl Sum {
 /// bend are known.
 #[inline(never)]
 fn polish(
-    lumps: &[Step],
+    lumps: Stairs<'_>,
     climbed: &mut Climbed,
     mut low_value: f32x8,
     [mut high_value, slope, bend]: [f32x8; 3],
@@ -426,6 +440,16 @@ mod tests {
             .collect()
     }
 
+    /// All from the start on.
+    fn turns(steps: &[Step]) -> Vec<Turn> {
+        let turn = |step| Turn {
+            from: 0.0,
+            to: 10.0,
+            step,
+        };
+        (0..steps.len() as u32).map(turn).collect()
+    }
+
     /// The first crossing of a ray, by very many samples in double precision, with how near the field comes to T before.
     fn scan(primitives: &[Primitive], origin: DVec3, direction: DVec3) -> (Option<f64>, f64) {
         let mut nearest = f64::INFINITY;
@@ -466,8 +490,6 @@ mod tests {
                     let strong = lump.core(square, 1e-6) + 2.0;
                     Step {
                         course,
-                        from: 0.0,
-                        to: 10.0,
                         strong: course.within(f32x8::splat(strong as f32)),
                         index: index as u32,
                     }
@@ -481,7 +503,12 @@ mod tests {
                 alive: 255,
                 tolerance: 5e-5,
             };
-            let Some(climbed) = climb(&steps, &way) else {
+            let turns = turns(&steps);
+            let lumps = Stairs {
+                steps: &steps,
+                turns: &turns,
+            };
+            let Some(climbed) = climb(lumps, &way) else {
                 // Only where a ray starts inside.
                 let starts = rays.iter().any(|&(origin, direction)| {
                     scan(&primitives, origin, direction).0 == Some(0.0)
@@ -516,8 +543,6 @@ mod tests {
         let course = lump.course([zero; 3], [zero, zero, f32x8::splat(1.0)]);
         let steps = [Step {
             course,
-            from: 0.0,
-            to: 1.0,
             strong: [zero, zero],
             index: 0,
         }];
@@ -529,6 +554,11 @@ mod tests {
             alive: 255,
             tolerance: 5e-5,
         };
-        assert!(climb(&steps, &way).is_none());
+        let turns = turns(&steps);
+        let lumps = Stairs {
+            steps: &steps,
+            turns: &turns,
+        };
+        assert!(climb(lumps, &way).is_none());
     }
 }

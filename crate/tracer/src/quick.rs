@@ -3,7 +3,7 @@
 //! The lumps near a square of pixels are listed once, those near each of its parts when a packet in it asks, those near
 //! the packet anew for each; then [`climb`](mod@crate::climb) follows the packet's rays.
 use crate::beam::Beam;
-use crate::climb::{Climbed, Step, Way, climb, extremes, least};
+use crate::climb::{Climbed, Stairs, Step, Turn, Way, climb, extremes, least};
 use crate::flesh::{Flesh, NEAR_ENOUGH};
 use crate::nearby::{Marks, Nearby, marked};
 use crate::ray::Ray;
@@ -26,8 +26,18 @@ const STRONG: f32 = 0.15;
 #[derive(Default)]
 pub struct Quick {
     steps: Vec<Step>,
+    turns: Vec<Turn>,
     list: Nearby,
     marks: Marks,
+}
+
+impl Quick {
+    fn stairs(&self) -> Stairs<'_> {
+        Stairs {
+            steps: &self.steps,
+            turns: &self.turns,
+        }
+    }
 }
 
 /// What a packet's rays met.
@@ -155,6 +165,7 @@ impl Soft {
         let (mut from, mut to, mut guess, mut first) = (far, -far, far, far);
         let mut evaluations = 0;
         work.steps.clear();
+        work.turns.clear();
         let limit = f32x8::from_lanes(|i| (limits[i] - near.base).min(1e30));
         // Every ray is inside by its own `sure`, and all are by `hidden`.
         let (mut sure, mut hidden) = (far, f32::INFINITY);
@@ -200,10 +211,13 @@ impl Soft {
                 sure = sure.fast_min(certain);
                 hidden = extremes(sure, sure, alive).1;
             }
-            work.steps.push(Step {
-                course,
+            work.turns.push(Turn {
                 from: least(step_from),
                 to: -least(-step_to),
+                step: work.steps.len() as u32,
+            });
+            work.steps.push(Step {
+                course,
                 strong,
                 index: index as u32,
             });
@@ -214,7 +228,8 @@ impl Soft {
         if work.steps.len() > MOST_STEPS {
             return None;
         }
-        work.steps.sort_by(|a, b| a.from.total_cmp(&b.from));
+        let order = |a: &Turn, b: &Turn| a.from.total_cmp(&b.from).then(a.step.cmp(&b.step));
+        work.turns.sort_unstable_by(order);
         let alive = alive & from.simd_le(to).to_bitmask();
         let way = Way {
             from,
@@ -224,7 +239,7 @@ impl Soft {
             alive,
             tolerance: self.tolerance(near) as f32,
         };
-        let climbed = climb(&work.steps, &way)?;
+        let climbed = climb(work.stairs(), &way)?;
         if climbed.met == 0 || quest == Quest::Entry {
             return Some(Looked {
                 met: climbed.met,
@@ -263,13 +278,7 @@ impl Soft {
             weights.clear();
             let place: [f32x8; 3] =
                 core::array::from_fn(|i| rays.origin[i] + rays.direction[i] * at);
-            for step in &work.steps {
-                if step.from > last {
-                    break;
-                }
-                if step.to < first {
-                    continue;
-                }
+            for step in work.stairs().between(first, last) {
                 let near = near.get(step.index as usize);
                 let jet = near.lump.jet(core::array::from_fn(|i| {
                     place[i] - f32x8::splat(near.middle[i])
