@@ -369,8 +369,10 @@ fn polish(
         let next = fits.select(newton, low + (high - low) * between);
         let length = next - at;
         at = next;
-        // What this step leaves, and its look at the surface will mend.
-        let left = bend * length * length;
+        // What this step leaves, and its look at the surface will mend: a field that bends down by no more than `bend` may bend
+        // up more, Gaussians by about the square of the slope over the value.
+        let up = slope * slope / value.fast_max(level);
+        let left = (bend + up) * length * length;
         let near = fits & left.simd_lt(f32x8::splat(CLOSE));
         if !near.to_bitmask() & climbed.met == 0 {
             break;

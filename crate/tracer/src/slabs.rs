@@ -3,14 +3,16 @@
 //! The part of the beam that the soft surface can reach is halved again and again. In each slab a
 //! primitive is *resolved* when one Hermite span over the slab is certified to be near enough to
 //! it, for all rays of the beam; what is not yet resolved is *pending* and is handed to the halves.
-//! What all rays of the beam can share is interpolated once for them, and what is next to nothing counts as error. So broad or distant
+//! What all rays of the beam can share is interpolated once for them: for good, if that is exact enough, or in place of
+//! spans, until those would be made finer. What is next to nothing counts as error. So broad or distant
 //! primitives get few long spans and sharp near ones many short spans. The tree grows only where a
 //! ray asks for it, and is shared by all rays of the beam.
 //!
 //! Where a slab has become shorter than its beam is wide, halving it further would not bring the
 //! rays' surroundings closer together: the beam is then divided into narrower ones instead, and each
-//! packet of rays goes on in its own. In beams wider than a block of four packets nothing is resolved, as
-//! spans would be made for rays that do not meet their primitives: they only show what is empty.
+//! packet of rays goes on in its own. In beams wider than a block of four packets there are no spans, which would be made for
+//! rays that do not meet their primitives, and in wider ones than four of those no interpolants in place of spans: such beams
+//! only show what is empty.
 use crate::beams::Beams;
 use crate::clusters::{Clusters, Members};
 use crate::shared::{Cell, Shared, Sums};
@@ -40,7 +42,7 @@ impl Precision {
     /// For pictures: near the surface the field changes by about T over a radius, so the surface
     /// of the spans is within about 1/2000 of a radius of the true one.
     pub const PICTURE: Self = Self {
-        first: 8e-3,
+        first: 3.2e-2,
         last: 5e-4,
         shared: 4e-4,
         rounding: 2.5e-7,
@@ -73,7 +75,7 @@ pub struct Slabs<'a> {
     blocks: Vec<Block>,
     scratch: Vec<Candidate>,
     /// Those of each fate.
-    lists: [Vec<u32>; 4],
+    lists: [Vec<u32>; 5],
 }
 
 /// The space of slabs that are not needed any more, kept for others.
@@ -85,7 +87,7 @@ pub struct Space {
     stack: Vec<u32>,
     blocks: Vec<Block>,
     scratch: Vec<Candidate>,
-    lists: [Vec<u32>; 4],
+    lists: [Vec<u32>; 5],
 }
 
 /// The soft surface's primitives.
@@ -142,9 +144,19 @@ struct Candidate {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Fate {
     Shared,
+    Joined,
     Resolved,
     Pending,
     Dropped,
+}
+
+/// Which of a slab's primitives have an interpolant together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// Those whose interpolant is never made finer.
+    Shared,
+    /// Those whose interpolant stands for their spans.
+    Joined,
 }
 
 /// How a slab goes on.
@@ -165,6 +177,8 @@ pub struct Slab {
     pub to: f64,
     /// Local numbers of the primitives, and the groups, that have one interpolant for all rays together.
     pub shared: Range<u32>,
+    /// Those that are resolved, too, but by one interpolant for all rays together, less exact than that of the shared ones.
+    pub joined: Range<u32>,
     /// Those that get one span over this slab for each ray.
     pub resolved: Range<u32>,
     /// Those handed to the halves.
@@ -193,8 +207,8 @@ pub struct Slab {
     pub kinked: bool,
     /// Whether rounding of something that is pending may be as large as T.
     blurring: bool,
-    /// The interpolant of its shared primitives. [`NONE`]: not yet made.
-    block: u32,
+    /// The interpolant of its shared primitives, and that of the joined ones. [`NONE`]: not yet made.
+    blocks: [u32; 2],
     beam: usize,
     /// Its halves, or the same slab of the beam's quarters. 0: not yet made.
     children: [u32; 4],
@@ -244,6 +258,12 @@ const WIDE: f64 = 0.4;
 /// Beams that are divided this many times further, into four packets, are blocks.
 const BLOCK: u32 = 2;
 
+/// In beams that are divided no more than this many times further, primitives may have one interpolant in place of spans.
+const JOINED: u32 = 4;
+
+/// What is made finer has so small a part of the error it had.
+const FINER: f64 = 8.0;
+
 /// Where the field is T no term is much larger than that, unless others carve it away: what is known of rounding
 /// counts terms as no larger than this.
 pub const LARGE_TERM: f64 = 4.0 * THRESHOLD;
@@ -258,10 +278,19 @@ const LARGE: (usize, usize) = (1 << 16, 1 << 21);
 const MOST_LOOKS: u32 = 64;
 
 impl Slab {
-    /// Whether what its shared primitives add up to has been asked for.
+    /// Whether what some of its primitives add up to has been asked for.
     #[must_use]
-    pub fn is_made(&self) -> bool {
-        self.block != NONE
+    pub fn is_made(&self, which: Which) -> bool {
+        self.blocks[which as usize] != NONE
+    }
+
+    /// The primitives that have an interpolant together.
+    #[must_use]
+    pub fn together(&self, which: Which) -> &Range<u32> {
+        match which {
+            Which::Shared => &self.shared,
+            Which::Joined => &self.joined,
+        }
     }
 }
 
@@ -371,7 +400,7 @@ impl<'a> Slabs<'a> {
             let root = &mut self.nodes[0];
             root.children = [0; 4];
             root.finer = 0;
-            root.block = NONE;
+            root.blocks = [NONE; 2];
             self.ids.truncate(root.dropped.end as usize);
             self.blocks.clear();
         }
@@ -397,7 +426,10 @@ impl<'a> Slabs<'a> {
             return false;
         }
         let nothing_left = slab.pending.is_empty();
-        let base = base + self.block(index).map_or(0.0, |block| block.top);
+        let mut base = base;
+        for which in [Which::Shared, Which::Joined] {
+            base += self.block(index, which).map_or(0.0, |block| block.top);
+        }
         if base + above + error < THRESHOLD {
             return true;
         }
@@ -413,16 +445,16 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// What a slab's shared primitives add up to, if it has any.
-    pub fn block(&mut self, index: u32) -> Option<&Block> {
+    /// What a slab's shared or joined primitives add up to, if it has any.
+    pub fn block(&mut self, index: u32, which: Which) -> Option<&Block> {
         let slab = &self.nodes[index as usize];
-        if slab.shared.is_empty() {
+        if slab.together(which).is_empty() {
             return None;
         }
-        if !slab.is_made() {
+        if !slab.is_made(which) {
             let cell = Cell::around(self.beams.get(slab.beam), slab.from, slab.to);
             let mut sums = Sums::new(&cell);
-            for &id in self.locals(&slab.shared) {
+            for &id in self.locals(slab.together(which)) {
                 self.each_of(id, |p| {
                     let p = p as usize;
                     sums.add(&self.terms.primitives[p], self.terms.materials[p]);
@@ -436,15 +468,16 @@ impl<'a> Slabs<'a> {
                 of_each,
                 top: total.top(),
             });
-            self.nodes[index as usize].block = made;
+            self.nodes[index as usize].blocks[which as usize] = made;
         }
-        self.blocks.get(self.nodes[index as usize].block as usize)
+        let block = self.nodes[index as usize].blocks[which as usize];
+        self.blocks.get(block as usize)
     }
 
-    /// Calls `f` with the blocks of a slab and of those above it, where they have been asked for.
+    /// Calls `f` with the shared blocks of a slab and of those above it, where they have been asked for.
     pub fn each_block(&self, index: u32, mut f: impl FnMut(&Block)) {
         self.up(index, |s, _| {
-            if let Some(block) = self.blocks.get(s.block as usize) {
+            if let Some(block) = self.blocks.get(s.blocks[0] as usize) {
                 f(block);
             }
         });
@@ -546,7 +579,7 @@ impl<'a> Slabs<'a> {
             let s = &self.nodes[index as usize];
             let pending = s.pending.clone();
             let (from, to) = (s.from, s.to);
-            let budget = (s.spent.spans.min(s.budget) / 16.0).max(self.precision.last);
+            let budget = (s.spent.spans.min(s.budget) / FINER).max(self.precision.last);
             let heritage = Heritage {
                 parent: index,
                 anew: true,
@@ -563,7 +596,8 @@ impl<'a> Slabs<'a> {
             let mut at = index;
             while at != NONE {
                 let s = &self.nodes[at as usize];
-                let r = s.resolved.start as usize..s.resolved.end as usize;
+                // These follow one another.
+                let r = s.joined.start as usize..s.resolved.end as usize;
                 at = if s.anew { NONE } else { s.parent };
                 self.ids.extend_from_within(r);
             }
@@ -586,6 +620,7 @@ impl<'a> Slabs<'a> {
         each(&self.slab(index).pending);
         self.up(index, |s, whole| {
             if whole {
+                each(&s.joined);
                 each(&s.resolved);
             }
             if all {
@@ -749,6 +784,8 @@ impl<'a> Slabs<'a> {
         let for_spans = share(budget, spent.spans);
         let for_shared = share(self.precision.shared, spent.shared);
         let resolves = levels_below <= BLOCK;
+        // A packet's own spans are as quick to make.
+        let joins = (1..=JOINED).contains(&levels_below);
         // Of a slab that reaches far out, most are nearer than its end, and halves are rounded less.
         let remote = to > REMOTE && to - from > 0.5 * to;
         let rounded = |magnitude: f64, steepness: f64| {
@@ -766,6 +803,12 @@ impl<'a> Slabs<'a> {
             }
         }
         let few = count < FEWEST;
+        let coarse = |c: &Candidate| {
+            c.id & GROUP == 0
+                && (c.fate == Fate::Pending || few && c.fate == Fate::Shared)
+                && c.shared <= for_spans(c.magnitude)
+        };
+        let joins = joins && self.scratch.iter().filter(|c| coarse(c)).count() >= FEWEST as usize;
         let (mut noise, mut steepest) = (0.0, 0.0f64);
         let mut lists = core::mem::take(&mut self.lists);
         lists.iter_mut().for_each(Vec::clear);
@@ -783,15 +826,15 @@ impl<'a> Slabs<'a> {
             let fate = match candidate.fate {
                 Fate::Dropped => Fate::Dropped,
                 Fate::Shared if !few => Fate::Shared,
-                _ if resolves
-                    && !candidate.kinked
-                    && span <= for_spans(magnitude)
-                    && !(remote
-                        && rounded(magnitude, self.relative_slope(id, candidate.distance))
-                            > for_spans(magnitude)) =>
+                _ if candidate.kinked => Fate::Pending,
+                _ if remote
+                    && rounded(magnitude, self.relative_slope(id, candidate.distance))
+                        > for_spans(magnitude) =>
                 {
-                    Fate::Resolved
+                    Fate::Pending
                 }
+                _ if joins && coarse(candidate) => Fate::Joined,
+                _ if resolves && span <= for_spans(magnitude) => Fate::Resolved,
                 _ => Fate::Pending,
             };
             left |= fate == Fate::Pending && !candidate.kinked;
@@ -799,6 +842,7 @@ impl<'a> Slabs<'a> {
             lists[fate as usize].push(id);
             match fate {
                 Fate::Shared => spent.shared += shared,
+                Fate::Joined => spent.spans += shared,
                 Fate::Resolved => spent.spans += span,
                 Fate::Pending => {
                     if candidate.adds {
@@ -829,7 +873,7 @@ impl<'a> Slabs<'a> {
         // Where the field is T, what adds is together no more than that and what carves.
         let most = (LARGE_TERM + below) * (4.0 * rounding + misplaced * steepest);
         spent.noise += noise.min(most);
-        let mut ends = [self.ids.len() as u32; 5];
+        let mut ends = [self.ids.len() as u32; 6];
         for (list, which) in lists.iter().zip(1..) {
             match self.terms.clusters {
                 // Spans are those of single primitives.
@@ -848,14 +892,15 @@ impl<'a> Slabs<'a> {
             ends[which] = self.ids.len() as u32;
         }
         self.lists = lists;
-        let [start, first, middle, end, last] = ends;
+        let [start, shared, joined, resolved, pending, dropped] = ends;
         self.nodes.push(Slab {
             from,
             to,
-            shared: start..first,
-            resolved: first..middle,
-            pending: middle..end,
-            dropped: end..last,
+            shared: start..shared,
+            joined: shared..joined,
+            resolved: joined..resolved,
+            pending: resolved..pending,
+            dropped: pending..dropped,
             above,
             below,
             pending_above,
@@ -867,7 +912,7 @@ impl<'a> Slabs<'a> {
             anew,
             kinked: kinked && !left && resolves,
             blurring: blurring && resolves,
-            block: NONE,
+            blocks: [NONE; 2],
             beam: number,
             children: [0; 4],
             finer: 0,

@@ -9,7 +9,7 @@
 use crate::lanes::Lanes;
 use crate::ray::Ray;
 use crate::settle::{Along, STEEP, Settler, Sight};
-use crate::slabs::{Parts, Slabs};
+use crate::slabs::{Parts, Slabs, Which};
 use crate::spans::{Node, Span};
 use field::{Primitive, THRESHOLD};
 
@@ -187,9 +187,9 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let (above, below) = (slab.above, slab.below);
         let pending = [slab.pending_above, slab.pending_below];
         let resolves = !slab.resolved.is_empty();
-        let shares = !slab.shared.is_empty();
+        let (shares, joins) = (!slab.shared.is_empty(), !slab.joined.is_empty());
         let (done, kinked) = (slab.pending.is_empty(), slab.kinked);
-        self.work += 1 + slab.resolved.len() + slab.pending.len();
+        self.work += 1 + slab.joined.len() + slab.resolved.len() + slab.pending.len();
         // Rays that end before this slab have found nothing.
         self.alive &= L::splat(from).less(self.limit);
         let mut span = shared.plus(base);
@@ -197,12 +197,15 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             return;
         }
         if shares {
-            shared = shared.plus(self.shared(index));
+            shared = shared.plus(self.together(index, Which::Shared));
+        }
+        if joins {
+            base = base.plus(self.together(index, Which::Joined));
         }
         if resolves {
             base = base.plus(self.span(index));
         }
-        if shares || resolves {
+        if shares || joins || resolves {
             span = shared.plus(base);
             if self.rejected(index, span, pending[0], pending[1], error) {
                 return;
@@ -238,12 +241,12 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// The span of a slab's shared primitives.
-    fn shared(&mut self, index: u32) -> Span<L> {
+    /// The span of primitives that have an interpolant together.
+    fn together(&mut self, index: u32, which: Which) -> Span<L> {
         let s = self.slabs.slab(index);
-        let (from, to, count) = (s.from, s.to, s.shared.len());
-        let fresh = !s.is_made();
-        let Some(block) = self.slabs.block(index) else {
+        let (from, to, count) = (s.from, s.to, s.together(which).len());
+        let fresh = !s.is_made(which);
+        let Some(block) = self.slabs.block(index, which) else {
             return Span::zero();
         };
         let steps = block.cell.steps(self.direction);
