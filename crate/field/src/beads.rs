@@ -44,7 +44,8 @@ impl Primitive {
         let along = |measure: f64, angle: f64, place: &dyn Fn(f64) -> DVec3| {
             let length = measure * self.width;
             let pieces = (length / LONGEST).max(angle / WIDEST).ceil().max(1.0);
-            let count = nodes(length / pieces);
+            // A bent piece calls for one more.
+            let count = nodes(length / pieces) + usize::from(angle > 0.0);
             if pieces * count as f64 > MOST as f64 {
                 return None;
             }

@@ -16,15 +16,16 @@
 //! The soft surface is found in one of two ways, both certified.
 //!
 //! - The quick way (`quick`) is for *lumps*, whose largest value on any piece of a ray is known in closed form
-//!   (`field::course`): points and Gaussian segments, of kernels that end or nearly do. `nearby` lists the lumps near a
+//!   (`field::course`): points and Gaussian segments, of kernels that end or nearly do. Gaussian arcs, curves and limbs
+//!   that taper are strings of lumps (`field::beads`). `nearby` lists the lumps near a
 //!   square, a part of it, a packet; `climb` steps along the packet's rays, each step proved to cross nothing.
 //! - The general way is the thesis' (chapter 4): `slabs` decides for a whole beam which primitive needs Hermite spans
 //!   of which length (`field::Bound` knows how large a field and the error of a span can be), and `walk` follows single
 //!   packets through the slabs, adds up their spans' cubics (`spans`) and takes their roots (`roots`); what those leave
 //!   in doubt `settle` decides. Nothing is cut off: what is far enough to be smooth across the beam is interpolated
 //!   once for all its rays (`shared`), and distant primitives are judged in groups (`clusters`). `flesh` says what the
-//!   surface is like at the hits. A square whose beam meets anything but lumps is traced so, and a packet of which a
-//!   ray starts inside.
+//!   surface is like at the hits. So is traced a packet that comes near anything but lumps, or of which a ray starts inside;
+//!   and all of a square whose beam meets more than a few other primitives.
 //!
 //! Other ways of finding crossings, for comparison, are in `digger`; `map` shows what a picture costs.
 //!
@@ -36,7 +37,7 @@
 //!
 //! - Of all primitives no more than 10⁻⁵·T is left out, all together, whatever `influence` says; that and single
 //!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field. A packet near more
-//!   than 2¹⁶ lumps, or that makes more than 2²⁴ evaluations, goes the general way.
+//!   than 2¹⁶ lumps (beads count one each), or that makes more than 2²⁴ evaluations, goes the general way.
 //! - There pictures show a field within 5·10⁻⁴·T of the true one, or as near as rounding lets it come where that is
 //!   less, and what is shared adds at most 4·10⁻⁴·T; hits are then
 //!   moved onto the field itself, unless what is shared moves them by less than half the tolerance.

@@ -1,4 +1,4 @@
-//! The quick way to the soft surface, where it is made of lumps alone: points and Gaussian segments.
+//! The quick way to the soft surface, where it is made of lumps alone: points, Gaussian segments, and beads of other bones.
 //!
 //! The lumps near a square of pixels are listed once, those near each of its parts when a packet in it asks, those near
 //! the packet anew for each; then [`climb`](mod@crate::climb) follows the packet's rays.
