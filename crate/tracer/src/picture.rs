@@ -330,7 +330,8 @@ impl Picture {
         let mut near = Nearby::default();
         let beam = self.beam(area);
         if self.soft.list_lumps(&beam, f64::INFINITY, &mut near) {
-            return Square::Lumps(Lumps::new(self, area, packets, &beam, near));
+            let lumps = Lumps::new(self, area, packets, &beam, near);
+            return Square::Lumps(Box::new(lumps));
         }
         match self.slabs(area, packets, work) {
             Some(slabs) => Square::Slabs(slabs),

@@ -13,7 +13,7 @@ pub(crate) enum Square<'a> {
     /// There is none.
     Empty,
     /// Lumps, and few other primitives if any.
-    Lumps(Lumps<'a>),
+    Lumps(Box<Lumps<'a>>),
     /// Slabs, and the parameter at which they start.
     Slabs((Slabs<'a>, f64)),
 }
