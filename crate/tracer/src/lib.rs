@@ -43,7 +43,7 @@
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
 //! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are
-//!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left (shared out from kink to kink),
+//!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left (all but an eighth for its next part),
 //!   and what comes after its share is used up is decided by the signs at its ends.
 //! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
 //!   shared and rounding leaves many rays in doubt: such pictures are slow.
