@@ -35,7 +35,8 @@
 //! # Limits
 //!
 //! - Of all primitives no more than 10⁻⁵·T is left out, all together, whatever `influence` says; that and single
-//!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field. A packet near more
+//!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field; a ray that they may
+//!   have kept outside is settled where that was, with all of them. Shadows are not. A packet near more
 //!   than 2¹⁶ lumps, or that makes more than 2²⁴ evaluations, goes the general way.
 //! - There pictures show a field within 5·10⁻⁴·T of the true one, or as near as rounding lets it come where that is
 //!   less, and what is shared adds at most 4·10⁻⁴·T; hits are then
