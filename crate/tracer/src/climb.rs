@@ -158,11 +158,12 @@ pub fn climb(lumps: &[Step], way: &Way) -> Option<Climbed> {
             length * (f32x8::splat(0.125) * length * sum.bend + f32x8::splat(0.25) * sum.kink);
         let chord = low_value.fast_max(sum.value) + bulge;
         let below = going & !above;
-        let most = sum.most.fast_min(chord);
-        let calm = below & most.simd_lt(surely).to_bitmask();
+        // A chord's bound may be no number.
+        let under = |level| sum.most.simd_lt(level) | chord.simd_lt(level);
+        let calm = below & under(surely).to_bitmask();
         let mut passed = calm;
         if below & !calm != 0 {
-            let brief = length.simd_le(f32x8::splat(DOUBTFUL)) & most.simd_lt(level);
+            let brief = length.simd_le(f32x8::splat(DOUBTFUL)) & under(level);
             let doubted = below & !calm & (short | brief.to_bitmask());
             if doubted != 0 {
                 let mask = mask(doubted);
