@@ -245,6 +245,18 @@ impl<S: Scalar> Lump<S> {
         })
     }
 
+    /// About the largest slope that the field has where it is no more than T: across the bone, at this square of the distance,
+    /// where the lump alone would have its surface ([`Lump::core`]), or further out. A compact kernel's `|G′|√q` is no more
+    /// than `|G′|`, which falls; a Gaussian's falls from q = ½ on.
+    #[must_use]
+    pub fn steepness(&self, core: f64) -> f64 {
+        let twice = 2.0 * self.scale.lane(0);
+        if self.kernel == Kernel::Gauss {
+            return twice * core.max(0.5).sqrt() * THRESHOLD;
+        }
+        twice * self.amplitude.lane(0) * self.kernel.derivatives(core.max(0.0)).0[1].abs()
+    }
+
     /// Whether it is a segment.
     #[must_use]
     pub fn is_segment(&self) -> bool {

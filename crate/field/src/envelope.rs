@@ -201,6 +201,10 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
             let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
             let mut before = 0.0;
             for i in start..last {
+                // Nothing is rough from here on: beyond where a kernel ends, or is as good as 0.
+                if rough[i] == 0.0 {
+                    break;
+                }
                 let far = places[i + 1] * places[i + 1];
                 let t = (far - near).max(0.0).sqrt();
                 line += 2.0 * rough[i] * (t - before);

@@ -1,8 +1,8 @@
 //! Holds pictures against the true surface on very many rays, and prints a table.
 //!
-//! `cargo run --release -p tracer --example certify -- [--exact] [RAYS [THREADS [KERNEL KIND SEED]]]`
+//! `cargo run --release -p tracer --example certify -- [--exact] [RAYS [THREADS [FIRST | KERNEL KIND SEED]]]`
 //!
-//! With a kernel, a kind and a seed only that scene is looked at. Faults go to standard error. With
+//! Scenes have the seeds from FIRST (or 0) on. With a kernel, a kind and a seed only that scene is looked at. Faults go to standard error. With
 //! `--exact` before them the crossings that picking uses are judged instead of those of pictures.
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -51,6 +51,7 @@ fn main() {
         println!("{told}{row:?}");
         return;
     }
+    let first = number(2, 0);
     let cells: Vec<(Kernel, Kind)> = Kernel::ALL
         .into_iter()
         .flat_map(|kernel| KINDS.map(|kind| (kernel, kind)))
@@ -64,10 +65,11 @@ fn main() {
             scope.spawn(|| {
                 loop {
                     let job = next.fetch_add(1, Ordering::Relaxed);
-                    let (cell, seed) = (job % cells.len(), job / cells.len());
-                    if seed >= scenes {
+                    let (cell, scene) = (job % cells.len(), job / cells.len());
+                    if scene >= scenes {
                         break;
                     }
+                    let seed = first + scene;
                     let (kernel, kind) = cells[cell];
                     let mut told = String::new();
                     let row = check(kernel, kind, seed as u64, packets(kind), &cast, &mut told);

@@ -74,6 +74,8 @@ pub struct Way {
     pub alive: u32,
     /// Pieces shorter than this are not divided.
     pub tolerance: f32,
+    /// Where the field is T it is not known better than this.
+    pub noise: f32,
 }
 
 /// Where rays came to.
@@ -85,6 +87,10 @@ pub struct Climbed {
     pub between: [f32x8; 2],
     /// Those rays, a bit each.
     pub met: u32,
+    /// Rays that went, as it seems, past the surface, but so near to it that rounding may have hidden it …
+    pub doubtful: u32,
+    /// … and between which parameters that was.
+    pub doubt: [f32x8; 2],
     /// Evaluations of lumps, for one ray each.
     pub evaluations: u64,
 }
@@ -99,6 +105,9 @@ const DEEP: f32 = 1.5;
 const NEARLY: f32 = 0.15;
 /// … this part of what leads along the tangent to T: Gaussians are convex where they rise, and are at T before.
 const TANGENT: f32 = 1.1;
+
+/// Pieces that rounding leaves in doubt are halved until they are no longer than this.
+const DOUBTFUL: f32 = 1e-3;
 
 /// A piece of length h would have served, as a chord, if `N·h²` had been 8 times the room left below T; a little less is tried
 /// next …
@@ -131,9 +140,12 @@ struct Sum {
 pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
     let zero = f32x8::splat(0.0);
     let level = f32x8::splat(LEVEL);
+    let surely = f32x8::splat(LEVEL - way.noise);
     let tolerance = f32x8::splat(way.tolerance);
     let tiny = f32x8::splat(f32::MIN_POSITIVE);
     let mut evaluations = 0;
+    let far = f32x8::splat(f32::INFINITY);
+    let (mut doubtful, mut doubt) = (0, [far, -far]);
     // Known: below T up to `low`, with these values there.
     let mut low = way.from;
     let mut going = way.alive & low.simd_lt(way.to).to_bitmask();
@@ -160,6 +172,8 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
                 t: high,
                 between: [low, high],
                 met,
+                doubtful,
+                doubt,
                 evaluations,
             };
             if met != 0 {
@@ -182,8 +196,21 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
         let bulge = f32x8::splat(0.25) * steeper * steeper / parabola.fast_max(tiny);
         let chord = low_value.fast_max(sum.value) + bulge;
         let below = going & !above;
-        let calm = below & (sum.most.simd_lt(level) | chord.simd_lt(level)).to_bitmask();
-        let passed = calm | below & short;
+        // A chord's bound may be no number.
+        let under = |level| sum.most.simd_lt(level) | chord.simd_lt(level);
+        let calm = below & under(surely).to_bitmask();
+        let mut passed = calm;
+        if below & !calm != 0 {
+            let brief = length.simd_le(f32x8::splat(DOUBTFUL)) & under(level);
+            let doubted = below & !calm & (short | brief.to_bitmask());
+            if doubted != 0 {
+                let mask = mask(doubted);
+                passed |= doubted;
+                doubtful |= doubted;
+                doubt[0] = mask.select(doubt[0].fast_min(low), doubt[0]);
+                doubt[1] = mask.select(next, doubt[1]);
+            }
+        }
         let moved = zero.simd_lt(length).to_bitmask();
         let failed = below & !passed;
         // Those that go on.
@@ -504,6 +531,7 @@ mod tests {
                 first: f32x8::splat(f32::INFINITY),
                 alive: 255,
                 tolerance: 5e-5,
+                noise: 0.0,
             };
             let turns = turns(&steps);
             let lumps = Stairs {
@@ -555,6 +583,7 @@ mod tests {
             first: zero,
             alive: 255,
             tolerance: 5e-5,
+            noise: 0.0,
         };
         let turns = turns(&steps);
         let lumps = Stairs {

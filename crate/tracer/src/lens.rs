@@ -106,6 +106,7 @@ impl Lens {
                 spread,
                 ahead: spread * near.base,
             },
+            exact: self.wide(fan),
         }
     }
 

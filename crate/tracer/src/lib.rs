@@ -36,7 +36,8 @@
 //! # Limits
 //!
 //! - Of all primitives no more than 10⁻⁵·T is left out, all together, whatever `influence` says; that and single
-//!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field. A packet near more
+//!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field; a ray that they may
+//!   have kept outside is settled where that was, with all of them. Shadows are not. A packet near more
 //!   than 2¹⁶ lumps (beads count one each), or that makes more than 2²⁴ evaluations, goes the general way.
 //! - There pictures show a field within 5·10⁻⁴·T of the true one, or as near as rounding lets it come where that is
 //!   less, and what is shared adds at most 4·10⁻⁴·T; hits are then
@@ -44,7 +45,7 @@
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
 //! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are
-//!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left (shared out from kink to kink),
+//!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left (all but an eighth for its next part),
 //!   and what comes after its share is used up is decided by the signs at its ends.
 //! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
 //!   shared and rounding leaves many rays in doubt: such pictures are slow.

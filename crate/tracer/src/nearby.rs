@@ -52,6 +52,8 @@ pub struct Near {
     pub part: bool,
     /// This far before its own surface a ray is well outside of it.
     pub lead: f32,
+    /// Where the field is T its own part changes by about this much of T with the place, or less.
+    pub steep: f32,
     /// Its material.
     pub material: u32,
     /// No ray of the list's beam meets it before this parameter.
@@ -378,6 +380,7 @@ mod tests {
                     core: 1.0,
                     part: false,
                     lead: 0.0,
+                    steep: 0.0,
                     material: i as u32,
                     from: 0.0,
                 };

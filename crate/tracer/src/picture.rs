@@ -330,8 +330,7 @@ impl Picture {
         let mut near = Nearby::default();
         let beam = self.beam(area);
         if self.soft.list_lumps(&beam, f64::INFINITY, &mut near) {
-            let lumps = Lumps::new(self, area, packets, &beam, near);
-            return Square::Lumps(Box::new(lumps));
+            return Square::Lumps(Lumps::new(self, area, packets, &beam, near));
         }
         match self.slabs(area, packets, work) {
             Some(slabs) => Square::Slabs(slabs),

@@ -60,6 +60,10 @@ pub const COARSEST: f64 = 5e-5;
 const MOST_LOOKS: usize = 12;
 /// The field is not known better than this in single precision.
 const ROUNDING: f32 = 2e-6;
+/// What lists leave out, all together, with the rounding of values.
+const LOST: f32 = 1.5e-5;
+/// Rounding of places, in units of the scene and of how far they are away.
+const MISPLACED: f32 = 3e-7;
 /// A packet near more lumps than this is left to the general way, which needs less space for each.
 const MOST_STEPS: usize = 1 << 16;
 
@@ -71,6 +75,8 @@ pub struct Rays {
     pub direction: [f32x8; 3],
     /// A beam around them.
     pub beam: Beam,
+    /// They as they are, not counted from anywhere.
+    pub exact: [Ray; PACKET],
 }
 
 impl Rays {
@@ -98,6 +104,7 @@ impl Rays {
             origin,
             direction,
             beam,
+            exact: *rays,
         }
     }
 }
@@ -134,8 +141,8 @@ impl Soft {
         let looked = if self.list_lumps(&beam, furthest, &mut list)
             && !self.meets_any(&list.others, &beam, furthest)
         {
-            let rays = Rays::new(rays, &list);
-            self.quick(&list, &rays, limits, alive, quest, work)
+            let lanes = Rays::new(rays, &list);
+            self.quick(&list, &lanes, limits, alive, quest, work)
         } else {
             None
         };
@@ -169,6 +176,7 @@ impl Soft {
         let limit = f32x8::from_lanes(|i| (limits[i] - near.base).min(1e30));
         // Every ray is inside by its own `sure`, and all are by `hidden`.
         let (mut sure, mut hidden) = (far, f32::INFINITY);
+        let mut steepest = 0.0f32;
         for index in marked(&work.marks) {
             let near = near.get(index);
             // What rays meet only where they are inside of another.
@@ -211,6 +219,7 @@ impl Soft {
                 sure = sure.fast_min(certain);
                 hidden = extremes(sure, sure, alive).1;
             }
+            steepest = steepest.max(near.steep);
             work.turns.push(Turn {
                 from: least(step_from),
                 to: -least(-step_to),
@@ -231,6 +240,12 @@ impl Soft {
         let order = |a: &Turn, b: &Turn| a.from.total_cmp(&b.from).then(a.step.cmp(&b.step));
         work.turns.sort_unstable_by(order);
         let alive = alive & from.simd_le(to).to_bitmask();
+        let furthest = extremes(to, to, alive).1.max(0.0);
+        // Shadows are not as sharp as that; and where their rays start the field is nearly T in any case.
+        let noise = match quest {
+            Quest::Entry => 0.0,
+            _ => LOST + MISPLACED * steepest * (1.0 + furthest),
+        };
         let way = Way {
             from,
             to,
@@ -238,8 +253,12 @@ impl Soft {
             first,
             alive,
             tolerance: self.tolerance(near) as f32,
+            noise,
         };
-        let climbed = climb(work.stairs(), &way)?;
+        let mut climbed = climb(work.stairs(), &way)?;
+        if climbed.doubtful != 0 && quest == Quest::First {
+            self.settle_doubts(near, &rays.exact, &mut climbed);
+        }
         if climbed.met == 0 || quest == Quest::Entry {
             return Some(Looked {
                 met: climbed.met,
@@ -248,6 +267,34 @@ impl Soft {
             });
         }
         Some(self.look(near, rays, &climbed, evaluations, work))
+    }
+
+    /// Rays that went past the surface so near to it that rounding may have hidden it are asked once more where that was, in
+    /// double precision and with nothing left out.
+    fn settle_doubts(&self, near: &Nearby, rays: &[Ray; PACKET], climbed: &mut Climbed) {
+        let [first, last] = climbed.doubt.map(f32x8::to_array);
+        let mut t = climbed.t.to_array();
+        let mut between = climbed.between.map(f32x8::to_array);
+        for (i, ray) in rays.iter().enumerate() {
+            if climbed.doubtful >> i & 1 == 0 {
+                continue;
+            }
+            let stretch = [first[i], last[i]].map(f64::from);
+            let based = Ray {
+                origin: ray.at(near.base),
+                direction: ray.direction,
+            };
+            let (found, evaluations) = self.entry(based, stretch);
+            climbed.evaluations += evaluations;
+            if let Some(found) = found {
+                t[i] = found as f32;
+                // It is to stay there.
+                between.iter_mut().for_each(|end| end[i] = t[i]);
+                climbed.met |= 1 << i;
+            }
+        }
+        climbed.t = f32x8::new(t);
+        climbed.between = between.map(f32x8::new);
     }
 
     /// The tolerance for what is in a list, none of which is nearer to the rays' origins than its base.

@@ -16,11 +16,14 @@ use field::{Bound, Primitive, THRESHOLD};
 
 /// Pieces that one packet may have looked at; what is left is decided by the signs at its ends.
 const MOST_PIECES: u32 = 1 << 16;
-/// A stretch may have the pieces that are left over this, shared out evenly from kink to kink: where a ray runs along
-/// the surface no number would do, and what comes behind must not go short.
+/// A stretch may have the pieces that are left over this: where a ray runs along the surface no number would do, and
+/// what comes behind must not go short.
 const AT_ONCE: u32 = 4;
-/// The near half of a piece may have half of what the piece may, but no fewer than these, if it has them: so many tell a
-/// few crossings apart.
+/// Of the pieces that a stretch may have, one over this is kept for what comes behind its next part, be that one from
+/// kink to kink or the near half of a piece. More would starve what lies in a small part of a long stretch, as
+/// each halving on the way there takes its share; what a part leaves is had by those behind it in any case.
+const KEPT: u32 = 8;
+/// But a part may have no fewer than these, if there are so many: they tell a few crossings apart.
 const FEW: u32 = 256;
 /// Pieces halved so often are not halved further: lengths that are not finite would never be short.
 const DEEPEST: u32 = 50;
@@ -107,8 +110,9 @@ impl Settler {
         let share = CALM * THRESHOLD / self.list.len().max(1) as f64;
         let mut start = from;
         let parts = self.kinks(along, [from, to]);
-        let most = self.pieces / AT_ONCE / parts.len() as u32;
-        for end in parts {
+        let mut left = self.pieces / AT_ONCE;
+        let count = parts.len() as u32;
+        for (i, end) in (0..count).zip(parts) {
             // Next to a kink, not on it.
             let gap = |t: f64| (1e-3 * along.resolution).max(1e-13 * (1.0 + t));
             let first = if start > from {
@@ -121,6 +125,12 @@ impl Settler {
             if first >= last {
                 continue;
             }
+            let most = if i + 1 < count {
+                next_share(left)
+            } else {
+                left
+            };
+            let before = self.pieces;
             let rest = 0..self.list.len();
             let ends = [first, last].map(|t| self.sum(along, &rest, t));
             let piece = Piece {
@@ -137,6 +147,7 @@ impl Settler {
             {
                 return;
             }
+            left = left.saturating_sub(before - self.pieces);
         }
     }
 
@@ -256,7 +267,7 @@ impl Settler {
         let near = Piece {
             to: t,
             depth: piece.depth + 1,
-            most: (piece.most / 2).max(FEW).min(piece.most),
+            most: next_share(piece.most),
             calm: near,
             ends: [left, middle],
             ..piece.clone()
@@ -297,6 +308,11 @@ impl Settler {
         let within = 1e-3 * along.resolution;
         tell(bracketed(excess, from, to, within), enters)
     }
+}
+
+/// What the next part may have of the pieces that it and those behind it may.
+fn next_share(pieces: u32) -> u32 {
+    (pieces - pieces / KEPT).max(FEW).min(pieces)
 }
 
 impl Along<'_> {

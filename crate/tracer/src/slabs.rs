@@ -277,6 +277,11 @@ const LARGE: (usize, usize) = (1 << 16, 1 << 21);
 /// Slabs that [`Slabs::is_empty_for`] looks at.
 const MOST_LOOKS: u32 = 64;
 
+/// Whether a slab reaches far out, and most of it is nearer than its end.
+fn is_remote(from: f64, to: f64) -> bool {
+    to > REMOTE && to - from > 0.5 * to
+}
+
 impl Slab {
     /// Whether what some of its primitives add up to has been asked for.
     #[must_use]
@@ -544,11 +549,12 @@ impl<'a> Slabs<'a> {
     }
 
     /// Whether rounding is so large, or will be of something pending, that no span shows that there is nothing here, and
-    /// there are so few primitives that rays had better be settled at once.
+    /// there are so few primitives that rays had better be settled at once. What reaches far out is halved first: what is
+    /// known of the primitives far away would take the settler's pieces from what is near.
     #[must_use]
     pub fn is_blurred(&self, index: u32) -> bool {
         let slab = self.slab(index);
-        if slab.spent.noise < THRESHOLD && !slab.blurring {
+        if slab.spent.noise < THRESHOLD && !slab.blurring || is_remote(slab.from, slab.to) {
             return false;
         }
         let mut count = 0;
@@ -787,7 +793,7 @@ impl<'a> Slabs<'a> {
         // A packet's own spans are as quick to make.
         let joins = (1..=JOINED).contains(&levels_below);
         // Of a slab that reaches far out, most are nearer than its end, and halves are rounded less.
-        let remote = to > REMOTE && to - from > 0.5 * to;
+        let remote = is_remote(from, to);
         let rounded = |magnitude: f64, steepness: f64| {
             magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steepness)
         };

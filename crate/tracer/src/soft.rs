@@ -9,7 +9,7 @@ use crate::nearby::{Nearby, Other};
 use crate::quick::Quick;
 use crate::ray::Ray;
 use crate::roots::bracketed;
-use crate::settle::Sight;
+use crate::settle::{Along, Settler, Sight};
 use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::stock::Stock;
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
@@ -87,6 +87,10 @@ impl Kinks {
 
 /// What is left out of all primitives but lumps, together, in T.
 const LEFT_OUT: f64 = 1e-5;
+
+/// What slabs leave out, together, in T: less than settling can tell. What is more is in their lists, so that it counts
+/// where rays are settled.
+pub const NEXT_TO_NOTHING: f64 = 1e-10;
 
 /// Rays from infinitely wide primitives are followed this far (in units of the scene's size).
 const FAR: f64 = 1e4;
@@ -213,7 +217,7 @@ impl Soft {
             clusters = None;
             self.tree.search(&beam, |i, _, _| list.push(i));
         }
-        let terms = self.terms(self.left_out, clusters);
+        let terms = self.terms(NEXT_TO_NOTHING / LEFT_OUT * self.left_out, clusters);
         let space = spaces.pop().unwrap_or_default();
         let slabs = Slabs::new(terms, &list, beams(from), range, self.precision, space);
         if slabs.slab(slabs.root()).above >= THRESHOLD {
@@ -316,6 +320,48 @@ impl Soft {
             Walk::<f32x8>::new(self.sight(), slabs, bundle, quest, &mut scratch.memory).run();
         scratch.evaluations += evaluations;
         found
+    }
+
+    /// Where a ray first enters the surface on a short stretch, in double precision, with the number of evaluations; its
+    /// start, if it is inside there. All primitives must be lumps, or such sums of them as are followed as lumps.
+    pub fn entry(&self, ray: Ray, [from, to]: [f64; 2]) -> (Option<f64>, u64) {
+        let (center, radius) = (ray.at(0.5 * (from + to)), 0.5 * (to - from));
+        let wide = Beam {
+            radius: radius + self.stock.margin,
+            ..Beam::of_ray(Ray {
+                origin: center,
+                direction: ray.direction,
+            })
+        };
+        let least = NEXT_TO_NOTHING * THRESHOLD / self.primitives.len() as f64;
+        let mut near = Vec::new();
+        self.tree.search(&wide, |i, _, _| {
+            if self.stock.counts(i as usize, center, radius, least) {
+                near.push(i);
+            }
+        });
+        near.sort_unstable();
+        // Bounds of all primitives would take too much room where there are very many.
+        let of = |&i: &u32| self.primitives[i as usize].clone();
+        let primitives: Vec<Primitive> = near.iter().map(of).collect();
+        let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
+        let along = Along {
+            sight: Sight {
+                primitives: &primitives,
+                bounds: &bounds,
+                kinks: &Kinks::new(&primitives),
+            },
+            ray,
+            resolution: self.precision.resolution,
+        };
+        let mut settler = Settler::default();
+        settler.list.extend(0..primitives.len() as u32);
+        let mut found = None;
+        settler.crossings(&along, [from, to], |t, inside| {
+            found = inside.then_some(t);
+            !inside
+        });
+        (found, settler.evaluations)
     }
 
     /// All crossings of a ray, exactly: where the whole field, with nothing cut off, equals T.

@@ -9,11 +9,12 @@ use crate::quick::LEFT_OUT_OF_PARTS;
 use crate::slabs::Slabs;
 
 /// What is known of the soft surface in a square of pixels.
+#[expect(clippy::large_enum_variant, reason = "a thread has one at a time")]
 pub(crate) enum Square<'a> {
     /// There is none.
     Empty,
     /// Lumps, and few other primitives if any.
-    Lumps(Box<Lumps<'a>>),
+    Lumps(Lumps<'a>),
     /// Slabs, and the parameter at which they start.
     Slabs((Slabs<'a>, f64)),
 }

@@ -2,6 +2,7 @@
 use crate::beam::Beam;
 use crate::hierarchy::Hierarchy;
 use crate::nearby::{Extent, Near, Nearby, Other};
+use crate::soft::NEXT_TO_NOTHING;
 use field::{Bead, Lump, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -19,6 +20,8 @@ pub struct Stock {
     items: Vec<Item>,
     /// Where each primitive's items end; they start where those of the primitive before it do.
     ends: Vec<u32>,
+    /// So far beyond their balls the lumps together are next to nothing.
+    pub margin: f64,
 }
 
 struct Item {
@@ -51,6 +54,7 @@ impl Stock {
         let mut stock = Self {
             items: Vec::with_capacity(primitives.len() + beads),
             ends: Vec::with_capacity(primitives.len()),
+            margin: 0.0,
         };
         for (i, p) in primitives.iter().enumerate() {
             let item = |lump: Lump<f32>, middle: DVec3, core: f64, part: bool| Item {
@@ -63,6 +67,7 @@ impl Stock {
                     core: core as f32 - 1e-4,
                     part,
                     lead: (LEAD / lump.ceiling().scale) as f32,
+                    steep: lump.steepness(core) as f32,
                     material: material[i],
                     from: 0.0,
                 },
@@ -83,6 +88,12 @@ impl Stock {
             }
             stock.ends.push(stock.items.len() as u32);
         }
+        let least = NEXT_TO_NOTHING / LEFT_OUT * left_out;
+        let beyond = |Item { near, .. }: &Item| {
+            let reach = |level| near.lump.radius(near.lump.reach(level));
+            reach(least) - reach(left_out)
+        };
+        stock.margin = stock.items.iter().map(beyond).fold(0.0, f64::max);
         stock
     }
 
@@ -102,6 +113,17 @@ impl Stock {
         let reach = |item: &Item| item.middle.distance(middle) + f64::from(item.extent.radius);
         let radius = items.iter().map(reach).reduce(f64::max)?;
         Some((middle, radius))
+    }
+
+    /// Whether a primitive that is a lump, or some, can be more than `level` in a ball.
+    #[must_use]
+    pub fn counts(&self, primitive: usize, center: DVec3, radius: f64, level: f64) -> bool {
+        self.of(primitive).iter().any(|item| {
+            let (away, half) = (center - item.middle, item.near.lump.half());
+            let share = away.dot(half) / half.length_squared().max(f64::MIN_POSITIVE);
+            let apart = (away - half * share.clamp(-1.0, 1.0)).length();
+            item.near.lump.ceiling().at((apart - radius).max(0.0)) > level
+        })
     }
 
     /// Lists the lumps near a beam, up to a parameter, and the few other primitives there. False if those are more than a few.
