@@ -2,7 +2,7 @@
 mod common;
 
 use common::{Random, primitive};
-use field::{Kernel, Primitive, Skeleton, THRESHOLD, Taper};
+use field::{Kernel, Primitive, Real, Skeleton, THRESHOLD, Taper};
 use glam::DVec3;
 
 /// Gaussian bones of each kind that has beads, from short to long in kernel widths.
@@ -80,7 +80,7 @@ tests! {
                 let point = bead.center + away;
                 let of = |bead: &field::Bead| {
                     let u = bead.scale * bead.center.distance(point);
-                    bead.amplitude * (-u * u).exp()
+                    bead.amplitude * Real::exp(-u * u)
                 };
                 let sum: f64 = beads.iter().map(of).sum();
                 let value = primitive.value(point.to_array());
