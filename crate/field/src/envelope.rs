@@ -159,6 +159,9 @@ fn table(kernel: Kernel) -> &'static [Roughness] {
 
 /// Fine steps in one step of the table.
 const FINE: usize = 2;
+/// Nearer than this, in kernel widths, kernels without a pole are level: integrals over a line from there on differ from those from
+/// the middle by less than a hundredth.
+const LEVEL: f64 = 1.0 / 256.0;
 /// What a derivative may rise by within a fine step (1/64 octave), over its larger end: where it is
 /// curved, and near a place where it vanishes the envelope of what comes further out counts.
 const SLACK: f64 = 1.03;
@@ -192,42 +195,52 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
     // The step from 0 on may hold a peak of its own near a pole.
     rough[0] = largest.max(SLACK * along_any_line(kernel, order, 0.0));
     let last = places.len() - 1;
+    let entry = |start: usize| {
+        let near = places[start] * places[start];
+        let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
+        let mut before = 0.0;
+        for i in start..last {
+            // Nothing is rough from here on: beyond where a kernel ends, or is as good as 0.
+            if rough[i] == 0.0 {
+                break;
+            }
+            let far = places[i + 1] * places[i + 1];
+            let t = (far - near).max(0.0).sqrt();
+            line += 2.0 * rough[i] * (t - before);
+            plane += TAU / 2.0 * rough[i] * (far - places[i] * places[i]);
+            outward += rough[i] * (places[i + 1] - places[i]);
+            before = t;
+        }
+        // Beyond the last place everything falls faster than r⁻⁴ (slopes of the inverse kernel: as
+        // r⁻², which over a plane has no end).
+        line += 2.0 * rough[last] * places[last];
+        plane += TAU * rough[last] * places[last] * places[last];
+        if order == 1 && kernel == Kernel::Inverse {
+            plane = f64::INFINITY;
+        }
+        outward += rough[last] * places[last];
+        Roughness {
+            point: rough[start],
+            line,
+            plane,
+            outward,
+        }
+    };
     // Entry 0 stands for all below the first place.
-    let starts = core::iter::once(0).chain((0..=OCTAVES * STEPS).map(|i| 1 + i * FINE));
-    starts
-        .map(|start| {
-            let start = start.min(last);
-            let near = places[start] * places[start];
-            let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
-            let mut before = 0.0;
-            for i in start..last {
-                // Nothing is rough from here on: beyond where a kernel ends, or is as good as 0.
-                if rough[i] == 0.0 {
-                    break;
-                }
-                let far = places[i + 1] * places[i + 1];
-                let t = (far - near).max(0.0).sqrt();
-                line += 2.0 * rough[i] * (t - before);
-                plane += TAU / 2.0 * rough[i] * (far - places[i] * places[i]);
-                outward += rough[i] * (places[i + 1] - places[i]);
-                before = t;
-            }
-            // Beyond the last place everything falls faster than r⁻⁴ (slopes of the inverse kernel: as
-            // r⁻², which over a plane has no end).
-            line += 2.0 * rough[last] * places[last];
-            plane += TAU * rough[last] * places[last] * places[last];
-            if order == 1 && kernel == Kernel::Inverse {
-                plane = f64::INFINITY;
-            }
-            outward += rough[last] * places[last];
-            Roughness {
-                point: rough[start],
-                line,
-                plane,
-                outward,
-            }
-        })
-        .collect()
+    let mut table = vec![entry(0)];
+    let mut octave = 0;
+    for step in 0..=OCTAVES * STEPS {
+        let start = (1 + step * FINE).min(last);
+        if step % STEPS == 0 {
+            octave = start;
+        }
+        // What holds further in holds here, too; and of a kernel without a pole it is hardly more, and saves a sum.
+        let same =
+            start > octave && places[start] < LEVEL && rough[octave] <= 1.0001 * rough[start];
+        let here = if same { table.last().copied() } else { None };
+        table.push(here.unwrap_or_else(|| entry(start)));
+    }
+    table
 }
 
 /// The largest derivative of this order over all directions at a distance u. With y the square of the

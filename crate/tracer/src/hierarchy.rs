@@ -76,7 +76,20 @@ impl Hierarchy {
     }
 
     /// Calls `found` with the number and ball of each item whose ball the beam may meet.
-    pub fn search(&self, beam: &Beam, mut found: impl FnMut(u32, DVec3, f64)) {
+    pub fn search(&self, beam: &Beam, found: impl FnMut(u32, DVec3, f64)) {
+        self.select(|center, radius| beam.meets(center, radius), found);
+    }
+
+    /// The same with the items whose balls meet a ball.
+    pub fn around(&self, middle: DVec3, reach: f64, found: impl FnMut(u32, DVec3, f64)) {
+        let meets = |center: DVec3, radius: f64| {
+            let both = radius + reach;
+            center.distance_squared(middle) <= both * both * (1.0 + 1e-9)
+        };
+        self.select(meets, found);
+    }
+
+    fn select(&self, meets: impl Fn(DVec3, f64) -> bool, mut found: impl FnMut(u32, DVec3, f64)) {
         // The tree halves its items at each level, so 32 levels hold 2³² of them.
         let mut stack = [0u32; 64];
         let mut depth = usize::from(!self.nodes.is_empty());
@@ -84,13 +97,13 @@ impl Hierarchy {
             depth -= 1;
             let index = stack[depth];
             let node = &self.nodes[index as usize];
-            if !beam.meets(node.center, node.radius) {
+            if !meets(node.center, node.radius) {
                 continue;
             }
             if node.right == 0 {
                 for i in node.first as usize..(node.first + node.count) as usize {
                     let (center, radius) = self.balls[i];
-                    if node.count == 1 || beam.meets(center, radius) {
+                    if node.count == 1 || meets(center, radius) {
                         found(self.items[i], center, radius);
                     }
                 }

@@ -106,7 +106,6 @@ impl Lens {
                 spread,
                 ahead: spread * near.base,
             },
-            exact: self.wide(fan),
         }
     }
 

@@ -138,9 +138,15 @@ impl Picture {
         let limits = [f64::INFINITY; PACKET];
         work.begin();
         let quick = &mut work.scratch.quick;
-        let looked = self
-            .soft
-            .quick(near, &rays, &limits, ALL, Quest::First, quick)?;
+        let looked = self.soft.quick(
+            near,
+            &rays,
+            &|| lens.wide(fan),
+            &limits,
+            ALL,
+            Quest::First,
+            quick,
+        )?;
         work.scratch.evaluations = looked.evaluations;
         stats.field_evaluations += looked.evaluations;
         let costs = work.costs(PACKET);
@@ -212,10 +218,15 @@ impl Picture {
         let limits = core::array::from_fn(|i| hits[i].map_or(f64::INFINITY, |h| h.t));
         let scratch = &mut work.scratch;
         let lanes = Rays::new(rays, near);
-        let Some(looked) =
-            self.soft
-                .quick(near, &lanes, &limits, ALL, Quest::First, &mut scratch.quick)
-        else {
+        let Some(looked) = self.soft.quick(
+            near,
+            &lanes,
+            &|| *rays,
+            &limits,
+            ALL,
+            Quest::First,
+            &mut scratch.quick,
+        ) else {
             let beam = Beam::around(rays);
             let slabs = beam.and_then(|beam| {
                 let whole = |base: f64| Beams::one(beam.from(base));

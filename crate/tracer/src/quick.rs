@@ -75,8 +75,6 @@ pub struct Rays {
     pub direction: [f32x8; 3],
     /// A beam around them.
     pub beam: Beam,
-    /// They as they are, not counted from anywhere.
-    pub exact: [Ray; PACKET],
 }
 
 impl Rays {
@@ -104,7 +102,6 @@ impl Rays {
             origin,
             direction,
             beam,
-            exact: *rays,
         }
     }
 }
@@ -142,7 +139,7 @@ impl Soft {
             && !self.meets_any(&list.others, &beam, furthest)
         {
             let lanes = Rays::new(rays, &list);
-            self.quick(&list, &lanes, limits, alive, quest, work)
+            self.quick(&list, &lanes, &|| *rays, limits, alive, quest, work)
         } else {
             None
         };
@@ -152,11 +149,12 @@ impl Soft {
     }
 
     /// Finds the first crossing, from outside to inside, of the rays of a packet; for [`Quest::Entry`] only whether there
-    /// is one. `None` if this is not the way to find it.
+    /// is one. `exact` gives the rays in double precision. `None` if this is not the way to find it.
     pub fn quick(
         &self,
         near: &Nearby,
         rays: &Rays,
+        exact: &dyn Fn() -> [Ray; PACKET],
         limits: &[f64; PACKET],
         alive: u32,
         quest: Quest,
@@ -257,7 +255,7 @@ impl Soft {
         };
         let mut climbed = climb(work.stairs(), &way)?;
         if climbed.doubtful != 0 && quest == Quest::First {
-            self.settle_doubts(near, &rays.exact, &mut climbed);
+            self.settle_doubts(near, &exact(), &mut climbed);
         }
         if climbed.met == 0 || quest == Quest::Entry {
             return Some(Looked {
@@ -271,6 +269,8 @@ impl Soft {
 
     /// Rays that went past the surface so near to it that rounding may have hidden it are asked once more where that was, in
     /// double precision and with nothing left out.
+    #[cold]
+    #[inline(never)]
     fn settle_doubts(&self, near: &Nearby, rays: &[Ray; PACKET], climbed: &mut Climbed) {
         let [first, last] = climbed.doubt.map(f32x8::to_array);
         let mut t = climbed.t.to_array();

@@ -201,9 +201,9 @@ impl Picture {
             if quick {
                 let lanes = Rays::new(&rays, &near);
                 let quick = &mut scratch.quick;
-                let looked = self
-                    .soft
-                    .quick(&near, &lanes, &limits, alive, Quest::Entry, quick);
+                let looked =
+                    self.soft
+                        .quick(&near, &lanes, &|| rays, &limits, alive, Quest::Entry, quick);
                 if let Some(looked) = looked {
                     scratch.evaluations += looked.evaluations;
                     darken(packet, looked.met, work, stats);

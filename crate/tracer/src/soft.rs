@@ -326,16 +326,10 @@ impl Soft {
     /// start, if it is inside there. All primitives must be lumps, or such sums of them as are followed as lumps.
     pub fn entry(&self, ray: Ray, [from, to]: [f64; 2]) -> (Option<f64>, u64) {
         let (center, radius) = (ray.at(0.5 * (from + to)), 0.5 * (to - from));
-        let wide = Beam {
-            radius: radius + self.stock.margin,
-            ..Beam::of_ray(Ray {
-                origin: center,
-                direction: ray.direction,
-            })
-        };
         let least = NEXT_TO_NOTHING * THRESHOLD / self.primitives.len() as f64;
         let mut near = Vec::new();
-        self.tree.search(&wide, |i, _, _| {
+        let reach = radius + self.stock.margin;
+        self.tree.around(center, reach, |i, _, _| {
             if self.stock.counts(i as usize, center, radius, least) {
                 near.push(i);
             }
