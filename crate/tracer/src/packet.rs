@@ -7,7 +7,7 @@ use crate::lens::{Fan, Lens};
 use crate::map;
 use crate::nearby::Nearby;
 use crate::picture::{Picture, Stats};
-use crate::quick::Rays;
+use crate::quick::{Asked, Rays};
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::shade::Finish;
@@ -142,9 +142,7 @@ impl Picture {
             near,
             &rays,
             &|| lens.wide(fan),
-            &limits,
-            ALL,
-            Quest::First,
+            Asked::first(&limits),
             quick,
         )?;
         work.scratch.evaluations = looked.evaluations;
@@ -222,9 +220,7 @@ impl Picture {
             near,
             &lanes,
             &|| *rays,
-            &limits,
-            ALL,
-            Quest::First,
+            Asked::first(&limits),
             &mut scratch.quick,
         ) else {
             let beam = Beam::around(rays);

@@ -106,6 +106,28 @@ impl Rays {
     }
 }
 
+/// What is asked of a packet's rays.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'l> {
+    /// How far each goes.
+    pub limits: &'l [f64; PACKET],
+    /// Those that are asked, a bit each.
+    pub alive: u32,
+    /// What for.
+    pub quest: Quest,
+}
+
+impl<'l> Asked<'l> {
+    /// Where each of a packet's rays first meets the surface.
+    pub fn first(limits: &'l [f64; PACKET]) -> Self {
+        Self {
+            limits,
+            alive: (1 << PACKET) - 1,
+            quest: Quest::First,
+        }
+    }
+}
+
 /// A place amid eight, and how far they are from it at most.
 fn around(places: [f32x8; 3]) -> (DVec3, f64) {
     // In the order of the lanes, which is the same everywhere.
@@ -139,7 +161,12 @@ impl Soft {
             && !self.meets_any(&list.others, &beam, furthest)
         {
             let lanes = Rays::new(rays, &list);
-            self.quick(&list, &lanes, &|| *rays, limits, alive, quest, work)
+            let asked = Asked {
+                limits,
+                alive,
+                quest,
+            };
+            self.quick(&list, &lanes, &|| *rays, asked, work)
         } else {
             None
         };
@@ -155,11 +182,14 @@ impl Soft {
         near: &Nearby,
         rays: &Rays,
         exact: &dyn Fn() -> [Ray; PACKET],
-        limits: &[f64; PACKET],
-        alive: u32,
-        quest: Quest,
+        asked: Asked<'_>,
         work: &mut Quick,
     ) -> Option<Looked> {
+        let Asked {
+            limits,
+            alive,
+            quest,
+        } = asked;
         if near.len() == 0 {
             return Some(Looked::default());
         }

@@ -6,7 +6,7 @@ use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::packet::{Seen, Workspace};
 use crate::picture::{Picture, Stats};
-use crate::quick::Rays;
+use crate::quick::{Asked, Rays};
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::shade::towards;
@@ -201,9 +201,12 @@ impl Picture {
             if quick {
                 let lanes = Rays::new(&rays, &near);
                 let quick = &mut scratch.quick;
-                let looked =
-                    self.soft
-                        .quick(&near, &lanes, &|| rays, &limits, alive, Quest::Entry, quick);
+                let asked = Asked {
+                    limits: &limits,
+                    alive,
+                    quest: Quest::Entry,
+                };
+                let looked = self.soft.quick(&near, &lanes, &|| rays, asked, quick);
                 if let Some(looked) = looked {
                     scratch.evaluations += looked.evaluations;
                     darken(packet, looked.met, work, stats);
