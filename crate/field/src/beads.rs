@@ -43,9 +43,11 @@ impl Primitive {
         }
         let along = |measure: f64, angle: f64, place: &dyn Fn(f64) -> DVec3| {
             let length = measure * self.width;
+            // The field of a crisp bone is a tiny part of its amplitude where it is T.
+            let left = LEFT / term.amplitude.max(1.0);
             let pieces = (length / LONGEST).max(angle / WIDEST).ceil().max(1.0);
             // A bent piece calls for one more.
-            let count = nodes(length / pieces) + usize::from(angle > 0.0);
+            let count = nodes(length / pieces, left) + usize::from(angle > 0.0);
             if pieces * count as f64 > MOST as f64 {
                 return None;
             }
@@ -117,11 +119,11 @@ impl Bead {
     }
 }
 
-/// So many nodes leave [`LEFT`] of the integral over a length.
-fn nodes(length: f64) -> usize {
+/// So many nodes leave no more than `most` of the integral over a length.
+fn nodes(length: f64, most: f64) -> usize {
     // The remainder for one node, and from one number of nodes to the next.
     let (mut left, mut n) = (length * length * length / 12.0, 1.0);
-    while left > LEFT && n < 48.0 {
+    while left > most && n < 48.0 {
         n += 1.0;
         let (a, b) = (2.0 * n, 2.0 * n - 1.0);
         left *= length * length * n * n * n * b / ((a + 1.0) * (a * b) * (a * b));

@@ -134,9 +134,13 @@ impl Primitive {
                 if self.kernel == Kernel::Gauss && half.lane(0) >= SHORT =>
             {
                 let ramp = match waves {
-                    Some(waves) => Some(Ramp::of(waves, half.lane(0))?.cast(S::round)),
+                    Some(waves) => Some(Ramp::of(waves, half.lane(0))?),
                     None => None,
                 };
+                if ramp.is_some_and(|ramp| amplitude * ramp.largest() > LARGEST) {
+                    return None;
+                }
+                let ramp = ramp.map(|ramp| ramp.cast(S::round));
                 Some(Rod {
                     half: *half,
                     axes: term.frame.axes,
@@ -250,9 +254,12 @@ impl<S: Scalar> Lump<S> {
     /// than `|G′|`, which falls; a Gaussian's falls from q = ½ on.
     #[must_use]
     pub fn steepness(&self, core: f64) -> f64 {
-        let twice = 2.0 * self.scale.lane(0);
+        let scale = self.scale.lane(0);
+        let twice = 2.0 * scale;
         if self.kernel == Kernel::Gauss {
-            return twice * core.max(0.5).sqrt() * THRESHOLD;
+            let ramp = self.segment.and_then(|rod| rod.ramp);
+            let ramp = ramp.map_or(0.0, |ramp| scale * ramp.cast(|x| x.lane(0)).steepness());
+            return (twice * core.max(0.5).sqrt() + ramp) * THRESHOLD;
         }
         twice * self.amplitude.lane(0) * self.kernel.derivatives(core.max(0.0)).0[1].abs()
     }

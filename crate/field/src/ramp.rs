@@ -38,6 +38,11 @@ impl Ramp<f64> {
         [self.low, self.low + self.rise * self.top]
     }
 
+    /// By how much of its largest value it changes in a kernel's width, at most.
+    pub(crate) fn steepness(&self) -> f64 {
+        (self.rise * self.rate).abs() / self.largest()
+    }
+
     /// The factor is nowhere more than this.
     pub(crate) fn largest(&self) -> f64 {
         let [first, last] = self.ends();

@@ -54,7 +54,7 @@ fn cases() -> Vec<(Primitive, f64)> {
                 ..common::shaping(
                     size,
                     if i % 4 == 2 {
-                        -1.0
+                        -random.range(0.5, 16.0)
                     } else {
                         -random.range(0.5, 6.0)
                     },

@@ -10,8 +10,8 @@
 //!   P ≤ D; else it is larger than there by (P−D)²/4P.
 //!
 //! If F(to) ≥ T there is a crossing on the piece, and when `N·h² + 2K·h < 2(T − F(from))` it is the only one: a
-//! second one before it would need more bending. Then Newton's steps lead to it. All else halves the piece, but no
-//! further than to the tolerance. Eight rays go in step; each has its own pieces.
+//! second one before it would need more bending. Then Newton's steps lead to it. All else makes
+//! the piece shorter, as far as may serve, but no shorter than the tolerance. Eight rays go in step; each has its own pieces.
 use field::{Course, Limits, Real};
 use wide::f32x8;
 
@@ -194,7 +194,10 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
         let parabola = length * (f32x8::splat(0.5) * length * sum.bend + sum.kink);
         let steeper = (parabola - (sum.value - low_value).abs()).fast_max(zero);
         let bulge = f32x8::splat(0.25) * steeper * steeper / parabola.fast_max(tiny);
-        let chord = low_value.fast_max(sum.value) + bulge;
+        // A parabola that is no number proves nothing.
+        let chord = parabola
+            .simd_lt(far)
+            .select(low_value.fast_max(sum.value) + bulge, far);
         let below = going & !above;
         // A chord's bound may be no number.
         let under = |level| sum.most.simd_lt(level) | chord.simd_lt(level);

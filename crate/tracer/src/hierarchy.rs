@@ -80,7 +80,14 @@ impl Hierarchy {
         self.select(|center, radius| beam.meets(center, radius), found);
     }
 
-    /// The same with the items whose balls meet a ball.
+    /// Calls `f` with the number and ball of each item.
+    pub fn each(&self, mut f: impl FnMut(u32, DVec3, f64)) {
+        for (&i, &(center, radius)) in self.items.iter().zip(&self.balls) {
+            f(i, center, radius);
+        }
+    }
+
+    /// The same as [`Hierarchy::search`] with the items whose balls meet a ball.
     pub fn around(&self, middle: DVec3, reach: f64, found: impl FnMut(u32, DVec3, f64)) {
         let meets = |center: DVec3, radius: f64| {
             let both = radius + reach;

@@ -35,7 +35,7 @@
 //!
 //! # Limits
 //!
-//! - Of all primitives no more than 10⁻⁵·T is left out, all together, whatever `influence` says; that and single
+//! - Of all primitives no more than 2·10⁻⁵·T is left out, all together, whatever `influence` says; that and single
 //!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field; a ray that they may
 //!   have kept outside is settled where that was, with all of them. Shadows are not. A packet near more
 //!   than 2¹⁶ lumps (beads count one each), or that makes more than 2²⁴ evaluations, goes the general way.

@@ -211,8 +211,6 @@ impl Nearby {
     /// [`Nearby::base`].
     pub fn narrow(&self, beam: &Beam, left_out: f32, into: &mut Self) {
         into.begin(self.middle, self.base);
-        let met = |other: &&Other| beam.meets(other.center, other.radius);
-        into.others.extend(self.others.iter().filter(met));
         let mut marks = Marks::new();
         if self.mark(beam, left_out, &mut marks) {
             for index in marked(&marks) {

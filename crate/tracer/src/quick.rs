@@ -1,4 +1,4 @@
-//! The quick way to the soft surface, where it is made of lumps alone: points, Gaussian segments, and beads of other bones.
+//! The quick way to the soft surface, where nothing but lumps is near: points, Gaussian segments, and beads of other bones.
 //!
 //! The lumps near a square of pixels are listed once, those near each of its parts when a packet in it asks, those near
 //! the packet anew for each; then [`climb`](mod@crate::climb) follows the packet's rays.
@@ -60,12 +60,19 @@ pub const COARSEST: f64 = 5e-5;
 const MOST_LOOKS: usize = 12;
 /// The field is not known better than this in single precision.
 const ROUNDING: f32 = 2e-6;
-/// What lists leave out, all together, with the rounding of values.
-const LOST: f32 = 1.5e-5;
+/// What lists leave out, all together, with what is left out of other primitives, beads and the rounding of values.
+const LOST: f32 = 2.5e-5;
+/// More than this, which tiny lumps far away would call for, is not held against rounding.
+const NOISIEST: f32 = 2e-3;
+/// Longer stretches that are in doubt are settled in parts.
+const PART: f64 = 1.0 / 16.0;
 /// Rounding of places, in units of the scene and of how far they are away.
 const MISPLACED: f32 = 3e-7;
 /// A packet near more lumps than this is left to the general way, which needs less space for each.
 const MOST_STEPS: usize = 1 << 16;
+
+/// See [`PART`].
+const MOST_PARTS: f64 = 256.0;
 
 /// Rays of a packet, counted from a list's base.
 pub struct Rays {
@@ -176,7 +183,7 @@ impl Soft {
     }
 
     /// Finds the first crossing, from outside to inside, of the rays of a packet; for [`Quest::Entry`] only whether there
-    /// is one. `exact` gives the rays in double precision. `None` if this is not the way to find it.
+    /// is one. Nothing else may count near the rays ([`Soft::meets_any`]). `exact` gives the rays in double precision. `None` if this is not the way to find it.
     pub fn quick(
         &self,
         near: &Nearby,
@@ -272,7 +279,7 @@ impl Soft {
         // Shadows are not as sharp as that; and where their rays start the field is nearly T in any case.
         let noise = match quest {
             Quest::Entry => 0.0,
-            _ => LOST + MISPLACED * steepest * (1.0 + furthest),
+            _ => (LOST + MISPLACED * steepest * (1.0 + furthest)).min(NOISIEST),
         };
         let way = Way {
             from,
@@ -309,18 +316,23 @@ impl Soft {
             if climbed.doubtful >> i & 1 == 0 {
                 continue;
             }
-            let stretch = [first[i], last[i]].map(f64::from);
+            let [start, end] = [first[i], last[i]].map(f64::from);
             let based = Ray {
                 origin: ray.at(near.base),
                 direction: ray.direction,
             };
-            let (found, evaluations) = self.entry(based, stretch);
-            climbed.evaluations += evaluations;
-            if let Some(found) = found {
-                t[i] = found as f32;
-                // It is to stay there.
-                between.iter_mut().for_each(|end| end[i] = t[i]);
-                climbed.met |= 1 << i;
+            let parts = ((end - start) / PART).ceil().clamp(1.0, MOST_PARTS);
+            let place = |part: u32| start + (end - start) * f64::from(part) / parts;
+            for part in 0..parts as u32 {
+                let (found, evaluations) = self.entry(based, [place(part), place(part + 1)]);
+                climbed.evaluations += evaluations;
+                if let Some(found) = found {
+                    t[i] = found as f32;
+                    // It is to stay there.
+                    between.iter_mut().for_each(|end| end[i] = t[i]);
+                    climbed.met |= 1 << i;
+                    break;
+                }
             }
         }
         climbed.t = f32x8::new(t);

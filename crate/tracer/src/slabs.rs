@@ -4,7 +4,7 @@
 //! primitive is *resolved* when one Hermite span over the slab is certified to be near enough to
 //! it, for all rays of the beam; what is not yet resolved is *pending* and is handed to the halves.
 //! What all rays of the beam can share is interpolated once for them: for good, if that is exact enough, or in place of
-//! spans, until those would be made finer. What is next to nothing counts as error. So broad or distant
+//! spans, as exact as those. What is next to nothing counts as error. So broad or distant
 //! primitives get few long spans and sharp near ones many short spans. The tree grows only where a
 //! ray asks for it, and is shared by all rays of the beam.
 //!

@@ -32,6 +32,8 @@ pub struct Soft {
     bounds: OnceLock<Vec<Bound>>,
     /// Balls within which each counts.
     tree: Hierarchy,
+    /// Balls beyond which each is next to nothing.
+    all: OnceLock<Hierarchy>,
     /// What slabs need beyond that.
     groups: OnceLock<Groups>,
     /// Primitives without a bounding ball.
@@ -97,8 +99,8 @@ const FAR: f64 = 1e4;
 
 /// Strides along a beam after which it is taken to come near a primitive …
 const MOST_STRIDES: usize = 32;
-/// … and how long each is at least: so little further away it would not matter.
-const SHORTEST_STRIDE: f64 = 1e-4;
+/// … as it is where it comes so near, in units of how far that counts.
+const CLOSE: f64 = 0.05;
 
 /// Scratch space that is worth keeping between packets.
 #[derive(Default)]
@@ -148,6 +150,7 @@ impl Soft {
             material,
             bounds: OnceLock::new(),
             tree: Hierarchy::new(balls),
+            all: OnceLock::new(),
             groups: OnceLock::new(),
             everywhere,
             stock,
@@ -297,11 +300,11 @@ impl Soft {
                 }
                 // No ray that is at t is further from the axis than its width there.
                 let away = bound.nearness(beam.axis.at(t), beam.width(t)).distance - other.reach;
-                if away <= 0.0 {
+                if away <= CLOSE * other.reach {
                     break;
                 }
                 // As it goes on a ray comes nearer by no more than it goes.
-                t += away.max(SHORTEST_STRIDE) / (1.0 + beam.spread);
+                t += away / (1.0 + beam.spread);
             }
             true
         })
@@ -323,13 +326,13 @@ impl Soft {
     }
 
     /// Where a ray first enters the surface on a short stretch, in double precision, with the number of evaluations; its
-    /// start, if it is inside there. All primitives must be lumps, or such sums of them as are followed as lumps.
+    /// start, if it is inside there. What is no lump, or sum of lumps, is taken to count as far as it is followed.
     pub fn entry(&self, ray: Ray, [from, to]: [f64; 2]) -> (Option<f64>, u64) {
         let (center, radius) = (ray.at(0.5 * (from + to)), 0.5 * (to - from));
         let least = NEXT_TO_NOTHING * THRESHOLD / self.primitives.len() as f64;
         let mut near = Vec::new();
-        let reach = radius + self.stock.margin;
-        self.tree.around(center, reach, |i, _, _| {
+        let all = self.all.get_or_init(|| self.stock.reaches(&self.tree));
+        all.around(center, radius, |i, _, _| {
             if self.stock.counts(i as usize, center, radius, least) {
                 near.push(i);
             }

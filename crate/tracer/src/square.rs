@@ -2,7 +2,7 @@
 use crate::area::Area;
 use crate::beam::Beam;
 use crate::lens::Lens;
-use crate::nearby::Nearby;
+use crate::nearby::{Nearby, Other};
 use crate::packet::{Near, Workspace};
 use crate::picture::{Picture, packet_number};
 use crate::quick::LEFT_OUT_OF_PARTS;
@@ -112,7 +112,7 @@ impl<'a> Lumps<'a> {
         if self.all.others.is_empty() {
             return false;
         }
-        let (picture, area, packets, base) = (self.picture, self.area, self.packets, self.all.base);
+        let (picture, area, packets) = (self.picture, self.area, self.packets);
         let (near, _) = self.near([column, row]);
         if near.others.is_empty() {
             return false;
@@ -128,7 +128,8 @@ impl<'a> Lumps<'a> {
             right: left + width,
             bottom: top + height,
         };
-        let beam = picture.beam(packet).from(base);
+        // Others may be nearer than the first lump, from which lists are counted.
+        let beam = picture.beam(packet);
         picture.soft.meets_any(&near.others, &beam, f64::INFINITY)
     }
 
@@ -158,8 +159,10 @@ impl<'a> Lumps<'a> {
                 bottom: top + height,
             };
             let mut near = Nearby::default();
-            let beam = picture.beam(part).from(all.base);
-            all.narrow(&beam, LEFT_OUT_OF_PARTS, &mut near);
+            let beam = picture.beam(part);
+            all.narrow(&beam.from(all.base), LEFT_OUT_OF_PARTS, &mut near);
+            let met = |other: &&Other| beam.meets(other.center, other.radius);
+            near.others.extend(all.others.iter().filter(met));
             near
         });
         (part, lens.as_ref())

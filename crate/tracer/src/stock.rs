@@ -20,8 +20,8 @@ pub struct Stock {
     items: Vec<Item>,
     /// Where each primitive's items end; they start where those of the primitive before it do.
     ends: Vec<u32>,
-    /// So far beyond their balls the lumps together are next to nothing.
-    pub margin: f64,
+    /// Less than this of each lump is next to nothing.
+    least: f64,
 }
 
 struct Item {
@@ -54,7 +54,7 @@ impl Stock {
         let mut stock = Self {
             items: Vec::with_capacity(primitives.len() + beads),
             ends: Vec::with_capacity(primitives.len()),
-            margin: 0.0,
+            least: NEXT_TO_NOTHING / LEFT_OUT * left_out,
         };
         for (i, p) in primitives.iter().enumerate() {
             let item = |lump: Lump<f32>, middle: DVec3, core: f64, part: bool| Item {
@@ -88,12 +88,6 @@ impl Stock {
             }
             stock.ends.push(stock.items.len() as u32);
         }
-        let least = NEXT_TO_NOTHING / LEFT_OUT * left_out;
-        let beyond = |Item { near, .. }: &Item| {
-            let reach = |level| near.lump.radius(near.lump.reach(level));
-            reach(least) - reach(left_out)
-        };
-        stock.margin = stock.items.iter().map(beyond).fold(0.0, f64::max);
         stock
     }
 
@@ -115,15 +109,32 @@ impl Stock {
         Some((middle, radius))
     }
 
-    /// Whether a primitive that is a lump, or some, can be more than `level` in a ball.
+    /// The balls beyond which each primitive is next to nothing, given those beyond which it is not followed.
+    #[must_use]
+    pub fn reaches(&self, tree: &Hierarchy) -> Hierarchy {
+        let mut balls = Vec::with_capacity(self.ends.len());
+        tree.each(|i, center, radius| {
+            let reach = |item: &Item| {
+                let lump = &item.near.lump;
+                item.middle.distance(center) + lump.radius(lump.reach(self.least))
+            };
+            let items = self.of(i as usize).iter();
+            balls.push((i, center, items.map(reach).fold(radius, f64::max)));
+        });
+        Hierarchy::new(balls)
+    }
+
+    /// Whether a primitive that is a lump, or some, can be more than `level` in a ball; others are taken to be.
     #[must_use]
     pub fn counts(&self, primitive: usize, center: DVec3, radius: f64, level: f64) -> bool {
-        self.of(primitive).iter().any(|item| {
+        let items = self.of(primitive);
+        let more = |item: &Item| {
             let (away, half) = (center - item.middle, item.near.lump.half());
             let share = away.dot(half) / half.length_squared().max(f64::MIN_POSITIVE);
             let apart = (away - half * share.clamp(-1.0, 1.0)).length();
             item.near.lump.ceiling().at((apart - radius).max(0.0)) > level
-        })
+        };
+        items.is_empty() || items.iter().any(more)
     }
 
     /// Lists the lumps near a beam, up to a parameter, and the few other primitives there. False if those are more than a few.

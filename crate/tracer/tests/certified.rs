@@ -6,7 +6,10 @@ mod common;
 #[path = "common/trials.rs"]
 mod trials;
 
+use common::{Numbers, element, empty, soft};
 use field::Kernel;
+use glam::DVec3;
+use scene::{Element, Scene, Shape};
 use tracer::{Hit, Pass, Picture, Stats, Tile};
 use trials::{Kind, Row, Trial, check};
 
@@ -196,6 +199,101 @@ fn what_is_cast_is_what_pictures_show() {
     }
     assert!(shown > 5_000, "{shown}");
     assert!(differ <= 8, "{differ} of {shown}");
+}
+
+/// How many pixels of a picture show the surface, and how many do though its ray meets none, or do not though it does.
+fn shown(mut scene: Scene, side: u32) -> [usize; 2] {
+    scene.background = [0.0, 0.0, 1.0];
+    for material in &mut scene.materials {
+        material.ambient = [0.5, 0.5, 0.0];
+    }
+    scene.lights.clear();
+    let picture = Picture::new(&scene, [side; 2]);
+    let whole = Tile {
+        x: 0,
+        y: 0,
+        width: side,
+        height: side,
+    };
+    let pixels = picture
+        .trace(whole, Pass::Full, &|| false, &mut Stats::default())
+        .expect("nobody asked to stop");
+    let projection = scene.camera.projection(side, side);
+    let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(side);
+    let (mut shown, mut wrong) = (0, 0);
+    for (i, pixel) in (0..side * side).zip(pixels.chunks(4)) {
+        let direction = projection.direction(middle(i % side), middle(i / side));
+        let there = !picture.hits(projection.eye, direction).is_empty();
+        shown += usize::from(there);
+        wrong += usize::from(there != (pixel[2] == 0));
+    }
+    [shown, wrong]
+}
+
+/// Lumps among bones of other kernels, before them and behind; and so many bones of one kernel without end that packets
+/// have interpolants together. Pictures show what single rays, followed exactly, meet.
+#[test]
+fn pictures_show_what_is_there() {
+    let mut n = Numbers(11);
+    for case in 0..8 {
+        let mut scene = empty();
+        let joined = case % 2 == 1;
+        scene.materials = vec![soft(-3.0, 1.0)];
+        for k in 0..if joined { 40 } else { 5 } {
+            let lump = k % 2 == 0;
+            let at = n.vector();
+            let shape = match (joined, lump) {
+                (true, _) => n.shape(k),
+                (false, true) => Shape::Sphere {
+                    center: at,
+                    radius: n.between(0.1, 0.5),
+                },
+                (false, false) => Shape::Cylinder {
+                    base: at + n.vector() * 0.4,
+                    apex: at,
+                    radius: n.between(0.02, 0.15),
+                },
+            };
+            scene.elements.push(Element {
+                kernel: match (joined, lump) {
+                    (true, _) => Kernel::Cauchy,
+                    (false, true) => Kernel::Gauss,
+                    (false, false) => Kernel::Quartic,
+                },
+                ..element(shape, 0)
+            });
+        }
+        let [shown, wrong] = shown(scene, 48);
+        assert!(
+            shown > 300 && wrong * 200 <= shown,
+            "{case}: {wrong} of {shown}"
+        );
+    }
+}
+
+/// A bone much thinner than anything a beam is wide.
+#[test]
+fn a_thin_bone_beside_lumps_is_not_stridden_over() {
+    let mut scene = empty();
+    scene.materials = vec![soft(-4.0, 1.0)];
+    scene.camera.eye = DVec3::new(0.0, 0.0, 0.02);
+    scene.camera.fov = 0.2;
+    let lump = Shape::Sphere {
+        center: DVec3::new(0.0, 3.0, 0.0),
+        radius: 0.8,
+    };
+    let thin = Shape::Cylinder {
+        base: DVec3::new(-3e-5, 0.0, 0.0),
+        apex: DVec3::new(3e-5, 0.0, 0.0),
+        radius: 1e-5,
+    };
+    let of = |shape: Shape, kernel: Kernel| Element {
+        kernel,
+        ..element(shape, 0)
+    };
+    scene.elements = vec![of(lump, Kernel::Gauss), of(thin, Kernel::Quartic)];
+    let [shown, wrong] = shown(scene, 64);
+    assert!(shown > 500 && wrong * 50 <= shown, "{wrong} of {shown}");
 }
 
 /// Scenes in which much was missed or off once: where rounding or a surface as flat as the ray leaves all in doubt; beyond
