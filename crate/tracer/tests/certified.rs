@@ -235,6 +235,7 @@ fn shown(mut scene: Scene, side: u32) -> [usize; 2] {
 #[test]
 fn pictures_show_what_is_there() {
     let mut n = Numbers(11);
+    let (mut seen, mut wrong) = (0, 0);
     for case in 0..8 {
         let mut scene = empty();
         let joined = case % 2 == 1;
@@ -263,12 +264,11 @@ fn pictures_show_what_is_there() {
                 ..element(shape, 0)
             });
         }
-        let [shown, wrong] = shown(scene, 48);
-        assert!(
-            shown > 300 && wrong * 200 <= shown,
-            "{case}: {wrong} of {shown}"
-        );
+        let [there, off] = shown(scene, 48);
+        seen += there;
+        wrong += off;
     }
+    assert!(seen > 2000 && wrong <= 2, "{wrong} of {seen}");
 }
 
 /// A bone much thinner than anything a beam is wide.
