@@ -12,6 +12,19 @@ pub(crate) struct Area {
 }
 
 impl Area {
+    /// What lies in a column and a row of so many.
+    pub fn cell(self, [column, row]: [u32; 2], [columns, rows]: [u32; 2]) -> Self {
+        let width = (self.right - self.left) / columns;
+        let height = (self.bottom - self.top) / rows;
+        let (left, top) = (self.left + column * width, self.top + row * height);
+        Self {
+            left,
+            top,
+            right: left + width,
+            bottom: top + height,
+        }
+    }
+
     pub fn holds(&self, x: u32, y: u32) -> bool {
         (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
     }

@@ -125,7 +125,7 @@ impl Picture {
         })
     }
 
-    /// Traces the rays of one packet in a scene of lumps alone. `None` if this is not the way to do it.
+    /// Traces the rays of one packet that comes near nothing but lumps. `None` if this is not the way to do it.
     pub(crate) fn lump_packet(
         &self,
         lens: &Lens,
@@ -205,7 +205,7 @@ impl Picture {
         self.clothe(rays, &flesh, base, met, hits);
     }
 
-    /// The hits on a surface of lumps alone.
+    /// The hits of a packet that comes near nothing but lumps.
     fn lump_hits(
         &self,
         rays: &[Ray; PACKET],

@@ -117,19 +117,8 @@ impl<'a> Lumps<'a> {
         if near.others.is_empty() {
             return false;
         }
-        let [width, height] = [
-            (area.right - area.left) / packets[0],
-            (area.bottom - area.top) / packets[1],
-        ];
-        let (left, top) = (area.left + column * width, area.top + row * height);
-        let packet = Area {
-            left,
-            top,
-            right: left + width,
-            bottom: top + height,
-        };
         // Others may be nearer than the first lump, from which lists are counted.
-        let beam = picture.beam(packet);
+        let beam = picture.beam(area.cell([column, row], packets));
         picture.soft.meets_any(&near.others, &beam, f64::INFINITY)
     }
 
@@ -149,17 +138,8 @@ impl<'a> Lumps<'a> {
             ..
         } = self;
         let part = parts[(j * PARTS + i) as usize].get_or_insert_with(|| {
-            let [width, height] =
-                [area.right - area.left, area.bottom - area.top].map(|n| n / PARTS);
-            let (left, top) = (area.left + i * width, area.top + j * height);
-            let part = Area {
-                left,
-                top,
-                right: left + width,
-                bottom: top + height,
-            };
             let mut near = Nearby::default();
-            let beam = picture.beam(part);
+            let beam = picture.beam(area.cell([i, j], [PARTS; 2]));
             all.narrow(&beam.from(all.base), LEFT_OUT_OF_PARTS, &mut near);
             let met = |other: &&Other| beam.meets(other.center, other.radius);
             near.others.extend(all.others.iter().filter(met));
