@@ -29,6 +29,8 @@ pub struct Bound {
     /// |height| times the width to the power of minus the dimension: the same for integrals over
     /// an infinite line or plane in units of the width. Infinite where that says nothing.
     endless: f64,
+    /// The square of the skeleton's length, or its area, in kernel widths: 0 for points.
+    size: f64,
     /// For compact kernels: the radius of a ball around `middle` that holds the skeleton.
     extent: f64,
     middle: DVec3,
@@ -103,6 +105,10 @@ impl SpanLength {
     }
 }
 
+/// Arcs that are stretched by no more than this are not asked how much of them can be near: what that would say is seldom
+/// less, and costs arcs of tangents.
+const NEARLY_STRAIGHT: f64 = 1.2;
+
 impl Bound {
     /// The bounds of a primitive.
     #[must_use]
@@ -151,8 +157,14 @@ impl Bound {
             // Of what changes slowly, a restriction too, about the form's own size.
             (a * u + b * v).max(u.max(v))
         });
+        let size = match dimension {
+            0 => 0.0,
+            1 => (measure * finest) * (measure * finest),
+            _ => measure * finest * finest,
+        };
         Self {
             place: Place::of(primitive),
+            size,
             coil,
             kernel,
             width,
@@ -183,6 +195,16 @@ impl Bound {
         }
     }
 
+    /// Integrals over a bone are at most this times those over an endless line at the same distance.
+    #[inline(always)]
+    fn stretch(&self, near: Nearness) -> f64 {
+        if self.coil[0] > 0.0 {
+            near.stretch
+        } else {
+            1.0
+        }
+    }
+
     /// A span along a direction, or one that differs from it by no more than `spread`, is as near to the field as one
     /// so many times as long may be: at most 1. Along an infinite plane the field does not change.
     #[inline]
@@ -208,13 +230,14 @@ impl Bound {
             width * width * (width * width),
         ];
         let magnitude;
-        let rough = if self.dimension == 0 {
-            let (point, rough) = match kernel {
-                Kernel::Cauchy => envelope::cauchy_point(u),
-                _ => (size(kernel, u), envelope::rough_point(kernel, u)),
-            };
+        let rough = if kernel == Kernel::Cauchy && self.size <= 1.0 + u * u {
+            // Further away than it is long, or than its area is wide: that of an endless line or plane would be no less.
+            let (point, rough) = envelope::cauchy_point(u);
             magnitude = self.whole * point;
             self.whole * rough
+        } else if self.dimension == 0 {
+            magnitude = self.whole * size(kernel, u);
+            self.whole * envelope::rough_point(kernel, u)
         } else {
             magnitude = self.magnitude(near);
             let Roughness {
@@ -224,12 +247,12 @@ impl Bound {
                 outward,
             } = envelope::roughness(kernel, u);
             let over_endless = match self.dimension {
-                1 if self.coil[0] > 0.0 => {
+                1 if self.stretch(near) > NEARLY_STRAIGHT => {
                     let [length, radius] = self.coil;
                     let at = |u| envelope::rough_point(kernel, u);
                     (near.stretch * line).min(bounds::coiled(length, radius, u, at, |_, _| outward))
                 }
-                1 => line,
+                1 => self.stretch(near) * line,
                 _ => plane,
             };
             (self.endless * over_endless).min(self.whole * point)
@@ -367,7 +390,7 @@ impl Bound {
         };
         let endless = match self.dimension {
             0 => point,
-            1 if self.coil[0] > 0.0 => {
+            1 if self.stretch(near) > NEARLY_STRAIGHT => {
                 let [length, radius] = self.coil;
                 let outward = |a, b| kernel.along(b) - kernel.along(a);
                 let coiled = bounds::coiled(length, radius, u, |u| kernel.value(u), outward);
@@ -377,7 +400,7 @@ impl Bound {
                     coiled
                 }
             }
-            1 => line(),
+            1 => self.stretch(near) * line(),
             // Finite planes of these may be larger than those that stand for infinite ones.
             _ if self.whole.is_finite() && !kernel.falls_fast() => f64::INFINITY,
             _ => plane::jet(kernel, [0.0, 0.0, u]).value,
