@@ -16,6 +16,14 @@ pub struct Roots {
 }
 
 impl Roots {
+    /// A single one.
+    #[must_use]
+    pub fn one(value: f64) -> Self {
+        let mut own = Self::default();
+        own.push(value);
+        own
+    }
+
     /// The roots as a slice.
     #[must_use]
     pub fn as_slice(&self) -> &[f64] {

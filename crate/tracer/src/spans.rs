@@ -4,7 +4,7 @@
 //! both. Its four Bernstein coefficients bound it from both sides, halving it is exact, and the sum
 //! of spans over the same interval is a span.
 use crate::lanes::Lanes;
-use crate::roots::{Roots, roots};
+use crate::roots::{Roots, bracketed, roots};
 
 /// A cubic on an interval, by its Bernstein coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -108,6 +108,16 @@ impl Span<f64> {
     #[must_use]
     pub fn crossings(self, level: f64) -> Roots {
         let [a, b, c, d] = self.0;
+        let sides = self.0.map(|x| x < level);
+        let changes = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        if changes == 1 && !self.0.contains(&level) {
+            // As many roots as sign changes, if that is one (variation diminishing).
+            let over = |x| {
+                let (value, slope) = self.value_and_slope(x);
+                (value - level, slope)
+            };
+            return Roots::one(bracketed(over, 0.0, 1.0, 0.0));
+        }
         roots(
             &[
                 a - level,
@@ -158,5 +168,38 @@ mod tests {
         for &x in span.crossings(1.0).as_slice() {
             assert!((f(a + x * (b - a)) - 1.0).abs() < 1e-9);
         }
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn a_cubic_crosses_as_often_as_its_samples_change_sides() {
+        let mut state = 5u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) - 0.5
+        };
+        let mut counts = [0; 4];
+        for _ in 0..2000 {
+            // Also on the level itself, and very near to it.
+            let span = Span([0.0; 4].map(|_: f64| match (next() * 8.0) as i32 {
+                3 => 0.0,
+                2 => 1e-12 * next(),
+                _ => next(),
+            }));
+            let found = span.crossings(0.0);
+            let mut sampled = 0;
+            let value = |i: u32| span.value_and_slope(f64::from(i) / 512.0).0;
+            for i in 0..512 {
+                sampled += usize::from(value(i) * value(i + 1) < 0.0);
+            }
+            // Samples may miss two that are near to one another.
+            let found = found.as_slice();
+            assert!(found.len() >= sampled, "{span:?} {found:?}");
+            for &x in found {
+                assert!(span.value_and_slope(x).0.abs() < 1e-12, "{span:?} {x}");
+            }
+            counts[found.len()] += 1;
+        }
+        assert!(counts.iter().take(3).all(|count| *count > 50), "{counts:?}");
     }
 }
