@@ -49,8 +49,8 @@
 //!   and what comes after its share is used up is decided by the signs at its ends.
 //! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
 //!   shared and rounding leaves many rays in doubt: such pictures are slow.
-//! - A primitive with a profile has spans by an estimate of the profile's derivatives. In scenes of at most 16
-//!   primitives, where its kinks and jumps (`field::kinks`; polygons and curves have none) meet a slab, rays are settled
+//! - What is known of a profile holds between its kinks and jumps (`field::kinks`; polygons and curves have none). In
+//!   scenes of at most 16 primitives, where those meet a slab, rays are settled
 //!   alone, each in pieces from kink to kink; that would take too long in larger ones, so that thin flesh next to a
 //!   kink may be missed there, and a hit be off.
 //! - Where rounding may be as large as T, as beside Gaussian faces of blobbiness 20 and more, rays are settled alone at
