@@ -41,7 +41,8 @@
 //!   than 2¹⁶ lumps (beads count one each), or that makes more than 2²⁴ evaluations, goes the general way.
 //! - There pictures show a field within 5·10⁻⁴·T of the true one, or as near as rounding lets it come where that is
 //!   less, and what is shared adds at most 4·10⁻⁴·T; hits are then
-//!   moved onto the field itself, unless what is shared moves them by less than half the tolerance.
+//!   moved onto the field itself, unless what is shared moves them by less than half the tolerance; in double precision, where
+//!   rounding may move them by more than that.
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
 //! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are
