@@ -6,8 +6,10 @@
 //! if that is less, integrated over an infinite line or plane.
 mod place;
 
+use crate::bounds::Coil;
 use crate::envelope::{self, PEANO, Roughness};
-use crate::{Kernel, Primitive, Real, Skeleton, Wave, bounds, endless, plane};
+use crate::ripple::Ripple;
+use crate::{Kernel, Primitive, Real, endless, plane};
 use glam::DVec3;
 use place::Place;
 
@@ -15,8 +17,8 @@ use place::Place;
 #[derive(Clone, Debug)]
 pub struct Bound {
     place: Place,
-    /// Length and radius of an arc in kernel widths; 0 for others.
-    coil: [f64; 2],
+    /// Of an arc or a curve, in kernel widths: how much of it can be near one place.
+    coil: Option<Box<Coil>>,
     kernel: Kernel,
     /// The kernel's width parameter: the smallest, of a tapered bone, since kernels and envelopes fall
     /// with the width times the distance.
@@ -40,10 +42,10 @@ pub struct Bound {
     negative: bool,
     /// Depth of influence.
     pub influence: f64,
-    /// With a profile, an estimate of its wave's derivative over its size; else 0.
-    ripple: f64,
-    /// With a profile, an estimate of the fourth derivative of its wave over its size; else 0.
-    ripple4: f64,
+    /// What is known of the profile, if any.
+    ripple: Option<Box<Ripple>>,
+    /// Its derivative over its size is nowhere more than this.
+    unrest: f64,
 }
 
 /// How near a ball is to a skeleton.
@@ -57,6 +59,8 @@ pub struct Nearness {
     /// Integrals over an arc are at most this times those over its tangent line at `distance`;
     /// infinite where that says nothing.
     stretch: f64,
+    /// No point of the ball is nearer than this to an arc's axis.
+    hub: f64,
 }
 
 impl Nearness {
@@ -67,6 +71,7 @@ impl Nearness {
             distance,
             within: false,
             stretch: f64::INFINITY,
+            hub: 0.0,
         }
     }
 }
@@ -77,7 +82,7 @@ pub struct Estimate {
     /// `|f|` is at most this.
     pub magnitude: f64,
     /// The cubic Hermite interpolant on a span of the given length is at most this far from f. With a
-    /// profile, whose waves may have kinks and jumps where no such bound exists, an estimate.
+    /// profile: where that is smooth ([`kinks`](crate::kinks) tell where it is not); elsewhere an estimate.
     pub error: f64,
     /// The fourth derivative of f along any line is at most this, where something is known of it; else infinite.
     pub fourth: f64,
@@ -116,10 +121,6 @@ impl Bound {
         let skeleton = &primitive.skeleton;
         let measure = skeleton.measure();
         let dimension = skeleton.dimension();
-        let mut coil = match skeleton {
-            Skeleton::Arc { radius, .. } => [measure, *radius].map(|x| x * primitive.width),
-            _ => [0.0; 2],
-        };
         let (kernel, finest) = (primitive.kernel, primitive.width);
         let mut width = finest;
         let (low, high) = primitive.profile.as_ref().map_or((1.0, 1.0), |p| {
@@ -138,34 +139,27 @@ impl Bound {
             whole = height * mass;
             height *= density;
             width *= thinness.sqrt();
-            coil = [0.0; 2];
         }
-        let endless = match (dimension, skeleton) {
-            // A curve may coil, so that it is nowhere near a straight line.
-            (_, Skeleton::Curve { .. }) => f64::INFINITY,
-            (_, Skeleton::Arc { .. }) if primitive.tapered.is_some() => f64::INFINITY,
-            (0, _) => 1.0,
-            (1, _) => 1.0 / width,
+        let endless = match dimension {
+            0 => 1.0,
+            1 => 1.0 / width,
             _ => 1.0 / (width * width),
         };
         let (middle, extent) = skeleton
             .bounding_sphere()
             .unwrap_or((DVec3::ZERO, f64::INFINITY));
-        let ripple = primitive.profile.as_ref().map_or(0.0, |p| {
-            let [u, v] = steps(skeleton);
-            let [a, b] = [0, 1].map(|i| pitch(p.waves[i]) * p.scale[i].abs());
-            // Of what changes slowly, a restriction too, about the form's own size.
-            (a * u + b * v).max(u.max(v))
-        });
+        let profile = primitive.profile.as_ref();
+        let ripple = profile.and_then(|p| Ripple::of(p, skeleton));
+        let unrest = ripple.as_ref().map_or(0.0, |r| r.derivatives(0.0)[0]);
         let size = match dimension {
             0 => 0.0,
             1 => (measure * finest) * (measure * finest),
             _ => measure * finest * finest,
         };
         Self {
-            place: Place::of(primitive),
+            place: Place::of(primitive, width),
             size,
-            coil,
+            coil: Coil::of(skeleton, measure, width).map(Box::new),
             kernel,
             width,
             finest,
@@ -177,31 +171,26 @@ impl Bound {
             positive: high > 0.0,
             negative: low < 0.0,
             influence: primitive.influence,
-            ripple,
-            ripple4: (ripple * ripple) * (ripple * ripple),
+            ripple: ripple.map(Box::new),
+            unrest,
         }
     }
 
     /// How near the points of a ball come to the skeleton.
     #[must_use]
     pub fn nearness(&self, center: DVec3, radius: f64) -> Nearness {
-        let (distance, stretch) = self.place.nearness(self.kernel, center, radius);
+        let place::Near {
+            distance,
+            stretch,
+            hub,
+        } = self.place.nearness(center, radius);
         let within = self.kernel.is_compact()
             && (center.distance(self.middle) + radius + self.extent) * self.finest <= 1.0;
         Nearness {
             distance: (distance - radius).max(0.0),
             within,
             stretch,
-        }
-    }
-
-    /// Integrals over a bone are at most this times those over an endless line at the same distance.
-    #[inline(always)]
-    fn stretch(&self, near: Nearness) -> f64 {
-        if self.coil[0] > 0.0 {
-            near.stretch
-        } else {
-            1.0
+            hub,
         }
     }
 
@@ -247,17 +236,22 @@ impl Bound {
                 outward,
             } = envelope::roughness(kernel, u);
             let over_endless = match self.dimension {
-                1 if self.stretch(near) > NEARLY_STRAIGHT => {
-                    let [length, radius] = self.coil;
-                    let at = |u| envelope::rough_point(kernel, u);
-                    (near.stretch * line).min(bounds::coiled(length, radius, u, at, |_, _| outward))
-                }
-                1 => self.stretch(near) * line,
+                1 => match &self.coil {
+                    Some(coil) if near.stretch > NEARLY_STRAIGHT => {
+                        let at = |u| envelope::rough_point(kernel, u);
+                        (near.stretch * line).min(coil.bound(u, at, |_, _| outward))
+                    }
+                    Some(_) => near.stretch * line,
+                    None => line,
+                },
                 _ => plane,
             };
             (self.endless * over_endless).min(self.whole * point)
         };
         let rough = rough * by_width[order - 2];
+        if let Some(ripple) = &self.ripple {
+            return self.rippled(ripple, near, magnitude, rough, length);
+        }
         let mut error = rough * length.0[order - 2];
         // Beyond a compact kernel's reach nothing is rough.
         let mut fourth = if order == 4 || rough == 0.0 {
@@ -266,13 +260,9 @@ impl Bound {
             f64::INFINITY
         };
         if near.within {
-            let inside = self.whole * envelope::inside4(kernel) * by_width[2];
+            let inside = self.whole * envelope::inside(kernel)[1] * by_width[2];
             error = error.min(inside * length.0[2]);
             fourth = fourth.min(inside);
-        }
-        if self.ripple4 > 0.0 {
-            error += self.ripple4 * magnitude * length.0[2];
-            fourth = f64::INFINITY;
         }
         Estimate {
             magnitude,
@@ -281,12 +271,47 @@ impl Bound {
         }
     }
 
+    /// The bounds with a profile: the error by whichever derivative of the product says most. `rough` is the field's own
+    /// derivative of its kernel's order.
+    #[inline(never)]
+    fn rippled(
+        &self,
+        ripple: &Ripple,
+        near: Nearness,
+        magnitude: f64,
+        rough: f64,
+        length: &SpanLength,
+    ) -> Estimate {
+        let order = envelope::order(self.kernel);
+        let mut field = [f64::INFINITY; 5];
+        field[0] = magnitude;
+        for (i, own) in field.iter_mut().enumerate().take(order).skip(1) {
+            *own = self.derivative(near, i);
+        }
+        field[order] = rough;
+        if near.within {
+            let mut scale = self.whole * (self.finest * self.finest);
+            for (own, inside) in field[3..].iter_mut().zip(envelope::inside(self.kernel)) {
+                scale *= self.finest;
+                *own = own.min(scale * inside);
+            }
+        }
+        let bounds = Ripple::of_product(&field, &ripple.derivatives(near.hub));
+        let errors = bounds.iter().zip(&length.0).map(|(d, h)| d * h);
+        Estimate {
+            magnitude,
+            // `min` leaves out what is no number.
+            error: errors.fold(f64::INFINITY, f64::min),
+            fourth: f64::INFINITY,
+        }
+    }
+
     /// `|∇f|` is at most this at some nearness (a Lipschitz constant of the ball): where the profile,
     /// if any, is smooth.
     #[must_use]
     pub fn slope(&self, near: Nearness) -> f64 {
-        // A wave of length 1/ω adds its own slope to the field's size.
-        self.derivative(near, 1) + self.magnitude(near) * self.ripple
+        let [first, ..] = self.factor(near);
+        self.derivative(near, 1) + self.magnitude(near) * first
     }
 
     /// About the largest slope of f over its size at some nearness, as far as single precision's rounding of coordinates
@@ -295,7 +320,7 @@ impl Bound {
     #[inline]
     #[must_use]
     pub fn relative_slope(&self, near: Nearness) -> f64 {
-        let steepest = 8.0 * self.finest + self.ripple;
+        let steepest = 8.0 * self.finest + self.unrest;
         steepest.min(self.power() / near.distance)
     }
 
@@ -317,7 +342,7 @@ impl Bound {
     #[must_use]
     pub fn power(&self) -> f64 {
         match self.kernel {
-            Kernel::Cauchy | Kernel::Inverse | Kernel::Squared if self.ripple == 0.0 => 4.0,
+            Kernel::Cauchy | Kernel::Inverse | Kernel::Squared if self.ripple.is_none() => 4.0,
             _ => f64::INFINITY,
         }
     }
@@ -326,19 +351,22 @@ impl Bound {
     /// the slope along a ray within the ball): where the profile, if any, is smooth.
     #[must_use]
     pub fn curvature(&self, near: Nearness) -> f64 {
-        let ripple = self.ripple;
-        let wave = 2.0 * self.derivative(near, 1) + self.magnitude(near) * ripple;
-        self.derivative(near, 2) + wave * ripple
+        let [first, second, ..] = self.factor(near);
+        let wave = 2.0 * self.derivative(near, 1) * first + self.magnitude(near) * second;
+        self.derivative(near, 2) + wave
     }
 
-    /// A bound on the first or second derivative along any line, without the profile's.
+    /// Bounds on the derivatives of the profile's factor over its size.
+    fn factor(&self, near: Nearness) -> [f64; 4] {
+        let of = |ripple: &Ripple| ripple.derivatives(near.hub);
+        self.ripple.as_deref().map_or([0.0; 4], of)
+    }
+
+    /// A bound on the first, second or third derivative along any line, without the profile's.
     fn derivative(&self, near: Nearness, order: usize) -> f64 {
         let kernel = self.kernel;
         let u = near.distance * self.width;
-        let bounds_at = |u| match order {
-            1 => envelope::steepness(kernel, u),
-            _ => envelope::curvature(kernel, u),
-        };
+        let bounds_at = |u| envelope::derivative(kernel, order, u);
         let Roughness {
             point,
             line,
@@ -347,20 +375,19 @@ impl Bound {
         } = bounds_at(u);
         let over_endless = match (self.dimension, &self.place) {
             (0, _) => point,
-            (1, Place::Arc(_)) => {
-                let [length, radius] = self.coil;
-                let at = |u| bounds_at(u).point;
-                // Without a length there is no coil, and no line either.
-                let coiled = bounds::coiled(length, radius, u, at, |_, _| outward);
-                let line = near.stretch * line;
-                if line < coiled { line } else { coiled }
-            }
-            (1, _) => line,
+            (1, _) => match &self.coil {
+                Some(coil) => {
+                    let at = |u| bounds_at(u).point;
+                    (near.stretch * line).min(coil.bound(u, at, |_, _| outward))
+                }
+                None => line,
+            },
             // Of planes of poles: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from above; it
             // jumps in the plane, and has a slope of less than 1 elsewhere.
             (_, Place::Plane { .. }) if kernel == Kernel::Inverse => match order {
-                2 if u == 0.0 => f64::INFINITY,
-                _ => core::f64::consts::TAU,
+                1 => core::f64::consts::TAU,
+                2 if u > 0.0 => core::f64::consts::TAU,
+                _ => f64::INFINITY,
             },
             _ => plane,
         };
@@ -371,8 +398,7 @@ impl Bound {
         } else {
             endless
         };
-        let by_width = if order == 1 { 1.0 } else { self.finest };
-        least * by_width * self.finest
+        (0..order).fold(least, |bound, _| bound * self.finest)
     }
 
     /// `|f|` is at most this at some nearness.
@@ -390,17 +416,19 @@ impl Bound {
         };
         let endless = match self.dimension {
             0 => point,
-            1 if self.stretch(near) > NEARLY_STRAIGHT => {
-                let [length, radius] = self.coil;
+            1 if let Some(coil) = &self.coil
+                && near.stretch > NEARLY_STRAIGHT =>
+            {
                 let outward = |a, b| kernel.along(b) - kernel.along(a);
-                let coiled = bounds::coiled(length, radius, u, |u| kernel.value(u), outward);
+                let coiled = coil.bound(u, |u| kernel.value(u), outward);
                 if near.stretch.is_finite() {
                     coiled.min(near.stretch * line())
                 } else {
                     coiled
                 }
             }
-            1 => self.stretch(near) * line(),
+            1 if self.coil.is_some() => near.stretch * line(),
+            1 => line(),
             // Finite planes of these may be larger than those that stand for infinite ones.
             _ if self.whole.is_finite() && !kernel.falls_fast() => f64::INFINITY,
             _ => plane::jet(kernel, [0.0, 0.0, u]).value,
@@ -434,7 +462,7 @@ impl Bound {
     #[inline]
     #[must_use]
     pub fn has_profile(&self) -> bool {
-        self.ripple > 0.0
+        self.ripple.is_some()
     }
 
     /// Whether the term can be above zero.
@@ -447,32 +475,6 @@ impl Bound {
     #[must_use]
     pub fn carves(&self) -> bool {
         self.negative
-    }
-}
-
-/// How fast a skeleton's parameters change, if it has any: 1 over its length, or over a triangle's heights.
-fn steps(skeleton: &Skeleton) -> [f64; 2] {
-    let one_over = |x: f64| 1.0 / x.max(f64::MIN_POSITIVE);
-    match skeleton {
-        Skeleton::Triangle { corners: [a, b, c] } => {
-            let (e1, e2) = (*b - *a, *c - *a);
-            let inverse = one_over(e1.cross(e2).length());
-            [e2.length() * inverse, e1.length() * inverse]
-        }
-        Skeleton::Segment { .. } | Skeleton::Arc { .. } => [one_over(skeleton.measure()), 0.0],
-        Skeleton::Point { .. }
-        | Skeleton::Polygon { .. }
-        | Skeleton::Curve { .. }
-        | Skeleton::Plane { .. } => [0.0; 2],
-    }
-}
-
-/// A wave's frequency, in radians per unit of what it is a function of.
-fn pitch(wave: Wave) -> f64 {
-    match wave {
-        Wave::One => 0.0,
-        Wave::X | Wave::Sin | Wave::Cos | Wave::Saw | Wave::Hat | Wave::Step => 1.0,
-        Wave::Sin2 | Wave::Cos2 => 2.0,
     }
 }
 

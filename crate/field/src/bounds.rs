@@ -3,8 +3,9 @@
 //! All in units of the kernel's width and for a factor of 1.
 use crate::bone::Bone;
 use crate::form::Form;
-use crate::{Kernel, plane};
+use crate::{Kernel, Skeleton, plane, skeleton};
 use core::f64::consts::PI;
+use glam::DVec3;
 
 /// An upper bound on the form's field at all points at distance `d ≥ 0` or more from the skeleton.
 /// It does not grow with d.
@@ -59,35 +60,107 @@ fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
     }
 }
 
-/// A bound on the field of an arc. The Cauchy kernel has a sharp one; for others see [`coiled`].
+/// A bound on the field of an arc. The Cauchy kernel has a sharp one; for others see [`Coil`].
 fn arc_bound(kernel: Kernel, length: f64, radius: f64, d: f64) -> f64 {
     let most = length * kernel.value(d);
     if kernel == Kernel::Cauchy {
         return most.min(circle(radius, d));
     }
     let outward = |a: f64, b: f64| kernel.along(b) - kernel.along(a);
-    most.min(coiled(length, radius, d, |u| kernel.value(u), outward))
+    most.min(Coil::arc(length, radius).bound(d, |u| kernel.value(u), outward))
 }
 
-/// A bound on the integral over an arc of a falling function g of the distance, at distance d or more.
-///
-/// A ball of radius δ holds no more than πδ of a circle that is larger than it, and all of one that
-/// is not. So with l the arc's length the integral is at most
-/// `πd·g(d) + π∫g + (l−πr)·g(r)`, the integral from d to the smaller of r and l/π.
-/// `outward(a, b)` is the integral of g from a to b, or more.
-pub(crate) fn coiled(
+/// How much of a bone can be near one place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coil {
+    /// Its length.
     length: f64,
+    /// Larger balls than this may hold all of it; …
     radius: f64,
-    d: f64,
-    g: impl Fn(f64) -> f64,
-    outward: impl Fn(f64, f64) -> f64,
-) -> f64 {
-    let end = radius.min(length / PI);
-    if d >= end {
-        return length * g(d);
+    /// … one of a radius δ up to that holds no more than this times δ.
+    gathers: f64,
+}
+
+impl Coil {
+    /// Of an arc or a curve with a length, in units of the kernel's width.
+    pub fn of(skeleton: &Skeleton, measure: f64, width: f64) -> Option<Self> {
+        let length = measure * width;
+        let [radius, gathers] = match skeleton {
+            Skeleton::Arc { radius, .. } => [radius * width, PI],
+            Skeleton::Curve { control } => [length, gathers(*control)],
+            _ => return None,
+        };
+        (length > 0.0).then_some(Self {
+            length,
+            radius,
+            gathers,
+        })
     }
-    let rest = (length - PI * radius).max(0.0);
-    PI * (d * g(d) + outward(d, end)) + rest * g(radius)
+
+    /// Of an arc.
+    fn arc(length: f64, radius: f64) -> Self {
+        Self {
+            length,
+            radius,
+            gathers: PI,
+        }
+    }
+
+    /// A bound on the integral over the bone of a falling function g of the distance, at distance d or more.
+    ///
+    /// A ball of radius δ holds no more than κδ of the bone up to some radius r: of a circle πδ up to its own radius; of a
+    /// curve see [`gathers`]. So with l the bone's length the integral is at most
+    /// `κd·g(d) + κ∫g + (l−κr)·g(r)`, the integral from d to the smaller of r and l/κ.
+    /// `outward(a, b)` is the integral of g from a to b, or more.
+    pub fn bound(&self, d: f64, g: impl Fn(f64) -> f64, outward: impl Fn(f64, f64) -> f64) -> f64 {
+        let Self {
+            length,
+            radius,
+            gathers,
+        } = *self;
+        let end = radius.min(length / gathers);
+        if d >= end {
+            return length * g(d);
+        }
+        let rest = (length - gathers * radius).max(0.0);
+        gathers * (d * g(d) + outward(d, end)) + rest * g(radius)
+    }
+}
+
+/// A ball of radius δ holds no more than so many times δ of a Bézier curve.
+///
+/// Of a piece whose direction is nowhere further than φ from a mean one, 2δ/cos φ: along the mean direction all in the ball
+/// is within 2δ. The directions are within the cone of the control polygon's sides. Of any cubic 18δ: each of its three
+/// coordinates goes up and down no more than three times, within 2δ, and no piece is longer than its coordinates' ways
+/// together.
+fn gathers(control: [DVec3; 4]) -> f64 {
+    const ANY: f64 = 18.0;
+    let of_piece = |[a, b, c, d]: [DVec3; 4]| {
+        let mean = (d - a).normalize_or_zero();
+        let along = [b - a, c - b, d - c].map(|side| match side.try_normalize() {
+            Some(way) => way.dot(mean),
+            // What has no direction leads nowhere.
+            None => 1.0,
+        });
+        let least = along.into_iter().fold(1.0, f64::min);
+        if least * ANY > 2.0 { 2.0 / least } else { ANY }
+    };
+    let mut best = ANY;
+    for pieces in 1..=6u32 {
+        let mut sum = 0.0;
+        let mut rest = control;
+        for i in 0..pieces {
+            let (piece, next) = skeleton::halves(rest, 1.0 / f64::from(pieces - i));
+            sum += of_piece(piece);
+            rest = next;
+        }
+        best = best.min(sum);
+        // Nothing that is cut in more pieces could have less.
+        if best <= 2.0 * f64::from(pieces + 1) {
+            break;
+        }
+    }
+    best
 }
 
 /// A bound on the Cauchy field of any arc of a circle at distance d or more from the arc.

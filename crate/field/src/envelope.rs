@@ -44,18 +44,18 @@ pub fn order(kernel: Kernel) -> usize {
     kernel.smoothness().saturating_add(1).min(4)
 }
 
-/// A bound on the fourth derivative along any line inside a compact kernel's support, if all of the
+/// Bounds on the third and the fourth derivative along any line inside a compact kernel's support, if all of the
 /// line is inside (for metaballs: the outer piece's, at its inner end, or none within reach of the
 /// kink at ⅓, so infinite).
 #[must_use]
-pub fn inside4(kernel: Kernel) -> f64 {
+pub fn inside(kernel: Kernel) -> [f64; 2] {
     match kernel {
-        // 12G″ + 48yG‴ at y ≤ q ≤ 1, G″ = 2c₂ + 6c₃v, G‴ = −6c₃.
+        // √y(12G″ + 8yG‴) and 12G″ + 48yG‴ at y ≤ q ≤ 1, G″ = 2c₂ + 6c₃v, G‴ = −6c₃.
         Kernel::Soft | Kernel::Quartic | Kernel::Compact6 => {
             let [c2, c3] = kernel.polynomial().unwrap_or_default();
-            24.0 * c2 + 288.0 * c3
+            [24.0 * c2 + 72.0 * c3, 24.0 * c2 + 288.0 * c3]
         }
-        _ => f64::INFINITY,
+        _ => [f64::INFINITY; 2],
     }
 }
 
@@ -82,26 +82,15 @@ pub fn rough_point(kernel: Kernel, u: f64) -> f64 {
     roughness(kernel, u).point
 }
 
-/// Bounds on the slope along any line, at a distance of `u ≥ 0` or more.
+/// Bounds on the derivative of an order (1 to 3) along any line, at a distance of `u ≥ 0` or more, wherever the kernel has one.
 #[must_use]
-pub fn steepness(kernel: Kernel, u: f64) -> Roughness {
-    static TABLES: [OnceLock<Vec<Roughness>>; Kernel::ALL.len()] =
-        [const { OnceLock::new() }; Kernel::ALL.len()];
+pub fn derivative(kernel: Kernel, order: usize, u: f64) -> Roughness {
+    static TABLES: [[OnceLock<Vec<Roughness>>; Kernel::ALL.len()]; 3] =
+        [const { [const { OnceLock::new() }; Kernel::ALL.len()] }; 3];
     if kernel.is_compact() && u >= 1.0 {
         return Roughness::NONE;
     }
-    TABLES[kernel as usize].get_or_init(|| tabulate(kernel, 1))[index(u)]
-}
-
-/// Bounds on the second derivative along any line, at a distance of `u ≥ 0` or more.
-#[must_use]
-pub fn curvature(kernel: Kernel, u: f64) -> Roughness {
-    static TABLES: [OnceLock<Vec<Roughness>>; Kernel::ALL.len()] =
-        [const { OnceLock::new() }; Kernel::ALL.len()];
-    if kernel.is_compact() && u >= 1.0 {
-        return Roughness::NONE;
-    }
-    TABLES[kernel as usize].get_or_init(|| tabulate(kernel, 2))[index(u)]
+    TABLES[order - 1][kernel as usize].get_or_init(|| tabulate(kernel, order))[index(u)]
 }
 
 /// With x = 1+u², the Cauchy kernel along any ray, `k(t) = (P²+t²)⁻²`, has

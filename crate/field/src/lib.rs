@@ -53,6 +53,7 @@ mod ramp;
 mod ray;
 mod reach;
 pub mod real;
+mod ripple;
 pub mod shaping;
 pub mod skeleton;
 mod squared;

@@ -301,8 +301,17 @@ pub(crate) fn cubic([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
     ]
 }
 
+/// A Bézier curve cut at t (de Casteljau).
+#[must_use]
+pub fn halves([a, b, c, d]: [DVec3; 4], t: f64) -> ([DVec3; 4], [DVec3; 4]) {
+    let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
+    let (abc, bcd) = (ab.lerp(bc, t), bc.lerp(cd, t));
+    let m = abc.lerp(bcd, t);
+    ([a, ab, abc, m], [m, bcd, cd, d])
+}
+
 /// Steps of the parameter between which the nearest point of a curve is looked for.
-pub(crate) const SAMPLES: i32 = 128;
+const SAMPLES: i32 = 128;
 
 /// The point of a Bézier curve nearest to `point`: the best of samples, improved by bisection of the
 /// steps to either side.
@@ -327,7 +336,7 @@ fn nearest_on_cubic(point: DVec3, control: [DVec3; 4]) -> DVec3 {
 }
 
 /// The point of a segment nearest to `point`.
-fn nearest_on_segment(point: DVec3, base: DVec3, apex: DVec3) -> DVec3 {
+pub(crate) fn nearest_on_segment(point: DVec3, base: DVec3, apex: DVec3) -> DVec3 {
     let d = apex - base;
     let square = d.length_squared();
     if square == 0.0 {

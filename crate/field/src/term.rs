@@ -128,28 +128,6 @@ impl<S: Copy> Term<S> {
     }
 }
 
-impl Term<f64> {
-    /// Balls in the world that hold the pieces of a curve; none for other bones.
-    pub(crate) fn balls(&self) -> Vec<(DVec3, f64)> {
-        let Bone::Curve(curve) = &self.form.bone else {
-            return Vec::new();
-        };
-        let axes = self.frame.axes.map(DVec3::from_array);
-        let origin = DVec3::from_array(self.frame.origin);
-        // The axes are orthogonal and all as long.
-        let square = axes[0].length_squared();
-        curve
-            .stretches
-            .iter()
-            .map(|stretch| {
-                let p = stretch.center;
-                let world = axes[0] * p.x + axes[1] * p.y + axes[2] * p.z;
-                (origin + world / square, stretch.radius / square.sqrt())
-            })
-            .collect()
-    }
-}
-
 /// One term in both precisions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {

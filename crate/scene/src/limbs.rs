@@ -4,8 +4,8 @@
 //! of a piece without evaluating it is sharper: a short one is nowhere near most rays, and along it the
 //! width of a taper hardly varies.
 
+use field::skeleton::halves;
 use field::{Shaping, Skeleton, Taper};
-use glam::DVec3;
 
 /// The most pieces of one bone.
 const MOST: usize = 16;
@@ -106,12 +106,4 @@ fn part(skeleton: &Skeleton, from: f64, to: f64) -> Skeleton {
         }
         ref other => other.clone(),
     }
-}
-
-/// A Bézier curve cut at t (de Casteljau).
-fn halves([a, b, c, d]: [DVec3; 4], t: f64) -> ([DVec3; 4], [DVec3; 4]) {
-    let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
-    let (abc, bcd) = (ab.lerp(bc, t), bc.lerp(cd, t));
-    let m = abc.lerp(bcd, t);
-    ([a, ab, abc, m], [m, bcd, cd, d])
 }

@@ -482,6 +482,28 @@ mod tests {
         (0..steps.len() as u32).map(turn).collect()
     }
 
+    /// What rays meet.
+    fn steps(primitives: &[Primitive], rays: &[(DVec3, DVec3); 8]) -> Vec<Step> {
+        let lane = |f: &dyn Fn(usize) -> f64| f32x8::from_lanes(f);
+        let direction: [f32x8; 3] = [0, 1, 2].map(|k| lane(&|i| rays[i].1[k]));
+        primitives
+            .iter()
+            .enumerate()
+            .map(|(index, p)| {
+                let lump = p.lump::<f32>().expect("a lump");
+                let middle = [0, 1, 2].map(|k| lane(&|i| p.lump_middle()[k] - rays[i].0[k]));
+                let course = lump.course(middle, direction);
+                let square = lump.reach(1e-6);
+                let strong = lump.core(square, 1e-6) + 2.0;
+                Step {
+                    course,
+                    strong: course.within(f32x8::splat(strong as f32)),
+                    index: index as u32,
+                }
+            })
+            .collect()
+    }
+
     /// The first crossing of a ray, by very many samples in double precision, with how near the field comes to T before.
     fn scan(primitives: &[Primitive], origin: DVec3, direction: DVec3) -> (Option<f64>, f64) {
         let mut nearest = f64::INFINITY;
@@ -509,24 +531,7 @@ mod tests {
                 let aim = DVec3::new(next() - 0.5, next() - 0.5, 0.0);
                 (origin, (aim - origin).normalize())
             });
-            let lane = |f: &dyn Fn(usize) -> f64| f32x8::from_lanes(f);
-            let direction: [f32x8; 3] = [0, 1, 2].map(|k| lane(&|i| rays[i].1[k]));
-            let steps: Vec<Step> = primitives
-                .iter()
-                .enumerate()
-                .map(|(index, p)| {
-                    let lump = p.lump::<f32>().expect("a lump");
-                    let middle = [0, 1, 2].map(|k| lane(&|i| p.lump_middle()[k] - rays[i].0[k]));
-                    let course = lump.course(middle, direction);
-                    let square = lump.reach(1e-6);
-                    let strong = lump.core(square, 1e-6) + 2.0;
-                    Step {
-                        course,
-                        strong: course.within(f32x8::splat(strong as f32)),
-                        index: index as u32,
-                    }
-                })
-                .collect();
+            let steps = steps(&primitives, &rays);
             let way = Way {
                 from: f32x8::splat(0.0),
                 to: f32x8::splat(3.9),
@@ -564,6 +569,76 @@ mod tests {
             }
         }
         assert!(hits > 60 && misses > 60, "{hits} {misses}");
+    }
+
+    /// Where the field comes nearer to T than it is known a ray that passes is in doubt, and nowhere else.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn rays_that_noise_may_have_kept_outside_are_in_doubt() {
+        const NOISE: f64 = 0.05;
+        let mut next = random(23);
+        let (mut doubted, mut sure) = (0, 0);
+        for case in 0..160 {
+            let primitives = lumps(&mut next, 1 + case % 5);
+            // Past the first lump, close to its surface.
+            let target = primitives[0].lump_middle();
+            let alone = |x: f64| primitives[0].value((target + DVec3::X * x).to_array());
+            let radius = (0..200)
+                .map(|i| f64::from(i) * 5e-3)
+                .find(|x| alone(*x) < 1.0);
+            let radius = radius.unwrap_or(0.0);
+            let rays: [(DVec3, DVec3); 8] = core::array::from_fn(|_| {
+                let origin = DVec3::new(next() - 0.5, next() - 0.5, -4.0) * 0.5;
+                let aside = DVec3::new(next() - 0.5, next() - 0.5, 0.0).normalize_or_zero();
+                let aim = target + aside * (radius * (0.95 + 0.2 * next()));
+                (origin, (aim - origin).normalize())
+            });
+            let steps = steps(&primitives, &rays);
+            let way = Way {
+                from: f32x8::splat(0.0),
+                to: f32x8::splat(3.9),
+                guess: f32x8::splat(f32::INFINITY),
+                first: f32x8::splat(f32::INFINITY),
+                alive: 255,
+                tolerance: 5e-5,
+                noise: NOISE as f32,
+            };
+            let turns = turns(&steps);
+            let lumps = Stairs {
+                steps: &steps,
+                turns: &turns,
+            };
+            let Some(climbed) = climb(lumps, &way) else {
+                continue;
+            };
+            for (i, &(origin, direction)) in rays.iter().enumerate() {
+                let bit = |mask: u32| mask >> i & 1 != 0;
+                if bit(climbed.met) {
+                    continue;
+                }
+                let field = |t: f64| {
+                    let point = (origin + direction * t).to_array();
+                    primitives.iter().map(|p| p.value(point)).sum::<f64>()
+                };
+                let place = |i: i32| f64::from(i) * 1e-3;
+                let near = |t: &f64| field(*t) > 1.0 - 0.9 * NOISE;
+                let close: Vec<f64> = (0..3900).map(place).filter(near).collect();
+                let [from, to] = climbed.doubt.map(|t| f64::from(t.to_array()[i]));
+                if bit(climbed.doubtful) {
+                    doubted += 1;
+                    let most = (0..3900).map(place).map(field).fold(0.0, f64::max);
+                    assert!(most > 1.0 - 1.5 * NOISE, "case {case}, ray {i}: {most}");
+                } else {
+                    sure += 1;
+                    assert!(close.is_empty(), "case {case}, ray {i}: {close:?}");
+                }
+                assert!(
+                    close.iter().all(|t| (from..=to).contains(t)),
+                    "case {case}, ray {i}: {from} {to} {close:?}"
+                );
+            }
+        }
+        assert!(doubted > 30 && sure > 100, "{doubted} {sure}");
     }
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]

@@ -1,12 +1,13 @@
 //! What the soft surface is like where a packet's rays hit it: exactly where, how steep the field is, whose flesh it is.
 //!
 //! Spans say about where a ray crosses; here Newton's steps lead onto the surface. Shared interpolants stand for
-//! the primitives in them if what they are off by is within the tolerance; else those are looked at themselves.
+//! the primitives in them if what they are off by is within the tolerance; else those are looked at themselves. Where single
+//! precision may be off by more than that, the last steps are made in double.
 use crate::climb::mask;
 use crate::lanes::Lanes;
 use crate::quick::FINEST;
 use crate::ray::Ray;
-use crate::slabs::Slabs;
+use crate::slabs::{Slabs, Spent};
 use crate::soft::{PACKET, Scratch, Soft};
 use crate::walk::Found;
 use field::{Jet, Real, THRESHOLD};
@@ -141,24 +142,102 @@ impl Soft {
             met,
             settled,
         };
-        let flesh = self.settle_on(&hits, true, scratch);
-        if self.is_near_enough(&hits, &flesh, base) {
-            flesh
-        } else {
-            self.settle_on(&hits, false, scratch)
+        let mut flesh = self.settle_on(&hits, true, scratch);
+        let of_slabs = |part: fn(&Spent) -> f64| {
+            let mut off = [0.0; PACKET];
+            for &(slab, lanes) in hits.places {
+                let own = part(&hits.slabs.slab(slab).spent);
+                let lanes = (0..PACKET).filter(|i| lanes >> i & 1 != 0);
+                lanes.for_each(|i| off[i] = own);
+            }
+            off
+        };
+        if self.off(&hits, &flesh, base, &of_slabs(|spent| spent.shared)) != 0 {
+            flesh = self.settle_on(&hits, false, scratch);
         }
+        let mut blurred = self.off(&hits, &flesh, base, &of_slabs(|spent| spent.noise));
+        if blurred != 0 {
+            // What is known of a whole slab is more than what there is at one place of it.
+            blurred &= self.off(&hits, &flesh, base, &self.noise(&hits, &flesh, scratch));
+        }
+        for lane in (0..PACKET).filter(|i| blurred >> i & 1 != 0) {
+            flesh.t[lane] = self.exactly(&hits, ray(lane), lane, flesh.t[lane], scratch);
+        }
+        flesh
     }
 
-    /// Whether what blocks are off by moves no hit by more than the tolerance.
-    fn is_near_enough(&self, hits: &Hits<'_>, flesh: &Flesh, base: f64) -> bool {
-        hits.places.iter().all(|&(slab, lanes)| {
-            let off = hits.slabs.slab(slab).spent.shared;
-            let lanes = lanes & !hits.settled;
-            (0..PACKET).filter(|i| lanes >> i & 1 != 0).all(|i| {
-                let tolerance = 0.1 * self.pixel * (base + flesh.t[i]);
-                off <= tolerance.clamp(FINEST, COARSEST) * flesh.gradient[i].length()
-            })
+    /// The hits that so large an error of the field may move by more than half the tolerance, a bit each.
+    fn off(&self, hits: &Hits<'_>, flesh: &Flesh, base: f64, error: &[f64; PACKET]) -> u32 {
+        (0..PACKET).fold(0, |all, i| {
+            let tolerance = 0.1 * self.pixel * (base + flesh.t[i]);
+            let most = tolerance.clamp(FINEST, COARSEST) * flesh.gradient[i].length();
+            // What is no number may be anything.
+            let near = error[i] <= most;
+            all | u32::from(!near) << i & hits.met & !hits.settled
         })
+    }
+
+    /// How far single precision may be off at each hit.
+    #[cold]
+    #[inline(never)]
+    fn noise(&self, hits: &Hits<'_>, flesh: &Flesh, scratch: &mut Scratch) -> [f64; PACKET] {
+        let rounding = self.precision.rounding as f32;
+        let at = f32x8::from_lanes(|i| flesh.t[i]);
+        let point: [f32x8; 3] = core::array::from_fn(|k| hits.origin[k] + hits.direction[k] * at);
+        let furthest = point
+            .iter()
+            .fold(f32x8::splat(1.0), |most, x| most.fast_max(x.abs()));
+        let misplaced = f32x8::splat(rounding) * (furthest + at);
+        let mut noise = f32x8::splat(0.0);
+        for &(p, lanes) in &scratch.active.list {
+            let jet: Jet<f32x8> = self.primitives[p as usize].jet(point);
+            let [x, y, z] = jet.gradient;
+            let steep = (x * x + y * y + z * z).sqrt();
+            let cancels = 2.0 * self.bounds()[p as usize].cancels() as f32;
+            let value = f32x8::splat(4.0) * jet.value.abs() + f32x8::splat(cancels);
+            noise += (f32x8::splat(rounding) * value + misplaced * steep) & mask(lanes);
+        }
+        scratch.evaluations += (scratch.active.list.len() * PACKET) as u64;
+        noise.to_array().map(f64::from)
+    }
+
+    /// A hit moved onto the surface in double precision, from a place near it; that place, where no step leads nearer.
+    #[cold]
+    fn exactly(
+        &self,
+        hits: &Hits<'_>,
+        ray: &Ray,
+        lane: usize,
+        start: f64,
+        scratch: &mut Scratch,
+    ) -> f64 {
+        let furthest = f64::from(hits.furthest.to_array()[lane]);
+        let own = hits.places.iter().find(|place| place.1 >> lane & 1 != 0);
+        let mut list = Vec::new();
+        if let Some(&(slab, _)) = own {
+            hits.slabs.each(slab, true, |p| list.push(p));
+        }
+        let (mut best, mut nearest) = (start, f64::INFINITY);
+        let mut t = start;
+        for _ in 0..MOST_POLISHING {
+            let point = ray.at(t).to_array();
+            let (mut excess, mut slope) = (-THRESHOLD, 0.0);
+            for &p in &list {
+                let jet = self.primitives[p as usize].jet(point);
+                excess += jet.value;
+                slope += DVec3::from_array(jet.gradient).dot(ray.direction);
+            }
+            scratch.evaluations += list.len() as u64;
+            if excess.abs() >= nearest {
+                break;
+            }
+            (best, nearest) = (t, excess.abs());
+            t -= excess / slope;
+            if (t - hits.exact[lane]).abs() > furthest || t.is_nan() {
+                break;
+            }
+        }
+        best
     }
 
     /// Where the rays hit, and what it is like there: by the interpolants that are shared, or with all primitives themselves.

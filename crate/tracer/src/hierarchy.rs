@@ -219,6 +219,38 @@ mod tests {
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn what_is_around_a_ball_is_what_meets_it() {
+        let mut state = 8u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
+        };
+        let items: Vec<_> = (0..400)
+            .map(|i| {
+                let c = DVec3::new(next(), next(), next());
+                (i, c, 0.2 * next().abs())
+            })
+            .collect();
+        let tree = Hierarchy::new(items.clone());
+        let mut all = 0;
+        for _ in 0..200 {
+            let (middle, reach) = (DVec3::new(next(), next(), next()), 0.3 * next().abs());
+            let mut found = Vec::new();
+            tree.around(middle, reach, |i, center, radius| {
+                assert_eq!((i, center, radius), items[i as usize]);
+                found.push(i);
+            });
+            found.sort_unstable();
+            let meets = |i: &&(u32, DVec3, f64)| i.1.distance(middle) <= i.2 + reach;
+            let scanned: Vec<u32> = items.iter().filter(meets).map(|i| i.0).collect();
+            assert_eq!(found, scanned);
+            all += found.len();
+        }
+        assert!(all > 500, "{all}");
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn an_empty_tree_and_a_tree_of_equal_balls_work() {
         let beam = Beam::of_ray(Ray {
             origin: DVec3::ZERO,

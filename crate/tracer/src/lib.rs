@@ -41,7 +41,8 @@
 //!   than 2¹⁶ lumps (beads count one each), or that makes more than 2²⁴ evaluations, goes the general way.
 //! - There pictures show a field within 5·10⁻⁴·T of the true one, or as near as rounding lets it come where that is
 //!   less, and what is shared adds at most 4·10⁻⁴·T; hits are then
-//!   moved onto the field itself, unless what is shared moves them by less than half the tolerance.
+//!   moved onto the field itself, unless what is shared moves them by less than half the tolerance; in double precision, where
+//!   rounding may move them by more than that.
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
 //! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are
@@ -49,8 +50,8 @@
 //!   and what comes after its share is used up is decided by the signs at its ends.
 //! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
 //!   shared and rounding leaves many rays in doubt: such pictures are slow.
-//! - A primitive with a profile has spans by an estimate of the profile's derivatives. In scenes of at most 16
-//!   primitives, where its kinks and jumps (`field::kinks`; polygons and curves have none) meet a slab, rays are settled
+//! - What is known of a profile holds between its kinks and jumps (`field::kinks`; polygons and curves have none). In
+//!   scenes of at most 16 primitives, where those meet a slab, rays are settled
 //!   alone, each in pieces from kink to kink; that would take too long in larger ones, so that thin flesh next to a
 //!   kink may be missed there, and a hit be off.
 //! - Where rounding may be as large as T, as beside Gaussian faces of blobbiness 20 and more, rays are settled alone at

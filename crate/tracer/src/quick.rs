@@ -416,6 +416,9 @@ impl Soft {
 mod tests {
     use super::*;
     use crate::hierarchy::Hierarchy;
+    use crate::tests::common::{element, empty, soft};
+    use field::Kernel;
+    use scene::{Element, Shape};
 
     /// Tiny balls on the rays themselves, also in packets as wide as those of `Picture::cast`.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
@@ -446,5 +449,87 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A ball of radius ¼ around (0, 0, 2), in the scene's own places.
+    fn ball() -> Soft {
+        let mut scene = empty();
+        scene.materials = vec![soft(-2.0, 1.0)];
+        let center = DVec3::Z * 2.0;
+        let radius = 0.25;
+        scene.elements = vec![Element {
+            kernel: Kernel::Gauss,
+            ..element(Shape::Sphere { center, radius }, 0)
+        }];
+        Soft::new(scene)
+    }
+
+    /// Rays along z at growing distances from the ball's middle, of which the first four meet it.
+    fn past_the_ball() -> ([Ray; PACKET], [Option<f64>; PACKET]) {
+        let aside = [0.0, 0.1, 0.2, 0.249_999, 0.250_001, 0.26, 0.4, 2.0];
+        let ray = |x: f64| Ray {
+            origin: DVec3::new(x, 0.0, 0.0),
+            direction: DVec3::Z,
+        };
+        let enters = |x: f64| (x < 0.25).then(|| 2.0 - (0.0625 - x * x).sqrt());
+        (aside.map(ray), aside.map(enters))
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn an_entry_is_found_on_a_stretch() {
+        let soft = ball();
+        let (rays, enters) = past_the_ball();
+        for (ray, enters) in rays.into_iter().zip(enters) {
+            let [found, before, behind] =
+                [[1.5, 2.5], [0.5, 1.5], [2.3, 9.0]].map(|s| soft.entry(ray, s).0);
+            assert_eq!(found.is_some(), enters.is_some(), "{ray:?}");
+            if let (Some(found), Some(enters)) = (found, enters) {
+                assert!((found - enters).abs() < 1e-6, "{found} {enters}");
+            }
+            assert_eq!([before, behind], [None; 2], "{ray:?}");
+        }
+        // Inside already.
+        assert_eq!(soft.entry(rays[0], [2.0, 3.0]).0, Some(2.0));
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn doubts_are_settled_where_they_are() {
+        let soft = ball();
+        let (rays, enters) = past_the_ball();
+        let mut near = Nearby::default();
+        near.begin(DVec3::Z * 0.5, 0.5);
+        let far = f32x8::splat(9.0);
+        let climbed = |doubtful: u32, doubt: [f32; 2]| {
+            let mut climbed = Climbed {
+                t: far,
+                between: [far; 2],
+                met: 0,
+                doubtful,
+                // Counted from the list's base.
+                doubt: doubt.map(f32x8::splat),
+                evaluations: 0,
+            };
+            soft.settle_doubts(&near, &rays, &mut climbed);
+            climbed
+        };
+        // Longer than one part.
+        for doubt in [[1.2, 1.6], [0.0, 2.5]] {
+            let settled = climbed(0b1111_1011, doubt);
+            assert_eq!(settled.met, 0b1011, "{doubt:?}");
+            for (i, enters) in enters.into_iter().enumerate() {
+                let t = settled.t.to_array()[i];
+                match enters {
+                    // The third is not in doubt.
+                    Some(enters) if i != 2 => assert!((f64::from(t) + 0.5 - enters).abs() < 1e-6),
+                    _ => assert!((t - 9.0).abs() < 1e-6),
+                }
+                let ends = settled.between.map(|end| end.to_array()[i]);
+                assert_eq!(ends, [t; 2]);
+            }
+        }
+        // Where there is nothing.
+        assert_eq!(climbed(0b1111_1111, [0.0, 0.9]).met, 0);
     }
 }

@@ -226,7 +226,7 @@ pub struct Spent {
     /// Shared interpolants.
     pub shared: f64,
     /// Rounding takes nothing from the budget.
-    noise: f64,
+    pub noise: f64,
 }
 
 /// What a new slab takes from the one that it is made for.

@@ -161,7 +161,7 @@ impl Soft {
     }
 
     /// The primitives' bounds. The quick way does without, so they are made when first asked for.
-    fn bounds(&self) -> &[Bound] {
+    pub(crate) fn bounds(&self) -> &[Bound] {
         self.bounds
             .get_or_init(|| self.primitives.iter().map(Bound::new).collect())
     }

@@ -197,3 +197,87 @@ impl Stock {
         true
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use field::{BlobScale, Kernel, Shaping, Skeleton};
+
+    /// What is said not to count in a ball is nowhere in it more than the level; and what is more there counts.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn what_does_not_count_is_small_all_through_a_ball() {
+        let mut state = 4u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
+        };
+        let (mut counting, mut small) = (0, 0);
+        for case in 0..60 {
+            let mut place = || DVec3::new(next(), next(), next());
+            let (a, b, c) = (place(), place(), place());
+            let skeleton = match case % 3 {
+                0 => Skeleton::Point { center: a },
+                1 => Skeleton::Segment { base: a, apex: b },
+                // As a string of beads.
+                _ => Skeleton::Curve {
+                    control: [a, b, c, a * 0.5],
+                },
+            };
+            let shaping = Shaping {
+                kernel: Kernel::Gauss,
+                radius: 0.2 + 0.15 * next(),
+                blobbiness: -2.0 + next(),
+                blob_scale: BlobScale::Relative,
+                strength: 1.0,
+                influence: 1e-3,
+                taper: None,
+            };
+            let primitive = Primitive::new(skeleton, &shaping, None).expect("flesh");
+            let stock = Stock::new(core::slice::from_ref(&primitive), &[0]);
+            assert!(stock.ball(0).is_some(), "{case} is no sum of lumps");
+            for _ in 0..40 {
+                let center = DVec3::new(next(), next(), next());
+                let radius = 0.4 * next().abs();
+                // Beads share what the bone has, each at its own place.
+                let level = libm::exp10(-4.0 + 3.0 * next());
+                let value = |p: DVec3| primitive.value(p.to_array());
+                let within = (0..60).map(|_| {
+                    let aside = DVec3::new(next(), next(), next());
+                    center + aside.normalize_or_zero() * (radius * next().abs())
+                });
+                let most = within.map(value).fold(value(center), f64::max);
+                let items = stock.of(0).len() as f64;
+                if stock.counts(0, center, radius, level) {
+                    counting += 1;
+                } else {
+                    small += 1;
+                    assert!(
+                        most <= level * items * (1.0 + 1e-3),
+                        "{case}: {most} > {level} of {items}"
+                    );
+                }
+            }
+        }
+        assert!(counting > 200 && small > 200, "{counting} {small}");
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn what_is_no_lump_counts_anywhere() {
+        let shaping = Shaping {
+            kernel: Kernel::Cauchy,
+            radius: 0.2,
+            blobbiness: -2.0,
+            blob_scale: BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: None,
+        };
+        let corners = [DVec3::X, DVec3::Y, DVec3::Z];
+        let face = Primitive::new(Skeleton::Triangle { corners }, &shaping, None).expect("flesh");
+        let stock = Stock::new(&[face], &[0]);
+        assert!(stock.ball(0).is_none());
+        assert!(stock.counts(0, DVec3::splat(1e6), 0.1, 1.0));
+    }
+}

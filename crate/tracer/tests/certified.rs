@@ -299,7 +299,8 @@ fn a_thin_bone_beside_lumps_is_not_stridden_over() {
 /// Scenes in which much was missed or off once: where rounding or a surface as flat as the ray leaves all in doubt; beyond
 /// the ends of Gaussian arcs; waves across a needle; beside crisp Gaussian faces and a plane, which is looked for very far
 /// out; a surface as flat as the ray between the kinks of profiles; grazing rays that what is next to nothing, or single
-/// precision's rounding, keeps outside.
+/// precision's rounding, keeps outside; waves that turn sharply beside an arc's axis; a very thin curve, of which all that is
+/// bent away counted as near; crisp faces that single precision moves by more than a very fine picture's tolerance.
 #[test]
 fn what_was_missed_once_is_found() {
     let once = [
@@ -319,13 +320,20 @@ fn what_was_missed_once_is_found() {
         (Kernel::Cauchy, Kind::Mixed, 139),
         (Kernel::Gauss, Kind::Segment, 66),
         (Kernel::Compact6, Kind::Point, 130),
+        (Kernel::Gauss, Kind::Waves, 5048),
+        (Kernel::Quartic, Kind::Kinks, 108),
+        (Kernel::Metaballs, Kind::Polygon, 9043),
     ];
-    for (kernel, kind, seed) in once {
+    // Of these most rays pass by.
+    let thin = [(Kernel::Quartic, Kind::Taper, 5031)];
+    for (kernel, kind, seed) in once.into_iter().chain(thin) {
         let cast = |trial: &Trial, picture: &Picture| picture.cast(&trial.rays);
         let mut told = String::new();
         let row = check(kernel, kind, seed, 8, &cast, &mut told);
+        let few = thin.contains(&(kernel, kind, seed));
+        let least = if few { 0 } else { row.rays / 4 };
         assert!(
-            row.faults() == 0 && row.hits > row.rays / 4,
+            row.faults() == 0 && row.hits > least,
             "{kernel:?} {kind:?} {seed} {row:?}\n{told}"
         );
     }

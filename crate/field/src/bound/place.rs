@@ -2,8 +2,8 @@
 //!
 //! Points and segments lie in [`Place`] itself, as a scene may have a million of them; what else there is lies
 //! elsewhere in memory.
-use crate::skeleton::SAMPLES;
-use crate::{Kernel, Primitive, Skeleton};
+use crate::skeleton::{halves, nearest_on_segment};
+use crate::{Primitive, Skeleton};
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
@@ -35,7 +35,18 @@ pub enum Place {
     /// A polygon.
     Polygon(Box<Skeleton>),
     /// A curve.
-    Curve(Box<Course>),
+    Curve(Vec<Chord>),
+}
+
+/// How near a ball's middle is to a skeleton.
+#[derive(Clone, Copy, Debug)]
+pub struct Near {
+    /// The distance, or less.
+    pub distance: f64,
+    /// See [`Nearness`](super::Nearness).
+    pub stretch: f64,
+    /// The ball's distance from an arc's axis; 0 for others.
+    pub hub: f64,
 }
 
 /// An arc `center + radius·(cos t·u + sin t·v)`, `0 ≤ t ≤ angle`; u, v and axis are orthonormal.
@@ -53,17 +64,22 @@ pub struct Sweep {
     sag: f64,
 }
 
-/// A curve.
-#[derive(Clone, Debug)]
-pub struct Course {
-    control: [DVec3; 4],
-    /// Balls that hold its pieces.
-    balls: Vec<(DVec3, f64)>,
+/// A piece of a curve: all of it is within a distance of its chord.
+#[derive(Clone, Copy, Debug)]
+pub struct Chord {
+    base: DVec3,
+    apex: DVec3,
+    sag: f64,
 }
 
+/// Pieces of a curve have no more sag than this, in kernel widths …
+const SAG: f64 = 0.01;
+/// … unless there are so many of them.
+const MOST_CHORDS: u32 = 16;
+
 impl Place {
-    /// A primitive's.
-    pub fn of(primitive: &Primitive) -> Self {
+    /// A primitive's, whose kernel has such a width parameter.
+    pub fn of(primitive: &Primitive, width: f64) -> Self {
         match &primitive.skeleton {
             Skeleton::Point { center } => Self::Point(*center),
             Skeleton::Segment { base, apex } => Self::Segment {
@@ -84,10 +100,7 @@ impl Place {
                 Self::Triangle(Box::new((*corners, normal)))
             }
             polygon @ Skeleton::Polygon { .. } => Self::Polygon(Box::new(polygon.clone())),
-            Skeleton::Curve { control } => Self::Curve(Box::new(Course {
-                control: *control,
-                balls: primitive.prepared.double.balls(),
-            })),
+            Skeleton::Curve { control } => Self::Curve(chords(*control, SAG / width)),
             Skeleton::Plane { point, normal } => Self::Plane {
                 point: *point,
                 normal: normal.try_normalize().unwrap_or(DVec3::Z),
@@ -95,9 +108,8 @@ impl Place {
         }
     }
 
-    /// How near the middle of a ball is to the skeleton, or a distance from below; and the stretch of
-    /// [`Nearness`](super::Nearness).
-    pub fn nearness(&self, kernel: Kernel, center: DVec3, radius: f64) -> (f64, f64) {
+    /// How near the middle of a ball is to the skeleton.
+    pub fn nearness(&self, center: DVec3, radius: f64) -> Near {
         let distance = match self {
             Self::Point(point) => center.distance(*point),
             Self::Segment { base, axis, length } => {
@@ -108,10 +120,21 @@ impl Place {
             Self::Arc(sweep) => return sweep.nearness(center, radius),
             Self::Triangle(triangle) => triangle_distance(&triangle.0, triangle.1, center),
             Self::Polygon(skeleton) => skeleton.distance(center),
-            Self::Curve(course) => course.distance(kernel, center),
+            Self::Curve(chords) => {
+                let distance = chords.iter().map(|chord| chord.distance(center));
+                return Near {
+                    distance: distance.fold(f64::INFINITY, f64::min).max(0.0),
+                    stretch: f64::INFINITY,
+                    hub: 0.0,
+                };
+            }
             Self::Plane { point, normal } => (center - *point).dot(*normal).abs(),
         };
-        (distance, 1.0)
+        Near {
+            distance,
+            stretch: 1.0,
+            hub: 0.0,
+        }
     }
 }
 
@@ -140,7 +163,7 @@ impl Sweep {
         }
     }
 
-    fn nearness(&self, center: DVec3, radius: f64) -> (f64, f64) {
+    fn nearness(&self, center: DVec3, radius: f64) -> Near {
         let (sweep, angle) = (self.radius, self.angle);
         let d = center - self.center;
         let (x, y, z) = (d.dot(self.u), d.dot(self.v), d.dot(self.axis));
@@ -152,7 +175,7 @@ impl Sweep {
         } else {
             y >= 0.0 && before
         };
-        if swept {
+        let (distance, stretch) = if swept {
             // A point of the arc at angle φ from the foot is no nearer than if the arc
             // were straight but shorter by the factor sin(φ/2)/(φ/2)·√(ρ/sweep).
             let shrink = self.sag * ((rho - radius).max(0.0) / sweep).sqrt();
@@ -163,27 +186,47 @@ impl Sweep {
             let (ex, ey) = (x - sweep * cos, y - sweep * sin);
             let distance = (start.min(ex * ex + ey * ey) + z * z).sqrt();
             (distance, f64::INFINITY)
+        };
+        Near {
+            distance,
+            stretch,
+            hub: (rho - radius).max(0.0),
         }
     }
 }
 
-impl Course {
-    fn distance(&self, kernel: Kernel, center: DVec3) -> f64 {
-        // Within a ball nothing is known of the distance, which a pole asks for.
-        // (Of two bends the search may take the wrong one, by half its step.)
-        if !kernel.falls_fast() {
-            let fastest = self
-                .control
-                .windows(2)
-                .fold(0.0_f64, |v, w| v.max(3.0 * w[0].distance(w[1])));
-            let step = fastest / f64::from(SAMPLES);
-            let curve = Skeleton::Curve {
-                control: self.control,
-            };
-            return (curve.distance(center) - 0.5 * step).max(0.0);
+impl Chord {
+    fn of([a, b, c, d]: [DVec3; 4]) -> Self {
+        // The piece is in the hull of its control points.
+        let off = |p: DVec3| p.distance(nearest_on_segment(p, a, d));
+        Self {
+            base: a,
+            apex: d,
+            sag: off(b).max(off(c)) * (1.0 + 1e-9),
         }
-        let far = self.balls.iter().map(|(c, r)| center.distance(*c) - r);
-        far.fold(f64::INFINITY, f64::min).max(0.0)
+    }
+
+    fn distance(&self, point: DVec3) -> f64 {
+        point.distance(nearest_on_segment(point, self.base, self.apex)) - self.sag
+    }
+}
+
+/// The chords of a Bézier curve.
+fn chords(control: [DVec3; 4], sag: f64) -> Vec<Chord> {
+    let mut count = 1;
+    loop {
+        let mut rest = control;
+        let chords: Vec<Chord> = (0..count)
+            .map(|i| {
+                let (piece, next) = halves(rest, 1.0 / f64::from(count - i));
+                rest = next;
+                Chord::of(piece)
+            })
+            .collect();
+        if count >= MOST_CHORDS || chords.iter().all(|chord| chord.sag <= sag) {
+            return chords;
+        }
+        count *= 2;
     }
 }
 

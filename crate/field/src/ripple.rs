@@ -1,0 +1,169 @@
+//! How fast a profile's factor can change along a line between its [kinks](crate::kinks), so that what is known of a
+//! field without its profile bounds the derivatives of the product (Leibniz).
+//!
+//! Along a segment or a triangle the waves are functions of linear parameters, whose rates are known. Around an arc they
+//! are functions of the angle θ = Im log z, whose derivatives along a line are at most `(k−1)!/ρᵏ` at a distance ρ from the
+//! circle's axis; by Faà di Bruno's formula so are those of a wave S of it,
+//!
+//! `S₁/ρ, (S₂+S₁)/ρ², (S₃+3S₂+2S₁)/ρ³, (S₄+6S₃+11S₂+6S₁)/ρ⁴`.
+//!
+//! There they count as `g·S` with `g = (2q/(1+q²))²`, `q = ρ/radius` (see [`waves`](crate::waves)). With
+//! `y = 1/(1+q²)` it is `g = 4q²y²`, `|g′| ≤ 8qy²`, and `|g⁽ʲ⁾| ≤ 4(j+1)!·y^(1+j/2)`. So towards the axis the first two
+//! derivatives of the product stay finite, and the third and fourth do not.
+use crate::{Profile, Skeleton, Wave};
+
+/// Bounds on the derivatives of a profile's factor, over the factor's largest size.
+#[derive(Clone, Debug)]
+pub struct Ripple {
+    /// Of the first to the fourth along any line; around an arc those of the wave by the angle.
+    by: [f64; 4],
+    /// Of an arc: its radius, and by how much the waves raise the factor.
+    arc: Option<[f64; 2]>,
+}
+
+/// `4(j+1)!`, see the module, …
+const FADE: [f64; 5] = [4.0, 8.0, 24.0, 96.0, 480.0];
+/// … and what the derivatives of g are nowhere above.
+const FADE_MOST: [f64; 5] = [1.0, 1.74, 8.0, 30.0, 192.0];
+/// Binomial coefficients of the orders 2 to 4.
+const BINOMIAL: [[f64; 5]; 3] = [
+    [1.0, 2.0, 1.0, 0.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0, 0.0],
+    [1.0, 4.0, 6.0, 4.0, 1.0],
+];
+
+impl Ripple {
+    /// Of a profile along a skeleton. `None` if it is the same everywhere.
+    #[must_use]
+    pub fn of(profile: &Profile, skeleton: &Skeleton) -> Option<Self> {
+        let [low, high] = profile.bounds;
+        let rise = (high - low).abs() / low.abs().max(high.abs()).max(f64::MIN_POSITIVE);
+        // What has no extent has one parameter.
+        let one_over = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
+        let wave = |i: usize, rate: f64| {
+            let rate = (profile.scale[i] * rate).abs();
+            let powers = [
+                rate,
+                rate * rate,
+                rate * rate * rate,
+                (rate * rate) * (rate * rate),
+            ];
+            let most = derivatives(profile.waves[i]);
+            core::array::from_fn::<f64, 4, _>(|k| times(most[k], powers[k]))
+        };
+        let (by, arc) = match skeleton {
+            Skeleton::Segment { .. } => {
+                let by = wave(0, one_over(skeleton.measure())).map(|d| times(rise, d));
+                (by, None)
+            }
+            Skeleton::Triangle { corners: [a, b, c] } => {
+                let (e1, e2) = (*b - *a, *c - *a);
+                let inverse = one_over(e1.cross(e2).length());
+                let [u, v, w] = [e2, e1, e2 - e1].map(|edge| edge.length() * inverse);
+                let waves = product(&with_value(1.0, wave(0, u)), &with_value(1.0, wave(1, v)));
+                let factor = with_value(1.0, waves.map(|d| times(rise, d)));
+                // 1 − restriction·(1−27λ₀λ₁λ₂), where products of two of these are at most ¼.
+                let steep = 27.0 * profile.restriction.abs();
+                let rate = u.max(v).max(w);
+                let b = [0.25 * (u + v + w), 2.0 * rate * rate, 6.0 * u * v * w, 0.0];
+                let kept = with_value(1.0, b.map(|d| times(steep, d)));
+                (product(&factor, &kept), None)
+            }
+            Skeleton::Arc { radius, angle, .. } => {
+                let [s1, s2, s3, s4] = wave(0, one_over(*angle));
+                let by = [
+                    s1,
+                    s2 + s1,
+                    s3 + 3.0 * s2 + 2.0 * s1,
+                    s4 + 6.0 * s3 + 11.0 * s2 + 6.0 * s1,
+                ];
+                let rise = if profile.waves[0] == Wave::One {
+                    0.0
+                } else {
+                    rise
+                };
+                (by, Some([radius.max(f64::MIN_POSITIVE), rise]))
+            }
+            // These have no parameters.
+            Skeleton::Point { .. }
+            | Skeleton::Polygon { .. }
+            | Skeleton::Curve { .. }
+            | Skeleton::Plane { .. } => return None,
+        };
+        let changes = arc.map_or(by != [0.0; 4], |[_, rise]| rise > 0.0);
+        changes.then_some(Self { by, arc })
+    }
+
+    /// The first to the fourth derivative along any line, at a distance of `hub` or more from an arc's axis.
+    #[must_use]
+    pub fn derivatives(&self, hub: f64) -> [f64; 4] {
+        let Some([radius, rise]) = self.arc else {
+            return self.by;
+        };
+        let q = hub / radius;
+        let y = 1.0 / (1.0 + q * q);
+        let root = y.sqrt();
+        let powers = [y, y * root, y * y, y * y * root, y * y * y];
+        let g: [f64; 5] = core::array::from_fn(|j| (FADE[j] * powers[j]).min(FADE_MOST[j]));
+        let [c1, c2, c3, c4] = self.by;
+        let square = y * y;
+        // 4qy² is largest at q² = 1/3.
+        let near = if 3.0 * q * q < 1.0 {
+            1.3
+        } else {
+            4.0 * q * square
+        };
+        let (once, twice) = (1.0 / q, 1.0 / (q * q));
+        let product = [
+            g[1] + c1 * near,
+            g[2] + (16.0 * c1 + 4.0 * c2) * square,
+            g[3] + times(3.0 * c1 * g[2] + (24.0 * c2 + 4.0 * c3) * square, once),
+            g[4] + times(4.0 * c1 * g[3], once)
+                + times(6.0 * c2 * g[2] + (32.0 * c3 + 4.0 * c4) * square, twice),
+        ];
+        let inverse = 1.0 / radius;
+        let mut scale = rise;
+        product.map(|d| {
+            scale *= inverse;
+            times(scale, d)
+        })
+    }
+
+    /// The derivatives of the orders 2 to 4 of a field times the factor: those of the field from 0 to 4, and those of the factor.
+    #[must_use]
+    pub fn of_product(field: &[f64; 5], factor: &[f64; 4]) -> [f64; 3] {
+        let [_, rest @ ..] = product(field, &with_value(1.0, *factor));
+        rest
+    }
+}
+
+/// The most that a wave's derivatives are between its kinks. Where kinks are not told (see `tracer`), those of the waves that
+/// have some stand for them: as if they were no less round than a sine.
+fn derivatives(wave: Wave) -> [f64; 4] {
+    match wave {
+        Wave::One => [0.0; 4],
+        Wave::X | Wave::Saw | Wave::Step => [1.0; 4],
+        Wave::Hat => [2.0, 1.0, 1.0, 1.0],
+        Wave::Sin | Wave::Cos => [0.5; 4],
+        Wave::Sin2 | Wave::Cos2 => [1.0, 2.0, 4.0, 8.0],
+    }
+}
+
+fn with_value(value: f64, [a, b, c, d]: [f64; 4]) -> [f64; 5] {
+    [value, a, b, c, d]
+}
+
+/// The first to the fourth derivative of a product (Leibniz).
+fn product(a: &[f64; 5], b: &[f64; 5]) -> [f64; 4] {
+    let first = times(a[1], b[0]) + times(a[0], b[1]);
+    let [second, third, fourth] = [2, 3, 4].map(|m: usize| {
+        let term = |k: usize| BINOMIAL[m - 2][k] * times(a[m - k], b[k]);
+        (0..=m).map(term).sum::<f64>()
+    });
+    [first, second, third, fourth]
+}
+
+/// A product of bounds: nothing times what is not bounded is nothing.
+fn times(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+}
