@@ -70,7 +70,7 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
     let (mut tightest, mut tightest_span) = (0.0_f64, 0.0_f64);
     let (mut tightest_slope, mut tightest_turn) = (0.0_f64, 0.0_f64);
     // Those that taper take long to prepare.
-    let count = if dress == Dress::Tapered { 20 } else { 120 };
+    let count = if dress == Dress::Tapered { 8 } else { 120 };
     for _ in 0..count {
         let primitive = random_primitive(&mut random, kernel, kind, dress);
         let kinks = field::kinks::of(&primitive);
