@@ -1,6 +1,7 @@
 //! A worker's desk: takes requests at any time, does one step of work when asked.
 
-use crate::{Answer, Order, Request};
+use crate::errors::Errors;
+use crate::{Answer, Kind, Order, Request};
 use scene::Scene;
 use std::collections::VecDeque;
 use tracer::{Picture, Stats};
@@ -12,9 +13,15 @@ pub struct Engine {
     /// Whether the generation is new and the page not yet told that we know.
     new: bool,
     /// Set until the scene has been prepared.
-    wanted: Option<(Box<Scene>, [u32; 2])>,
-    picture: Option<Picture>,
+    wanted: Option<(Box<Scene>, [u32; 2], Kind)>,
+    prepared: Option<Prepared>,
     queue: VecDeque<Order>,
+}
+
+/// A scene made ready for what is wanted of it.
+enum Prepared {
+    Colours(Box<Picture>),
+    Errors(Box<Errors>),
 }
 
 /// What a step came to.
@@ -36,9 +43,10 @@ impl Engine {
                 generation,
                 scene,
                 size,
+                kind,
             } => {
                 self.forget(generation);
-                self.wanted = Some((scene, size));
+                self.wanted = Some((scene, size, kind));
             }
             Request::Trace(orders) => {
                 let present = |order: &Order| order.generation == self.generation;
@@ -65,19 +73,26 @@ impl Engine {
                 generation: self.generation,
             });
         }
-        if let Some((scene, size)) = self.wanted.take() {
-            self.picture = Some(Picture::new(&scene, size));
+        if let Some((scene, size, kind)) = self.wanted.take() {
+            self.prepared = Some(match kind {
+                Kind::Colours => Prepared::Colours(Box::new(Picture::new(&scene, size))),
+                Kind::Errors => Prepared::Errors(Box::new(Errors::new(&scene, size))),
+            });
             return Step::Answer(Answer::Prepared {
                 generation: self.generation,
             });
         }
-        let (Some(picture), Some(order)) = (&self.picture, self.queue.pop_front()) else {
+        let (Some(prepared), Some(order)) = (&self.prepared, self.queue.pop_front()) else {
             // Tiles without a picture cannot come in (`accept` compares generations).
             return Step::Idle;
         };
         let begun = clock();
         let mut stats = Stats::default();
-        match picture.trace(order.tile, order.pass, stop, &mut stats) {
+        let traced = match prepared {
+            Prepared::Colours(picture) => picture.trace(order.tile, order.pass, stop, &mut stats),
+            Prepared::Errors(errors) => errors.trace(order.tile, stop),
+        };
+        match traced {
             Some(pixels) => Step::Answer(Answer::Traced {
                 order,
                 pixels,
@@ -92,7 +107,7 @@ impl Engine {
         self.generation = generation;
         self.new = true;
         self.wanted = None;
-        self.picture = None;
+        self.prepared = None;
         self.queue.clear();
     }
 }
@@ -107,6 +122,7 @@ mod tests {
             generation,
             scene: Box::default(),
             size: [8, 8],
+            kind: Kind::Colours,
         }
     }
 

@@ -26,6 +26,7 @@ pub use progress::Progress;
 
 use scene::Scene;
 use tracer::{Pass, Tile};
+use worker::Kind;
 
 /// Longest side of a tile in pixels: small enough that a tile takes milliseconds, large enough that
 /// sending it takes a small share of that.
@@ -45,6 +46,8 @@ pub struct Job<'a> {
     pub size: [u32; 2],
     /// The caller's number for it, given back with each tile.
     pub generation: u64,
+    /// What its pixels tell.
+    pub kind: Kind,
     /// Whether it is seen only once it is finished, as the small pictures of the lab are: then only
     /// the last pass is traced, and the app is not woken before the end.
     pub small: bool,
@@ -68,7 +71,7 @@ pub struct TileDone {
     pub pass: Pass,
     /// Where it belongs. Each pass has the same tiles.
     pub tile: Tile,
-    /// RGBA, rows from the top.
+    /// Four bytes each, for what the job's [`Kind`] says; rows from the top.
     pub pixels: Vec<u8>,
 }
 

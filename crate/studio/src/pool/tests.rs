@@ -32,6 +32,7 @@ fn a_picture_comes_complete_and_a_new_one_replaces_it() {
         scene: &scene,
         size: [100, 70],
         generation,
+        kind: Kind::Colours,
         small: false,
     };
     pool.start(job(1));
@@ -62,6 +63,7 @@ fn a_killed_worker_is_missed_and_the_picture_still_completes() {
         scene: &scene,
         size: [64, 64],
         generation: 1,
+        kind: Kind::Colours,
         small: false,
     };
     pool.start(job);
