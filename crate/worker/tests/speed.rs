@@ -9,7 +9,7 @@ use tracer::{Pass, tiles};
 use worker::{Answer, Engine, Kind, Order, Request, Step};
 
 /// Side of the tiles that the page asks for.
-const TILE: u32 = 32;
+const TILE: u32 = 64;
 /// Pictures of each scene, of which the quickest counts.
 const PICTURES: usize = 3;
 

@@ -28,9 +28,10 @@ use scene::Scene;
 use tracer::{Pass, Tile};
 use worker::Kind;
 
-/// Longest side of a tile in pixels: small enough that a tile takes milliseconds, large enough that
-/// sending it takes a small share of that.
-pub const TILE: u32 = 32;
+/// Longest side of a tile in pixels: that of the squares in which the tracer finds out once for all pixels
+/// what is near. Small enough that a tile takes milliseconds, large enough that sending it takes a small
+/// share of that.
+pub const TILE: u32 = 64;
 /// The same for small pictures, of which there are many: fewer messages matter more.
 pub const SMALL_TILE: u32 = 56;
 /// Most workers, whatever the machine has: each holds its own copy of the scene.
