@@ -54,15 +54,6 @@ pub struct Job<'a> {
     pub small: bool,
 }
 
-/// What there is to show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum News {
-    /// Some more tiles of a picture that is there already, coarser.
-    Some,
-    /// All of it, or whether it can be made at all.
-    Whole,
-}
-
 /// A finished tile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileDone {

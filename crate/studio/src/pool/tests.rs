@@ -26,7 +26,7 @@ fn scene() -> Scene {
 
 #[test]
 fn a_picture_comes_complete_and_a_new_one_replaces_it() {
-    let mut pool = Pool::new(|_| {});
+    let mut pool = Pool::new(|| {});
     let scene = scene();
     let job = |generation| Job {
         scene: &scene,
@@ -55,7 +55,7 @@ fn a_picture_comes_complete_and_a_new_one_replaces_it() {
 
 #[test]
 fn a_killed_worker_is_missed_and_the_picture_still_completes() {
-    let mut pool = Pool::new(|_| {});
+    let mut pool = Pool::new(|| {});
     assert!(!pool.kill_worker(MAX_WORKERS + 1));
     assert!(pool.kill_worker(0));
     let scene = scene();
