@@ -15,7 +15,7 @@ const setting = (name) => {
   return value;
 };
 
-/** Flags of browsers with WebGPU, drawn by software, with WebGL2 only, and with neither. */
+/** Flags of browsers with WebGPU, drawn by software, with WebGL2 only, likewise, and with neither. */
 export const KINDS = {
   // Without all of these, screenshots of WebGPU are blank.
   webgpu: ['--enable-unsafe-webgpu', '--use-angle=swiftshader', '--enable-features=Vulkan', '--use-vulkan=swiftshader'],
@@ -23,11 +23,17 @@ export const KINDS = {
   none: ['--disable-3d-apis'],
 };
 
+/** What is to be asked for, as the page would not draw with what is only pretended to be a graphics card. */
+const ASKED = { webgl2: '?backend=webgl' };
+
 /** How long a picture may take here, milliseconds: two slow cores, and a page drawn by software. */
 export const PATIENCE = 180_000;
 
-/** A browser of one kind and a server of the page. */
-export async function launch(kind) {
+/**
+ * A browser of one kind and a server of the page. With `free` the page itself chooses what it draws with.
+ */
+export async function launch(kind, { free = false } = {}) {
+  const asked = free ? '' : (ASKED[kind] ?? '');
   const browser = await chromium.launch({
     executablePath: setting('CHROMIUM'),
     args: ['--no-sandbox', ...KINDS[kind]],
@@ -47,7 +53,7 @@ export async function launch(kind) {
       const page = await context.newPage();
       await before?.(page);
       const sinew = new Sinew(page, kind);
-      await sinew.goto(server.address + fragment);
+      await sinew.goto(server.address + asked + fragment);
       return sinew;
     },
     async close() {

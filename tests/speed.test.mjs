@@ -6,7 +6,7 @@ import { writeFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
 import { example, launch } from './page.mjs';
 
-/** The kind of browser: with a GPU interface, as nearly all have, but drawn by software here. */
+/** The kind of browser: with a GPU interface, as nearly all have, but drawn by software here, which the page may notice. */
 const KIND = 'webgl2';
 /** Small where nothing is measured, as that would take long on a busy machine. */
 const SIZE = process.env.SINEW_FIGURES ? [512, 512] : [128, 128];
@@ -16,7 +16,7 @@ const ROUNDS = process.env.SINEW_FIGURES ? 7 : 1;
 
 let browser;
 before(async () => {
-  browser = await launch(KIND);
+  browser = await launch(KIND, { free: true });
 });
 after(() => browser?.close());
 
@@ -85,6 +85,8 @@ async function keystroke(sinew, key) {
 }
 
 const figures = [];
+/** What the page draws its window with. */
+let backend;
 for (const name of MODELS) {
   test(`${name}: from a keystroke to the picture`, async () => {
     const runs = [];
@@ -94,7 +96,9 @@ for (const name of MODELS) {
       const text = (await example(name)).replace(/^shoot$/m, '');
       await sinew.load(`${text}\ngamma 1.0`);
       await sinew.resize(...SIZE);
-      assert.equal((await sinew.status()).workers, workers);
+      const status = await sinew.status();
+      assert.equal(status.workers, workers);
+      backend = status.backend;
       await reachEditor(sinew);
       const best = { workers };
       for (let round = 0; round < ROUNDS; round++) {
@@ -120,6 +124,6 @@ test('the figures are kept', async (t) => {
   if (!process.env.SINEW_FIGURES) return t.skip('SINEW_FIGURES is not set');
   assert.equal(figures.length, MODELS.length);
   const version = await browser.version();
-  const kept = { browser: `Chromium ${version}, ${KIND}`, rounds: ROUNDS, models: figures };
+  const kept = { browser: `Chromium ${version}, ${KIND} by software, window drawn by: ${backend}`, rounds: ROUNDS, models: figures };
   await writeFile(process.env.SINEW_FIGURES, JSON.stringify(kept, null, 1));
 });

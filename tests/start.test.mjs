@@ -58,6 +58,18 @@ for (const [file, words] of [
   });
 }
 
+test('a graphics card that is only pretended does not draw the window', async () => {
+  const own = await launch('webgl2', { free: true });
+  try {
+    const sinew = await own.open();
+    const { backend, failure } = await sinew.finished();
+    assert.deepEqual([backend, failure], ['none', null]);
+    await sinew.close();
+  } finally {
+    await own.close();
+  }
+});
+
 test('everything comes from the page’s own folder', async () => {
   const page = await browser.newPage();
   const strangers = [];

@@ -3,6 +3,7 @@
 //! [`App::tick`] does what time and messages demand and runs even while the tab is hidden;
 //! [`App::show`] draws one frame. Widgets only list [`Command`]s, which are carried out afterwards.
 
+use crate::apart::Apart;
 use crate::asset_view::AssetView;
 use crate::command::Command;
 use crate::draft::Draft;
@@ -14,7 +15,7 @@ use crate::help::Help;
 use crate::keyboard::Keyboard;
 use crate::lab::{Lab, Lesson};
 use crate::notice::Notice;
-use crate::pool::{News, Pool};
+use crate::pool::Pool;
 use crate::render::{Phase, Renderer};
 use crate::report::Shared;
 use crate::request::Requests;
@@ -93,6 +94,8 @@ pub struct App {
     pub(crate) work: Work,
     pub(crate) renderer: Renderer,
     pub(crate) draft: Option<Draft>,
+    /// The draft where there is none on the window's device.
+    pub(crate) apart: Apart,
     pub(crate) backend: Backend,
     pub(crate) settings: Settings,
     pub(crate) editor: Editor,
@@ -133,10 +136,8 @@ const REST: f32 = 0.4;
 fn is_drawn_by_processor(backend: Backend, state: Option<&egui_wgpu::RenderState>) -> bool {
     let by_software = |state: &egui_wgpu::RenderState| {
         let info = state.adapter.get_info();
-        let name = info.name.to_lowercase();
         info.device_type == egui_wgpu::wgpu::DeviceType::Cpu
-            || name.contains("swiftshader")
-            || name.contains("llvmpipe")
+            || crate::backend::is_processor(&info.name)
     };
     backend == Backend::None || state.is_some_and(by_software)
 }
@@ -169,10 +170,7 @@ impl App {
             0.0
         };
         let repaint = ctx.clone();
-        let pool = Pool::new(move |news| {
-            let wait = if news == News::Some { rest } else { 0.0 };
-            repaint.request_repaint_after_secs(wait);
-        });
+        let pool = Pool::new(move || repaint.request_repaint());
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
         let mut app = Self {
@@ -181,6 +179,7 @@ impl App {
             draft: render_state
                 .filter(|_| backend != Backend::None)
                 .map(Draft::new),
+            apart: Apart::default(),
             backend,
             rest,
             editor: Editor::default(),
@@ -208,12 +207,12 @@ impl App {
             work,
             parts,
         };
-        app.greet(trouble);
+        app.greet(trouble, platform::now(ctx));
         app
     }
 
     /// Says at the start what the user should know.
-    fn greet(&mut self, trouble: Option<String>) {
+    fn greet(&mut self, trouble: Option<String>, now: f64) {
         if !self.work.session.enabled() {
             let text = "Sinew stopped unexpectedly the last time. Your text is here and safe; nothing is drawn until you say so.";
             self.notice = Some(Notice::trouble(text).offering("Draw", Command::Enable));
@@ -226,8 +225,8 @@ impl App {
             let text = "This browser stores nothing for this page, so your work lasts until you close it. Share makes a link that keeps it.";
             self.notice = Some(Notice::trouble(text));
         } else if self.backend == Backend::None {
-            let text = "No WebGPU or WebGL2 here: no draft, everything else works.";
-            self.notice = Some(Notice::done(text, f64::INFINITY));
+            let text = "No graphics card here: drafts are rare, everything else works.";
+            self.notice = Some(Notice::done(text, now));
         }
     }
 
@@ -382,6 +381,10 @@ impl App {
         if self.touch != Some(touch) {
             self.touch = Some(touch);
             theme::apply(&ctx, touch);
+            if self.rest > 0.0 {
+                // What fades in is drawn many times, each time at the cost of the picture.
+                ctx.all_styles_mut(|style| style.animation_time = 0.0);
+            }
         }
         let mut commands = Vec::new();
         self.keys(&ctx, &mut commands);

@@ -7,7 +7,8 @@ pub enum Backend {
     WebGpu,
     /// WebGL2: window and draft.
     WebGl2,
-    /// Neither: the window is drawn on the processor and there is no draft.
+    /// Neither, or only pretended: the window is drawn on the processor, and a draft only where the traced picture
+    /// takes long.
     None,
 }
 
@@ -30,5 +31,36 @@ impl Backend {
             Self::WebGl2 => "webgl2",
             Self::None => "none",
         }
+    }
+}
+
+/// Whether an adapter or renderer of this name is no graphics card but a program on the processor.
+#[must_use]
+pub fn is_processor(name: &str) -> bool {
+    let name = name.to_lowercase();
+    ["swiftshader", "llvmpipe", "softpipe", "basic render"]
+        .iter()
+        .any(|program| name.contains(program))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn processors_are_known_by_their_programs_names() {
+        let pretended = [
+            "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device (Subzero) (0x0000C0DE)), SwiftShader driver)",
+            "llvmpipe (LLVM 15.0.6, 256 bits)",
+            "ANGLE (Microsoft, Microsoft Basic Render Driver Direct3D11 vs_5_0 ps_5_0)",
+        ];
+        assert!(pretended.iter().all(|name| is_processor(name)));
+        let cards = [
+            "ANGLE (Intel, Mesa Intel(R) UHD Graphics 620 (KBL GT2), OpenGL 4.6)",
+            "Apple GPU",
+            "Adreno (TM) 640",
+            "",
+        ];
+        assert!(!cards.iter().any(|name| is_processor(name)));
     }
 }

@@ -6,6 +6,10 @@
 //! [`Backend`] is probed, then tried, and when it fails the next one is tried on a fresh canvas (a
 //! canvas that once had a context of one kind never gives another).
 //!
+//! Where the browser only pretends to have WebGL2 and computes it on the processor, the processor draws
+//! the window itself: it does so many times more quickly, as it draws what changed, and leaves the time to
+//! the workers.
+//!
 //! `?backend=webgpu|webgl|none` in the page's address says where to begin, for tests and support.
 
 use std::{cell::Cell, rc::Rc, sync::Arc};
@@ -15,9 +19,10 @@ use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use js_sys::Promise;
 use wasm_bindgen::{JsCast, JsValue, closure::Closure};
 use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
-use web_sys::{Document, HtmlCanvasElement, Window};
+use web_sys::{Document, HtmlCanvasElement, WebGl2RenderingContext, Window};
 
-use crate::{Backend, software};
+use crate::backend::{self, Backend};
+use crate::software;
 
 /// The order of trial.
 const ORDER: [Backend; 3] = [Backend::WebGpu, Backend::WebGl2, Backend::None];
@@ -28,6 +33,9 @@ const STEADY: f64 = 10_000.0;
 
 /// Milliseconds that a browser may take to say whether it has WebGPU. It may never answer.
 const PATIENCE: i32 = 5_000;
+
+/// What WEBGL_debug_renderer_info calls UNMASKED_RENDERER_WEBGL.
+const UNMASKED_RENDERER: u32 = 0x9246;
 
 /// The event that a lost WebGPU device sends to the canvas; WebGL has its own.
 const DEVICE_LOST: &str = "sinew-device-lost";
@@ -71,7 +79,7 @@ impl Boot {
     async fn start_from(self: Rc<Self>, first: Backend) -> Result<Backend, String> {
         let mut reasons = Vec::new();
         for backend in ORDER.into_iter().skip_while(|&backend| backend != first) {
-            if !is_there(backend).await {
+            if !is_there(backend, forced() == Some(backend)).await {
                 continue;
             }
             match self.clone().run(backend).await {
@@ -202,11 +210,11 @@ fn forced() -> Option<Backend> {
     }
 }
 
-/// Whether the browser really offers the backend.
-async fn is_there(backend: Backend) -> bool {
+/// Whether the browser really offers the backend. `forced`: it was asked for, and may be slow.
+async fn is_there(backend: Backend, forced: bool) -> bool {
     match backend {
         Backend::WebGpu => has_webgpu().await,
-        Backend::WebGl2 => has_webgl2(),
+        Backend::WebGl2 => webgl2().is_some_and(|context| forced || !is_pretended(&context)),
         Backend::None => true,
     }
 }
@@ -224,14 +232,20 @@ async fn has_webgpu() -> bool {
         .is_ok_and(|answer| answer.is_truthy())
 }
 
-fn has_webgl2() -> bool {
-    let canvas: Option<HtmlCanvasElement> = document()
-        .create_element("canvas")
-        .ok()
-        .and_then(|element| element.dyn_into().ok());
-    canvas
-        .and_then(|canvas| canvas.get_context("webgl2").ok().flatten())
-        .is_some()
+fn webgl2() -> Option<WebGl2RenderingContext> {
+    let canvas: HtmlCanvasElement = document().create_element("canvas").ok()?.dyn_into().ok()?;
+    canvas.get_context("webgl2").ok()??.dyn_into().ok()
+}
+
+/// Whether the processor computes what a context draws.
+fn is_pretended(context: &WebGl2RenderingContext) -> bool {
+    // Without the extension some browsers tell nothing, others the same by the plain name.
+    let _ = context.get_extension("WEBGL_debug_renderer_info");
+    let names = [UNMASKED_RENDERER, WebGl2RenderingContext::RENDERER];
+    names
+        .into_iter()
+        .filter_map(|name| context.get_parameter(name).ok()?.as_string())
+        .any(|name| backend::is_processor(&name))
 }
 
 /// How wgpu is set up for a backend.

@@ -329,11 +329,13 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         ui.ctx().request_repaint_after_secs(view::SOON as f32);
     }
     let session = &app.work.session;
-    let draft = match &mut app.draft {
-        Some(draft) if view::needs_draft(app.settings.show, session, &app.renderer, slow, now) => {
-            draft.texture(session, app.place)
+    let draft = if view::needs_draft(app.settings.show, session, &app.renderer, slow, now) {
+        match &mut app.draft {
+            Some(draft) => draft.texture(session, app.place),
+            None => app.apart.texture(ui.ctx(), session, app.place),
         }
-        _ => None,
+    } else {
+        None
     };
     let scenery = Scenery {
         session,

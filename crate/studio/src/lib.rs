@@ -5,6 +5,7 @@
 //! nothing of windows and is tested without one. [`app::App`] ties it to the widgets.
 
 mod act;
+mod apart;
 pub mod app;
 mod arrivals;
 pub mod asset;

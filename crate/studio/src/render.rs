@@ -11,6 +11,7 @@ use scene::Scene;
 use std::cell::RefCell;
 use std::rc::Rc;
 use tracer::Pass;
+use worker::Kind;
 
 /// Seconds of quiet before a change of a scene is traced that takes longer than [`QUICK`].
 pub const DEBOUNCE: f64 = 0.15;
@@ -161,6 +162,7 @@ impl Renderer {
                 scene: &scene,
                 size,
                 generation: self.number,
+                kind: Kind::Colours,
                 small: false,
             });
             self.phase = Phase::Tracing;

@@ -134,7 +134,9 @@ fn facts(renderer: &Renderer, backend: Backend, narrow: bool) -> Vec<(String, St
         String::from(match backend {
             Backend::WebGpu => "The window and the draft are drawn with WebGPU",
             Backend::WebGl2 => "The window and the draft are drawn with WebGL2",
-            Backend::None => "No WebGPU or WebGL2 here: no draft, everything else works",
+            Backend::None => {
+                "No graphics card here: the processor draws the window, and drafts are rare"
+            }
         }),
     )];
     if narrow {

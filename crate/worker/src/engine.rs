@@ -1,9 +1,14 @@
 //! A worker's desk: takes requests at any time, does one step of work when asked.
 
-use crate::{Answer, Order, Request};
+use crate::errors::Errors;
+use crate::{Answer, Kind, Order, Request};
 use scene::Scene;
 use std::collections::VecDeque;
-use tracer::{Picture, Stats};
+use tracer::{Pass, Picture, Stats, Tile};
+
+/// Rows of a tile that are traced in one step, but for the coarse pass, which is quick: between two steps the
+/// worker sees what has come in.
+const ROWS: u32 = 32;
 
 /// The picture a worker is busy with, and the tiles it still has to trace.
 #[derive(Default)]
@@ -12,9 +17,54 @@ pub struct Engine {
     /// Whether the generation is new and the page not yet told that we know.
     new: bool,
     /// Set until the scene has been prepared.
-    wanted: Option<(Box<Scene>, [u32; 2])>,
-    picture: Option<Picture>,
+    wanted: Option<(Box<Scene>, [u32; 2], Kind)>,
+    prepared: Option<Prepared>,
     queue: VecDeque<Order>,
+    begun: Option<Begun>,
+}
+
+/// A tile of which not all rows are traced.
+struct Begun {
+    order: Order,
+    /// The next row.
+    next: u32,
+    pixels: Vec<u8>,
+    stats: Stats,
+    seconds: f64,
+}
+
+impl Begun {
+    fn new(order: Order) -> Self {
+        Self {
+            order,
+            next: order.tile.y,
+            pixels: Vec::new(),
+            stats: Stats::default(),
+            seconds: 0.0,
+        }
+    }
+
+    /// The rows that are traced next.
+    fn part(&self) -> Tile {
+        let tile = self.order.tile;
+        let left = tile.y + tile.height - self.next;
+        let most = if self.order.pass == Pass::Coarse {
+            left
+        } else {
+            ROWS
+        };
+        Tile {
+            y: self.next,
+            height: left.min(most),
+            ..tile
+        }
+    }
+}
+
+/// A scene made ready for what is wanted of it.
+enum Prepared {
+    Colours(Box<Picture>),
+    Errors(Box<Errors>),
 }
 
 /// What a step came to.
@@ -22,6 +72,8 @@ pub struct Engine {
 pub enum Step {
     /// There was nothing to do.
     Idle,
+    /// A part of a tile was traced.
+    Part,
     /// A tile was given up.
     Dropped,
     /// Something to send.
@@ -36,9 +88,10 @@ impl Engine {
                 generation,
                 scene,
                 size,
+                kind,
             } => {
                 self.forget(generation);
-                self.wanted = Some((scene, size));
+                self.wanted = Some((scene, size, kind));
             }
             Request::Trace(orders) => {
                 let present = |order: &Order| order.generation == self.generation;
@@ -51,11 +104,11 @@ impl Engine {
     /// Whether [`Engine::step`] would find nothing to do.
     #[must_use]
     pub fn is_idle(&self) -> bool {
-        !self.new && self.wanted.is_none() && self.queue.is_empty()
+        !self.new && self.wanted.is_none() && self.begun.is_none() && self.queue.is_empty()
     }
 
-    /// Takes note of a new picture, prepares it if that was not done yet, or traces the next
-    /// tile.
+    /// Takes note of a new picture, prepares it if that was not done yet, or traces the next tile or
+    /// some rows of it.
     ///
     /// `stop` is asked while tracing; when it says true the tile is given up. `clock` tells seconds
     /// since some fixed moment.
@@ -65,48 +118,65 @@ impl Engine {
                 generation: self.generation,
             });
         }
-        if let Some((scene, size)) = self.wanted.take() {
-            self.picture = Some(Picture::new(&scene, size));
+        if let Some((scene, size, kind)) = self.wanted.take() {
+            self.prepared = Some(match kind {
+                Kind::Colours => Prepared::Colours(Box::new(Picture::new(&scene, size))),
+                Kind::Errors => Prepared::Errors(Box::new(Errors::new(&scene, size))),
+            });
             return Step::Answer(Answer::Prepared {
                 generation: self.generation,
             });
         }
-        let (Some(picture), Some(order)) = (&self.picture, self.queue.pop_front()) else {
+        let next = self.begun.take();
+        let next = next.or_else(|| self.queue.pop_front().map(Begun::new));
+        let (Some(prepared), Some(mut tile)) = (&self.prepared, next) else {
             // Tiles without a picture cannot come in (`accept` compares generations).
             return Step::Idle;
         };
-        let begun = clock();
-        let mut stats = Stats::default();
-        match picture.trace(order.tile, order.pass, stop, &mut stats) {
-            Some(pixels) => Step::Answer(Answer::Traced {
-                order,
-                pixels,
-                stats,
-                seconds: clock() - begun,
-            }),
-            None => Step::Dropped,
+        let since = clock();
+        let (part, pass) = (tile.part(), tile.order.pass);
+        let traced = match prepared {
+            Prepared::Colours(picture) => picture.trace(part, pass, stop, &mut tile.stats),
+            Prepared::Errors(errors) => errors.trace(part, stop),
+        };
+        let Some(pixels) = traced else {
+            return Step::Dropped;
+        };
+        tile.pixels.extend(pixels);
+        tile.seconds += clock() - since;
+        tile.next += part.height;
+        if tile.next < tile.order.tile.y + tile.order.tile.height {
+            self.begun = Some(tile);
+            return Step::Part;
         }
+        Step::Answer(Answer::Traced {
+            order: tile.order,
+            pixels: tile.pixels,
+            stats: tile.stats,
+            seconds: tile.seconds,
+        })
     }
 
     fn forget(&mut self, generation: u64) {
         self.generation = generation;
         self.new = true;
         self.wanted = None;
-        self.picture = None;
+        self.prepared = None;
         self.queue.clear();
+        self.begun = None;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tracer::{Pass, Tile};
 
     fn begin(generation: u64) -> Request {
         Request::Begin {
             generation,
             scene: Box::default(),
             size: [8, 8],
+            kind: Kind::Colours,
         }
     }
 
@@ -151,6 +221,47 @@ mod tests {
         };
         assert_eq!((done, pixels.len()), (order(1), 8 * 8 * 4));
         assert!(engine.is_idle());
+    }
+
+    #[test]
+    fn a_high_tile_is_traced_in_parts_and_is_then_the_same() {
+        for (pass, parts) in [(Pass::Coarse, 1), (Pass::Full, 3), (Pass::Smooth, 3)] {
+            let scene: Box<Scene> = Box::default();
+            let (size, tile) = ([90, 80], [5, 8, 70, 70]);
+            let [x, y, width, height] = tile;
+            let tile = Tile {
+                x,
+                y,
+                width,
+                height,
+            };
+            let mut engine = Engine::default();
+            engine.accept(Request::Begin {
+                generation: 1,
+                scene: scene.clone(),
+                size,
+                kind: Kind::Colours,
+            });
+            engine.accept(Request::Trace(vec![Order {
+                generation: 1,
+                tile,
+                pass,
+            }]));
+            let (mut taken, mut traced) = (1, None);
+            while traced.is_none() {
+                assert!(!engine.is_idle());
+                match step(&mut engine) {
+                    Step::Part => taken += 1,
+                    Step::Answer(Answer::Traced { pixels, .. }) => traced = Some(pixels),
+                    _ => {}
+                }
+            }
+            assert!(engine.is_idle());
+            assert_eq!(taken, parts, "{pass:?}");
+            let whole =
+                Picture::new(&scene, size).trace(tile, pass, &|| false, &mut Stats::default());
+            assert_eq!(traced, whole, "{pass:?}");
+        }
     }
 
     #[test]

@@ -9,7 +9,8 @@
 pub mod engine;
 #[cfg(all(target_arch = "wasm32", feature = "entry"))]
 mod entry;
+pub mod errors;
 pub mod message;
 
 pub use engine::{Engine, Step};
-pub use message::{Answer, Order, Request};
+pub use message::{Answer, Kind, Order, Request};

@@ -15,6 +15,16 @@ pub struct Order {
     pub pass: Pass,
 }
 
+/// What the pixels of a picture tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Kind {
+    /// Colours, as RGBA.
+    #[default]
+    Colours,
+    /// How far off the scene's digger is, as said in [`crate::errors`].
+    Errors,
+}
+
 /// What the page asks of a worker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Request {
@@ -26,6 +36,8 @@ pub enum Request {
         scene: Box<Scene>,
         /// Width and height in pixels, each > 0.
         size: [u32; 2],
+        /// What of it is wanted.
+        kind: Kind,
     },
     /// Trace these tiles after those already queued.
     Trace(Vec<Order>),
@@ -58,7 +70,7 @@ pub enum Answer {
     Traced {
         /// What had been asked.
         order: Order,
-        /// RGBA, rows from the top.
+        /// Four bytes each, for what the [`Kind`] says; rows from the top.
         pixels: Vec<u8>,
         /// The work done for it.
         stats: Stats,

@@ -8,7 +8,7 @@ mod common;
 use common::{BENCH, compile, say};
 use scene::{Scene, wire};
 use tracer::{Pass, Stats, Tile, tiles};
-use worker::{Answer, Engine, Order, Request, Step};
+use worker::{Answer, Engine, Kind, Order, Request, Step};
 
 /// Side of the page's tiles.
 const TILE: u32 = 32;
@@ -46,6 +46,7 @@ fn traced(scene: &Scene, size: [u32; 2], pass: Pass, tiles: &[Tile]) -> Vec<(Vec
         generation: 1,
         scene: Box::new(scene.clone()),
         size,
+        kind: Kind::Colours,
     });
     let order = |&tile| Order {
         generation: 1,

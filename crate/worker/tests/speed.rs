@@ -6,10 +6,10 @@ mod common;
 use common::{BENCH, compile, say};
 use scene::Scene;
 use tracer::{Pass, tiles};
-use worker::{Answer, Engine, Order, Request, Step};
+use worker::{Answer, Engine, Kind, Order, Request, Step};
 
 /// Side of the tiles that the page asks for.
-const TILE: u32 = 32;
+const TILE: u32 = 64;
 /// Pictures of each scene, of which the quickest counts.
 const PICTURES: usize = 3;
 
@@ -30,6 +30,7 @@ fn picture(scene: &Scene, size: [u32; 2]) -> (f64, usize) {
         generation: 1,
         scene: Box::new(scene.clone()),
         size,
+        kind: Kind::Colours,
     });
     let order = |tile| Order {
         generation: 1,

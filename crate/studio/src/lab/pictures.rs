@@ -17,6 +17,8 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::rc::Rc;
+use worker::Kind;
+use worker::errors::{Pixel, unpack};
 
 /// Pictures have numbers from here on, the main picture those below.
 pub const FIRST: u64 = 1 << 40;
@@ -29,6 +31,8 @@ const LARGEST: f32 = 420.0;
 enum Kept {
     /// It was traced.
     Drawn(TextureHandle),
+    /// It was measured how far off its digger is.
+    Measured(Rc<[Pixel]>),
     /// It has something that is not drawn, or could not be traced; the reason.
     Refused(String),
 }
@@ -45,6 +49,7 @@ struct Wish {
     key: u64,
     text: Rc<str>,
     size: [u32; 2],
+    kind: Kind,
     background: [f32; 3],
 }
 
@@ -172,6 +177,9 @@ impl Pictures {
                     return;
                 };
                 let kept = match (progress.error, running.assembly.shown()) {
+                    (None, Some((_, image))) if running.wish.kind == Kind::Errors => {
+                        Kept::Measured(unpack(&image.rgba).into())
+                    }
                     (None, Some((_, image))) => {
                         let size = image.size.map(|side| side as usize);
                         let pixels = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
@@ -209,6 +217,7 @@ impl Pictures {
                 scene: &scene,
                 size: wish.size,
                 generation: self.number,
+                kind: wish.kind,
                 small: true,
             });
             self.running = Some(Running {
@@ -239,7 +248,7 @@ impl Pictures {
                 self.entries.retain(|_, entry| entry.used > oldest);
             }
         }
-        if matches!(kept, Kept::Drawn(_)) {
+        if !matches!(kept, Kept::Refused(_)) {
             // Counting frames is enough: within one, the order of wishes decides.
             self.slots.insert(wish.slot, (wish.key, self.frame));
         }
@@ -277,6 +286,7 @@ impl Pictures {
                     return Shown::Picture;
                 }
                 Kept::Refused(reason) => return Shown::Refused(reason.clone()),
+                Kept::Measured(_) => {}
             }
         }
         self.wishes.push(Wish {
@@ -284,6 +294,7 @@ impl Pictures {
             key,
             text: text.into(),
             size,
+            kind: Kind::Colours,
             background: [r, g, b].map(|c| f32::from(c) / 255.0),
         });
         // Off the screen it can wait, but a wish it is.
@@ -306,5 +317,41 @@ impl Pictures {
             painter.circle_stroke(dot.center(), 5.0, egui::Stroke::new(1.5, palette.line));
         }
         Shown::Nothing
+    }
+
+    /// How far off a text's digger is, in a square of so many pixels. What is not there yet is asked for, and
+    /// meanwhile that of the text before it stands in. Second, whether it is of this text.
+    pub fn errors(
+        &mut self,
+        slot: impl Hash,
+        text: &str,
+        side: u32,
+    ) -> (Option<Rc<[Pixel]>>, bool) {
+        let slot = hashed(slot);
+        let key = hashed((text, side));
+        let last = self.slots.get(&slot).copied();
+        let mut kept = |key: u64| {
+            let entry = self.entries.get_mut(&key)?;
+            entry.used = self.frame;
+            match &entry.kept {
+                Kept::Measured(pixels) => Some(pixels.clone()),
+                Kept::Drawn(_) | Kept::Refused(_) => None,
+            }
+        };
+        if let Some(pixels) = kept(key) {
+            self.slots
+                .insert(slot, (key, last.map_or(0, |(_, given)| given)));
+            return (Some(pixels), true);
+        }
+        let older = last.and_then(|(last, _)| kept(last));
+        self.wishes.push(Wish {
+            slot,
+            key,
+            text: text.into(),
+            size: [side; 2],
+            kind: Kind::Errors,
+            background: [0.0; 3],
+        });
+        (older, false)
     }
 }

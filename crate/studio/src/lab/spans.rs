@@ -1,32 +1,26 @@
 //! Lesson 8: how many Hermite spans a bone needs, on the thesis's cross, with maps of the error
 //! (figures 4.3 to 4.5 there).
 //!
-//! The pictures come from the workers. The maps are made here, some pixels in each frame: each
-//! pixel's hit is held against the exact crossing, found on the field itself in double precision.
+//! Pictures and maps come from the workers: for a map each pixel's hit is held against the exact
+//! crossing, found on the field itself in double precision.
 
 use super::Bench;
 use super::grid::refused;
 use super::slice::shade;
 use super::tools::{Stage, choice, heading, reading, remark, slider};
-use crate::{platform, theme};
+use crate::theme;
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui,
     pos2, vec2,
 };
 use field::Kernel;
-use rats::{File, Project};
-use scene::Projection;
-use tracer::Picture;
+use std::rc::Rc;
+use worker::errors::Pixel;
 
 /// Pixels of a map, across and down.
 const SIDE: usize = 96;
-/// Pixels that are traced together.
-const TOGETHER: usize = 8;
 /// The bars' radius.
 const RADIUS: f64 = 0.3;
-/// Least and most seconds of tracing in one frame, and its share of a frame.
-const BUDGET: [f64; 2] = [0.006, 0.05];
-const SHARE: f64 = 0.4;
 /// The maps' colours begin at this error, in radii, and end at one radius.
 const LEAST: f64 = 1e-4;
 
@@ -77,21 +71,13 @@ impl Key {
     }
 }
 
-/// What became of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Pixel {
-    /// Neither hits.
-    Empty,
-    /// Both hit, so far apart along the ray, in radii.
-    Off(f32),
-    /// Only one of them hits.
-    Alone,
-}
-
 /// One column's map.
+#[derive(Default)]
 struct Map {
-    picture: Picture,
-    pixels: Vec<Pixel>,
+    /// How far off each pixel is, along its ray.
+    pixels: Rc<[Pixel]>,
+    /// Whether they are of the cross that is asked for.
+    present: bool,
     texture: Option<TextureHandle>,
 }
 
@@ -99,7 +85,7 @@ impl Map {
     /// The distances where both hit, in radii.
     fn distances(&self) -> impl Iterator<Item = f64> {
         self.pixels.iter().filter_map(|pixel| match pixel {
-            Pixel::Off(distance) => Some(f64::from(*distance)),
+            Pixel::Off(distance) => Some(f64::from(*distance) / RADIUS),
             _ => None,
         })
     }
@@ -121,10 +107,10 @@ impl Map {
 
     fn image(&self, background: Color32, alone: Color32) -> ColorImage {
         let mut pixels = vec![background; SIDE * SIDE];
-        for (colour, pixel) in pixels.iter_mut().zip(&self.pixels) {
+        for (colour, pixel) in pixels.iter_mut().zip(self.pixels.iter()) {
             *colour = match pixel {
                 Pixel::Empty => background,
-                Pixel::Off(distance) => shade(share(f64::from(*distance)), true),
+                Pixel::Off(distance) => shade(share(f64::from(*distance) / RADIUS), true),
                 Pixel::Alone => alone,
             };
         }
@@ -138,83 +124,10 @@ fn share(radii: f64) -> f32 {
     (1.0 + libm::log10(radii.max(1e-12)) / decades).clamp(0.0, 1.0) as f32
 }
 
-/// The maps of one cross.
-struct Study {
-    key: Key,
-    exact: Picture,
-    projection: Projection,
-    maps: [Map; 3],
-}
-
-impl Study {
-    fn new(key: Key) -> Self {
-        let scene = |digger: &str| {
-            let file = File {
-                name: String::from("main.rat"),
-                text: key.text(digger),
-            };
-            rats::compile(&Project { files: vec![file] }).scene
-        };
-        let side = SIDE as u32;
-        let exact = scene("hermite");
-        Self {
-            key,
-            projection: exact.camera.projection(side, side),
-            exact: Picture::new(&exact, [side; 2]),
-            maps: COLUMNS.map(|(_, digger, _)| Map {
-                picture: Picture::new(&scene(digger), [side; 2]),
-                pixels: Vec::new(),
-                texture: None,
-            }),
-        }
-    }
-
-    fn is_full(&self) -> bool {
-        self.maps[0].pixels.len() >= SIDE * SIDE
-    }
-
-    /// The next pixels of all maps.
-    fn some(&mut self) {
-        let first = self.maps[0].pixels.len();
-        let middle = |i: usize| (i as f64 + 0.5) / SIDE as f64;
-        let ray = |index: usize| {
-            let (x, y) = (middle(index % SIDE), middle(index / SIDE));
-            (self.projection.eye, self.projection.direction(x, y))
-        };
-        let rays: Vec<_> = (first..(first + TOGETHER).min(SIDE * SIDE))
-            .map(ray)
-            .collect();
-        let exact = |(eye, way)| self.exact.hits(eye, way).first().map(|hit| hit.t);
-        let exact: Vec<Option<f64>> = rays.iter().copied().map(exact).collect();
-        for map in &mut self.maps {
-            for (hit, exact) in map.picture.cast(&rays).into_iter().zip(&exact) {
-                map.pixels.push(match (hit, exact) {
-                    (None, None) => Pixel::Empty,
-                    (Some(hit), Some(exact)) => Pixel::Off(((hit.t - exact).abs() / RADIUS) as f32),
-                    _ => Pixel::Alone,
-                });
-            }
-        }
-    }
-
-    /// Goes on until all is done or `enough` says so, which it is asked now and then. Gives
-    /// whether anything is new.
-    fn go_on(&mut self, mut enough: impl FnMut() -> bool) -> bool {
-        let before = self.maps[0].pixels.len();
-        while !self.is_full() {
-            self.some();
-            if enough() {
-                break;
-            }
-        }
-        self.maps[0].pixels.len() > before
-    }
-}
-
 /// The lesson's state.
 pub struct Spans {
     key: Key,
-    study: Option<Study>,
+    maps: [Map; 3],
     /// The textures are for these colours.
     colours: [Color32; 2],
 }
@@ -227,7 +140,7 @@ impl Default for Spans {
                 kernel: Kernel::Gauss,
                 blobbiness: 1.0,
             },
-            study: None,
+            maps: Default::default(),
             colours: [Color32::TRANSPARENT; 2],
         }
     }
@@ -236,7 +149,7 @@ impl Default for Spans {
 impl Spans {
     /// Shows the lesson.
     pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        self.work(ui);
+        self.measure(ui, bench);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.74);
         self.table(ui, &stage, bench);
         let controls = &mut stage.controls;
@@ -267,60 +180,54 @@ impl Spans {
         );
         heading(controls, "Distance from the surface: mean, worst");
         let strong = theme::palette(controls.visuals()).strong;
-        if let Some(study) = &self.study {
-            for ((title, _, name), map) in COLUMNS.iter().zip(&study.maps) {
-                let value = format!("{}, {}", percent(map.mean()), percent(map.worst()));
-                reading(controls, title, &value, strong);
-                bench.readings.insert(name, map.worst());
-            }
-            let alone = |i: usize| study.maps[i].alone();
-            let text = format!(
-                "In parts of the bars' radius, along the ray. Red: there is a hit where there should be none, or none where \
-                 there should be one; that is so in {}, {} and {} pixels.",
-                alone(0),
-                alone(1),
-                alone(2)
-            );
-            remark(controls, text);
-            bench.readings.insert("alone of 2", alone(0) as f64);
-            bench.readings.insert("alone certified", alone(2) as f64);
-            let done = study.is_full();
-            bench.readings.insert("finished", f64::from(u8::from(done)));
+        for ((title, _, name), map) in COLUMNS.iter().zip(&self.maps) {
+            let value = format!("{}, {}", percent(map.mean()), percent(map.worst()));
+            reading(controls, title, &value, strong);
+            bench.readings.insert(name, map.worst());
         }
+        let alone = |i: usize| self.maps[i].alone();
+        let text = format!(
+            "In parts of the bars' radius, along the ray. Red: there is a hit where there should be none, or none where \
+             there should be one; that is so in {}, {} and {} pixels.",
+            alone(0),
+            alone(1),
+            alone(2)
+        );
+        remark(controls, text);
+        bench.readings.insert("alone of 2", alone(0) as f64);
+        bench.readings.insert("alone certified", alone(2) as f64);
+        let done = self.maps.iter().all(|map| map.present);
+        bench.readings.insert("finished", f64::from(u8::from(done)));
         controls.add_space(4.0);
         legend(controls);
         stage.finish(ui);
     }
 
-    /// Traces on for a while.
-    fn work(&mut self, ui: &Ui) {
+    /// Takes in the maps that are there, and asks for those that are not.
+    fn measure(&mut self, ui: &Ui, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
-        let mut study = match self.study.take() {
-            Some(study) if study.key == self.key => study,
-            _ => Study::new(self.key),
-        };
-        let begun = platform::stopwatch();
-        let frame = f64::from(ui.input(|input| input.unstable_dt));
-        let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
-        let news = study.go_on(|| platform::stopwatch() - begun > budget);
         let colours = [palette.paper, palette.error];
-        if news || self.colours != colours {
-            self.colours = colours;
-            for map in &mut study.maps {
-                let image = map.image(colours[0], colours[1]);
-                match &mut map.texture {
-                    Some(texture) => texture.set(image, TextureOptions::NEAREST),
-                    None => {
-                        let options = TextureOptions::NEAREST;
-                        map.texture = Some(ui.ctx().load_texture("spans", image, options));
-                    }
+        let repaint = self.colours != colours;
+        self.colours = colours;
+        for (index, (map, (_, digger, _))) in self.maps.iter_mut().zip(COLUMNS).enumerate() {
+            let text = self.key.text(digger);
+            let slot = ("errors", index);
+            let (pixels, present) = bench.pictures.errors(slot, &text, SIDE as u32);
+            map.present = present;
+            let Some(pixels) = pixels.filter(|pixels| repaint || !Rc::ptr_eq(pixels, &map.pixels))
+            else {
+                continue;
+            };
+            map.pixels = pixels;
+            let image = map.image(colours[0], colours[1]);
+            match &mut map.texture {
+                Some(texture) => texture.set(image, TextureOptions::NEAREST),
+                None => {
+                    let options = TextureOptions::NEAREST;
+                    map.texture = Some(ui.ctx().load_texture("spans", image, options));
                 }
             }
         }
-        if !study.is_full() {
-            ui.ctx().request_repaint();
-        }
-        self.study = Some(study);
     }
 
     /// The pictures, and below each its map.
@@ -350,8 +257,7 @@ impl Spans {
             named(ui, place, &format!("The cross, {title}"));
             let below = place.translate(vec2(0.0, side + gap));
             painter.rect_filled(below, 6.0, palette.paper);
-            let map = self.study.as_ref().map(|study| &study.maps[index]);
-            if let Some(texture) = map.and_then(|map| map.texture.as_ref()) {
+            if let Some(texture) = &self.maps[index].texture {
                 let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
                 let shape = egui::epaint::RectShape::filled(below, 6.0, Color32::WHITE);
                 painter.add(shape.with_texture(texture.id(), whole));
@@ -415,26 +321,44 @@ fn legend(ui: &mut Ui) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rats::{File, Project};
+    use tracer::Tile;
+    use worker::errors::{Errors, unpack};
 
     #[test]
     fn more_spans_are_nearer_and_certified_ones_are_there() {
         for view in [View::Side, View::Front] {
-            let mut study = Study::new(Key {
+            let key = Key {
                 view,
                 ..Spans::default().key
+            };
+            let maps = COLUMNS.map(|(_, digger, _)| {
+                let file = File {
+                    name: String::from("main.rat"),
+                    text: key.text(digger),
+                };
+                let scene = rats::compile(&Project { files: vec![file] }).scene;
+                let side = SIDE as u32;
+                let tile = Tile {
+                    x: 0,
+                    y: 0,
+                    width: side,
+                    height: side,
+                };
+                let bytes = Errors::new(&scene, [side; 2]).trace(tile, &|| false);
+                Map {
+                    pixels: unpack(&bytes.unwrap()).into(),
+                    ..Map::default()
+                }
             });
-            assert!(!study.go_on(|| true) || !study.is_full());
-            while !study.is_full() {
-                study.go_on(|| false);
-            }
-            let [two, four, certified] = study.maps.each_ref().map(Map::worst);
-            let alone = study.maps.each_ref().map(Map::alone);
+            let [two, four, certified] = maps.each_ref().map(Map::worst);
+            let alone = maps.each_ref().map(Map::alone);
             assert!(two > 0.1 && four < two, "{two} {four}");
             assert!(certified < 0.01, "{certified}");
             assert!(alone[2] < 20 && alone[2] <= alone[0], "{alone:?}");
             // The cross is in the picture.
             let hits = |map: &Map| map.pixels.iter().filter(|p| **p != Pixel::Empty).count();
-            let part = hits(&study.maps[2]) as f64 / (SIDE * SIDE) as f64;
+            let part = hits(&maps[2]) as f64 / (SIDE * SIDE) as f64;
             assert!((0.1..0.6).contains(&part), "{part}");
         }
     }

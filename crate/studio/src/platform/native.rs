@@ -3,6 +3,7 @@
 use crate::intake::Taken;
 use crate::request::{Request, Requests};
 use crate::storage::Store;
+use egui_wgpu::wgpu;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
@@ -120,6 +121,9 @@ pub fn has_storage() -> bool {
 
 /// Says in the browser's tab what is open.
 pub fn set_title(_name: &str) {}
+
+/// There is none apart from the window's.
+pub fn pretended_card(_done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {}
 
 /// Reads a file of the page.
 #[must_use]

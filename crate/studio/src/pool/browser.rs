@@ -4,11 +4,10 @@
 //! when the app draws, so that workers have work even while the page is hidden or slow.
 
 use super::core::{Core, Workers};
-use super::{Job, News, Progress, TileDone, worker_count};
+use super::{Job, Progress, TileDone, worker_count};
 use js_sys::{Array, Uint8Array, WebAssembly};
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
-use tracer::Pass;
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{ErrorEvent, MessageEvent, Response, Window, Worker, WorkerOptions, WorkerType};
@@ -45,7 +44,7 @@ struct WebWorkers {
 
 struct Inner {
     core: Core<WebWorkers>,
-    repaint: Box<dyn Fn(News)>,
+    repaint: Box<dyn Fn()>,
     timer: Option<Timer>,
     loading: bool,
 }
@@ -187,9 +186,7 @@ impl Inner {
     fn answers(pool: &Rc<RefCell<Self>>, index: usize, answers: Vec<Answer>) {
         let inner = &mut *pool.borrow_mut();
         if inner.core.answers(index, answers, now()) {
-            let Progress { pass, finished, .. } = inner.core.progress(now());
-            let some = !finished && pass.is_some_and(|pass| pass != Pass::Coarse);
-            (inner.repaint)(if some { News::Some } else { News::Whole });
+            (inner.repaint)();
         }
     }
 
@@ -222,7 +219,7 @@ impl Inner {
                         now(),
                     ),
                 }
-                (inner.repaint)(News::Whole);
+                (inner.repaint)();
             }
             Self::watch(&pool);
         });
@@ -252,9 +249,10 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Starts the workers. `repaint` is called when there is something to [`Pool::poll`].
+    /// Starts the workers. `repaint` is called when a pass is complete, and
+    /// when it is known whether there can be a picture at all.
     #[must_use]
-    pub fn new(repaint: impl Fn(News) + Send + Sync + 'static) -> Self {
+    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
         let cores = window().map_or(1.0, |window| window.navigator().hardware_concurrency());
         let count = worker_count(cores as usize);
         let inner = Rc::new_cyclic(|pool| {

@@ -48,6 +48,7 @@ impl<W: Workers> Core<W> {
             generation: self.scheduler.number(),
             scene: Box::new(job.scene.clone()),
             size: job.size,
+            kind: job.kind,
         };
         match pack(&request) {
             Ok(bytes) => self.begin = bytes,

@@ -26,10 +26,12 @@ pub use progress::Progress;
 
 use scene::Scene;
 use tracer::{Pass, Tile};
+use worker::Kind;
 
-/// Longest side of a tile in pixels: small enough that a tile takes milliseconds, large enough that
-/// sending it takes a small share of that.
-pub const TILE: u32 = 32;
+/// Longest side of a tile in pixels: that of the squares in which the tracer finds out once for all pixels
+/// what is near. Small enough that a tile takes milliseconds, large enough that sending it takes a small
+/// share of that.
+pub const TILE: u32 = 64;
 /// The same for small pictures, of which there are many: fewer messages matter more.
 pub const SMALL_TILE: u32 = 56;
 /// Most workers, whatever the machine has: each holds its own copy of the scene.
@@ -45,18 +47,11 @@ pub struct Job<'a> {
     pub size: [u32; 2],
     /// The caller's number for it, given back with each tile.
     pub generation: u64,
+    /// What its pixels tell.
+    pub kind: Kind,
     /// Whether it is seen only once it is finished, as the small pictures of the lab are: then only
     /// the last pass is traced, and the app is not woken before the end.
     pub small: bool,
-}
-
-/// What there is to show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum News {
-    /// Some more tiles of a picture that is there already, coarser.
-    Some,
-    /// All of it, or whether it can be made at all.
-    Whole,
 }
 
 /// A finished tile.
@@ -68,7 +63,7 @@ pub struct TileDone {
     pub pass: Pass,
     /// Where it belongs. Each pass has the same tiles.
     pub tile: Tile,
-    /// RGBA, rows from the top.
+    /// Four bytes each, for what the job's [`Kind`] says; rows from the top.
     pub pixels: Vec<u8>,
 }
 

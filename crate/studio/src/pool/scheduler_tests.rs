@@ -14,7 +14,7 @@ const STATS: Stats = Stats {
 fn plan(generation: u64) -> Plan {
     Plan {
         generation,
-        size: [128, 96],
+        size: [256, 192],
         samples: 3,
         small: false,
     }
@@ -149,7 +149,7 @@ fn every_tile_is_done_once_in_each_pass_the_centre_first() {
         assert!(progress.fraction >= fraction, "the bar fell");
         fraction = progress.fraction;
     }
-    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE);
+    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
     assert_eq!(crowd.done.len(), 3 * tiles.len());
     assert_eq!(
         crowd.done.iter().collect::<HashSet<_>>().len(),
@@ -176,7 +176,7 @@ fn the_coarse_pass_is_handed_out_at_once_in_turn() {
     let mut crowd = Crowd::new(3);
     crowd.work();
     crowd.scheduler.start(plan(1), 0.0);
-    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE);
+    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
     let mut dealt = vec![None; tiles.len()];
     for command in crowd.scheduler.commands() {
         let Command::Trace(worker, orders) = command else {
@@ -249,7 +249,7 @@ fn a_new_picture_takes_the_place_of_the_old_one() {
     assert!(before > 0);
     crowd.start(1); // the same number again: tiles of the first run must not be mixed in
     crowd.work_off();
-    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE).len();
+    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE).len();
     assert_eq!(crowd.done.len(), before + 3 * tiles);
     assert!(crowd.progress().finished);
 }
@@ -326,7 +326,7 @@ fn a_worker_that_dies_is_replaced_and_its_tiles_done_again() {
     assert_eq!((progress.restarted, progress.failed_tiles), (1, 0));
     assert_eq!(
         crowd.done.iter().collect::<HashSet<_>>().len(),
-        3 * tracer::tile::tiles(128, 96, crate::pool::TILE).len()
+        3 * tracer::tile::tiles(256, 192, crate::pool::TILE).len()
     );
 }
 
@@ -376,7 +376,7 @@ fn slow_tiles_get_more_time() {
 
 #[test]
 fn a_deadly_tile_is_given_up_and_reported() {
-    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE);
+    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
     for workers in [1, 4] {
         let mut crowd = Crowd::new(workers);
         crowd.start(1); // the first picture has the number 1
@@ -407,7 +407,7 @@ fn nothing_is_tried_forever() {
     // Every tile kills.
     let mut crowd = Crowd::new(2);
     crowd.start(1);
-    let tiles = tracer::tile::tiles(128, 96, crate::pool::TILE);
+    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
     for &tile in &tiles {
         for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
             crowd.deadly.insert(Order {

@@ -26,12 +26,13 @@ fn scene() -> Scene {
 
 #[test]
 fn a_picture_comes_complete_and_a_new_one_replaces_it() {
-    let mut pool = Pool::new(|_| {});
+    let mut pool = Pool::new(|| {});
     let scene = scene();
     let job = |generation| Job {
         scene: &scene,
         size: [100, 70],
         generation,
+        kind: Kind::Colours,
         small: false,
     };
     pool.start(job(1));
@@ -54,7 +55,7 @@ fn a_picture_comes_complete_and_a_new_one_replaces_it() {
 
 #[test]
 fn a_killed_worker_is_missed_and_the_picture_still_completes() {
-    let mut pool = Pool::new(|_| {});
+    let mut pool = Pool::new(|| {});
     assert!(!pool.kill_worker(MAX_WORKERS + 1));
     assert!(pool.kill_worker(0));
     let scene = scene();
@@ -62,6 +63,7 @@ fn a_killed_worker_is_missed_and_the_picture_still_completes() {
         scene: &scene,
         size: [64, 64],
         generation: 1,
+        kind: Kind::Colours,
         small: false,
     };
     pool.start(job);

@@ -1,7 +1,7 @@
 //! The pool of native builds: one thread per worker. It serves the app's tests.
 
 use super::core::{Core, Workers};
-use super::{Job, News, Progress, TileDone, worker_count};
+use super::{Job, Progress, TileDone, worker_count};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,7 +13,7 @@ use worker::{Answer, Engine, Request, Step};
 /// A message from a thread: index, which thread of that index it was, answer.
 type Report = (usize, u64, Answer);
 /// What is called when tiles have come.
-type Repaint = Arc<dyn Fn(News) + Send + Sync>;
+type Repaint = Arc<dyn Fn() + Send + Sync>;
 
 struct Thread {
     requests: Sender<Vec<u8>>,
@@ -47,7 +47,7 @@ impl Workers for Threads {
             .spawn(move || {
                 let send = |answer| {
                     let sent = outbox.send((index, incarnation, answer)).is_ok();
-                    repaint(News::Whole);
+                    repaint();
                     sent
                 };
                 let work = || serve(&inbox, &shared, clock, &send);
@@ -139,7 +139,7 @@ impl Pool {
     /// Starts the workers. `repaint` is called, from any thread, when there is something to
     /// [`Pool::poll`].
     #[must_use]
-    pub fn new(repaint: impl Fn(News) + Send + Sync + 'static) -> Self {
+    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let count = worker_count(cores);
         let (sender, reports) = channel();

@@ -1,0 +1,214 @@
+//! The draft where the processor draws the window: on a graphics card that the browser pretends to have,
+//! small, and read back into a texture of egui's.
+//!
+//! The processor has no time for it while a traced picture comes soon, so it is made ready only when it was
+//! wanted for [`PATIENCE`].
+
+use crate::platform;
+use crate::session::Session;
+use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
+use egui_wgpu::wgpu;
+use preview::Sampling;
+use scene::Camera;
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// Seconds for which a draft is wanted in vain before the card is asked for.
+const PATIENCE: f64 = 0.5;
+/// Longest side of the draft, pixels.
+const LARGEST: f32 = 360.0;
+
+/// The draft, and whether there can be one.
+#[derive(Default)]
+pub struct Apart {
+    card: Rc<RefCell<Card>>,
+    /// When the draft came to be wanted, and when it last was.
+    wanted: Option<[f64; 2]>,
+}
+
+/// The pretended graphics card.
+#[derive(Default)]
+enum Card {
+    /// Not asked for.
+    #[default]
+    Unknown,
+    /// Asked for, or refused.
+    Away,
+    /// There.
+    Here(Box<Drawer>),
+}
+
+impl Apart {
+    /// The draft of the session's scene in a place of so many pixels, once there is one.
+    pub fn texture(
+        &mut self,
+        ctx: &Context,
+        session: &Session,
+        size: [f32; 2],
+    ) -> Option<TextureId> {
+        let now = platform::now(ctx);
+        let known = self.wanted.filter(|[_, last]| now - last < PATIENCE);
+        let begun = known.map_or(now, |[begun, _]| begun);
+        self.wanted = Some([begun, now]);
+        let card = &mut *self.card.borrow_mut();
+        match card {
+            // What was drawn the last time is of another camera or scene.
+            Card::Here(drawer) => drawer.texture(ctx, session, size, known.is_some()),
+            Card::Away => None,
+            Card::Unknown if now - begun < PATIENCE => {
+                ctx.request_repaint_after_secs((PATIENCE / 4.0) as f32);
+                None
+            }
+            Card::Unknown => {
+                *card = Card::Away;
+                let (place, ctx) = (Rc::downgrade(&self.card), ctx.clone());
+                platform::pretended_card(move |device, queue| {
+                    if let Some(place) = place.upgrade() {
+                        *place.borrow_mut() = Card::Here(Box::new(Drawer::new(device, queue)));
+                        ctx.request_repaint();
+                    }
+                });
+                None
+            }
+        }
+    }
+}
+
+/// What is drawn of what: the session's generation, the camera, the size.
+type Subject = (u64, Camera, [u32; 2]);
+
+/// A picture on its way back from the card.
+struct Coming {
+    buffer: wgpu::Buffer,
+    /// Bytes from one row to the next.
+    stride: usize,
+    size: [usize; 2],
+    state: Arc<AtomicU8>,
+}
+
+const DONE: u8 = 1;
+const LOST: u8 = 2;
+
+struct Drawer {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    draft: preview::Draft,
+    scene: Option<u64>,
+    drawn: Option<Subject>,
+    coming: Option<Coming>,
+    texture: Option<TextureHandle>,
+}
+
+impl Drawer {
+    fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let mut draft = preview::Draft::new(&device, &queue);
+        draft.set_sampling(Sampling::One);
+        Self {
+            device,
+            queue,
+            draft,
+            scene: None,
+            drawn: None,
+            coming: None,
+            texture: None,
+        }
+    }
+
+    /// The last draft that came back; unless it `follows` others only the wanted one.
+    fn texture(
+        &mut self,
+        ctx: &Context,
+        session: &Session,
+        size: [f32; 2],
+        follows: bool,
+    ) -> Option<TextureId> {
+        self.take(ctx);
+        if !follows {
+            self.texture = None;
+            self.drawn = None;
+        }
+        let scale = (LARGEST / size[0].max(size[1]).max(1.0)).min(1.0);
+        let size = size.map(|side| (side * scale).round().max(1.0) as u32);
+        let wanted = (session.generation(), session.camera(), size);
+        if self.coming.is_none() && self.drawn != Some(wanted) {
+            self.draw(session, wanted)?;
+        }
+        if self.coming.is_some() {
+            ctx.request_repaint();
+        }
+        self.texture.as_ref().map(TextureHandle::id)
+    }
+
+    /// Draws, and sends for the pixels.
+    fn draw(&mut self, session: &Session, subject: Subject) -> Option<()> {
+        let Self { device, queue, .. } = self;
+        let (generation, camera, size) = subject;
+        if self.scene != Some(generation) {
+            self.draft.set_scene(device, queue, &session.scene()?);
+            self.scene = Some(generation);
+        }
+        self.drawn = Some(subject);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("draft"),
+        });
+        self.draft
+            .render(device, queue, &mut encoder, &camera, size);
+        let texture = self.draft.texture()?;
+        let stride = (4 * texture.width()).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("draft"),
+            size: u64::from(stride) * u64::from(texture.height()),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(stride),
+                    rows_per_image: None,
+                },
+            },
+            texture.size(),
+        );
+        let size = [texture.width(), texture.height()].map(|side| side as usize);
+        queue.submit([encoder.finish()]);
+        let state = Arc::new(AtomicU8::new(0));
+        let told = state.clone();
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            told.store(if result.is_ok() { DONE } else { LOST }, Ordering::Relaxed);
+        });
+        self.coming = Some(Coming {
+            buffer,
+            stride: stride as usize,
+            size,
+            state,
+        });
+        Some(())
+    }
+
+    /// Takes in the pixels, if they have come.
+    fn take(&mut self, ctx: &Context) {
+        // An error is that of a device that is lost, which shows no more drafts.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        let is_over = |coming: &mut Coming| coming.state.load(Ordering::Relaxed) != 0;
+        let Some(coming) = self.coming.take_if(is_over) else {
+            return;
+        };
+        let Ok(bytes) = coming.buffer.get_mapped_range(..) else {
+            return;
+        };
+        let [width, _] = coming.size;
+        let rows = bytes.chunks_exact(coming.stride);
+        let rgba: Vec<u8> = rows.flat_map(|row| &row[..4 * width]).copied().collect();
+        let image = ColorImage::from_rgba_unmultiplied(coming.size, &rgba);
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::LINEAR),
+            None => self.texture = Some(ctx.load_texture("draft", image, TextureOptions::LINEAR)),
+        }
+    }
+}
