@@ -220,7 +220,7 @@ impl Bound {
         ];
         let magnitude;
         let rough = if kernel == Kernel::Cauchy && self.size <= 1.0 + u * u {
-            // Further away than it is long, or than its area is wide: that of an endless line or plane would be no less.
+            // Further away than it is long, or than its area is wide: that of an endless line or plane would be hardly less.
             let (point, rough) = envelope::cauchy_point(u);
             magnitude = self.whole * point;
             self.whole * rough

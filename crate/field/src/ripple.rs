@@ -11,6 +11,7 @@
 //! `y = 1/(1+q²)` it is `g = 4q²y²`, `|g′| ≤ 8qy²`, and `|g⁽ʲ⁾| ≤ 4(j+1)!·y^(1+j/2)`. So towards the axis the first two
 //! derivatives of the product stay finite, and the third and fourth do not.
 use crate::{Profile, Skeleton, Wave};
+use core::f64::consts::TAU;
 
 /// Bounds on the derivatives of a profile's factor, over the factor's largest size.
 #[derive(Clone, Debug)]
@@ -69,8 +70,10 @@ impl Ripple {
                 let kept = with_value(1.0, b.map(|d| times(steep, d)));
                 (product(&factor, &kept), None)
             }
+            // Without a length there is no field.
+            Skeleton::Arc { .. } if skeleton.measure() <= 0.0 => return None,
             Skeleton::Arc { radius, angle, .. } => {
-                let [s1, s2, s3, s4] = wave(0, one_over(*angle));
+                let [s1, s2, s3, s4] = wave(0, one_over(angle.min(TAU)));
                 let by = [
                     s1,
                     s2 + s1,

@@ -17,6 +17,8 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Seconds for which a draft is wanted in vain before the card is asked for.
 const PATIENCE: f64 = 0.5;
+/// Seconds between two looks for a picture on its way back: a card that is lost never sends it.
+const LOOK: f32 = 0.02;
 /// Longest side of the draft, pixels.
 const LARGEST: f32 = 360.0;
 
@@ -128,15 +130,16 @@ impl Drawer {
         if !follows {
             self.texture = None;
             self.drawn = None;
+            self.coming = None;
         }
         let scale = (LARGEST / size[0].max(size[1]).max(1.0)).min(1.0);
         let size = size.map(|side| (side * scale).round().max(1.0) as u32);
         let wanted = (session.generation(), session.camera(), size);
         if self.coming.is_none() && self.drawn != Some(wanted) {
-            self.draw(session, wanted)?;
+            self.draw(session, wanted);
         }
         if self.coming.is_some() {
-            ctx.request_repaint();
+            ctx.request_repaint_after_secs(LOOK);
         }
         self.texture.as_ref().map(TextureHandle::id)
     }
@@ -200,6 +203,8 @@ impl Drawer {
             return;
         };
         let Ok(bytes) = coming.buffer.get_mapped_range(..) else {
+            // It may be tried again.
+            self.drawn = None;
             return;
         };
         let [width, _] = coming.size;

@@ -225,7 +225,7 @@ impl App {
             let text = "This browser stores nothing for this page, so your work lasts until you close it. Share makes a link that keeps it.";
             self.notice = Some(Notice::trouble(text));
         } else if self.backend == Backend::None {
-            let text = "No graphics card here: drafts are rare, everything else works.";
+            let text = "No graphics card here: few drafts or none, everything else works.";
             self.notice = Some(Notice::done(text, now));
         }
     }

@@ -239,13 +239,17 @@ fn webgl2() -> Option<WebGl2RenderingContext> {
 
 /// Whether the processor computes what a context draws.
 fn is_pretended(context: &WebGl2RenderingContext) -> bool {
-    // Without the extension some browsers tell nothing, others the same by the plain name.
-    let _ = context.get_extension("WEBGL_debug_renderer_info");
-    let names = [UNMASKED_RENDERER, WebGl2RenderingContext::RENDERER];
-    names
-        .into_iter()
-        .filter_map(|name| context.get_parameter(name).ok()?.as_string())
-        .any(|name| backend::is_processor(&name))
+    let is_processor = |name: u32| {
+        let name = context.get_parameter(name).ok();
+        name.and_then(|name| name.as_string())
+            .is_some_and(|name| backend::is_processor(&name))
+    };
+    // Some browsers tell it by the plain name, others only with the extension.
+    is_processor(WebGl2RenderingContext::RENDERER)
+        || matches!(
+            context.get_extension("WEBGL_debug_renderer_info"),
+            Ok(Some(_))
+        ) && is_processor(UNMASKED_RENDERER)
 }
 
 /// How wgpu is set up for a backend.

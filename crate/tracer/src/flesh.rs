@@ -152,16 +152,35 @@ impl Soft {
             }
             off
         };
-        if self.off(&hits, &flesh, base, &of_slabs(|spent| spent.shared)) != 0 {
+        let shared = self.off(&hits, &flesh, base, &of_slabs(|spent| spent.shared)) == 0;
+        if !shared {
             flesh = self.settle_on(&hits, false, scratch);
         }
         let mut blurred = self.off(&hits, &flesh, base, &of_slabs(|spent| spent.noise));
         if blurred != 0 {
             // What is known of a whole slab is more than what there is at one place of it.
-            blurred &= self.off(&hits, &flesh, base, &self.noise(&hits, &flesh, scratch));
+            blurred &= self.off(
+                &hits,
+                &flesh,
+                base,
+                &self.noise(&hits, &flesh, shared, scratch),
+            );
         }
-        for lane in (0..PACKET).filter(|i| blurred >> i & 1 != 0) {
-            flesh.t[lane] = self.exactly(&hits, ray(lane), lane, flesh.t[lane], scratch);
+        for &(slab, lanes) in hits.places {
+            let lanes = lanes & blurred;
+            if lanes == 0 {
+                continue;
+            }
+            let mut list = Vec::new();
+            hits.slabs.each(slab, true, |p| list.push(p));
+            if list.len() > MOST_EXACT {
+                continue;
+            }
+            for lane in (0..PACKET).filter(|i| lanes >> i & 1 != 0) {
+                let exact = self.exactly(&hits, ray(lane), lane, flesh.t[lane], &list);
+                scratch.evaluations += (list.len() * MOST_POLISHING) as u64;
+                flesh.t[lane] = exact;
+            }
         }
         flesh
     }
@@ -177,10 +196,16 @@ impl Soft {
         })
     }
 
-    /// How far single precision may be off at each hit.
+    /// How far single precision may be off at each hit, with the interpolants that are shared or with all primitives.
     #[cold]
     #[inline(never)]
-    fn noise(&self, hits: &Hits<'_>, flesh: &Flesh, scratch: &mut Scratch) -> [f64; PACKET] {
+    fn noise(
+        &self,
+        hits: &Hits<'_>,
+        flesh: &Flesh,
+        shared: bool,
+        scratch: &mut Scratch,
+    ) -> [f64; PACKET] {
         let rounding = self.precision.rounding as f32;
         let at = f32x8::from_lanes(|i| flesh.t[i]);
         let point: [f32x8; 3] = core::array::from_fn(|k| hits.origin[k] + hits.direction[k] * at);
@@ -189,51 +214,47 @@ impl Soft {
             .fold(f32x8::splat(1.0), |most, x| most.fast_max(x.abs()));
         let misplaced = f32x8::splat(rounding) * (furthest + at);
         let mut noise = f32x8::splat(0.0);
+        let mut add = |value: f32x8, [x, y, z]: [f32x8; 3], cancels: f64, lanes: u32| {
+            let steep = (x * x + y * y + z * z).sqrt();
+            let value = f32x8::splat(4.0) * value.abs() + f32x8::splat(2.0 * cancels as f32);
+            noise += (f32x8::splat(rounding) * value + misplaced * steep) & mask(lanes);
+        };
         for &(p, lanes) in &scratch.active.list {
             let jet: Jet<f32x8> = self.primitives[p as usize].jet(point);
-            let [x, y, z] = jet.gradient;
-            let steep = (x * x + y * y + z * z).sqrt();
-            let cancels = 2.0 * self.bounds()[p as usize].cancels() as f32;
-            let value = f32x8::splat(4.0) * jet.value.abs() + f32x8::splat(cancels);
-            noise += (f32x8::splat(rounding) * value + misplaced * steep) & mask(lanes);
+            let cancels = self.bounds()[p as usize].cancels();
+            add(jet.value, jet.gradient, cancels, lanes);
+        }
+        for &(slab, lanes) in hits.places.iter().filter(|_| shared) {
+            hits.slabs.each_block(slab, |block| {
+                let (value, gradient) = block.total.jet(block.cell.local(point));
+                add(value, block.cell.world(gradient), 0.0, lanes);
+            });
         }
         scratch.evaluations += (scratch.active.list.len() * PACKET) as u64;
         noise.to_array().map(f64::from)
     }
 
-    /// A hit moved onto the surface in double precision, from a place near it; that place, where no step leads nearer.
+    /// A hit moved onto the surface of some primitives in double precision, from a place near it; that place, where no step leads
+    /// nearer.
     #[cold]
-    fn exactly(
-        &self,
-        hits: &Hits<'_>,
-        ray: &Ray,
-        lane: usize,
-        start: f64,
-        scratch: &mut Scratch,
-    ) -> f64 {
+    fn exactly(&self, hits: &Hits<'_>, ray: &Ray, lane: usize, start: f64, list: &[u32]) -> f64 {
         let furthest = f64::from(hits.furthest.to_array()[lane]);
-        let own = hits.places.iter().find(|place| place.1 >> lane & 1 != 0);
-        let mut list = Vec::new();
-        if let Some(&(slab, _)) = own {
-            hits.slabs.each(slab, true, |p| list.push(p));
-        }
         let (mut best, mut nearest) = (start, f64::INFINITY);
         let mut t = start;
         for _ in 0..MOST_POLISHING {
             let point = ray.at(t).to_array();
             let (mut excess, mut slope) = (-THRESHOLD, 0.0);
-            for &p in &list {
+            for &p in list {
                 let jet = self.primitives[p as usize].jet(point);
                 excess += jet.value;
                 slope += DVec3::from_array(jet.gradient).dot(ray.direction);
             }
-            scratch.evaluations += list.len() as u64;
             if excess.abs() >= nearest {
                 break;
             }
             (best, nearest) = (t, excess.abs());
             t -= excess / slope;
-            if (t - hits.exact[lane]).abs() > furthest || t.is_nan() {
+            if (t - hits.exact[lane]).abs() > furthest || t < 0.0 || t.is_nan() {
                 break;
             }
         }
@@ -318,6 +339,8 @@ impl Soft {
 /// Evaluations at the hits. Newton's step from a place near the surface leads onto it as exactly as
 /// single precision can tell, but normal and colours are those of the place the step started from.
 const MOST_POLISHING: usize = 3;
+/// Hits among more primitives than this are left where single precision has them.
+const MOST_EXACT: usize = 1 << 16;
 /// Where the field is within this of T, normal and colours are those of the surface: they change
 /// by about one part in a thousand on the way there, less than a picture shows.
 pub const NEAR_ENOUGH: f32 = 1e-3;

@@ -42,7 +42,7 @@
 //! - There pictures show a field within 5·10⁻⁴·T of the true one, or as near as rounding lets it come where that is
 //!   less, and what is shared adds at most 4·10⁻⁴·T; hits are then
 //!   moved onto the field itself, unless what is shared moves them by less than half the tolerance; in double precision, where
-//!   rounding may move them by more than that.
+//!   rounding may move them by more than that and no more than 2¹⁶ primitives are near.
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
 //! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are

@@ -110,7 +110,8 @@ impl Span<f64> {
         let [a, b, c, d] = self.0;
         let sides = self.0.map(|x| x < level);
         let changes = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
-        if changes == 1 && !self.0.contains(&level) {
+        let known = |x: &f64| x.is_finite() && *x != level;
+        if changes == 1 && self.0.iter().all(known) {
             // As many roots as sign changes, if that is one (variation diminishing).
             let over = |x| {
                 let (value, slope) = self.value_and_slope(x);
@@ -195,11 +196,18 @@ mod tests {
             // Samples may miss two that are near to one another.
             let found = found.as_slice();
             assert!(found.len() >= sampled, "{span:?} {found:?}");
+            assert!(found.is_sorted_by(|a, b| a < b), "{span:?} {found:?}");
             for &x in found {
                 assert!(span.value_and_slope(x).0.abs() < 1e-12, "{span:?} {x}");
             }
             counts[found.len()] += 1;
         }
         assert!(counts.iter().take(3).all(|count| *count > 50), "{counts:?}");
+        // What is no number crosses nothing.
+        for bad in [f64::NAN, f64::INFINITY] {
+            let _ = Span([bad, 0.4, 0.5, 0.6]).crossings(0.5);
+            let found = Span([bad, bad, 0.5, 0.4]).crossings(1.0);
+            assert!(found.as_slice().is_empty(), "{found:?}");
+        }
     }
 }

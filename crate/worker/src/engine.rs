@@ -226,7 +226,14 @@ mod tests {
     #[test]
     fn a_high_tile_is_traced_in_parts_and_is_then_the_same() {
         for (pass, parts) in [(Pass::Coarse, 1), (Pass::Full, 3), (Pass::Smooth, 3)] {
-            let scene: Box<Scene> = Box::default();
+            let text = "surface flesh diffuse Coral, blobbiness -2\nsphere flesh 1 <0.2 -0.3 0>";
+            let file = rats::File {
+                name: "main.rat".into(),
+                text: text.into(),
+            };
+            let compiled = rats::compile(&rats::Project { files: vec![file] });
+            assert_eq!(compiled.diagnostics, []);
+            let scene = Box::new(compiled.scene);
             let (size, tile) = ([90, 80], [5, 8, 70, 70]);
             let [x, y, width, height] = tile;
             let tile = Tile {

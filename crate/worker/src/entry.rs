@@ -50,8 +50,11 @@ pub fn serve() -> Result<(), JsValue> {
     let on_tick = Closure::<dyn FnMut()>::new(move || {
         let desk = &mut *listener.borrow_mut();
         desk.ticking = false;
-        if let Step::Answer(answer) = desk.engine.step(&|| false, &clock) {
-            desk.answer(answer);
+        match desk.engine.step(&|| false, &clock) {
+            Step::Answer(answer) => desk.answer(answer),
+            // Of a tile that takes long the page would hold what it has not heard of the ones before against it.
+            Step::Part | Step::Dropped => desk.send_old(),
+            Step::Idle => {}
         }
         desk.tick();
     });
@@ -84,12 +87,24 @@ impl Desk {
     fn answer(&mut self, answer: Answer) {
         let can_wait = matches!(answer, Answer::Traced { .. }) && !self.engine.is_idle();
         self.answers.push(answer);
-        let now = clock();
-        if !can_wait || now - self.sent >= TOGETHER {
-            send(&self.answers);
-            self.answers.clear();
-            self.sent = now;
+        if can_wait {
+            self.send_old();
+        } else {
+            self.send_all();
         }
+    }
+
+    /// Sends what has been held back, if it has been for long.
+    fn send_old(&mut self) {
+        if !self.answers.is_empty() && clock() - self.sent >= TOGETHER {
+            self.send_all();
+        }
+    }
+
+    fn send_all(&mut self) {
+        send(&self.answers);
+        self.answers.clear();
+        self.sent = clock();
     }
 
     fn tick(&mut self) {

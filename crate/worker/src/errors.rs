@@ -78,6 +78,7 @@ impl Errors {
         let mut bytes = Vec::new();
         for y in tile.y..tile.y + tile.height {
             let end = tile.x + tile.width;
+            // Which rays are followed together does not depend on the tiles, whose sides are multiples of that.
             for left in (tile.x..end).step_by(TOGETHER as usize) {
                 let rays: Vec<_> = (left..end.min(left + TOGETHER))
                     .map(|x| ray(x, y))

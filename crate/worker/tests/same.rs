@@ -11,9 +11,9 @@ use tracer::{Pass, Stats, Tile, tiles};
 use worker::{Answer, Engine, Kind, Order, Request, Step};
 
 /// Side of the page's tiles.
-const TILE: u32 = 32;
+const TILE: u32 = 64;
 /// So many tiles of a picture are traced, spread over its middle.
-const TILES: usize = 10;
+const TILES: usize = 3;
 /// At most n×n rays a pixel.
 const SAMPLES: u32 = 2;
 

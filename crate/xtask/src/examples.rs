@@ -1,6 +1,6 @@
 //! The thumbnails of the gallery.
 
-use crate::shell::{cargo, command, root, run, target};
+use crate::shell::{PORTABLE, cargo, command, portable, root, run, target};
 use anyhow::{Context, Result, bail};
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
@@ -25,11 +25,9 @@ pub fn portable_sinew() -> Result<Option<PathBuf>> {
     if !cfg!(target_arch = "x86_64") {
         return Ok(None);
     }
-    let folder = target().join("portable");
     let mut build = cargo(&["build", "--release", "--package", "cli"]);
-    build.env("RUSTFLAGS", "-C target-cpu=x86-64");
-    run(build.env("CARGO_TARGET_DIR", &folder))?;
-    let program = folder.join("release/sinew");
+    run(build.envs(portable()))?;
+    let program = target().join(PORTABLE).join("release/sinew");
     Ok(Some(
         program.with_extension(std::env::consts::EXE_EXTENSION),
     ))

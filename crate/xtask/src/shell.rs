@@ -22,6 +22,17 @@ pub fn target() -> PathBuf {
         .map_or_else(|| root().join("target"), |dir| root().join(dir))
 }
 
+/// The folder in [`target`] of what is built for any processor of this one's kind.
+pub const PORTABLE: &str = "portable";
+
+/// What to set for cargo to build that, where `.cargo/config.toml` asks for all that this processor can do.
+pub fn portable() -> [(&'static str, std::ffi::OsString); 2] {
+    [
+        ("RUSTFLAGS", "-C target-cpu=x86-64".into()),
+        ("CARGO_TARGET_DIR", target().join(PORTABLE).into()),
+    ]
+}
+
 /// A command that runs in the root of the repository.
 pub fn command(program: impl AsRef<OsStr>, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);

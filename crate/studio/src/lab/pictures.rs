@@ -60,13 +60,14 @@ struct Running {
 }
 
 /// What a slot shows.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Shown {
     /// The picture of this text.
     Picture,
     /// The picture of a text before, while this one's is on its way.
     Older,
     /// Nothing yet.
+    #[default]
     Nothing,
     /// The reason why there will be no picture.
     Refused(String),
@@ -320,13 +321,13 @@ impl Pictures {
     }
 
     /// How far off a text's digger is, in a square of so many pixels. What is not there yet is asked for, and
-    /// meanwhile that of the text before it stands in. Second, whether it is of this text.
+    /// meanwhile that of the text before it stands in.
     pub fn errors(
         &mut self,
         slot: impl Hash,
         text: &str,
         side: u32,
-    ) -> (Option<Rc<[Pixel]>>, bool) {
+    ) -> (Option<Rc<[Pixel]>>, Shown) {
         let slot = hashed(slot);
         let key = hashed((text, side));
         let last = self.slots.get(&slot).copied();
@@ -334,16 +335,21 @@ impl Pictures {
             let entry = self.entries.get_mut(&key)?;
             entry.used = self.frame;
             match &entry.kept {
-                Kept::Measured(pixels) => Some(pixels.clone()),
-                Kept::Drawn(_) | Kept::Refused(_) => None,
+                Kept::Measured(pixels) => Some(Ok(pixels.clone())),
+                Kept::Refused(reason) => Some(Err(reason.clone())),
+                Kept::Drawn(_) => None,
             }
         };
-        if let Some(pixels) = kept(key) {
-            self.slots
-                .insert(slot, (key, last.map_or(0, |(_, given)| given)));
-            return (Some(pixels), true);
+        match kept(key) {
+            Some(Ok(pixels)) => {
+                self.slots
+                    .insert(slot, (key, last.map_or(0, |(_, given)| given)));
+                return (Some(pixels), Shown::Picture);
+            }
+            Some(Err(reason)) => return (None, Shown::Refused(reason)),
+            None => {}
         }
-        let older = last.and_then(|(last, _)| kept(last));
+        let older = last.and_then(|(last, _)| kept(last)?.ok());
         self.wishes.push(Wish {
             slot,
             key,
@@ -352,6 +358,11 @@ impl Pictures {
             kind: Kind::Errors,
             background: [0.0; 3],
         });
-        (older, false)
+        let shown = if older.is_some() {
+            Shown::Older
+        } else {
+            Shown::Nothing
+        };
+        (older, shown)
     }
 }

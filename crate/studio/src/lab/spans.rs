@@ -6,6 +6,7 @@
 
 use super::Bench;
 use super::grid::refused;
+use super::pictures::Shown;
 use super::slice::shade;
 use super::tools::{Stage, choice, heading, reading, remark, slider};
 use crate::theme;
@@ -76,8 +77,8 @@ impl Key {
 struct Map {
     /// How far off each pixel is, along its ray.
     pixels: Rc<[Pixel]>,
-    /// Whether they are of the cross that is asked for.
-    present: bool,
+    /// Whether they are of the cross that is asked for, or why they are not.
+    shown: Shown,
     texture: Option<TextureHandle>,
 }
 
@@ -196,7 +197,8 @@ impl Spans {
         remark(controls, text);
         bench.readings.insert("alone of 2", alone(0) as f64);
         bench.readings.insert("alone certified", alone(2) as f64);
-        let done = self.maps.iter().all(|map| map.present);
+        let still = |map: &Map| matches!(map.shown, Shown::Older | Shown::Nothing);
+        let done = !self.maps.iter().any(still);
         bench.readings.insert("finished", f64::from(u8::from(done)));
         controls.add_space(4.0);
         legend(controls);
@@ -212,8 +214,8 @@ impl Spans {
         for (index, (map, (_, digger, _))) in self.maps.iter_mut().zip(COLUMNS).enumerate() {
             let text = self.key.text(digger);
             let slot = ("errors", index);
-            let (pixels, present) = bench.pictures.errors(slot, &text, SIDE as u32);
-            map.present = present;
+            let (pixels, shown) = bench.pictures.errors(slot, &text, SIDE as u32);
+            map.shown = shown;
             let Some(pixels) = pixels.filter(|pixels| repaint || !Rc::ptr_eq(pixels, &map.pixels))
             else {
                 continue;
@@ -262,6 +264,7 @@ impl Spans {
                 let shape = egui::epaint::RectShape::filled(below, 6.0, Color32::WHITE);
                 painter.add(shape.with_texture(texture.id(), whole));
             }
+            refused(ui, below, &self.maps[index].shown);
             named(ui, below, &format!("Map of the error, {title}"));
         }
     }

@@ -11,7 +11,7 @@ pub const AHEAD: f64 = 0.25;
 /// Most tiles a worker is given ahead.
 pub const MOST_AHEAD: usize = 64;
 /// Least seconds a tile may take.
-pub const TILE_LIMIT: f64 = 10.0;
+pub const TILE_LIMIT: f64 = 20.0;
 /// A tile may take so many times longer than the slowest of its pass so far, …
 pub const SLACK: f64 = 20.0;
 /// … and so many times longer again after each failure, …

@@ -82,7 +82,7 @@ pub fn measure() -> Result<Piece> {
     );
     page += "Ours is built for this machine's processor, as `.cargo/config.toml` says; the columns called portable are of the \
              same program built with `RUSTFLAGS=\"-C target-cpu=x86-64\"`, for any. It draws the same pictures, bit for \
-             bit.\n\n";
+             bit. POV-Ray is what its package brings, as a rule built for any processor, too.\n\n";
     let portable = examples::portable_sinew()?;
     let mut best = HashMap::new();
     for smooth in [false, true] {
