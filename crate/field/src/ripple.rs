@@ -170,3 +170,19 @@ fn product(a: &[f64; 5], b: &[f64; 5]) -> [f64; 4] {
 fn times(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At 0 the derivatives of `e^t·e^(2t)` are the powers of 3.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn a_product_has_all_of_its_terms() {
+        let bounds = Ripple::of_product(&[1.0; 5], &[2.0, 4.0, 8.0, 16.0]);
+        assert_eq!(bounds, [9.0, 27.0, 81.0]);
+        // What is not bounded counts only where the factor changes so.
+        let field = [1.0, 1.0, 1.0, f64::INFINITY, f64::INFINITY];
+        assert_eq!(Ripple::of_product(&field, &[0.0; 4])[0], 1.0);
+    }
+}
