@@ -472,6 +472,19 @@ mod tests {
             .collect()
     }
 
+    /// All rays of a packet, through all of it, without a guess.
+    fn way(noise: f32) -> Way {
+        Way {
+            from: f32x8::splat(0.0),
+            to: f32x8::splat(3.9),
+            guess: f32x8::splat(f32::INFINITY),
+            first: f32x8::splat(f32::INFINITY),
+            alive: 255,
+            tolerance: 5e-5,
+            noise,
+        }
+    }
+
     /// All from the start on.
     fn turns(steps: &[Step]) -> Vec<Turn> {
         let turn = |step| Turn {
@@ -532,15 +545,7 @@ mod tests {
                 (origin, (aim - origin).normalize())
             });
             let steps = steps(&primitives, &rays);
-            let way = Way {
-                from: f32x8::splat(0.0),
-                to: f32x8::splat(3.9),
-                guess: f32x8::splat(f32::INFINITY),
-                first: f32x8::splat(f32::INFINITY),
-                alive: 255,
-                tolerance: 5e-5,
-                noise: 0.0,
-            };
+            let way = way(0.0);
             let turns = turns(&steps);
             let lumps = Stairs {
                 steps: &steps,
@@ -594,15 +599,7 @@ mod tests {
                 (origin, (aim - origin).normalize())
             });
             let steps = steps(&primitives, &rays);
-            let way = Way {
-                from: f32x8::splat(0.0),
-                to: f32x8::splat(3.9),
-                guess: f32x8::splat(f32::INFINITY),
-                first: f32x8::splat(f32::INFINITY),
-                alive: 255,
-                tolerance: 5e-5,
-                noise: NOISE as f32,
-            };
+            let way = way(NOISE as f32);
             let turns = turns(&steps);
             let lumps = Stairs {
                 steps: &steps,
