@@ -111,7 +111,7 @@ impl<R: Real> Ceiling<R> {
         let away = distance * self.scale;
         let square = away * away;
         let chord = (R::splat(1.0) - square).max(zero);
-        self.peak * R::select(zero.lt(self.compact), chord, (-square).exp())
+        self.peak * R::select(zero.lt(self.compact), chord, square.decay())
     }
 }
 
@@ -497,12 +497,12 @@ impl<R: Real> Abreast<R> {
             // No ray feels an end.
             return (R::splat(2.0), R::splat(0.0));
         }
-        let bell = (-(near * near)).exp();
+        let bell = (near * near).decay();
         let mut share = reach(near, bell);
         let mut change = -bell;
         if !self.long {
             let far = side + self.half;
-            let bell = (-(far * far)).exp();
+            let bell = (far * far).decay();
             share = share - far.erfc(bell);
             change = change + bell;
         }
@@ -526,10 +526,10 @@ impl<R: Real> Abreast<R> {
         let zero = R::splat(0.0);
         let x = zero.max(a.min(b)).min(a.max(b));
         let near = x.abs() - self.half;
-        let bell = (-(near * near)).exp();
+        let bell = (near * near).decay();
         // What is nearest to an end of the segment; from the other end it is further.
         let apart = near.max(-last).max(zero);
-        let at_end = (-(apart * apart)).exp();
+        let at_end = (apart * apart).decay();
         // y·e^(−y²) is largest at √½, and falls from there.
         let steepest = apart.max(R::splat(FRAC_1_SQRT_2));
         (reach(near, bell), [at_end, steepest * at_end])

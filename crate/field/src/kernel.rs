@@ -207,7 +207,7 @@ impl Kernel {
                 (g, R::splat(-2.0) * g * i)
             }
             Self::Gauss => {
-                let g = (-q).exp();
+                let g = q.decay();
                 (g, -g)
             }
             Self::Inverse => {

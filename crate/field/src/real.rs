@@ -81,10 +81,16 @@ pub trait Real:
     /// tiny. `bell` is e^(−x²), which whoever wants the one mostly has.
     fn erfc(self, bell: Self) -> Self;
 
-    /// e^x; 0 for x below −87 in single precision.
-    fn exp(self) -> Self;
+    /// e^(−x), x ≥ −88; 0 in single precision for x above 88.
+    fn decay(self) -> Self;
     /// The natural logarithm of a positive, normal number.
     fn ln(self) -> Self;
+
+    /// e^x, x ≤ 88.
+    #[inline(always)]
+    fn exp(self) -> Self {
+        (-self).decay()
+    }
 
     /// ln(1+x), x > −1, to the last digits also where x is small.
     #[inline(always)]
@@ -134,11 +140,22 @@ pub trait Scalar: Real<Scalar = Self> + PartialEq + core::fmt::Debug {
 }
 
 /// `c₀ + c₁x + c₂x² + …`
+///
+/// Longer ones as a polynomial of x² for even powers and one for odd: processors follow both at a time, where in one row
+/// each step would wait for the one before.
 #[inline(always)]
 pub(crate) fn polynomial<R: Real, const N: usize>(x: R, coefficients: [f64; N]) -> R {
-    let mut sum = R::splat(coefficients[N - 1]);
-    for i in (0..N - 1).rev() {
-        sum = sum * x + R::splat(coefficients[i]);
+    let every = |step: usize, last: usize, x: R| {
+        let mut sum = R::splat(coefficients[last]);
+        for i in (0..last).rev().skip(step - 1).step_by(step) {
+            sum = sum * x + R::splat(coefficients[i]);
+        }
+        sum
+    };
+    if N < 5 {
+        return every(1, N - 1, x);
     }
-    sum
+    let square = x * x;
+    let [even, odd] = [(N - 1) & !1, (N - 2) | 1].map(|last| every(2, last, square));
+    even + x * odd
 }

@@ -164,7 +164,7 @@ tests! {
                 }
             }
         }
-        assert_eq!(hash, 0x10B0_D40A_B3C9_478C, "{hash:#018x}");
+        assert_eq!(hash, 0xE4BB_E5F0_E4EF_45A6, "{hash:#018x}");
     }
 
     /// Against a five-point difference of the value.

@@ -96,7 +96,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
         [one[0] + other[0], one[1] + other[1], one[2] + other[2]]
     };
 
-    let factor = radius * (-(z * z + gap * gap)).exp();
+    let factor = radius * (z * z + gap * gap).decay();
     let value = factor * sums[0];
     let radial = -two * (gap * value + two * radius * factor * sums[1]);
     let tangential = two * two * radius * factor * sums[2];
@@ -158,7 +158,7 @@ fn piece<R: Real>(coupling: R, ends: R, from: R, [low, high]: [R; 2]) -> [R; 3] 
         let (c, d) = (mean_cosine * cosine, mean_sine * sine);
         for (s, c) in [(a + b, c - d), (a - b, c + d)] {
             let square = s * s;
-            let e = weight * (-(coupling * square)).exp();
+            let e = weight * (coupling * square).decay();
             sums[0] = sums[0] + e;
             sums[1] = sums[1] + e * square;
             sums[2] = sums[2] + e * (s * c);

@@ -75,7 +75,7 @@ fn large<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
         let (t0, t1) = (off_zero(from), off_zero(from + R::lift(edge.length)));
         let signed = ax * y - ay * x - R::lift(edge.offset);
         let h = signed.abs();
-        let bell = (-(h * h)).exp();
+        let bell = (h * h).decay();
         let erfc = h.erfc(bell);
         let (first, last) = (wing(h, bell, erfc, t0), wing(h, bell, erfc, t1));
         let angle = direction(h * (t1 - t0), h * h + t0 * t1);
@@ -97,7 +97,7 @@ fn large<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
     let rounding = R::splat(if R::DOUBLE { 1e-14 } else { 2e-6 });
     let outside = angles.abs().lt(rounding);
     let angles = R::select(outside, zero, angles);
-    let height = (-(z * z)).exp();
+    let height = (z * z).decay();
     let value = R::splat(0.5) * height * (angles - beyond);
     let slope = R::splat(1.0 / FRAC_2_SQRT_PI) * height;
     Jet {
@@ -128,7 +128,7 @@ struct Wing<R> {
 fn wing<R: Real>(h: R, bell_h: R, erfc_h: R, t: R) -> Wing<R> {
     let quarter_turn = R::splat(FRAC_PI_2);
     let size = t.abs();
-    let bell_t = (-(t * t)).exp();
+    let bell_t = (t * t).decay();
     let erfc = size.erfc(bell_t);
     let wide = h.lt(size);
     let core = owen(
@@ -248,7 +248,7 @@ fn small<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
                     for node in [node, -node] {
                         let t = start + length * R::splat(0.5 * (1.0 + node));
                         let dx = qx - s * t;
-                        let e = R::splat(w) * (-(dx * dx + beside)).exp();
+                        let e = R::splat(w) * (dx * dx + beside).decay();
                         row = [row[0] + e, row[1] + dx * e];
                     }
                 }
@@ -296,7 +296,7 @@ mod tests {
         for h in [1e-9, 1e-3, 0.1, 0.4, 0.9, 1.0, 1.7, 2.5, 4.0] {
             for t in [1e-6, 1e-2, 0.3, 0.9, 1.0, 1.1, 2.0, 3.0, 5.0, 30.0] {
                 let size = R::splat(h);
-                let bell = (-(size * size)).exp();
+                let bell = (size * size).decay();
                 let wing = wing(size, bell, size.erfc(bell), R::splat(t));
                 let got = (wing.rest + wing.level).lane(0);
                 let want = by_angle(h, t);

@@ -42,8 +42,8 @@ fn long<R: Real>(half: R, [x, y, z]: [R; 3]) -> Jet<R> {
     let two = R::splat(2.0);
     let abreast = x.abs();
     let (a, b) = (abreast - half, abreast + half);
-    let beside = (-(y * y + z * z)).exp();
-    let (bell_a, bell_b) = ((-(a * a)).exp(), (-(b * b)).exp());
+    let beside = (y * y + z * z).decay();
+    let (bell_a, bell_b) = ((a * a).decay(), (b * b).decay());
     let (erfc_a, erfc_b) = (a.abs().erfc(bell_a), b.erfc(bell_b));
     let along = R::select(a.lt(zero), two - erfc_a, erfc_a) - erfc_b;
     let value = R::splat(1.0 / FRAC_2_SQRT_PI) * beside * along;
@@ -65,8 +65,8 @@ fn short<R: Real>(half: R, [x, y, z]: [R; 3]) -> Jet<R> {
         let t = half * R::splat(node);
         let weight = R::splat(weight);
         let (near, far) = (x - t, x + t);
-        let e_near = weight * (-(near * near + beside)).exp();
-        let e_far = weight * (-(far * far + beside)).exp();
+        let e_near = weight * (near * near + beside).decay();
+        let e_far = weight * (far * far + beside).decay();
         sum = sum + (e_near + e_far);
         moment = moment + (near * e_near + far * e_far);
     }

@@ -135,8 +135,8 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn exp(self) -> Self {
-        libm::exp(self)
+    fn decay(self) -> Self {
+        libm::exp(-self)
     }
 
     #[inline(always)]

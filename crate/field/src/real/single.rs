@@ -120,8 +120,8 @@ impl Real for f32 {
     }
 
     #[inline(always)]
-    fn exp(self) -> Self {
-        exp(self)
+    fn decay(self) -> Self {
+        decay(self)
     }
 
     #[inline(always)]
@@ -132,8 +132,8 @@ impl Real for f32 {
 
 impl Binary for f32 {
     #[inline(always)]
-    fn power_of_two(n: Self) -> Self {
-        f32::from_bits(((n as i32 + 127) << 23) as u32)
+    fn power_of_two(shifted: Self) -> Self {
+        f32::from_bits(shifted.to_bits() << 23)
     }
 
     #[inline(always)]
@@ -152,40 +152,40 @@ pub(super) const ROOT_HALF_BITS: i32 = 0x3F35_04F3;
 
 /// What the exponential and the logarithm need to know of how single precision numbers are stored.
 pub(super) trait Binary: Real {
-    /// 2ⁿ of an integer −126 ≤ n ≤ 127.
-    fn power_of_two(n: Self) -> Self;
+    /// 2ⁿ of an integer −126 ≤ n ≤ 127, given [`ROUNDER`] + n: its low bits are those of an exponent. 0 for n = −127.
+    fn power_of_two(shifted: Self) -> Self;
     /// m in [√½, √2) and the integer n of x = m·2ⁿ, x positive and normal.
     fn parts(self) -> (Self, Self);
 }
 
-/// `eˣ` in single precision: x less the nearest multiple of ln 2 (in two parts, the first with so
-/// few bits that its products are exact), then Taylor's polynomial to degree 7, whose error for
-/// |r| ≤ ½·ln 2 is below 6·10⁻⁹.
+/// `e⁻ˣ` in single precision: −x and the nearest multiple n of ln 2 (in two parts, the first with so few bits that its
+/// products are exact) leave r, and `eʳ = 1 + r + r²·P(r)`. P is fitted for the least relative error where |r| ≤ ½·ln 2
+/// (and a little more), which is 3·10⁻⁹.
 #[inline(always)]
-pub(super) fn exp<R: Binary>(x: R) -> R {
-    let low = R::splat(-87.0);
-    let cut = x.max(low).min(R::splat(88.0));
-    // Adding 1.5·2²³ rounds to a whole number, faster than `floor` where processors lack that.
-    let whole = R::splat(12_582_912.0);
-    let n = (cut * R::splat(core::f64::consts::LOG2_E) + whole) - whole;
-    let r = cut - n * R::splat(0.693_359_375);
-    let r = r - n * R::splat(-2.121_944_400_546_905_8e-4);
-    let power = R::splat(1.0)
-        + (r + r
-            * r
-            * polynomial(
-                r,
-                [
-                    0.5,
-                    1.0 / 6.0,
-                    1.0 / 24.0,
-                    1.0 / 120.0,
-                    1.0 / 720.0,
-                    1.0 / 5040.0,
-                ],
-            ));
-    R::select(x.lt(low), R::splat(0.0), power * R::power_of_two(n))
+pub(super) fn decay<R: Binary>(x: R) -> R {
+    // From there on n = −127, for which `power_of_two` gives 0.
+    let x = x.min(R::splat(88.1));
+    // Adding 1.5·2²³ rounds to a whole number, and leaves that in the low bits.
+    let shifted = R::splat(ROUNDER) - x * R::splat(core::f64::consts::LOG2_E);
+    let less = R::splat(ROUNDER) - shifted;
+    let r = less * R::splat(0.693_359_375) - x;
+    let r = r + less * R::splat(-2.121_944_400_546_905_8e-4);
+    let rest = polynomial(
+        r,
+        [
+            0.499_999_934_034_217_7,
+            0.166_665_199_733_604_66,
+            0.041_668_395_795_250_22,
+            0.008_368_796_699_068_273,
+            0.001_381_443_325_322_647_7,
+        ],
+    );
+    let power = R::splat(1.0) + (r + r * r * rest);
+    power * R::power_of_two(shifted)
 }
+
+/// 1.5·2²³, and the exponent that a number of single precision stores for 2⁰.
+const ROUNDER: f64 = 12_582_912.0 + 127.0;
 
 /// The logarithm in single precision: with `s = (m−1)/(m+1)`, `ln m = 2(s + s³/3 + s⁵/5 + …)`;
 /// |s| ≤ 0.1716, so the terms up to s⁹ leave 4·10⁻¹⁰.
@@ -260,4 +260,30 @@ pub(super) fn sin_cos<R: Real>(x: R) -> (R, R) {
     let s = R::select(odd, cosine, sine);
     let c = R::select(odd, sine, cosine);
     (R::select(upper, -s, s), R::select(middle, -c, c))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn decay_is_as_in_double_precision() {
+        for i in -80_000..=88_000 {
+            let x = i as f32 * 1e-3;
+            let want = libm::exp(-f64::from(x));
+            let off = (f64::from(decay(x)) - want).abs();
+            // Below the smallest normal number digits go.
+            assert!(off <= 1.3e-7 * want + 9e-39, "{x}: off {off}, of {want}");
+        }
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn decay_ends_at_nothing() {
+        assert_eq!(decay(0.0f32), 1.0);
+        for x in [88.1, 89.0, 1e9, f32::MAX, f32::INFINITY] {
+            assert_eq!(decay(x), 0.0, "{x}");
+        }
+    }
 }

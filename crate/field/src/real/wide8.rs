@@ -110,8 +110,8 @@ impl Real for f32x8 {
     }
 
     #[inline(always)]
-    fn exp(self) -> Self {
-        single::exp(self)
+    fn decay(self) -> Self {
+        single::decay(self)
     }
 
     #[inline(always)]
@@ -122,8 +122,8 @@ impl Real for f32x8 {
 
 impl Binary for f32x8 {
     #[inline(always)]
-    fn power_of_two(n: Self) -> Self {
-        cast((n.fast_trunc_int() + i32x8::splat(127)) << 23)
+    fn power_of_two(shifted: Self) -> Self {
+        cast(cast::<Self, i32x8>(shifted) << 23)
     }
 
     #[inline(always)]
