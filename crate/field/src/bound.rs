@@ -9,7 +9,7 @@ mod place;
 use crate::bounds::Coil;
 use crate::envelope::{self, PEANO, Roughness};
 use crate::ripple::Ripple;
-use crate::{Kernel, Primitive, Real, endless, plane};
+use crate::{Cut, Kernel, Primitive, Real, endless, plane};
 use glam::DVec3;
 use place::Place;
 
@@ -125,14 +125,14 @@ impl Bound {
         let mut width = finest;
         let (low, high) = primitive.profile.as_ref().map_or((1.0, 1.0), |p| {
             let [a, b] = p.bounds.map(|b| b * p.times);
-            (a.min(b), a.max(b))
+            (a.at_most(b), a.at_least(b))
         });
         let (low, high) = if primitive.height < 0.0 {
             (-high, -low)
         } else {
             (low, high)
         };
-        let mut height = primitive.height.abs() * low.abs().max(high.abs());
+        let mut height = primitive.height.abs() * low.abs().at_least(high.abs());
         let mut whole = height * measure;
         if let Some([mass, density, thinness]) = primitive.taper_bounds() {
             // All of the bone as if it had the smallest width; lines as if the largest density, too.
@@ -187,7 +187,7 @@ impl Bound {
         let within = self.kernel.is_compact()
             && (center.distance(self.middle) + radius + self.extent) * self.finest <= 1.0;
         Nearness {
-            distance: (distance - radius).max(0.0),
+            distance: (distance - radius).at_least(0.0),
             within,
             stretch,
             hub,
@@ -200,7 +200,9 @@ impl Bound {
     #[must_use]
     pub fn shortened(&self, direction: DVec3, spread: f64) -> f64 {
         match &self.place {
-            Place::Plane { normal, .. } => (normal.dot(direction).abs() + spread + 1e-9).min(1.0),
+            Place::Plane { normal, .. } => {
+                (normal.dot(direction).abs() + spread + 1e-9).at_most(1.0)
+            }
             _ => 1.0,
         }
     }
@@ -239,14 +241,14 @@ impl Bound {
                 1 => match &self.coil {
                     Some(coil) if near.stretch > NEARLY_STRAIGHT => {
                         let at = |u| envelope::rough_point(kernel, u);
-                        (near.stretch * line).min(coil.bound(u, at, |_, _| outward))
+                        (near.stretch * line).at_most(coil.bound(u, at, |_, _| outward))
                     }
                     Some(_) => near.stretch * line,
                     None => line,
                 },
                 _ => plane,
             };
-            (self.endless * over_endless).min(self.whole * point)
+            (self.endless * over_endless).at_most(self.whole * point)
         };
         let rough = rough * by_width[order - 2];
         if let Some(ripple) = &self.ripple {
@@ -261,8 +263,8 @@ impl Bound {
         };
         if near.within {
             let inside = self.whole * envelope::inside(kernel)[1] * by_width[2];
-            error = error.min(inside * length.0[2]);
-            fourth = fourth.min(inside);
+            error = error.at_most(inside * length.0[2]);
+            fourth = fourth.at_most(inside);
         }
         Estimate {
             magnitude,
@@ -293,7 +295,7 @@ impl Bound {
             let mut scale = self.whole * (self.finest * self.finest);
             for (own, inside) in field[3..].iter_mut().zip(envelope::inside(self.kernel)) {
                 scale *= self.finest;
-                *own = own.min(scale * inside);
+                *own = own.at_most(scale * inside);
             }
         }
         let bounds = Ripple::of_product(&field, &ripple.derivatives(near.hub));
@@ -301,7 +303,7 @@ impl Bound {
         Estimate {
             magnitude,
             // `min` leaves out what is no number.
-            error: errors.fold(f64::INFINITY, f64::min),
+            error: errors.fold(f64::INFINITY, f64::at_most),
             fourth: f64::INFINITY,
         }
     }
@@ -321,7 +323,7 @@ impl Bound {
     #[must_use]
     pub fn relative_slope(&self, near: Nearness) -> f64 {
         let steepest = 8.0 * self.finest + self.unrest;
-        steepest.min(self.power() / near.distance)
+        steepest.at_most(self.power() / near.distance)
     }
 
     /// What formulas of faces add up to the field may be as large as this, however small the field is: they sum over
@@ -331,7 +333,7 @@ impl Bound {
     pub fn cancels(&self) -> f64 {
         if self.dimension == 2 && self.whole.is_finite() && self.kernel.falls_fast() {
             let plane = self.endless * plane::jet(self.kernel, [0.0; 3]).value;
-            plane.min(self.whole)
+            plane.at_most(self.whole)
         } else {
             0.0
         }
@@ -378,7 +380,7 @@ impl Bound {
             (1, _) => match &self.coil {
                 Some(coil) => {
                     let at = |u| bounds_at(u).point;
-                    (near.stretch * line).min(coil.bound(u, at, |_, _| outward))
+                    (near.stretch * line).at_most(coil.bound(u, at, |_, _| outward))
                 }
                 None => line,
             },
@@ -422,7 +424,7 @@ impl Bound {
                 let outward = |a, b| kernel.along(b) - kernel.along(a);
                 let coiled = coil.bound(u, |u| kernel.value(u), outward);
                 if near.stretch.is_finite() {
-                    coiled.min(near.stretch * line())
+                    coiled.at_most(near.stretch * line())
                 } else {
                     coiled
                 }
@@ -442,7 +444,7 @@ impl Bound {
     #[must_use]
     pub fn distance_of(&self, share: f64) -> f64 {
         let enough = |distance: f64| self.magnitude(Nearness::at(distance)) <= share;
-        let mut high = self.influence.max(f64::MIN_POSITIVE);
+        let mut high = self.influence.at_least(f64::MIN_POSITIVE);
         // The field falls at least as fast as 1/d, so this doubles some times only.
         for _ in 0..64 {
             if enough(high) {

@@ -3,7 +3,7 @@
 //! All in units of the kernel's width and for a factor of 1.
 use crate::bone::Bone;
 use crate::form::Form;
-use crate::{Kernel, Skeleton, plane, skeleton};
+use crate::{Cut, Kernel, Skeleton, plane, skeleton};
 use core::f64::consts::PI;
 use glam::DVec3;
 
@@ -25,7 +25,7 @@ pub(crate) fn bound_at(form: &Form<f64>, d: f64) -> f64 {
             } else {
                 0.0
             };
-            disc(kernel, area, d).min(altitude * abreast(kernel, longest, d))
+            disc(kernel, area, d).at_most(altitude * abreast(kernel, longest, d))
         }
         Bone::Polygon(polygon) => disc(kernel, polygon.area.abs(), d),
         Bone::Plane => plane::jet(kernel, [0.0, 0.0, d]).value,
@@ -54,7 +54,7 @@ fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
     let whole = PI * (kernel.over_disc(q + area / PI) - kernel.over_disc(q));
     let most = area * kernel.value(d);
     if whole.is_finite() && whole > 1e-9 * most {
-        most.min(whole * (1.0 + 1e-6))
+        most.at_most(whole * (1.0 + 1e-6))
     } else {
         most
     }
@@ -64,10 +64,10 @@ fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
 fn arc_bound(kernel: Kernel, length: f64, radius: f64, d: f64) -> f64 {
     let most = length * kernel.value(d);
     if kernel == Kernel::Cauchy {
-        return most.min(circle(radius, d));
+        return most.at_most(circle(radius, d));
     }
     let outward = |a: f64, b: f64| kernel.along(b) - kernel.along(a);
-    most.min(Coil::arc(length, radius).bound(d, |u| kernel.value(u), outward))
+    most.at_most(Coil::arc(length, radius).bound(d, |u| kernel.value(u), outward))
 }
 
 /// How much of a bone can be near one place.
@@ -118,11 +118,11 @@ impl Coil {
             radius,
             gathers,
         } = *self;
-        let end = radius.min(length / gathers);
+        let end = radius.at_most(length / gathers);
         if d >= end {
             return length * g(d);
         }
-        let rest = (length - gathers * radius).max(0.0);
+        let rest = (length - gathers * radius).at_least(0.0);
         gathers * (d * g(d) + outward(d, end)) + rest * g(radius)
     }
 }
@@ -179,7 +179,7 @@ fn circle(r: f64, d: f64) -> f64 {
     }
     let k = 4.0 * r * r;
     let peak = 2.0 * (4.0 + k) / ((8.0 + 3.0 * k) + (9.0 * k * k + 32.0 * k).sqrt());
-    let p = (d * (2.0 * r - d)).max(peak).min(r * r);
+    let p = (d * (2.0 * r - d)).at_least(peak).at_most(r * r);
     let product = 1.0 + k - 2.0 * p + p * p;
     PI * r * (2.0 + k - 2.0 * p) / (product * product.sqrt())
 }

@@ -8,7 +8,7 @@
 //!
 //! The Cauchy kernel's envelopes are formulas; the other kernels' are tables, made once, from upper
 //! sums over steps of 1/64 octave.
-use crate::{Derivatives, Kernel};
+use crate::{Cut, Derivatives, Kernel};
 use core::f64::consts::TAU;
 use std::sync::OnceLock;
 
@@ -104,10 +104,10 @@ fn cauchy(u: f64) -> Roughness {
     let c = 1.0 - y;
     Roughness {
         point: cauchy_rough(x, y),
-        line: ((103.0 + 729.0 * c * c * c) * (y * y * y * root)).min(90.6),
-        plane: ((121.0 + 775.0 * c * c * c) * (y * y * y)).min(112.0),
+        line: ((103.0 + 729.0 * c * c * c) * (y * y * y * root)).at_most(90.6),
+        plane: ((121.0 + 775.0 * c * c * c) * (y * y * y)).at_most(112.0),
         // |k⁗| ≤ 840/(1+u²)⁴, and half the line's through the centre.
-        outward: (120.0 * (y * y * y) / u).min(45.3),
+        outward: (120.0 * (y * y * y) / u).at_most(45.3),
     }
 }
 
@@ -124,7 +124,7 @@ pub fn cauchy_point(u: f64) -> (f64, f64) {
 fn cauchy_rough(x: f64, y: f64) -> f64 {
     let w = x - 1.0;
     let share = (35.0 * w * w - 42.0 * w + 3.0) * y * y;
-    (24.0 * (1.005 * share).max(4.3) * (y * y) * (y * y)).min(72.0)
+    (24.0 * (1.005 * share).at_least(4.3) * (y * y) * (y * y)).at_most(72.0)
 }
 
 /// Tables start at 2⁻¹⁸ (below which there is one entry) and end at 2¹⁴, with 32 entries an octave.

@@ -1,5 +1,6 @@
 //! A bundle of rays bounded as one: what is proved of the beam holds for each of its rays.
 use crate::ray::Ray;
+use field::Cut;
 use glam::DVec3;
 
 /// A cone with a blunt tip that holds a bundle of rays: at parameter t every ray of the bundle is
@@ -99,10 +100,10 @@ impl Beam {
         let reach = radius + self.radius;
         let d = center - self.axis.origin;
         let along = d.dot(self.axis.direction);
-        let across = (d.length_squared() - along * along).max(0.0).sqrt();
+        let across = (d.length_squared() - along * along).at_least(0.0).sqrt();
         // The distance from the axis' point at t less the beam's growth, sqrt(across² +
         // (along−t)²) − spread·t, is least where its derivative vanishes, if that is at t ≥ 0.
-        let slope = (1.0 - self.spread * self.spread).max(0.0).sqrt();
+        let slope = (1.0 - self.spread * self.spread).at_least(0.0).sqrt();
         let at = along + across * self.spread / slope;
         let least = if at > 0.0 {
             across * slope - self.spread * along
@@ -118,6 +119,6 @@ impl Beam {
     pub fn reach(&self, center: DVec3, radius: f64) -> [f64; 2] {
         let distance = self.axis.origin.distance(center);
         let slack = radius + self.radius + ROUNDING * distance;
-        [(distance - slack).max(0.0), distance + slack]
+        [(distance - slack).at_least(0.0), distance + slack]
     }
 }

@@ -4,6 +4,7 @@
 //! members' fields, and their fourth derivatives, add up to at most at a distance or more from the ball. So whatever
 //! is far away is judged, dropped, or interpolated as one, however many its members are.
 use crate::hierarchy::Hierarchy;
+use field::Cut;
 use field::bound::{Bound, Nearness, SpanLength};
 use glam::DVec3;
 
@@ -99,7 +100,7 @@ impl Clusters {
     pub fn view(&self, cluster: u32, center: DVec3, radius: f64) -> View {
         let index = cluster as usize;
         let (own, around) = self.tree.ball(index);
-        let distance = (center.distance(own) - radius - around).max(0.0);
+        let distance = (center.distance(own) - radius - around).at_least(0.0);
         let facts = &self.facts[index];
         let [magnitude, fourth] = facts.table[entry(distance)].map(f64::from);
         View {
@@ -117,7 +118,7 @@ impl Clusters {
     #[must_use]
     pub fn relative_slope(&self, cluster: u32, distance: f64) -> f64 {
         let facts = &self.facts[cluster as usize];
-        f64::from(facts.steep).min(f64::from(facts.power) / distance)
+        f64::from(facts.steep).at_most(f64::from(facts.power) / distance)
     }
 
     /// What a group consists of.

@@ -20,25 +20,16 @@ pub struct Flesh {
     /// Ray parameter of each hit, polished.
     pub t: [f64; PACKET],
     /// Gradient of the field.
-    pub gradient: [DVec3; PACKET],
+    pub gradient: [f32x8; 3],
     /// Materials met, and each one's share of the (positive) field in every lane.
-    pub weights: Vec<(u32, [f32; PACKET])>,
+    pub weights: Vec<(u32, f32x8)>,
 }
 
 impl Flesh {
-    /// From lanes side by side.
-    pub fn new(t: f32x8, gradient: [f32x8; 3], weights: Vec<(u32, f32x8)>) -> Self {
-        let gradient = gradient.map(f32x8::to_array);
-        Self {
-            t: t.to_array().map(f64::from),
-            gradient: core::array::from_fn(|i| {
-                DVec3::from_array([0, 1, 2].map(|k| f64::from(gradient[k][i])))
-            }),
-            weights: weights
-                .into_iter()
-                .map(|(m, w)| (m, w.to_array()))
-                .collect(),
-        }
+    /// The gradients of the field, hit by hit.
+    pub fn gradients(&self) -> [DVec3; PACKET] {
+        let gradient = self.gradient.map(f32x8::to_array);
+        core::array::from_fn(|i| DVec3::from_array([0, 1, 2].map(|k| f64::from(gradient[k][i]))))
     }
 }
 
@@ -101,7 +92,7 @@ struct Hits<'a> {
 
 impl Soft {
     /// Moves the hits of a packet onto the exact surface, and says what it is like there. Lanes
-    /// without a hit carry no meaning. Ray parameters are counted from `base`.
+    /// without a hit carry no meaning. Ray parameters are counted from `base`. The answer is left in `scratch`.
     pub fn flesh(
         &self,
         slabs: &Slabs<'_>,
@@ -109,7 +100,7 @@ impl Soft {
         base: f64,
         found: &[Found],
         scratch: &mut Scratch,
-    ) -> Flesh {
+    ) {
         let mut t = [0.0; PACKET];
         let mut reach = [0.0; PACKET];
         let mut places: [(u32, u32); PACKET] = [(0, 0); PACKET];
@@ -142,7 +133,7 @@ impl Soft {
             met,
             settled,
         };
-        let mut flesh = self.settle_on(&hits, true, scratch);
+        self.settle_on(&hits, true, scratch);
         let of_slabs = |part: fn(&Spent) -> f64| {
             let mut off = [0.0; PACKET];
             for &(slab, lanes) in hits.places {
@@ -152,19 +143,15 @@ impl Soft {
             }
             off
         };
-        let shared = self.off(&hits, &flesh, base, &of_slabs(|spent| spent.shared)) == 0;
+        let shared = self.off(&hits, &scratch.flesh, base, &of_slabs(|spent| spent.shared)) == 0;
         if !shared {
-            flesh = self.settle_on(&hits, false, scratch);
+            self.settle_on(&hits, false, scratch);
         }
-        let mut blurred = self.off(&hits, &flesh, base, &of_slabs(|spent| spent.noise));
+        let mut blurred = self.off(&hits, &scratch.flesh, base, &of_slabs(|spent| spent.noise));
         if blurred != 0 {
             // What is known of a whole slab is more than what there is at one place of it.
-            blurred &= self.off(
-                &hits,
-                &flesh,
-                base,
-                &self.noise(&hits, &flesh, shared, scratch),
-            );
+            let noise = self.noise(&hits, shared, scratch);
+            blurred &= self.off(&hits, &scratch.flesh, base, &noise);
         }
         for &(slab, lanes) in hits.places {
             let lanes = lanes & blurred;
@@ -177,19 +164,19 @@ impl Soft {
                 continue;
             }
             for lane in (0..PACKET).filter(|i| lanes >> i & 1 != 0) {
-                let exact = self.exactly(&hits, ray(lane), lane, flesh.t[lane], &list);
+                let t = &mut scratch.flesh.t[lane];
+                *t = self.exactly(&hits, ray(lane), lane, *t, &list);
                 scratch.evaluations += (list.len() * MOST_POLISHING) as u64;
-                flesh.t[lane] = exact;
             }
         }
-        flesh
     }
 
     /// The hits that so large an error of the field may move by more than half the tolerance, a bit each.
     fn off(&self, hits: &Hits<'_>, flesh: &Flesh, base: f64, error: &[f64; PACKET]) -> u32 {
+        let gradients = flesh.gradients();
         (0..PACKET).fold(0, |all, i| {
             let tolerance = 0.1 * self.pixel * (base + flesh.t[i]);
-            let most = tolerance.clamp(FINEST, COARSEST) * flesh.gradient[i].length();
+            let most = tolerance.clamp(FINEST, COARSEST) * gradients[i].length();
             // What is no number may be anything.
             let near = error[i] <= most;
             all | u32::from(!near) << i & hits.met & !hits.settled
@@ -199,15 +186,9 @@ impl Soft {
     /// How far single precision may be off at each hit, with the interpolants that are shared or with all primitives.
     #[cold]
     #[inline(never)]
-    fn noise(
-        &self,
-        hits: &Hits<'_>,
-        flesh: &Flesh,
-        shared: bool,
-        scratch: &mut Scratch,
-    ) -> [f64; PACKET] {
+    fn noise(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) -> [f64; PACKET] {
         let rounding = self.precision.rounding as f32;
-        let at = f32x8::from_lanes(|i| flesh.t[i]);
+        let at = f32x8::from_lanes(|i| scratch.flesh.t[i]);
         let point: [f32x8; 3] = core::array::from_fn(|k| hits.origin[k] + hits.direction[k] * at);
         let furthest = point
             .iter()
@@ -262,8 +243,8 @@ impl Soft {
     }
 
     /// Where the rays hit, and what it is like there: by the interpolants that are shared, or with all primitives themselves.
-    fn settle_on(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) -> Flesh {
-        let active = &mut scratch.active;
+    fn settle_on(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) {
+        let Scratch { active, flesh, .. } = scratch;
         active.collect(hits.slabs, hits.places, !shared, self.primitives.len());
         let &Hits {
             origin,
@@ -273,7 +254,7 @@ impl Soft {
             ..
         } = hits;
         let mut at = start;
-        let mut weights: Vec<(u32, f32x8)> = Vec::new();
+        let weights = &mut flesh.weights;
         let mut gradient = [f32x8::splat(0.0); 3];
         // What is settled stays where it is.
         let free = mask(!hits.settled);
@@ -326,13 +307,13 @@ impl Soft {
                 break;
             }
         }
-        let mut flesh = Flesh::new(at, gradient, weights);
+        flesh.gradient = gradient;
+        flesh.t = at.to_array().map(f64::from);
         for (i, own) in flesh.t.iter_mut().enumerate() {
             if hits.settled >> i & 1 != 0 {
                 *own = hits.exact[i];
             }
         }
-        flesh
     }
 }
 

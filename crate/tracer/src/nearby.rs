@@ -5,7 +5,7 @@
 //! comes to any ray of a beam, and so how much of a field it can add there: what adds next to nothing is left out,
 //! and a beam in which all together stay below T meets no surface.
 use crate::beam::Beam;
-use field::{Ceiling, Lump};
+use field::{Ceiling, Cut, Lump};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -239,7 +239,7 @@ impl Nearby {
         let [ox, oy, oz] = offset.to_array().map(f32x8::splat);
         let [ax, ay, az] = axis.to_array().map(f32x8::splat);
         // Every beam of a picture is much narrower than this.
-        let grow = f32x8::splat((beam.spread / (1.0 - beam.spread.min(0.5))) as f32 * 1.001);
+        let grow = f32x8::splat((beam.spread / (1.0 - beam.spread.at_most(0.5))) as f32 * 1.001);
         let wide = f32x8::splat(beam.radius as f32 * 1.001 + 1e-7);
         let all = beam.spread >= 0.5;
         let least = f32x8::splat(left_out / self.lumps.len().max(1) as f32);

@@ -15,6 +15,7 @@ use crate::shadows::Shadow;
 use crate::slabs::Slabs;
 use crate::soft::{PACKET, Scratch};
 use crate::walk::{Bundle, Quest};
+use field::Cut;
 use glam::DVec3;
 
 /// Where a ray hits, and what it hits.
@@ -42,24 +43,34 @@ pub(crate) enum Near<'n, 's> {
     Slabs(&'n mut (Slabs<'s>, f64), usize),
 }
 
-/// What the rays of a packet see.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "it is taken apart where it is made"
-)]
-pub(crate) enum View {
-    /// Nothing, and what finding that cost each.
-    Nothing([f32; PACKET]),
-    /// Something.
-    Hits(Seen),
-}
-
-/// Rays that hit something, some of them at least.
+/// Rays of a packet, and what they hit.
+#[derive(Clone)]
 pub(crate) struct Seen {
     pub rays: [Ray; PACKET],
     pub hits: [Option<Hit>; PACKET],
     /// What finding them cost.
     pub costs: [f32; PACKET],
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        let ray = Ray {
+            origin: DVec3::ZERO,
+            direction: DVec3::X,
+        };
+        Self {
+            rays: [ray; PACKET],
+            hits: [None; PACKET],
+            costs: [0.0; PACKET],
+        }
+    }
+}
+
+impl Seen {
+    /// Whether any of the rays hit something.
+    pub fn something(&self) -> bool {
+        self.hits.iter().any(Option::is_some)
+    }
 }
 
 /// Working space of one thread.
@@ -88,52 +99,48 @@ impl Workspace {
 }
 
 impl Picture {
-    /// Traces the rays of one packet.
+    /// Traces the rays of one packet, given in `seen`, and says there what they hit.
     pub(crate) fn packet(
         &self,
-        rays: &[Ray; PACKET],
         near: Near<'_, '_>,
+        seen: &mut Seen,
         work: &mut Workspace,
         stats: &mut Stats,
-    ) -> View {
+    ) {
         work.begin();
-        let mut hits = if self.solids.is_empty() {
-            [None; PACKET]
-        } else {
-            rays.map(|ray| self.hard_hit(&ray, work))
-        };
+        let Seen { rays, hits, .. } = seen;
+        for (hit, ray) in hits.iter_mut().zip(&*rays) {
+            *hit = None;
+            if !self.solids.is_empty() {
+                *hit = self.hard_hit(ray, work);
+            }
+        }
         if let Some(digger) = &self.digger {
-            self.dug_hits(&**digger, rays, work, &mut hits);
+            self.dug_hits(&**digger, rays, work, hits);
         } else {
             match near {
                 Near::Nothing => {}
                 Near::Slabs((slabs, base), number) => {
-                    self.soft_hits(rays, number, slabs, *base, work, &mut hits);
+                    self.soft_hits(rays, number, slabs, *base, work, hits);
                 }
-                Near::Lumps(near, _) => self.lump_hits(rays, near, work, &mut hits),
+                Near::Lumps(near, _) => self.lump_hits(rays, near, work, hits),
             }
         }
         stats.field_evaluations += work.scratch.evaluations;
-        let costs = work.costs(PACKET);
-        if hits.iter().all(Option::is_none) {
-            return View::Nothing(costs);
-        }
-        View::Hits(Seen {
-            rays: *rays,
-            hits,
-            costs,
-        })
+        seen.costs = work.costs(PACKET);
     }
 
-    /// Traces the rays of one packet that comes near nothing but lumps. `None` if this is not the way to do it.
+    /// Traces the rays of one packet that comes near nothing but lumps, and says in `seen` what they hit; their rays, too,
+    /// if they hit anything. `None` if this is not the way to do it.
     pub(crate) fn lump_packet(
         &self,
         lens: &Lens,
         fan: &Fan,
         near: &Nearby,
+        seen: &mut Seen,
         work: &mut Workspace,
         stats: &mut Stats,
-    ) -> Option<View> {
+    ) -> Option<()> {
         let rays = lens.rays(fan, near);
         let limits = [f64::INFINITY; PACKET];
         work.begin();
@@ -147,14 +154,14 @@ impl Picture {
         )?;
         work.scratch.evaluations = looked.evaluations;
         stats.field_evaluations += looked.evaluations;
-        let costs = work.costs(PACKET);
-        if looked.met == 0 {
-            return Some(View::Nothing(costs));
+        seen.costs = work.costs(PACKET);
+        seen.hits = [None; PACKET];
+        if looked.met != 0 {
+            seen.rays = lens.wide(fan);
+            let flesh = &work.scratch.quick.flesh;
+            self.clothe(&seen.rays, flesh, near.base, looked.met, &mut seen.hits);
         }
-        let rays = lens.wide(fan);
-        let mut hits = [None; PACKET];
-        self.clothe(&rays, &looked.flesh, near.base, looked.met, &mut hits);
-        Some(View::Hits(Seen { rays, hits, costs }))
+        Some(())
     }
 
     fn hard_hit(&self, ray: &Ray, work: &mut Workspace) -> Option<Hit> {
@@ -200,9 +207,9 @@ impl Picture {
         if found.is_empty() {
             return;
         }
-        let flesh = self.soft.flesh(slabs, &based, base, &found, scratch);
+        self.soft.flesh(slabs, &based, base, &found, scratch);
         let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
-        self.clothe(rays, &flesh, base, met, hits);
+        self.clothe(rays, &scratch.flesh, base, met, hits);
     }
 
     /// The hits of a packet that comes near nothing but lumps.
@@ -236,7 +243,7 @@ impl Picture {
             return;
         };
         scratch.evaluations += looked.evaluations;
-        self.clothe(rays, &looked.flesh, near.base, looked.met, hits);
+        self.clothe(rays, &scratch.quick.flesh, near.base, looked.met, hits);
     }
 
     /// Makes hits of what is known of the surface where rays meet it.
@@ -248,9 +255,10 @@ impl Picture {
         met: u32,
         hits: &mut [Option<Hit>; PACKET],
     ) {
+        let gradients = flesh.gradients();
         for lane in (0..PACKET).filter(|lane| met >> lane & 1 != 0) {
             let ray = &rays[lane];
-            let gradient = flesh.gradient[lane];
+            let gradient = gradients[lane];
             let steepness = gradient.length();
             let Some(mut normal) = (-gradient).try_normalize() else {
                 continue;
@@ -263,9 +271,9 @@ impl Picture {
                 [(only, _)] => self.finishes[*only as usize],
                 several => {
                     let mut finish = Finish::default();
-                    let total: f32 = several.iter().map(|(_, w)| w[lane]).sum();
+                    let total: f32 = several.iter().map(|(_, w)| w.to_array()[lane]).sum();
                     for (material, weight) in several {
-                        let share = weight[lane] / total;
+                        let share = weight.to_array()[lane] / total;
                         if share > 0.0 {
                             finish.mix(&self.finishes[*material as usize], share);
                         }
@@ -277,7 +285,7 @@ impl Picture {
                 t,
                 position: ray.at(t),
                 normal,
-                lift: (4.0 * self.soft.precision.last / steepness).min(5e-3) + 1e-6,
+                lift: (4.0 * self.soft.precision.last / steepness).at_most(5e-3) + 1e-6,
                 finish,
                 thing: 1,
             });

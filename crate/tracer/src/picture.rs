@@ -6,7 +6,7 @@ use crate::digger::{self, Digger};
 use crate::hard::Crossing;
 use crate::map::Map;
 use crate::nearby::Nearby;
-use crate::packet::{Near, View, Workspace};
+use crate::packet::{Near, Seen, Workspace};
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::shade::{self, Finish};
@@ -225,6 +225,7 @@ impl Picture {
         let mut samples = Samples::new(area);
         let side = SQUARE / scale;
         let [columns, rows] = [side / PACKET_SIZE[0], side / PACKET_SIZE[1]];
+        let mut seen = Seen::default();
         for block in area.blocks([side; 2]) {
             if stop() {
                 return None;
@@ -265,31 +266,28 @@ impl Picture {
                             f32x8::from_lanes(|lane| middle(y(lane))),
                         ];
                         let fan = lens.fan(places, [middle(left + wide), middle(top + high)]);
-                        self.lump_packet(lens, &fan, near, work, stats)
+                        self.lump_packet(lens, &fan, near, &mut seen, work, stats)
                     }
                     _ => None,
                 };
-                let found = quick.unwrap_or_else(|| {
-                    let rays = pixels.map(|(x, y)| {
+                if quick.is_none() {
+                    seen.rays = pixels.map(|(x, y)| {
                         let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
                         self.ray(middle(x), middle(y))
                     });
-                    self.packet(&rays, near, work, stats)
-                });
-                match found {
-                    View::Nothing(costs) => {
-                        let nothing = self.nothing();
-                        for ((x, y), cost) in pixels.into_iter().zip(costs) {
-                            samples.set(x, y, Sample { cost, ..nothing });
-                        }
+                    self.packet(near, &mut seen, work, stats);
+                }
+                if seen.something() {
+                    let [first, .., last] = &seen.rays;
+                    let across = first.direction.distance(last.direction);
+                    self.shine(core::slice::from_ref(&seen), across, work, stats);
+                    for ((x, y), sample) in pixels.into_iter().zip(&work.samples[0]) {
+                        samples.set(x, y, *sample);
                     }
-                    View::Hits(seen) => {
-                        let [first, .., last] = seen.rays;
-                        let across = first.direction.distance(last.direction);
-                        self.shine(&[seen], across, work, stats);
-                        for ((x, y), sample) in pixels.into_iter().zip(work.samples[0]) {
-                            samples.set(x, y, sample);
-                        }
+                } else {
+                    let nothing = self.nothing();
+                    for ((x, y), cost) in pixels.into_iter().zip(seen.costs) {
+                        samples.set(x, y, Sample { cost, ..nothing });
                     }
                 }
                 if stop() {

@@ -9,7 +9,7 @@ use crate::nearby::{Marks, Nearby, marked};
 use crate::ray::Ray;
 use crate::soft::{PACKET, Soft};
 use crate::walk::Quest;
-use field::Real;
+use field::{Cut, Real};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -29,6 +29,9 @@ pub struct Quick {
     turns: Vec<Turn>,
     list: Nearby,
     marks: Marks,
+    /// What the surface is like at the hits of the last packet that was looked at; parameters are counted from its list's
+    /// base.
+    pub flesh: Flesh,
 }
 
 impl Quick {
@@ -41,12 +44,10 @@ impl Quick {
 }
 
 /// What a packet's rays met.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 pub struct Looked {
     /// Those that met the surface, a bit each.
     pub met: u32,
-    /// What it is like there; parameters are counted from the list's base.
-    pub flesh: Flesh,
     /// Evaluations of lumps, for one ray each.
     pub evaluations: u64,
 }
@@ -208,7 +209,7 @@ impl Soft {
         let mut evaluations = 0;
         work.steps.clear();
         work.turns.clear();
-        let limit = f32x8::from_lanes(|i| (limits[i] - near.base).min(1e30));
+        let limit = f32x8::from_lanes(|i| (limits[i] - near.base).at_most(1e30));
         // Every ray is inside by its own `sure`, and all are by `hidden`.
         let (mut sure, mut hidden) = (far, f32::INFINITY);
         let mut steepest = 0.0f32;
@@ -254,7 +255,7 @@ impl Soft {
                 sure = sure.fast_min(certain);
                 hidden = extremes(sure, sure, alive).1;
             }
-            steepest = steepest.max(near.steep);
+            steepest = steepest.at_least(near.steep);
             work.turns.push(Turn {
                 from: least(step_from),
                 to: -least(-step_to),
@@ -275,11 +276,11 @@ impl Soft {
         let order = |a: &Turn, b: &Turn| a.from.total_cmp(&b.from).then(a.step.cmp(&b.step));
         work.turns.sort_unstable_by(order);
         let alive = alive & from.simd_le(to).to_bitmask();
-        let furthest = extremes(to, to, alive).1.max(0.0);
+        let furthest = extremes(to, to, alive).1.at_least(0.0);
         // Shadows are not as sharp as that; and where their rays start the field is nearly T in any case.
         let noise = match quest {
             Quest::Entry => 0.0,
-            _ => (LOST + MISPLACED * steepest * (1.0 + furthest)).min(NOISIEST),
+            _ => (LOST + MISPLACED * steepest * (1.0 + furthest)).at_most(NOISIEST),
         };
         let way = Way {
             from,
@@ -297,7 +298,6 @@ impl Soft {
         if climbed.met == 0 || quest == Quest::Entry {
             return Some(Looked {
                 met: climbed.met,
-                flesh: Flesh::default(),
                 evaluations: evaluations + climbed.evaluations,
             });
         }
@@ -357,7 +357,8 @@ impl Soft {
         let tolerance = self.tolerance(near) as f32;
         let mut evaluations = evaluations + climbed.evaluations;
         let mut at = climbed.t;
-        let mut weights: Vec<(u32, f32x8)> = Vec::new();
+        let mut flesh = core::mem::take(&mut work.flesh);
+        let weights = &mut flesh.weights;
         let mut gradient = [f32x8::splat(0.0); 3];
         let (first, last) = extremes(at, at, met);
         let [mut low, mut high] = climbed.between;
@@ -404,11 +405,10 @@ impl Soft {
             }
         }
         weights.sort_unstable_by_key(|(material, _)| *material);
-        Looked {
-            met,
-            flesh: Flesh::new(at, gradient, weights),
-            evaluations,
-        }
+        flesh.gradient = gradient;
+        flesh.t = at.to_array().map(f64::from);
+        work.flesh = flesh;
+        Looked { met, evaluations }
     }
 }
 

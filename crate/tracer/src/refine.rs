@@ -4,17 +4,26 @@
 //! grid of n×n, whose mean replaces the single sample. Which pixels those are depends on the first
 //! samples only, so it does not matter in which order, or in which tile, pixels are treated.
 use crate::area::{Area, Samples};
-use crate::packet::{Near, View, Workspace};
+use crate::packet::{Near, Seen, Workspace};
 use crate::picture::{PACKET_SIZE, Picture, SQUARE, Stats};
 use crate::sample::{Sample, differ};
 use crate::soft::PACKET;
 use crate::square::Square;
-use field::Real;
+use field::{Cut, Real};
 use glam::Vec3;
 use wide::f32x8;
 
 /// Packets of a square.
 const PACKETS: [u32; 2] = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
+
+/// What the rays of one packet's pixels hit.
+#[derive(Default)]
+struct Closer {
+    /// The first of these are in use: as many as there are owners.
+    seen: Vec<Seen>,
+    /// The number of each one's pixel, and how many of the rays count.
+    owners: Vec<(usize, usize)>,
+}
 
 impl Picture {
     /// Replaces the samples of an area's pixels that differ from a neighbour by the mean of n×n. The area consists of
@@ -28,8 +37,7 @@ impl Picture {
         stats: &mut Stats,
     ) -> Option<()> {
         let mut means = Vec::new();
-        // What the rays of one packet's pixels hit, and the number of each one's pixel among the means.
-        let (mut seen, mut owners) = (Vec::new(), Vec::new());
+        let mut closer = Closer::default();
         for block in area.blocks([SQUARE; 2]) {
             if stop() {
                 return None;
@@ -42,41 +50,24 @@ impl Picture {
                 for (x, y) in wanted {
                     // The pixels' rays run in the same beams as the packets that they belong to.
                     let square = square.get_or_insert_with(|| self.square(block, PACKETS, work));
-                    let mut sum = (Vec3::ZERO, 0.0);
-                    self.look_closer(
-                        block,
-                        square,
-                        [x, y],
-                        work,
-                        stats,
-                        |view, count| match view {
-                            View::Nothing(costs) => {
-                                sum.0 += self.nothing().colour * count as f32;
-                                sum.1 += costs[..count].iter().sum::<f32>();
-                            }
-                            View::Hits(mut hits) => {
-                                // The last ones are repeated.
-                                hits.hits[count..].fill(None);
-                                owners.push((means.len(), count));
-                                seen.push(hits);
-                            }
-                        },
-                    );
-                    means.push((x, y, sum.0, sum.1));
+                    let owner = means.len();
+                    let (colour, cost) =
+                        self.look_closer(block, square, [x, y], (owner, &mut closer), work, stats);
+                    means.push((x, y, colour, cost));
                 }
-                if seen.is_empty() {
+                let Closer { seen, owners } = &mut closer;
+                if owners.is_empty() {
                     continue;
                 }
                 let corner = |x, y| self.ray(f64::from(x), f64::from(y)).direction;
                 let across =
                     corner(packet.left, packet.top).distance(corner(packet.right, packet.bottom));
-                self.shine(&seen, across, work, stats);
-                for (found, &(owner, count)) in work.samples.iter().zip(&owners) {
+                self.shine(&seen[..owners.len()], across, work, stats);
+                for (found, &(owner, count)) in work.samples.iter().zip(&*owners) {
                     let (_, _, sum, cost) = &mut means[owner];
                     *sum += found[..count].iter().map(|s| s.colour).sum::<Vec3>();
                     *cost += found[..count].iter().map(|s| s.cost).sum::<f32>();
                 }
-                seen.clear();
                 owners.clear();
                 if stop() {
                     return None;
@@ -95,16 +86,18 @@ impl Picture {
         Some(())
     }
 
-    /// Sends a pixel's n×n rays, and tells what each eight of them see, and how many of those count.
+    /// Sends a pixel's n×n rays, eight by eight. Those that hit something are added to `closer`; of the others the sum of what
+    /// they see, and of what they cost.
     fn look_closer<'a>(
         &'a self,
         block: Area,
         square: &mut Square<'a>,
         [x, y]: [u32; 2],
+        (owner, closer): (usize, &mut Closer),
         work: &mut Workspace,
         stats: &mut Stats,
-        mut tell: impl FnMut(View, usize),
-    ) {
+    ) -> (Vec3, f32) {
+        let mut sum = (Vec3::ZERO, 0.0);
         let column = (x - block.left) / PACKET_SIZE[0];
         let row = (y - block.top) / PACKET_SIZE[1];
         let n = self.samples;
@@ -116,6 +109,11 @@ impl Picture {
                 [i % n, i / n].map(|k| (f64::from(k) + 0.5) / f64::from(n))
             };
             stats.primary_rays += u64::from(count);
+            let Closer { seen, owners } = &mut *closer;
+            if seen.len() == owners.len() {
+                seen.push(Seen::default());
+            }
+            let seen = &mut seen[owners.len()];
             let near = square.near([column, row], PACKETS, work);
             let quick = match near {
                 Near::Lumps(near, Some(lens)) if self.solids.is_empty() => {
@@ -125,19 +123,28 @@ impl Picture {
                     let middle = |k: usize| at[k] + 0.5 * (part(0)[k] + part(PACKET - 1)[k]);
                     let places = [place(0), place(1)];
                     let fan = lens.fan(places, [middle(0), middle(1)]);
-                    self.lump_packet(lens, &fan, near, work, stats)
+                    self.lump_packet(lens, &fan, near, seen, work, stats)
                 }
                 _ => None,
             };
-            let view = quick.unwrap_or_else(|| {
-                let rays = core::array::from_fn(|i| {
+            if quick.is_none() {
+                seen.rays = core::array::from_fn(|i| {
                     let [across, down] = part(i);
                     self.ray(f64::from(x) + across, f64::from(y) + down)
                 });
-                self.packet(&rays, near, work, stats)
-            });
-            tell(view, count as usize);
+                self.packet(near, seen, work, stats);
+            }
+            let count = count as usize;
+            if seen.something() {
+                // The last ones are repeated.
+                seen.hits[count..].fill(None);
+                owners.push((owner, count));
+            } else {
+                sum.0 += self.nothing().colour * count as f32;
+                sum.1 += seen.costs[..count].iter().sum::<f32>();
+            }
         }
+        sum
     }
 
     fn needs_more(&self, samples: &Samples, x: u32, y: u32) -> bool {
@@ -148,7 +155,7 @@ impl Picture {
         // On a plane seen at 80° from its normal, neighbouring pixels' distances differ by
         // tan 80° times the pixel's size.
         let pixel = 2.0 * self.projection.half_width / f64::from(self.size[0]);
-        let jump = |other: &Sample| 5.7 * pixel as f32 * here.depth.min(other.depth);
+        let jump = |other: &Sample| 5.7 * pixel as f32 * here.depth.at_most(other.depth);
         for (dx, dy) in [
             (-1, -1),
             (0, -1),

@@ -12,7 +12,7 @@ use crate::soft::Kinks;
 use crate::spans::{Node, Span};
 use core::ops::Range;
 use field::bound::SpanLength;
-use field::{Bound, Primitive, THRESHOLD};
+use field::{Bound, Cut, Primitive, THRESHOLD};
 
 /// Pieces that one packet may have looked at; what is left is decided by the signs at its ends.
 const MOST_PIECES: u32 = 1 << 16;
@@ -212,7 +212,7 @@ impl Settler {
                 span_length
             };
             let estimate = bound.estimate(bound.nearness(center, radius), &span_length);
-            size += estimate.magnitude.min(LARGE_TERM);
+            size += estimate.magnitude.at_most(LARGE_TERM);
             if estimate.error <= share {
                 calm = [0, 1].map(|i| calm[i].plus(along.node(p, places[i])));
                 self.evaluations += 2;

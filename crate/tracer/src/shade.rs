@@ -2,6 +2,7 @@
 //!
 //! `ambient + Σ light·(diffuse·(N·L) + specular·(R·V)^shine)`, where N is the normal, L points to
 //! the light, R is L mirrored at N and V points to the eye.
+use field::Cut;
 use glam::{DVec3, Vec3};
 use scene::{Light, LightKind, Material};
 
@@ -80,7 +81,7 @@ pub fn bytes(colour: Vec3, gamma: f32) -> [u8; 3] {
     let power = if gamma > 0.0 { 1.0 / gamma } else { 1.0 };
     let byte = |v: f32| {
         // A NaN ends as 0.
-        let v = v.max(0.0).clamp(0.0, 1.0);
+        let v = v.at_least(0.0).clamp(0.0, 1.0);
         let v = if power == 1.0 {
             v
         } else {

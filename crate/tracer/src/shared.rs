@@ -7,7 +7,7 @@
 //! distant primitives, whose sum is smooth, cost a ray almost nothing however many they are.
 use crate::beam::Beam;
 use crate::lanes::Lanes;
-use field::Primitive;
+use field::{Cut, Primitive};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -35,7 +35,7 @@ impl Cell {
         // Rays lag behind the axis, or are ahead of it, by a little.
         let lag = beam.lag(to);
         let length = to - from + 2.0 * lag;
-        let width = (2.0 * beam.width(to)).max(THINNEST * length);
+        let width = (2.0 * beam.width(to)).at_least(THINNEST * length);
         let along = beam.axis.direction;
         let (across, up) = along.any_orthonormal_pair();
         let start = beam.axis.at(from) - along * lag;
@@ -215,12 +215,12 @@ impl Shared {
     /// The interpolant is nowhere in the box above this.
     #[must_use]
     pub fn top(&self) -> f64 {
-        let largest = |all: &[f32; 8]| all.iter().fold(0.0f32, |m, x| m.max(x.abs()));
+        let largest = |all: &[f32; 8]| all.iter().fold(0.0f32, |m, x| m.at_least(x.abs()));
         let value = self
             .values
             .iter()
             .copied()
-            .fold(f32::NEG_INFINITY, f32::max);
+            .fold(f32::NEG_INFINITY, f32::at_least);
         // |x(1−x)²| + |x²(1−x)| ≤ ¼.
         let bends: f32 = self.excess.iter().map(largest).sum();
         (f64::from(value) + 0.25 * f64::from(bends)) * (1.0 + 1e-6)

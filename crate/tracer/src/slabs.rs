@@ -19,7 +19,7 @@ use crate::shared::{Cell, Shared, Sums};
 use crate::soft::Kinks;
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
-use field::{Primitive, THRESHOLD};
+use field::{Cut, Primitive, THRESHOLD};
 use std::collections::BTreeMap;
 
 /// How exactly spans follow the field.
@@ -567,7 +567,7 @@ impl<'a> Slabs<'a> {
     pub fn is_final(&self, index: u32) -> bool {
         let slab = self.slab(index);
         // Rounding is what it is: spans much nearer to the field than that would tell no more.
-        let last = self.precision.last.max(slab.spent.noise);
+        let last = self.precision.last.at_least(slab.spent.noise);
         slab.spent.spans <= last || slab.budget <= last
     }
 
@@ -585,7 +585,7 @@ impl<'a> Slabs<'a> {
             let s = &self.nodes[index as usize];
             let pending = s.pending.clone();
             let (from, to) = (s.from, s.to);
-            let budget = (s.spent.spans.min(s.budget) / FINER).max(self.precision.last);
+            let budget = (s.spent.spans.at_most(s.budget) / FINER).at_least(self.precision.last);
             let heritage = Heritage {
                 parent: index,
                 anew: true,
@@ -702,14 +702,14 @@ impl<'a> Slabs<'a> {
         if self.precision.shared > 0.0 {
             let cell = Cell::around(beam, from, to);
             roughness = cell.roughness();
-            radius = radius.max(cell.radius());
+            radius = radius.at_least(cell.radius());
         }
         let length = SpanLength::new(to - from);
         let (direction, spread) = (beam.axis.direction, beam.spread);
         let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);
         let rounding = self.precision.rounding;
         // Coordinates are rounded in the world and in the primitive's own frame.
-        let misplaced = rounding * (center.abs().max_element() + radius + to).max(1.0);
+        let misplaced = rounding * (center.abs().max_element() + radius + to).at_least(1.0);
         self.scratch.clear();
         for at in candidates {
             let mut first = Some(self.ids[at as usize]);
@@ -782,9 +782,9 @@ impl<'a> Slabs<'a> {
         // What is left of a budget is shared out half evenly, half by size. The shares add up
         // to no more than the whole.
         let share = |budget: f64, spent: f64| {
-            let left = (budget - spent).max(0.0);
+            let left = (budget - spent).at_least(0.0);
             let even = 0.5 * left / self.scratch.len().max(1) as f64;
-            let by_size = 0.5 * left / total.max(f64::MIN_POSITIVE);
+            let by_size = 0.5 * left / total.at_least(f64::MIN_POSITIVE);
             move |magnitude: f64| even + by_size * magnitude
         };
         let for_spans = share(budget, spent.spans);
@@ -795,7 +795,7 @@ impl<'a> Slabs<'a> {
         // Of a slab that reaches far out, most are nearer than its end, and halves are rounded less.
         let remote = is_remote(from, to);
         let rounded = |magnitude: f64, steepness: f64| {
-            magnitude.min(LARGE_TERM) * (4.0 * rounding + misplaced * steepness)
+            magnitude.at_most(LARGE_TERM) * (4.0 * rounding + misplaced * steepness)
         };
         let mut count = 0;
         for candidate in &mut self.scratch {
@@ -874,11 +874,11 @@ impl<'a> Slabs<'a> {
                 spent.noise += 2.0 * rounding * bound.cancels();
             }
             noise += rounded(magnitude, steepness);
-            steepest = steepest.max(steepness);
+            steepest = steepest.at_least(steepness);
         }
         // Where the field is T, what adds is together no more than that and what carves.
         let most = (LARGE_TERM + below) * (4.0 * rounding + misplaced * steepest);
-        spent.noise += noise.min(most);
+        spent.noise += noise.at_most(most);
         let mut ends = [self.ids.len() as u32; 6];
         for (list, which) in lists.iter().zip(1..) {
             match self.terms.clusters {

@@ -3,7 +3,7 @@
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::clusters::Clusters;
-use crate::flesh::Active;
+use crate::flesh::{Active, Flesh};
 use crate::hierarchy::Hierarchy;
 use crate::nearby::{Nearby, Other};
 use crate::quick::Quick;
@@ -13,7 +13,7 @@ use crate::settle::{Along, Settler, Sight};
 use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::stock::Stock;
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
-use field::{Bound, Kink, Primitive, THRESHOLD};
+use field::{Bound, Cut, Kink, Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::Scene;
 use std::collections::BTreeMap;
@@ -109,6 +109,7 @@ pub struct Scratch {
     /// That of slabs that are not needed any more.
     pub(crate) spaces: Vec<Space>,
     pub(crate) active: Active,
+    pub(crate) flesh: Flesh,
     pub(crate) quick: Quick,
     /// Evaluations of one primitive's field at one point, so far.
     pub evaluations: u64,
@@ -206,7 +207,7 @@ impl Soft {
         let groups = self.groups();
         groups.strong.search(&beam, |_, center, radius| {
             let [near, far] = beam.reach(center, radius);
-            range = [range[0].min(near), range[1].max(far)];
+            range = [range[0].at_most(near), range[1].at_least(far)];
         });
         let [from, to] = [range[0], range[1].min(limit)];
         if from.is_nan() || to.is_nan() || from >= to {
@@ -292,7 +293,7 @@ impl Soft {
     pub fn meets_any(&self, others: &[Other], beam: &Beam, limit: f64) -> bool {
         others.iter().any(|other| {
             let [mut t, far] = beam.reach(other.center, other.radius);
-            let far = far.min(limit);
+            let far = far.at_most(limit);
             let bound = &self.bounds()[other.primitive as usize];
             for _ in 0..MOST_STRIDES {
                 if t > far {
@@ -381,7 +382,7 @@ impl Soft {
                 }
                 None => [0.0, FAR],
             };
-            range = [range[0].min(near), range[1].max(far)];
+            range = [range[0].at_most(near), range[1].at_least(far)];
         }
         let [from, to] = range;
         if from.is_nan() || to.is_nan() || from >= to {

@@ -3,7 +3,7 @@
 //! Points and segments lie in [`Place`] itself, as a scene may have a million of them; what else there is lies
 //! elsewhere in memory.
 use crate::skeleton::{halves, nearest_on_segment};
-use crate::{Primitive, Skeleton};
+use crate::{Cut, Primitive, Skeleton};
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
@@ -123,7 +123,7 @@ impl Place {
             Self::Curve(chords) => {
                 let distance = chords.iter().map(|chord| chord.distance(center));
                 return Near {
-                    distance: distance.fold(f64::INFINITY, f64::min).max(0.0),
+                    distance: distance.fold(f64::INFINITY, f64::at_most).at_least(0.0),
                     stretch: f64::INFINITY,
                     hub: 0.0,
                 };
@@ -178,19 +178,19 @@ impl Sweep {
         let (distance, stretch) = if swept {
             // A point of the arc at angle φ from the foot is no nearer than if the arc
             // were straight but shorter by the factor sin(φ/2)/(φ/2)·√(ρ/sweep).
-            let shrink = self.sag * ((rho - radius).max(0.0) / sweep).sqrt();
+            let shrink = self.sag * ((rho - radius).at_least(0.0) / sweep).sqrt();
             let off = rho - sweep;
-            ((off * off + z * z).sqrt(), (1.0 / shrink).max(1.0))
+            ((off * off + z * z).sqrt(), (1.0 / shrink).at_least(1.0))
         } else {
             let start = (x - sweep) * (x - sweep) + y * y;
             let (ex, ey) = (x - sweep * cos, y - sweep * sin);
-            let distance = (start.min(ex * ex + ey * ey) + z * z).sqrt();
+            let distance = (start.at_most(ex * ex + ey * ey) + z * z).sqrt();
             (distance, f64::INFINITY)
         };
         Near {
             distance,
             stretch,
-            hub: (rho - radius).max(0.0),
+            hub: (rho - radius).at_least(0.0),
         }
     }
 }
@@ -239,7 +239,7 @@ fn triangle_distance(corners: &[DVec3; 3], normal: DVec3, p: DVec3) -> f64 {
         let d = p - a;
         inside &= edge.cross(d).dot(normal) >= 0.0;
         let along = (d.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
-        nearest = nearest.min(d.distance_squared(edge * along));
+        nearest = nearest.at_most(d.distance_squared(edge * along));
     }
     if inside {
         (p - corners[0]).dot(normal).abs()

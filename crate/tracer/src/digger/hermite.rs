@@ -27,10 +27,10 @@ impl Digger for Hermite {
             &mut scratch.quick,
         ) {
             scratch.evaluations += looked.evaluations;
+            let t = scratch.quick.flesh.t;
             return core::array::from_fn(|i| {
                 // Whoever asks only whether there is an entry is told that there is one.
-                let t = looked.flesh.t[i];
-                (looked.met >> i & 1 != 0).then_some(base + t)
+                (looked.met >> i & 1 != 0).then_some(base + t[i])
             });
         }
         let alive = |lane: &usize| packet.alive >> lane & 1 != 0;
@@ -67,9 +67,9 @@ impl Digger for Hermite {
         match quest {
             // Onto the surface itself, as in pictures.
             Quest::First => {
-                let flesh = soft.flesh(&slabs, &based, base, &found, scratch);
+                soft.flesh(&slabs, &based, base, &found, scratch);
                 for hit in &found {
-                    crossings[hit.lane] = Some(base + flesh.t[hit.lane]);
+                    crossings[hit.lane] = Some(base + scratch.flesh.t[hit.lane]);
                 }
             }
             _ => {
