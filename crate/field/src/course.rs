@@ -48,7 +48,10 @@ pub struct Course<R: Real> {
     pace: R,
     /// `1/√pace`, or where that would be more than 10⁶ so much.
     width: R,
-    segment: Option<Abreast<R>>,
+    /// Of a segment: where along it the ray is, `x = place + rate·t`.
+    place: R,
+    rate: R,
+    segment: Option<Abreast<R::Scalar>>,
 }
 
 /// What bounds a lump's field on a piece of a ray.
@@ -62,14 +65,12 @@ pub struct Limits<R> {
     pub kink: R,
 }
 
-/// Where along a segment a ray is: at `x = place + rate·t`, the segment is |x| ≤ half.
+/// What is along a segment: it is |x| ≤ half.
 #[derive(Clone, Copy, Debug)]
-struct Abreast<R: Real> {
-    half: R,
-    place: R,
-    rate: R,
+struct Abreast<S> {
+    half: S,
     long: bool,
-    ramp: Option<Ramp<R::Scalar>>,
+    ramp: Option<Ramp<S>>,
 }
 
 /// A lump: a primitive whose course along rays is simple.
@@ -332,10 +333,10 @@ impl<S: Scalar> Lump<S> {
                 least: y * y + z * z,
                 pace,
                 width: R::splat(1.0) / pace.max(R::splat(1e-12)).sqrt(),
+                place: x,
+                rate,
                 segment: Some(Abreast {
-                    half: R::lift(rod.half),
-                    place: x,
-                    rate,
+                    half: rod.half,
                     long: rod.half.lane(0) >= LONG,
                     ramp: rod.ramp,
                 }),
@@ -352,6 +353,8 @@ impl<S: Scalar> Lump<S> {
             least: pace * (x * x + y * y + z * z),
             pace,
             width: R::lift(S::splat(1.0) / self.scale.max(S::splat(1e-6))),
+            place: R::splat(0.0),
+            rate: R::splat(0.0),
             segment: None,
         }
     }
@@ -362,21 +365,21 @@ impl<R: Real> Course<R> {
     #[inline(always)]
     #[must_use]
     pub fn at(&self, t: R) -> (R, R) {
-        let away = t - self.center;
-        let swift = self.pace * away;
-        let (value, slope) = self.kernel.pair(self.least + swift * away);
+        let ahead = self.center - t;
+        let swift = self.pace * ahead;
+        let (value, fall) = self.kernel.falling(self.least + swift * ahead);
         let Some(abreast) = &self.segment else {
-            let steep = self.amplitude * (swift + swift);
-            return (self.amplitude * value, steep * slope);
+            let steep = self.amplitude * fall;
+            return (self.amplitude * value, steep * (swift + swift));
         };
         let beside = self.amplitude * value;
-        let (share, change) = abreast.share(t);
-        let (value, slope) = (beside * share, beside * (change - (swift + swift) * share));
+        let (share, change) = self.share(abreast, t);
+        let (value, slope) = (beside * share, beside * (change + (swift + swift) * share));
         match &abreast.ramp {
             None => (value, slope),
             Some(ramp) => {
-                let (factor, rise) = ramp.at(abreast.place + abreast.rate * t);
-                (value * factor, slope * factor + value * rise * abreast.rate)
+                let (factor, rise) = ramp.at(self.place + self.rate * t);
+                (value * factor, slope * factor + value * rise * self.rate)
             }
         }
     }
@@ -385,15 +388,15 @@ impl<R: Real> Course<R> {
     #[inline(always)]
     #[must_use]
     pub fn bent(&self, t: R) -> (R, R, R) {
-        let away = t - self.center;
+        let ahead = self.center - t;
         if self.segment.is_some() {
             let (value, slope) = self.at(t);
             return (value, slope, R::splat(0.0));
         }
-        let swift = self.pace * away;
-        let (value, slope) = self.kernel.pair(self.least + swift * away);
-        let steep = self.amplitude * slope;
-        let bend = -(steep * (self.pace + self.pace)) * self.share_bent(away);
+        let swift = self.pace * ahead;
+        let (value, fall) = self.kernel.falling(self.least + swift * ahead);
+        let steep = self.amplitude * fall;
+        let bend = steep * (self.pace + self.pace) * self.share_bent(ahead);
         (self.amplitude * value, steep * (swift + swift), bend)
     }
 
@@ -415,19 +418,19 @@ impl<R: Real> Course<R> {
     pub fn most(&self, from: R, to: R) -> Limits<R> {
         let nearest = self.center.max(from).min(to);
         let away = nearest - self.center;
-        let (value, slope) = self.kernel.pair(self.least + self.pace * away * away);
+        let (value, fall) = self.kernel.falling(self.least + self.pace * away * away);
         let twice = self.pace + self.pace;
         match &self.segment {
             None => Limits {
                 most: self.amplitude * value,
-                bend: -(self.amplitude * slope * twice) * self.share_bent(away),
+                bend: self.amplitude * fall * twice * self.share_bent(away),
                 kink: R::splat(0.0),
             },
             Some(abreast) => {
                 let beside = self.amplitude * value;
-                let (share, [bell, tail]) = abreast.most(from, to);
+                let (share, [bell, tail]) = self.most_share(abreast, from, to);
                 let most = beside * share;
-                let rate = abreast.rate.abs();
+                let rate = self.rate.abs();
                 let furthest = (from - self.center).abs().max((to - self.center).abs());
                 // Each of the segment's points bends so much, as their distances change at most at the full rate; or, of
                 // what is beside the segment and what abreast, both bend, and their slopes' product counts twice.
@@ -440,7 +443,7 @@ impl<R: Real> Course<R> {
                     let kink = R::splat(0.0);
                     return Limits { most, bend, kink };
                 };
-                let [a, b] = [from, to].map(|t| abreast.place + abreast.rate * t);
+                let [a, b] = [from, to].map(|t| self.place + self.rate * t);
                 let [factor, steep, kink] = ramp.most(a, b);
                 // |g′|, by what is beside the segment and what abreast.
                 let slope =
@@ -452,6 +455,15 @@ impl<R: Real> Course<R> {
                 }
             }
         }
+    }
+
+    /// Whether its slope may jump.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_kinks(&self) -> bool {
+        self.segment
+            .as_ref()
+            .is_some_and(|abreast| abreast.ramp.is_some())
     }
 
     /// Whether the largest value between two parameters is that at the further one, in all lanes: then
@@ -467,32 +479,30 @@ impl<R: Real> Course<R> {
     #[inline(always)]
     #[must_use]
     pub fn within(&self, square: R) -> [R; 2] {
+        let zero = R::splat(0.0);
         let room = square - self.least;
-        let half = room.max(R::splat(0.0)).sqrt() * self.width;
-        let miss = room.lt(R::splat(0.0));
+        let half = room.max(zero).sqrt() * self.width;
+        let miss = room.lt(zero);
+        let half = R::select(miss, R::splat(f64::NEG_INFINITY), half);
         let [mut near, mut far] = [self.center - half, self.center + half];
         if let Some(abreast) = &self.segment {
             // Where |x| ≤ half + √square, unless the ray runs across.
-            let rate = abreast.rate.abs().max(R::splat(1e-12));
-            let middle = -(abreast.rate.sign_to(abreast.place)) / rate;
-            let reach = (abreast.half + square.sqrt()) / rate;
+            let rate = self.rate.abs().max(R::splat(1e-12));
+            let middle = -(self.rate.sign_to(self.place)) / rate;
+            let reach = (R::lift(abreast.half) + square.sqrt()) / rate;
             near = near.max(middle - reach);
             far = far.min(middle + reach);
         }
-        [
-            R::select(miss, R::splat(1.0), near),
-            R::select(miss, R::splat(-1.0), far),
-        ]
+        [near, far]
     }
-}
 
-impl<R: Real> Abreast<R> {
     /// `erf(x+half) − erf(x−half)` and its derivative by t.
     #[inline(always)]
-    fn share(&self, t: R) -> (R, R) {
+    fn share(&self, abreast: &Abreast<R::Scalar>, t: R) -> (R, R) {
+        let half = R::lift(abreast.half);
         let x = self.place + self.rate * t;
         let side = x.abs();
-        let near = side - self.half;
+        let near = side - half;
         if !R::any(R::splat(-LONG).lt(near)) {
             // No ray feels an end.
             return (R::splat(2.0), R::splat(0.0));
@@ -500,8 +510,8 @@ impl<R: Real> Abreast<R> {
         let bell = (near * near).decay();
         let mut share = reach(near, bell);
         let mut change = -bell;
-        if !self.long {
-            let far = side + self.half;
+        if !abreast.long {
+            let far = side + half;
             let bell = (far * far).decay();
             share = share - far.erfc(bell);
             change = change + bell;
@@ -513,10 +523,11 @@ impl<R: Real> Abreast<R> {
     /// Between two parameters: bounds on the share, and on `e^(−y²)` and `|y|e^(−y²)`, where y is how far along the segment
     /// it is from either of its ends.
     #[inline(always)]
-    fn most(&self, from: R, to: R) -> (R, [R; 2]) {
+    fn most_share(&self, abreast: &Abreast<R::Scalar>, from: R, to: R) -> (R, [R; 2]) {
+        let half = R::lift(abreast.half);
         let (a, b) = (self.place + self.rate * from, self.place + self.rate * to);
         // The position nearest to the middle, and that furthest from it.
-        let last = a.abs().max(b.abs()) - self.half;
+        let last = a.abs().max(b.abs()) - half;
         if !R::any(R::splat(-INNER).lt(last)) {
             return (
                 R::splat(2.0),
@@ -525,7 +536,7 @@ impl<R: Real> Abreast<R> {
         }
         let zero = R::splat(0.0);
         let x = zero.max(a.min(b)).min(a.max(b));
-        let near = x.abs() - self.half;
+        let near = x.abs() - half;
         let bell = (near * near).decay();
         // What is nearest to an end of the segment; from the other end it is further.
         let apart = near.max(-last).max(zero);

@@ -198,26 +198,33 @@ impl Kernel {
     /// G(q) and G′(q), lane by lane.
     #[inline(always)]
     pub(crate) fn pair<R: Real>(self, q: R) -> (R, R) {
+        let (value, fall) = self.falling(q);
+        (value, -fall)
+    }
+
+    /// G(q) and −G′(q), lane by lane.
+    #[inline(always)]
+    pub(crate) fn falling<R: Real>(self, q: R) -> (R, R) {
         let zero = R::splat(0.0);
         let one = R::splat(1.0);
         match self {
             Self::Cauchy => {
                 let i = one / (one + q);
                 let g = i * i;
-                (g, R::splat(-2.0) * g * i)
+                (g, R::splat(2.0) * g * i)
             }
             Self::Gauss => {
                 let g = q.decay();
-                (g, -g)
+                (g, g)
             }
             Self::Inverse => {
                 let i = one / (q + R::splat(inverse::POLE2));
                 let g = i.sqrt();
-                (g, R::splat(-0.5) * g * i)
+                (g, R::splat(0.5) * g * i)
             }
             Self::Squared => {
                 let i = one / (q + R::splat(inverse::POLE2));
-                (i, -(i * i))
+                (i, i * i)
             }
             Self::Metaballs => {
                 let u = q.sqrt().max(R::splat(metaballs::INNER * 0.5));
@@ -225,14 +232,14 @@ impl Kernel {
                 let inner = q.lt(R::splat(metaballs::INNER2));
                 (
                     R::select(inner, one - R::splat(3.0) * q, R::splat(1.5) * rest * rest),
-                    R::select(inner, R::splat(-3.0), R::splat(-1.5) * rest / u),
+                    R::select(inner, R::splat(3.0), R::splat(1.5) * rest / u),
                 )
             }
             Self::Soft | Self::Quartic | Self::Compact6 => {
                 let [c2, c3] = self.polynomial().unwrap_or_default();
                 let v = (one - q).max(zero);
                 let (a, b) = (R::splat(c2), R::splat(c3) * v);
-                (v * v * (a + b), -(v * (a + a + R::splat(3.0) * b)))
+                (v * v * (a + b), v * (a + a + R::splat(3.0) * b))
             }
         }
     }

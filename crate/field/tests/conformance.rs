@@ -3,7 +3,7 @@ mod common;
 
 use common::{KINDS, Kind, Random, extent, jet, primitive, sensitivity, shaping, single};
 use core::f64::consts::{PI, TAU};
-use field::{Primitive, Profile, Real, Skeleton, Wave, quadrature};
+use field::{Kernel, Primitive, Profile, Real, Shaping, Skeleton, Wave, quadrature};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -153,7 +153,9 @@ tests! {
                     restriction: 0.0,
                 };
                 let profile = random.pick(&[None, Some(profile)]);
-                let primitive = primitive(skeleton.clone(), &random.shaping(1.0), profile);
+                let kernel = random.pick(&Kernel::ALL);
+                let shaping = Shaping { kernel, ..random.shaping(1.0) };
+                let primitive = primitive(skeleton.clone(), &shaping, profile);
                 let point = random.near(&skeleton, -3.0, 2.0);
                 let (value, gradient) = jet::<f64>(&primitive, point);
                 let (value8, gradient8) = jet::<f32x8>(&primitive, point);
@@ -164,7 +166,7 @@ tests! {
                 }
             }
         }
-        assert_eq!(hash, 0xE4BB_E5F0_E4EF_45A6, "{hash:#018x}");
+        assert_eq!(hash, 0x7D51_4FFA_02DC_9C52, "{hash:#018x}");
     }
 
     /// Against a five-point difference of the value.
