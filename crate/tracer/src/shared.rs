@@ -112,10 +112,25 @@ impl Cell {
 /// An interpolant in a [`Cell`].
 #[derive(Clone, Copy, Debug)]
 pub struct Shared {
-    /// At the corners.
-    values: [f32; 8],
-    /// How much steeper than straight the edges along each axis are at the corners, times their lengths.
-    excess: [[f32; 8]; 3],
+    /// The edges along x, at y, z = 00, 10, 01, 11.
+    rows: [Row; 4],
+    /// Of the two faces across z: how the rows' bends by y change with x, added up …
+    bends: [f32; 2],
+    /// … and how the change of the bends by z from row to row changes with x.
+    twists: [f32; 2],
+    /// It is nowhere in the box above this.
+    top: f32,
+}
+
+/// What is interpolated along an edge.
+#[derive(Clone, Copy, Debug, Default)]
+struct Row {
+    /// The value, as a polynomial.
+    value: [f32; 4],
+    /// How much steeper than straight edges along y are, times their lengths: at the start, and its change.
+    y: [f32; 2],
+    /// The same along z.
+    z: [f32; 2],
 }
 
 /// Value and gradient at the corners.
@@ -201,7 +216,8 @@ impl Shared {
         let [values, x, y, z] = sum.0.map(f32x8::to_array);
         let gradient =
             |lane: usize| DVec3::new(f64::from(x[lane]), f64::from(y[lane]), f64::from(z[lane]));
-        let excess = core::array::from_fn(|axis| {
+        // How much steeper than straight the edges along each axis are at the corners, times their lengths.
+        let excess: [[f32; 8]; 3] = core::array::from_fn(|axis| {
             core::array::from_fn(|lane| {
                 let slope = gradient(lane).dot(cell.axes[axis]) * cell.size[axis];
                 let bit = 1 << axis;
@@ -209,100 +225,118 @@ impl Shared {
                 (slope - straight) as f32
             })
         });
-        Self { values, excess }
+        let largest = |all: &[f32; 8]| all.iter().fold(0.0f32, |m, x| m.at_least(x.abs()));
+        let value = values
+            .iter()
+            .copied()
+            .fold(f32::NEG_INFINITY, f32::at_least);
+        // |x(1−x)²| + |x²(1−x)| ≤ ¼.
+        let bends: f32 = excess.iter().map(largest).sum();
+        let top = (value + 0.25 * bends) * (1.0 + 1e-6);
+        let rows: [Row; 4] = core::array::from_fn(|i| {
+            let ends = |of: &[f32; 8]| (of[2 * i], of[2 * i + 1]);
+            let ((f, g), (a, b)) = (ends(&values), ends(&excess[0]));
+            let and_change = |(start, end): (f32, f32)| [start, end - start];
+            Row {
+                // f + (g−f)x + a·x(1−x)² − b·x²(1−x).
+                value: [f, g - f + a, -(a + a + b), a + b],
+                y: and_change(ends(&excess[1])),
+                z: and_change(ends(&excess[2])),
+            }
+        });
+        Self {
+            rows,
+            bends: [0, 2].map(|i| rows[i].y[1] + rows[i + 1].y[1]),
+            twists: [0, 2].map(|i| rows[i + 1].z[1] - rows[i].z[1]),
+            top,
+        }
     }
 
     /// The interpolant is nowhere in the box above this.
     #[must_use]
     pub fn top(&self) -> f64 {
-        let largest = |all: &[f32; 8]| all.iter().fold(0.0f32, |m, x| m.at_least(x.abs()));
-        let value = self
-            .values
-            .iter()
-            .copied()
-            .fold(f32::NEG_INFINITY, f32::at_least);
-        // |x(1−x)²| + |x²(1−x)| ≤ ¼.
-        let bends: f32 = self.excess.iter().map(largest).sum();
-        (f64::from(value) + 0.25 * f64::from(bends)) * (1.0 + 1e-6)
+        f64::from(self.top)
     }
 
     /// Value and gradient at places in the box, given and told in its coordinates.
     #[inline(always)]
     #[must_use]
     pub fn jet<L: Lanes>(&self, [x, y, z]: [L; 3]) -> (L, [L; 3]) {
-        let (x, y, z) = (Edge::at(x), Edge::at(y), Edge::at(z));
-        let [ex, ey, ez] = &self.excess;
-        let get = |from: &[f32; 8], i: usize| L::single(from[i]);
-        // Along x: the values, and what y and z add, with derivatives.
-        let row = |i: usize| {
-            let (low, high) = (2 * i, 2 * i + 1);
-            let (f0, f1) = (get(&self.values, low), get(&self.values, high));
-            let (a0, a1) = (get(ex, low), get(ex, high));
-            let (b0, b1) = (get(ey, low), get(ey, high));
-            let (c0, c1) = (get(ez, low), get(ez, high));
-            let values = (
-                x.line(f0, f1) + x.bend(a0, a1),
-                (f1 - f0) + x.bend_slope(a0, a1),
-            );
-            (values, (x.line(b0, b1), b1 - b0), (x.line(c0, c1), c1 - c0))
+        let single = L::single;
+        // Along x: the value and its slope, and what bends by y and by z.
+        let row = |row: &Row| {
+            let [a, b, c, d] = row.value.map(single);
+            let dx = d * x;
+            let second = c + dx;
+            let first = b + second * x;
+            let value = a + first * x;
+            let slope = first + (second + dx) * x;
+            let [by_y, by_z] =
+                [row.y, row.z].map(|[start, change]| single(start) + single(change) * x);
+            (value, slope, by_y, by_z)
         };
-        // Along y: value, slopes by x and y; the same of what z adds.
+        let (across, along) = (Bend::at(y), Bend::at(z));
+        // Along y: value, slopes by x and y; what bends by z, and its slopes.
         let face = |i: usize| {
-            let ((p0, p0x), (q0, q0x), (r0, r0x)) = row(2 * i);
-            let ((p1, p1x), (q1, q1x), (r1, r1x)) = row(2 * i + 1);
+            let [near, far] = [&self.rows[2 * i], &self.rows[2 * i + 1]];
+            let (p, px, q, r) = row(near);
+            let (p1, p1x, q1, r1) = row(far);
+            let (value, by_y) = across.jet(p, p1, q, q + q1);
+            let by_x = across.value(px, p1x, single(near.y[1]), single(self.bends[i]));
+            let twist = r1 - r;
             (
+                [value, by_x, by_y],
                 [
-                    y.line(p0, p1) + y.bend(q0, q1),
-                    y.line(p0x, p1x) + y.bend(q0x, q1x),
-                    (p1 - p0) + y.bend_slope(q0, q1),
+                    r + twist * y,
+                    single(near.z[1]) + single(self.twists[i]) * y,
+                    twist,
                 ],
-                [y.line(r0, r1), y.line(r0x, r1x), r1 - r0],
             )
         };
-        let (s0, u0) = face(0);
-        let (s1, u1) = face(1);
-        let across = |i: usize| z.line(s0[i], s1[i]) + z.bend(u0[i], u1[i]);
-        let along = (s1[0] - s0[0]) + z.bend_slope(u0[0], u1[0]);
-        (across(0), [across(1), across(2), along])
+        let (s, u) = face(0);
+        let (t, v) = face(1);
+        let (value, by_z) = along.jet(s[0], t[0], u[0], u[0] + v[0]);
+        let [by_x, by_y] = [1, 2].map(|i| along.value(s[i], t[i], u[i], u[i] + v[i]));
+        (value, [by_x, by_y, by_z])
     }
 }
 
-/// The functions of one coordinate that values and slopes at the ends are multiplied with.
+/// A place x along an edge, and what bends there.
 #[derive(Clone, Copy)]
-struct Edge<L> {
-    near: L,
-    far: L,
-    bends: [L; 2],
-    slopes: [L; 2],
+struct Bend<L> {
+    x: L,
+    /// x(1−x) …
+    bulge: L,
+    /// … and its derivative.
+    tilt: L,
 }
 
-impl<L: Lanes> Edge<L> {
+impl<L: Lanes> Bend<L> {
     #[inline(always)]
     fn at(x: L) -> Self {
-        let y = L::single(1.0) - x;
-        let xy = x * y;
-        let (two, three) = (L::single(2.0), L::single(3.0));
+        let rest = L::single(1.0) - x;
         Self {
-            near: y,
-            far: x,
-            bends: [xy * y, -(xy * x)],
-            slopes: [y * (y - two * x), x * (three * x - two)],
+            x,
+            bulge: x * rest,
+            tilt: rest - x,
         }
     }
 
+    /// What is f and g at the ends, and a and b steeper there than straight: `f + (g−f)x + x(1−x)(a − (a+b)x)`, given a+b.
     #[inline(always)]
-    fn line(&self, a: L, b: L) -> L {
-        self.near * a + self.far * b
+    fn value(&self, f: L, g: L, a: L, both: L) -> L {
+        f + (g - f) * self.x + (a - both * self.x) * self.bulge
     }
 
+    /// The same, and its derivative.
     #[inline(always)]
-    fn bend(&self, a: L, b: L) -> L {
-        self.bends[0] * a + self.bends[1] * b
-    }
-
-    #[inline(always)]
-    fn bend_slope(&self, a: L, b: L) -> L {
-        self.slopes[0] * a + self.slopes[1] * b
+    fn jet(&self, f: L, g: L, a: L, both: L) -> (L, L) {
+        let rise = g - f;
+        let lean = a - both * self.x;
+        (
+            f + rise * self.x + lean * self.bulge,
+            rise + lean * self.tilt - both * self.bulge,
+        )
     }
 }
 

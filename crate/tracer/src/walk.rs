@@ -250,16 +250,19 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             return Span::zero();
         };
         let steps = block.cell.steps(self.direction);
-        let node = |t: f64| {
-            let t = L::splat(t);
-            let place = core::array::from_fn(|k| self.origin[k] + self.direction[k] * t);
-            let (value, [x, y, z]) = block.total.jet(block.cell.local(place));
+        let t = L::splat(from);
+        let near = core::array::from_fn(|k| self.origin[k] + self.direction[k] * t);
+        let near = block.cell.local(near);
+        let length = L::splat(to - from);
+        let far = core::array::from_fn(|k| near[k] + steps[k] * length);
+        let node = |place: [L; 3]| {
+            let (value, [x, y, z]) = block.total.jet(place);
             Node {
                 value,
                 slope: x * steps[0] + y * steps[1] + z * steps[2],
             }
         };
-        let span = Span::hermite(node(from), node(to), to - from);
+        let span = Span::hermite(node(near), node(far), to - from);
         if fresh {
             self.evaluations += (8 * count) as u64;
         }
