@@ -111,6 +111,14 @@ impl Samples {
         &self.cells[self.index(x, y)]
     }
 
+    /// Some of a row's samples.
+    pub fn row(&self, y: u32, columns: impl Iterator<Item = u32>) -> impl Iterator<Item = &Sample> {
+        let start = self.index(self.area.left, y);
+        let end = self.index(self.area.right, y);
+        let row = &self.cells[start..end];
+        columns.map(move |x| &row[(x - self.area.left) as usize])
+    }
+
     /// Cells outside the area are ignored.
     pub fn set(&mut self, x: u32, y: u32, sample: Sample) {
         if self.area.holds(x, y) {

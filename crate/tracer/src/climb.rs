@@ -13,15 +13,16 @@
 //! second one before it would need more bending. Then Newton's steps lead to it. All else makes
 //! the piece shorter, as far as may serve, but no shorter than the tolerance. Eight rays go in step; each has its own pieces.
 use field::{Course, Limits, Real};
-use wide::f32x8;
+use wide::bytemuck::cast;
+use wide::{f32x8, i32x8};
 
 /// A lump on the way of a packet's rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     /// Its field along the rays.
     pub course: Course<f32x8>,
-    /// Where it is strong, on each ray; the first is greater than the second where it never is.
-    pub strong: [f32x8; 2],
+    /// It is strong where the square of the distance, in kernel widths, is at most this.
+    pub strong: f32,
     /// Its index in the list.
     pub index: u32,
 }
@@ -47,14 +48,14 @@ pub struct Stairs<'a> {
 }
 
 impl<'a> Stairs<'a> {
-    /// The lumps that a ray may meet between two parameters.
+    /// The lumps that a ray may meet between two parameters, with their numbers.
     #[inline(always)]
-    pub fn between(self, first: f32, last: f32) -> impl Iterator<Item = &'a Step> {
+    pub fn between(self, first: f32, last: f32) -> impl Iterator<Item = (u32, &'a Step)> {
         self.turns
             .iter()
             .take_while(move |turn| turn.from <= last)
             .filter(move |turn| turn.to >= first)
-            .map(move |turn| &self.steps[turn.step as usize])
+            .map(move |turn| (turn.step, &self.steps[turn.step as usize]))
     }
 }
 
@@ -95,6 +96,9 @@ pub struct Climbed {
     pub evaluations: u64,
 }
 
+/// No lump.
+const NONE: i32 = -1;
+
 /// T, less what rounding takes from sums: a ray that rounding alone keeps outside meets the surface.
 const LEVEL: f32 = 1.0 - 1e-6;
 
@@ -129,9 +133,9 @@ struct Sum {
     most: f32x8,
     bend: f32x8,
     kink: f32x8,
-    /// The largest of the values that make up `most`, and where its lump is strong.
+    /// The largest of the values that make up `most`, and the number of its lump, or [`NONE`].
     largest: f32x8,
-    strong: [f32x8; 2],
+    lump: i32x8,
 }
 
 /// Climbs. `None` if a ray starts inside or none of this ends, which is for others to deal with.
@@ -157,7 +161,8 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
     if level.simd_le(low_value).to_bitmask() & going != 0 {
         return None;
     }
-    // And above T at `high`, if that is finite.
+    // And above T at `high`, on the rays that are known to be that somewhere.
+    let mut known = 0;
     let mut high = f32x8::splat(f32::INFINITY);
     let (mut high_value, mut high_slope, mut high_bend, mut high_kink) = (zero, zero, zero, zero);
     let mut step = f32x8::splat(f32::INFINITY);
@@ -186,8 +191,9 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
             }
             return Some(climbed);
         }
-        let sum = Sum::on(lumps, low, next, going, &mut evaluations);
-        let length = next - low;
+        let at = next;
+        let sum = Sum::on(lumps, low, at, going, &mut evaluations);
+        let length = at - low;
         let short = length.simd_le(tolerance).to_bitmask();
         let above = level.simd_le(sum.value).to_bitmask() & going;
         // Above the chord by no more than a parabola, whose sum with the chord is largest inside only if it is steeper.
@@ -211,14 +217,14 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
                 passed |= doubted;
                 doubtful |= doubted;
                 doubt[0] = mask.select(doubt[0].fast_min(low), doubt[0]);
-                doubt[1] = mask.select(next, doubt[1]);
+                doubt[1] = mask.select(at, doubt[1]);
             }
         }
         let moved = zero.simd_lt(length).to_bitmask();
         let failed = below & !passed;
         // Those that go on.
         let mask = mask(passed);
-        low = mask.select(next, low);
+        low = mask.select(at, low);
         low_value = mask.select(sum.value, low_value);
         low_slope = mask.select(sum.slope, low_slope);
         // A length that served may be doubled.
@@ -232,18 +238,27 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
         let arrived = passed & way.to.simd_le(low).to_bitmask();
         going &= !arrived;
         // Those that must look closer.
-        let room = level - low_value.fast_max(sum.value);
-        let served = (f32x8::splat(SERVES) * room.fast_max(zero) / sum.bend).sqrt();
-        let down = f32x8::splat(FALLS) * -low_slope / sum.bend;
-        let served = served
-            .fast_max(down)
-            .fast_min(f32x8::splat(0.5) * length)
-            .fast_max(f32x8::splat(LEAST) * length);
-        let closer = sum.closer(low, next, low + served, tolerance) - low;
-        step = self::mask(failed).select(closer, step);
+        if failed != 0 {
+            let room = level - low_value.fast_max(sum.value);
+            let served = (f32x8::splat(SERVES) * room.fast_max(zero) / sum.bend).sqrt();
+            let down = f32x8::splat(FALLS) * -low_slope / sum.bend;
+            let served = served
+                .fast_max(down)
+                .fast_min(f32x8::splat(0.5) * length)
+                .fast_max(f32x8::splat(LEAST) * length);
+            let closer = sum.closer(lumps, failed, [low, at], low + served, tolerance) - low;
+            step = self::mask(failed).select(closer, step);
+        }
+        let goal = low.simd_lt(way.guess).select(way.guess, way.to);
+        let goal = goal.fast_min(way.to);
+        next = goal.fast_min(low + step);
+        known |= above;
+        if known == 0 {
+            continue;
+        }
         // Those that know of a crossing.
         let mask = self::mask(above);
-        high = mask.select(next, high);
+        high = mask.select(at, high);
         high_value = mask.select(sum.value, high_value);
         high_slope = mask.select(sum.slope, high_slope);
         high_bend = mask.select(sum.bend, high_bend);
@@ -267,11 +282,8 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
         }
         let middle = f32x8::splat(0.5) * (low + high);
         let fits = low.simd_lt(back) & back.simd_lt(high);
-        let back = fits.select(back, middle);
-        let known = high.simd_lt(f32x8::splat(f32::INFINITY));
-        let goal = low.simd_lt(way.guess).select(way.guess, way.to);
-        let goal = goal.fast_min(way.to);
-        next = known.select(back, goal).fast_min(low + step);
+        let back = fits.select(back, middle).fast_min(low + step);
+        next = self::mask(known).select(back, next);
     }
     None
 }
@@ -308,7 +320,7 @@ pub fn least(x: f32x8) -> f32 {
 fn values(lumps: Stairs<'_>, t: f32x8, bits: u32, evaluations: &mut u64) -> (f32x8, f32x8) {
     let (first, last) = extremes(t, t, bits);
     let (mut value, mut slope) = (f32x8::splat(0.0), f32x8::splat(0.0));
-    for lump in lumps.between(first, last) {
+    for (_, lump) in lumps.between(first, last) {
         *evaluations += 8;
         let (v, s) = lump.course.at(t);
         value += v;
@@ -329,9 +341,9 @@ impl Sum {
             bend: zero,
             kink: zero,
             largest: zero,
-            strong: [zero; 2],
+            lump: i32x8::splat(NONE),
         };
-        for lump in lumps.between(first, last) {
+        for (number, lump) in lumps.between(first, last) {
             let course = &lump.course;
             let (value, slope, here) = course.bent(to);
             let Limits { most, bend, kink } = if course.rises_until(to) {
@@ -349,21 +361,40 @@ impl Sum {
             sum.slope += slope;
             sum.most += most;
             sum.bend += bend;
-            sum.kink += kink;
-            let larger = sum.largest.simd_lt(most);
-            sum.largest = larger.select(most, sum.largest);
-            for (own, other) in sum.strong.iter_mut().zip(lump.strong) {
-                *own = larger.select(other, *own);
+            if course.has_kinks() {
+                sum.kink += kink;
             }
+            let larger = cast(sum.largest.simd_lt(most));
+            sum.largest = sum.largest.fast_max(most);
+            sum.lump = i32x8::select(larger, i32x8::splat(number as i32), sum.lump);
         }
         sum
     }
 
     /// Where to look instead on a piece about which nothing can be told: up to where the largest lump begins to be strong,
     /// or to where it ends, or so far as may serve.
-    #[inline(always)]
-    fn closer(&self, from: f32x8, to: f32x8, served: f32x8, tolerance: f32x8) -> f32x8 {
-        let [near, far] = self.strong;
+    #[inline(never)]
+    fn closer(
+        &self,
+        lumps: Stairs<'_>,
+        mut lanes: u32,
+        [from, to]: [f32x8; 2],
+        served: f32x8,
+        tolerance: f32x8,
+    ) -> f32x8 {
+        let (mut near, mut far) = (f32x8::splat(1.0), f32x8::splat(-1.0));
+        let numbers = self.lump.to_array();
+        while lanes != 0 {
+            let number = numbers[lanes.trailing_zeros() as usize];
+            let same = self.lump.simd_eq(i32x8::splat(number));
+            lanes &= !(same.to_bitmask());
+            let Some(step) = lumps.steps.get(number as usize) else {
+                continue;
+            };
+            let [a, b] = step.course.within(f32x8::splat(step.strong));
+            near = cast::<_, f32x8>(same).select(a, near);
+            far = cast::<_, f32x8>(same).select(b, far);
+        }
         let strong = near.simd_lt(far);
         let ends = strong & (from + tolerance).simd_lt(far) & far.simd_lt(to);
         let begins = strong & (from + tolerance).simd_lt(near) & near.simd_lt(to);
@@ -510,7 +541,7 @@ mod tests {
                 let strong = lump.core(square, 1e-6) + 2.0;
                 Step {
                     course,
-                    strong: course.within(f32x8::splat(strong as f32)),
+                    strong: strong as f32,
                     index: index as u32,
                 }
             })
@@ -648,7 +679,7 @@ mod tests {
         let course = lump.course([zero; 3], [zero, zero, f32x8::splat(1.0)]);
         let steps = [Step {
             course,
-            strong: [zero, zero],
+            strong: -1.0,
             index: 0,
         }];
         let way = Way {

@@ -143,7 +143,7 @@ impl Picture {
                     bottom: area.bottom.div_ceil(BLOCK),
                 };
                 let samples = self.sample(blocks, BLOCK, stop, &mut work, stats)?;
-                pixels.show(area, |x, y| *samples.get(x / BLOCK, y / BLOCK));
+                pixels.show::<BLOCK>(area, &samples);
             }
             Pass::Smooth if self.samples > 1 => {
                 // Pixels of one packet are refined together.
@@ -162,14 +162,14 @@ impl Picture {
                 };
                 let mut samples = self.sample(wide, 1, stop, &mut work, stats)?;
                 self.refine(whole, &mut samples, stop, &mut work, stats)?;
-                pixels.show(area, |x, y| *samples.get(x, y));
+                pixels.show::<1>(area, &samples);
             }
             Pass::Full | Pass::Smooth => {
                 // Square by square, so that samples need little memory.
                 for square in area.blocks([SQUARE; 2]) {
                     let part = square.meet(area);
                     let samples = self.sample(part, 1, stop, &mut work, stats)?;
-                    pixels.show(part, |x, y| *samples.get(x, y));
+                    pixels.show::<1>(part, &samples);
                 }
             }
         }
@@ -400,8 +400,8 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// Shows samples in a part of the tile.
-    fn show(&mut self, part: Area, sample: impl Fn(u32, u32) -> Sample) {
+    /// Shows samples in a part of the tile, each in a block of so many pixels across and down.
+    fn show<const BLOCK: u32>(&mut self, part: Area, samples: &Samples) {
         let width = (self.area.right - self.area.left) as usize;
         // Neighbours often have the same colour, that of the background.
         let mut last = (Vec3::NAN, [0; 3]);
@@ -410,10 +410,10 @@ impl<'a> Pixels<'a> {
             let start = row + (part.left - self.area.left) as usize;
             let end = row + (part.right - self.area.left) as usize;
             let bytes = self.rgba[4 * start..4 * end].chunks_exact_mut(4);
-            for (x, pixel) in (part.left..part.right).zip(bytes) {
-                let sample = sample(x, y);
+            let columns = (part.left..part.right).map(|x| x / BLOCK);
+            for (sample, pixel) in samples.row(y / BLOCK, columns).zip(bytes) {
                 let (colour, gamma) = match &self.picture.map {
-                    Some(map) => (map.grey(&sample, self.dearest), 1.0),
+                    Some(map) => (map.grey(sample, self.dearest), 1.0),
                     None => (sample.colour, self.picture.gamma),
                 };
                 if colour != last.0 {

@@ -234,7 +234,6 @@ impl Soft {
             from = from.fast_min(step_from);
             to = to.fast_max(step_to);
             let strong = near.core + STRONG * (near.square - near.core);
-            let strong = course.within(f32x8::splat(strong));
             let [core, out] = course.within(f32x8::splat(near.core));
             let inside = meets & enters.simd_le(core) & core.simd_le(out);
             if inside.any() {
@@ -368,7 +367,7 @@ impl Soft {
             weights.clear();
             let place: [f32x8; 3] =
                 core::array::from_fn(|i| rays.origin[i] + rays.direction[i] * at);
-            for step in work.stairs().between(first, last) {
+            for (_, step) in work.stairs().between(first, last) {
                 let near = near.get(step.index as usize);
                 let jet = near.lump.jet(core::array::from_fn(|i| {
                     place[i] - f32x8::splat(near.middle[i])
