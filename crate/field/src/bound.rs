@@ -302,7 +302,7 @@ impl Bound {
         let errors = bounds.iter().zip(&length.0).map(|(d, h)| d * h);
         Estimate {
             magnitude,
-            // `min` leaves out what is no number.
+            // What is no number is left out.
             error: errors.fold(f64::INFINITY, f64::at_most),
             fourth: f64::INFINITY,
         }
@@ -484,8 +484,8 @@ impl Bound {
 #[inline]
 fn size(kernel: Kernel, u: f64) -> f64 {
     match kernel {
-        // Single precision's exponential is right to 10⁻⁶, and 0 where it is below 10⁻³⁷.
-        Kernel::Gauss if u < 9.0 => f64::from(Real::exp(-(u * u) as f32)) * (1.0 + 1e-5),
+        // Single precision's is right to 10⁻⁶, and not yet 0.
+        Kernel::Gauss if u < 9.0 => f64::from(Real::decay((u * u) as f32)) * (1.0 + 1e-5),
         // e⁻⁸¹; there is nothing to know more exactly.
         Kernel::Gauss => 7e-36,
         Kernel::Cauchy => envelope::cauchy_point(u).0,

@@ -489,7 +489,7 @@ impl<R: Real> Course<R> {
             // Where |x| ≤ half + √square, unless the ray runs across.
             let rate = self.rate.abs().max(R::splat(1e-12));
             let middle = -(self.rate.sign_to(self.place)) / rate;
-            let reach = (R::lift(abreast.half) + square.sqrt()) / rate;
+            let reach = (R::lift(abreast.half) + square.max(zero).sqrt()) / rate;
             near = near.max(middle - reach);
             far = far.min(middle + reach);
         }

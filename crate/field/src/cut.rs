@@ -3,7 +3,7 @@
 //! `f64::min` and `f64::max` leave out what is no number. Wasm has no instruction for that, and calls a function of the C
 //! library for each of them: bounds, of which pictures ask for millions, took a twentieth of their time there.
 
-/// Numbers that are cut to limits.
+/// Numbers that are cut to limits. Of zeros of both signs either may be chosen.
 pub trait Cut: Copy {
     /// The larger of the two, or that which is a number.
     #[must_use]

@@ -81,7 +81,7 @@ pub trait Real:
     /// tiny. `bell` is e^(−x²), which whoever wants the one mostly has.
     fn erfc(self, bell: Self) -> Self;
 
-    /// e^(−x), x ≥ −88; 0 in single precision for x above 88.
+    /// e^(−x), x ≥ −88. In single precision 0 for x from 87.69 on, and meaningless below −88.
     fn decay(self) -> Self;
     /// The natural logarithm of a positive, normal number.
     fn ln(self) -> Self;

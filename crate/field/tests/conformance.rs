@@ -119,7 +119,9 @@ tests! {
             for _ in 0..500 {
                 let size = random.decades(-2.0, 1.0);
                 let skeleton = random.skeleton(kind, size);
-                let primitive = primitive(skeleton.clone(), &random.shaping(1.0), None);
+                let kernel = random.pick(&Kernel::ALL);
+                let shaping = Shaping { kernel, ..random.shaping(1.0) };
+                let primitive = primitive(skeleton.clone(), &shaping, None);
                 let points: [DVec3; 8] =
                     core::array::from_fn(|_| single(random.near(&skeleton, -3.0, 2.0)));
                 let lanes = primitive

@@ -44,7 +44,6 @@ pub(crate) enum Near<'n, 's> {
 }
 
 /// Rays of a packet, and what they hit.
-#[derive(Clone)]
 pub(crate) struct Seen {
     pub rays: [Ray; PACKET],
     pub hits: [Option<Hit>; PACKET],

@@ -97,10 +97,19 @@ fn value(c: &[f64], x: f64) -> f64 {
 /// Newton's steps, kept inside a bracket that shrinks, so it always converges.
 ///
 /// Stops when the bracket is narrower than `tolerance` or cannot shrink.
-pub fn bracketed(mut f: impl FnMut(f64) -> (f64, f64), a: f64, b: f64, tolerance: f64) -> f64 {
-    let (mut low, mut high) = (a, b);
+pub fn bracketed(f: impl FnMut(f64) -> (f64, f64), a: f64, b: f64, tolerance: f64) -> f64 {
+    bracketed_from(f, [a, b], 0.5 * (a + b), tolerance)
+}
+
+/// The same, looking first at a place between.
+pub fn bracketed_from(
+    mut f: impl FnMut(f64) -> (f64, f64),
+    [mut low, mut high]: [f64; 2],
+    start: f64,
+    tolerance: f64,
+) -> f64 {
     let low_is_negative = f(low).0 < 0.0;
-    let mut x = 0.5 * (low + high);
+    let mut x = start;
     let mut width = high - low;
     for _ in 0..200 {
         let (value, slope) = f(x);

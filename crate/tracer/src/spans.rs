@@ -4,7 +4,7 @@
 //! both. Its four Bernstein coefficients bound it from both sides, halving it is exact, and the sum
 //! of spans over the same interval is a span.
 use crate::lanes::Lanes;
-use crate::roots::{Roots, bracketed, roots};
+use crate::roots::{Roots, bracketed_from, roots};
 
 /// A cubic on an interval, by its Bernstein coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +103,9 @@ impl<L: Lanes> Span<L> {
     }
 }
 
+/// Roots are no further off than about this part of the interval.
+const EXACT: f64 = 1e-13;
+
 impl Span<f64> {
     /// Where in 0..=1 (the interval's ends) the cubic crosses a level, ascending.
     #[must_use]
@@ -117,7 +120,9 @@ impl Span<f64> {
                 let (value, slope) = self.value_and_slope(x);
                 (value - level, slope)
             };
-            return Roots::one(bracketed(over, 0.0, 1.0, 0.0));
+            // Where the straight line between the ends crosses is near.
+            let start = (level - a) / (d - a);
+            return Roots::one(bracketed_from(over, [0.0, 1.0], start, EXACT));
         }
         roots(
             &[

@@ -29,8 +29,9 @@ impl Digger for Hermite {
             scratch.evaluations += looked.evaluations;
             let t = scratch.quick.flesh.t;
             return core::array::from_fn(|i| {
-                // Whoever asks only whether there is an entry is told that there is one.
-                (looked.met >> i & 1 != 0).then_some(base + t[i])
+                // Whoever asks only whether there is an entry is told no more.
+                let t = if quest == Quest::Entry { 0.0 } else { t[i] };
+                (looked.met >> i & 1 != 0).then_some(base + t)
             });
         }
         let alive = |lane: &usize| packet.alive >> lane & 1 != 0;
