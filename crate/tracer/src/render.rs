@@ -1,12 +1,15 @@
 //! A whole picture at once, on several threads.
-use crate::tile::{Pass, tiles};
+use crate::tile::{Pass, Tile, tiles};
 use crate::{Picture, Stats};
 use scene::Scene;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Side of the tiles handed to the threads.
-const TILE: u32 = 64;
+/// Sides of the tiles handed to the threads. What is around a tile is sampled with it when a picture is made smooth, so that
+/// larger ones are less work; but each thread should have some.
+const SIDES: [u32; 3] = [256, 128, 64];
+/// So many tiles there should be for each thread but the first.
+const TILES: usize = 8;
 
 /// Renders a scene with several threads and returns RGBA bytes (rows from the top).
 ///
@@ -31,7 +34,7 @@ pub fn render_picture(
     progress: &(dyn Fn(f64) + Sync),
 ) -> (Vec<u8>, Stats) {
     let [width, height] = picture.size;
-    let tiles = tiles(width, height, TILE);
+    let tiles = shared_out(width, height, threads);
     let next = AtomicUsize::new(0);
     let done = AtomicUsize::new(0);
     let whole = Mutex::new((
@@ -67,10 +70,36 @@ pub fn render_picture(
     whole.into_inner().unwrap_or_else(|e| e.into_inner())
 }
 
+/// The largest tiles of which there are enough for so many threads; else the smallest.
+fn shared_out(width: u32, height: u32, threads: usize) -> Vec<Tile> {
+    let mut all = Vec::new();
+    for side in SIDES {
+        all = tiles(width, height, side);
+        if all.len() >= TILES * threads.saturating_sub(1) {
+            break;
+        }
+    }
+    all
+}
+
 impl std::ops::AddAssign for Stats {
     fn add_assign(&mut self, other: Self) {
         self.primary_rays += other.primary_rays;
         self.shadow_rays += other.shadow_rays;
         self.field_evaluations += other.field_evaluations;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn every_thread_has_tiles() {
+        for (threads, count) in [(1, 4), (2, 16), (3, 16), (4, 64), (1000, 64)] {
+            assert_eq!(shared_out(512, 512, threads).len(), count, "{threads}");
+        }
+        assert!(shared_out(0, 9, 2).is_empty());
     }
 }
