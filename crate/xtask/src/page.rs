@@ -1,11 +1,10 @@
 //! Building the page: two packages of wasm, and the files of `www/`.
 
-use crate::shell::{cargo, command, root, run, target};
+use crate::shell::{artifacts, cargo, command, root, run, target};
 use crate::tools;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
 use wasm_bindgen_cli_support::Bindgen;
 
 /// How a page is built.
@@ -39,17 +38,22 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
     if build == Build::Release
         && let Some(wasm_opt) = tools::wasm_opt()
     {
-        let wasm_opt = wasm_opt.to_string_lossy();
-        for (name, level) in [("studio", "-O1"), ("tracer", "-O3")] {
+        for (name, level) in [("studio", "-O1"), ("tracer", WORKER_LEVEL)] {
             let file = folder.join(format!("{name}_bg.wasm"));
-            let file = file.to_string_lossy();
-            run(&mut command(
-                "node",
-                &[&wasm_opt, &file, level, "-o", &file],
-            ))?;
+            optimise(&wasm_opt, level, &file, &file)?;
         }
     }
     Ok(())
+}
+
+/// How hard wasm-opt tries with what a worker runs. Harder is slower: with -O3 flakes take a tenth longer, as numbers
+/// side by side are moved about more.
+pub const WORKER_LEVEL: &str = "-O1";
+
+/// Has wasm-opt make a wasm of another.
+pub fn optimise(wasm_opt: &Path, level: &str, from: &Path, to: &Path) -> Result<()> {
+    let [wasm_opt, from, to] = [wasm_opt, from, to].map(Path::to_string_lossy);
+    run(&mut command("node", &[&wasm_opt, &from, level, "-o", &to]))
 }
 
 /// Compiles a package to wasm and gives the file.
@@ -74,14 +78,8 @@ fn compile(package: &str, profile: &str, arguments: &[&str]) -> Result<PathBuf> 
         "$ cargo rustc --package {package} --target {} --profile {profile}",
         tools::WASM
     );
-    let output = command.stderr(Stdio::inherit()).output()?;
-    if !output.status.success() {
-        bail!("{package} does not compile");
-    }
-    String::from_utf8_lossy(&output.stdout)
-        .lines()
-        .filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
-        .filter(|message| message["reason"] == "compiler-artifact")
+    artifacts(&mut command)?
+        .into_iter()
         .flat_map(|message| message["filenames"].as_array().cloned().unwrap_or_default())
         .filter_map(|file| file.as_str().map(PathBuf::from))
         .rfind(|file| {
@@ -96,8 +94,6 @@ fn bind(wasm: &Path, name: &str, folder: &Path) -> Result<()> {
     Bindgen::new()
         .input_path(wasm)
         .web(true)?
-        // The script finds the wasm beside itself.
-        .omit_default_module_path(false)
         .typescript(false)
         // The script looks for its wasm beside itself.
         .omit_default_module_path(false)
