@@ -1,6 +1,6 @@
 //! Rectangles of pixels, and the samples taken in them.
 use crate::sample::Sample;
-use glam::Vec3;
+use crate::tile::Tile;
 
 /// A rectangle of cells.
 #[derive(Clone, Copy, Debug)]
@@ -9,6 +9,17 @@ pub(crate) struct Area {
     pub top: u32,
     pub right: u32,
     pub bottom: u32,
+}
+
+impl From<Tile> for Area {
+    fn from(tile: Tile) -> Self {
+        Self {
+            left: tile.x,
+            top: tile.y,
+            right: tile.x.saturating_add(tile.width),
+            bottom: tile.y.saturating_add(tile.height),
+        }
+    }
 }
 
 impl Area {
@@ -27,6 +38,13 @@ impl Area {
 
     pub fn holds(&self, x: u32, y: u32) -> bool {
         (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
+    }
+
+    pub fn contains(&self, part: Self) -> bool {
+        self.left <= part.left
+            && part.right <= self.right
+            && self.top <= part.top
+            && part.bottom <= self.bottom
     }
 
     /// The left and the right half, or the upper and the lower.
@@ -88,18 +106,16 @@ pub(crate) struct Samples {
 
 impl Samples {
     pub fn new(area: Area) -> Self {
-        let blank = Sample {
-            colour: Vec3::ZERO,
-            key: 0,
-            depth: f32::INFINITY,
-            cost: 0.0,
-        };
         let width = (area.right - area.left) as usize;
         let height = (area.bottom - area.top) as usize;
         Self {
             area,
-            cells: vec![blank; width * height],
+            cells: vec![Sample::BLANK; width * height],
         }
+    }
+
+    pub fn area(&self) -> Area {
+        self.area
     }
 
     fn index(&self, x: u32, y: u32) -> usize {

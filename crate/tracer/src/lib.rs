@@ -85,6 +85,7 @@ mod refine;
 pub mod render;
 mod roots;
 mod sample;
+mod sample_cache;
 mod settle;
 mod shade;
 mod shadows;
@@ -106,4 +107,5 @@ pub use ray::Ray;
 pub use reference::Reference;
 #[cfg(not(target_arch = "wasm32"))]
 pub use render::{render, render_picture};
+pub use sample_cache::SampleCache;
 pub use tile::{Pass, Tile, tiles};

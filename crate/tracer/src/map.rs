@@ -2,7 +2,8 @@
 //!
 //! The unit of cost is one evaluation of one primitive's field at one point; each ray, to the eye or to
 //! a light, counts as one more. Rays of a packet share the evaluations that are made for all of
-//! them at once. A pixel shows the mean of its rays. Work is counted and not timed, so that a
+//! them at once; those that are made for the packets of a whole square, or of a patch in the light, are not counted, as it
+//! depends on the tile which packet asks for them first. A pixel shows the mean of its rays. Work is counted and not timed, so that a
 //! map is the same wherever it is made.
 //!
 //! White stands for the dearest pixel. As tiles are traced on their own, each finds out what that is
@@ -11,6 +12,7 @@ use crate::area::Area;
 use crate::packet::Workspace;
 use crate::picture::{PACKET_SIZE, Picture, Stats};
 use crate::sample::Sample;
+use crate::sample_cache::SampleCache;
 use crate::soft::PACKET;
 use glam::Vec3;
 use std::sync::OnceLock;
@@ -47,7 +49,7 @@ impl Map {
             return Some(*dearest);
         }
         let mut dearest = 1.0_f32;
-        let mut work = Workspace::default();
+        let (cache, mut work) = (SampleCache::default(), Workspace::default());
         let [width, height] = picture.size;
         for top in (0..height).step_by(APART as usize) {
             for left in (0..width).step_by(APART as usize) {
@@ -58,7 +60,7 @@ impl Map {
                     bottom: (top + PACKET_SIZE[1]).min(height),
                 };
                 let stats = &mut Stats::default();
-                let samples = picture.sample(area, 1, stop, &mut work, stats)?;
+                let samples = picture.sample(area, 1, &cache, stop, &mut work, stats)?;
                 let costs = area.pixels().map(|(x, y)| samples.get(x, y).cost);
                 dearest = costs.fold(dearest, f32::max);
             }

@@ -237,6 +237,7 @@ impl Picture {
             });
             if let Some((mut slabs, base)) = slabs {
                 self.soft_hits(rays, 0, &mut slabs, base, work, hits);
+                work.scratch.evaluations += slabs.evaluations();
                 work.scratch.spaces.push(slabs.into_space());
             }
             return;

@@ -9,6 +9,7 @@ use crate::nearby::Nearby;
 use crate::packet::{Near, Seen, Workspace};
 use crate::ray::Ray;
 use crate::sample::Sample;
+use crate::sample_cache::SampleCache;
 use crate::shade::{self, Finish};
 use crate::slabs::Slabs;
 use crate::soft::{PACKET, Soft};
@@ -122,57 +123,104 @@ impl Picture {
         stop: &dyn Fn() -> bool,
         stats: &mut Stats,
     ) -> Option<Vec<u8>> {
-        let area = Area {
-            left: tile.x,
-            top: tile.y,
-            right: tile.x.saturating_add(tile.width),
-            bottom: tile.y.saturating_add(tile.height),
-        };
+        self.trace_with(tile, pass, &mut SampleCache::default(), stop, stats)
+    }
+
+    /// The same with a cache of this picture's first samples: those that it has are not taken again, others are kept in it.
+    #[must_use]
+    pub fn trace_with(
+        &self,
+        tile: Tile,
+        pass: Pass,
+        cache: &mut SampleCache,
+        stop: &dyn Fn() -> bool,
+        stats: &mut Stats,
+    ) -> Option<Vec<u8>> {
         let mut work = Workspace::default();
-        let dearest = match &self.map {
-            Some(map) => map.dearest(self, stop)?,
-            None => 1.0,
-        };
-        let mut pixels = Pixels::new(self, area, dearest);
-        match pass {
-            Pass::Coarse => {
-                let blocks = Area {
-                    left: area.left / BLOCK,
-                    top: area.top / BLOCK,
-                    right: area.right.div_ceil(BLOCK),
-                    bottom: area.bottom.div_ceil(BLOCK),
-                };
-                let samples = self.sample(blocks, BLOCK, stop, &mut work, stats)?;
-                pixels.show::<BLOCK>(area, &samples);
-            }
-            Pass::Smooth if self.samples > 1 => {
-                // Pixels of one packet are refined together.
-                let [across, down] = PACKET_SIZE;
-                let whole = Area {
-                    left: area.left / across * across,
-                    top: area.top / down * down,
-                    right: area.right.min(self.size[0]).next_multiple_of(across),
-                    bottom: area.bottom.min(self.size[1]).next_multiple_of(down),
-                };
-                let wide = Area {
-                    left: whole.left.saturating_sub(1),
-                    top: whole.top.saturating_sub(1),
-                    right: (whole.right + 1).min(self.size[0]).max(area.right),
-                    bottom: (whole.bottom + 1).min(self.size[1]).max(area.bottom),
-                };
-                let mut samples = self.sample(wide, 1, stop, &mut work, stats)?;
-                self.refine(whole, &mut samples, stop, &mut work, stats)?;
-                pixels.show::<1>(area, &samples);
-            }
-            Pass::Full | Pass::Smooth => {
-                // Square by square, so that samples need little memory.
-                for square in area.blocks([SQUARE; 2]) {
-                    let part = square.meet(area);
-                    let samples = self.sample(part, 1, stop, &mut work, stats)?;
-                    pixels.show::<1>(part, &samples);
-                }
-            }
+        self.trace_in(tile, pass, cache, stop, &mut work, stats)
+    }
+
+    /// The same in a given working space.
+    pub(crate) fn trace_in(
+        &self,
+        tile: Tile,
+        pass: Pass,
+        cache: &mut SampleCache,
+        stop: &dyn Fn() -> bool,
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) -> Option<Vec<u8>> {
+        let area = Area::from(tile);
+        if pass == Pass::Smooth && self.samples > 1 {
+            let samples = self.sample(self.around(area), 1, cache, stop, work, stats)?;
+            cache.keep(&samples);
+            return self.smooth(area, samples, stop, work, stats);
         }
+        let mut pixels = Pixels::new(self, area, stop)?;
+        if pass == Pass::Coarse {
+            let blocks = Area {
+                left: area.left / BLOCK,
+                top: area.top / BLOCK,
+                right: area.right.div_ceil(BLOCK),
+                bottom: area.bottom.div_ceil(BLOCK),
+            };
+            let samples = self.sample(blocks, BLOCK, cache, stop, work, stats)?;
+            pixels.show::<BLOCK>(area, &samples);
+            return Some(pixels.rgba);
+        }
+        // Square by square, so that samples need little memory.
+        for square in area.blocks([SQUARE; 2]) {
+            let part = square.meet(area);
+            let samples = self.sample(part, 1, cache, stop, work, stats)?;
+            cache.keep(&samples);
+            pixels.show::<1>(part, &samples);
+        }
+        Some(pixels.rgba)
+    }
+
+    /// A cache for this picture's first samples that keeps at most `room` squares of 64×64 pixels, 100 kB
+    /// each; none if no pass needs samples of an earlier one.
+    #[must_use]
+    pub fn cache(&self, room: usize) -> SampleCache {
+        SampleCache::new(self.size, if self.samples > 1 { room } else { 0 })
+    }
+
+    /// The packets of an area, whose pixels are refined together.
+    fn whole(&self, area: Area) -> Area {
+        let [across, down] = PACKET_SIZE;
+        Area {
+            left: area.left / across * across,
+            top: area.top / down * down,
+            right: area.right.min(self.size[0]).next_multiple_of(across),
+            bottom: area.bottom.min(self.size[1]).next_multiple_of(down),
+        }
+    }
+
+    /// The pixels whose first samples [`Picture::smooth`] needs for an area: those of the packets in it and of all around
+    /// them.
+    pub(crate) fn around(&self, area: Area) -> Area {
+        let whole = self.whole(area);
+        let [across, down] = PACKET_SIZE;
+        Area {
+            left: whole.left.saturating_sub(across),
+            top: whole.top.saturating_sub(down),
+            right: (whole.right + across).min(self.size[0]).max(area.right),
+            bottom: (whole.bottom + down).min(self.size[1]).max(area.bottom),
+        }
+    }
+
+    /// Takes more samples where the first ones, of an area and of what is around it, differ, and writes the area's RGBA bytes.
+    pub(crate) fn smooth(
+        &self,
+        area: Area,
+        mut samples: Samples,
+        stop: &dyn Fn() -> bool,
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) -> Option<Vec<u8>> {
+        self.refine(self.whole(area), &mut samples, stop, work, stats)?;
+        let mut pixels = Pixels::new(self, area, stop)?;
+        pixels.show::<1>(area, &samples);
         Some(pixels.rgba)
     }
 
@@ -213,11 +261,13 @@ impl Picture {
             .collect()
     }
 
-    /// One sample at the centre of each cell of an area, in units of cells of `scale` pixels.
+    /// One sample at the centre of each cell of an area, in units of cells of `scale` pixels. The cache, which is of single
+    /// pixels, is asked first.
     pub(crate) fn sample(
         &self,
         area: Area,
         scale: u32,
+        cache: &SampleCache,
         stop: &dyn Fn() -> bool,
         work: &mut Workspace,
         stats: &mut Stats,
@@ -230,7 +280,8 @@ impl Picture {
             if stop() {
                 return None;
             }
-            let mut square = self.square(block.times(scale), [columns, rows], work);
+            let known = cache.square(block).filter(|_| scale == 1);
+            let mut square = None;
             for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
                 let cell = |lane: usize| {
                     let lane = lane as u32;
@@ -241,10 +292,13 @@ impl Picture {
                 };
                 let pixels: [(u32, u32); PACKET] = core::array::from_fn(cell);
                 let wanted = pixels.iter().filter(|&&(x, y)| area.holds(x, y)).count();
-                if wanted == 0 {
+                if wanted == 0 || known.is_some_and(|known| known.tell([i, j], block, &mut samples))
+                {
                     continue;
                 }
                 stats.primary_rays += wanted as u64;
+                let square = square
+                    .get_or_insert_with(|| self.square(block.times(scale), [columns, rows], work));
                 let near = square.near([i, j], [columns, rows], work);
                 let nothing = matches!(near, Near::Nothing);
                 if self.solids.is_empty() && self.digger.is_none() && nothing {
@@ -294,7 +348,9 @@ impl Picture {
                     return None;
                 }
             }
-            square.leave(work);
+            if let Some(square) = square {
+                square.leave(work, stats);
+            }
         }
         Some(samples)
     }
@@ -390,14 +446,19 @@ struct Pixels<'a> {
 }
 
 impl<'a> Pixels<'a> {
-    fn new(picture: &'a Picture, area: Area, dearest: f32) -> Self {
+    /// `None` if `stop` gave up.
+    fn new(picture: &'a Picture, area: Area, stop: &dyn Fn() -> bool) -> Option<Self> {
         let [width, height] = [area.right - area.left, area.bottom - area.top];
-        Self {
+        let dearest = match &picture.map {
+            Some(map) => map.dearest(picture, stop)?,
+            None => 1.0,
+        };
+        Some(Self {
             picture,
             area,
             dearest,
             rgba: vec![255; 4 * width as usize * height as usize],
-        }
+        })
     }
 
     /// Shows samples in a part of the tile, each in a block of so many pixels across and down.

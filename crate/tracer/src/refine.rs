@@ -74,7 +74,7 @@ impl Picture {
                 }
             }
             if let Some(square) = square {
-                square.leave(work);
+                square.leave(work, stats);
             }
         }
         let all = (self.samples * self.samples) as f32;

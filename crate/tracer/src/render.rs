@@ -1,15 +1,16 @@
 //! A whole picture at once, on several threads.
+use crate::area::Area;
+use crate::packet::Workspace;
+use crate::picture::SQUARE;
+use crate::sample_cache::SampleCache;
 use crate::tile::{Pass, Tile, tiles};
 use crate::{Picture, Stats};
 use scene::Scene;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Sides of the tiles handed to the threads. What is around a tile is sampled with it when a picture is made smooth, so that
-/// larger ones are less work; but each thread should have some.
-const SIDES: [u32; 3] = [256, 128, 64];
-/// So many tiles there should be for each thread but the first.
-const TILES: usize = 8;
+/// Side of the parts of a picture that are made smooth one after the other, in pixels: their first samples take 100 MB.
+const SHEET: u32 = 2048;
 
 /// Renders a scene with several threads and returns RGBA bytes (rows from the top).
 ///
@@ -34,52 +35,87 @@ pub fn render_picture(
     progress: &(dyn Fn(f64) + Sync),
 ) -> (Vec<u8>, Stats) {
     let [width, height] = picture.size;
-    let tiles = shared_out(width, height, threads);
-    let next = AtomicUsize::new(0);
-    let done = AtomicUsize::new(0);
-    let whole = Mutex::new((
-        vec![0u8; 4 * width as usize * height as usize],
-        Stats::default(),
-    ));
-    let work = || {
-        let mut stats = Stats::default();
-        while let Some(&tile) = tiles.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let Some(pixels) = picture.trace(tile, pass, &|| false, &mut stats) else {
-                continue;
-            };
-            let row = 4 * tile.width as usize;
-            {
-                let mut whole = whole.lock().unwrap_or_else(|e| e.into_inner());
-                for (y, line) in (tile.y..).zip(pixels.chunks_exact(row)) {
-                    let at = 4 * (y as usize * width as usize + tile.x as usize);
-                    whole.0[at..at + row].copy_from_slice(line);
-                }
-            }
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress(done as f64 / tiles.len() as f64);
+    let row = 4 * width as usize;
+    let mut rgba = vec![0; row * height as usize];
+    let mut show = |tile: Tile, pixels: Vec<u8>| {
+        let lines = pixels.chunks_exact(4 * tile.width as usize);
+        for (y, line) in (tile.y as usize..).zip(lines) {
+            let at = y * row + 4 * tile.x as usize;
+            rgba[at..at + line.len()].copy_from_slice(line);
         }
-        let mut whole = whole.lock().unwrap_or_else(|e| e.into_inner());
-        whole.1 += stats;
+    };
+    let smooth = pass == Pass::Smooth && picture.samples > 1;
+    let steps = tiles(width, height, SQUARE).len() * if smooth { 2 } else { 1 };
+    let done = AtomicUsize::new(0);
+    let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / steps as f64);
+    let mut stats = Stats::default();
+    for sheet in tiles(width, height, SHEET) {
+        let tiles = parts(sheet);
+        if !smooth {
+            let trace = |tile, work: &mut Workspace, stats: &mut Stats| {
+                let mut none = SampleCache::default();
+                picture.trace_in(tile, pass, &mut none, &|| false, work, stats)
+            };
+            stats += shared_out(&tiles, threads, trace, &mut show, &step);
+            continue;
+        }
+        // First the first samples of all pixels, then the others: so none is taken twice, whatever the number of threads.
+        let mut cache = picture.cache(tiles.len());
+        let none = SampleCache::default();
+        let sample = |tile, work: &mut Workspace, stats: &mut Stats| {
+            picture.sample(Area::from(tile), 1, &none, &|| false, work, stats)
+        };
+        let keep = |_, samples| cache.keep(&samples);
+        stats += shared_out(&tiles, threads, sample, keep, &step);
+        let refine = |tile, work: &mut Workspace, stats: &mut Stats| {
+            let area = Area::from(tile);
+            let around = picture.around(area);
+            let samples = picture.sample(around, 1, &cache, &|| false, work, stats)?;
+            picture.smooth(area, samples, &|| false, work, stats)
+        };
+        stats += shared_out(&tiles, threads, refine, &mut show, &step);
+    }
+    (rgba, stats)
+}
+
+/// Does a step of work for each tile, on so many threads, and takes what comes of each.
+fn shared_out<T: Send>(
+    tiles: &[Tile],
+    threads: usize,
+    work: impl Fn(Tile, &mut Workspace, &mut Stats) -> Option<T> + Sync,
+    take: impl FnMut(Tile, T) + Send,
+    step: &(dyn Fn() + Sync),
+) -> Stats {
+    let next = AtomicUsize::new(0);
+    let whole = Mutex::new((take, Stats::default()));
+    let thread = || {
+        let (mut space, mut stats) = (Workspace::default(), Stats::default());
+        while let Some(&tile) = tiles.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if let Some(done) = work(tile, &mut space, &mut stats) {
+                let mut whole = whole.lock().unwrap_or_else(|e| e.into_inner());
+                (whole.0)(tile, done);
+            }
+            step();
+        }
+        whole.lock().unwrap_or_else(|e| e.into_inner()).1 += stats;
     };
     std::thread::scope(|scope| {
         for _ in 1..threads.max(1) {
-            scope.spawn(work);
+            scope.spawn(thread);
         }
-        work();
+        thread();
     });
-    whole.into_inner().unwrap_or_else(|e| e.into_inner())
+    whole.into_inner().unwrap_or_else(|e| e.into_inner()).1
 }
 
-/// The largest tiles of which there are enough for so many threads; else the smallest.
-fn shared_out(width: u32, height: u32, threads: usize) -> Vec<Tile> {
-    let mut all = Vec::new();
-    for side in SIDES {
-        all = tiles(width, height, side);
-        if all.len() >= TILES * threads.saturating_sub(1) {
-            break;
-        }
+/// The squares of a sheet, those nearest to its centre first.
+fn parts(sheet: Tile) -> Vec<Tile> {
+    let mut parts = tiles(sheet.width, sheet.height, SQUARE);
+    for part in &mut parts {
+        part.x += sheet.x;
+        part.y += sheet.y;
     }
-    all
+    parts
 }
 
 impl std::ops::AddAssign for Stats {
@@ -87,19 +123,5 @@ impl std::ops::AddAssign for Stats {
         self.primary_rays += other.primary_rays;
         self.shadow_rays += other.shadow_rays;
         self.field_evaluations += other.field_evaluations;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn every_thread_has_tiles() {
-        for (threads, count) in [(1, 4), (2, 16), (3, 16), (4, 64), (1000, 64)] {
-            assert_eq!(shared_out(512, 512, threads).len(), count, "{threads}");
-        }
-        assert!(shared_out(0, 9, 2).is_empty());
     }
 }

@@ -14,6 +14,16 @@ pub struct Sample {
     pub cost: f32,
 }
 
+impl Sample {
+    /// Black, far away: what stands where no sample was taken yet.
+    pub const BLANK: Self = Self {
+        colour: Vec3::ZERO,
+        key: 0,
+        depth: f32::INFINITY,
+        cost: 0.0,
+    };
+}
+
 /// A difference of this much of the full brightness is about where steps become visible.
 const VISIBLE: f32 = 4.0 / 255.0;
 

@@ -246,6 +246,7 @@ impl Picture {
             darken(packet, met, work, stats);
         }
         if let Some(Some((slabs, _))) = slabs {
+            stats.field_evaluations += slabs.evaluations();
             work.scratch.spaces.push(slabs.into_space());
         }
         work.around = near;

@@ -11,6 +11,9 @@ use field::{Cut, Primitive};
 use glam::DVec3;
 use wide::f32x8;
 
+/// Places at which each primitive is evaluated for an interpolant.
+pub const CORNERS: u64 = 8;
+
 /// The box around a piece of a beam.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
@@ -73,7 +76,7 @@ impl Cell {
         inside + along
     }
 
-    /// The corners; bits 0, 1, 2 of the lane's number are the steps along the axes.
+    /// The corners, [`CORNERS`]; bits 0, 1, 2 of the lane's number are the steps along the axes.
     fn corners(&self) -> [f32x8; 3] {
         let place = |lane: usize| {
             (0..3).fold(self.corner, |p, i| {

@@ -15,7 +15,7 @@
 //! only show what is empty.
 use crate::beams::Beams;
 use crate::clusters::{Clusters, Members};
-use crate::shared::{Cell, Shared, Sums};
+use crate::shared::{CORNERS, Cell, Shared, Sums};
 use crate::soft::Kinks;
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
@@ -76,6 +76,8 @@ pub struct Slabs<'a> {
     scratch: Vec<Candidate>,
     /// Those of each fate.
     lists: [Vec<u32>; 5],
+    /// Evaluations made for interpolants.
+    evaluations: u64,
 }
 
 /// The space of slabs that are not needed any more, kept for others.
@@ -285,7 +287,7 @@ fn is_remote(from: f64, to: f64) -> bool {
 impl Slab {
     /// Whether what some of its primitives add up to has been asked for.
     #[must_use]
-    pub fn is_made(&self, which: Which) -> bool {
+    fn is_made(&self, which: Which) -> bool {
         self.blocks[which as usize] != NONE
     }
 
@@ -339,6 +341,7 @@ impl<'a> Slabs<'a> {
             blocks,
             scratch,
             lists,
+            evaluations: 0,
         };
         let all = 0..slabs.ids.len() as u32;
         let heritage = Heritage {
@@ -459,13 +462,16 @@ impl<'a> Slabs<'a> {
         if !slab.is_made(which) {
             let cell = Cell::around(self.beams.get(slab.beam), slab.from, slab.to);
             let mut sums = Sums::new(&cell);
+            let mut count = 0;
             for &id in self.locals(slab.together(which)) {
                 self.each_of(id, |p| {
+                    count += 1;
                     let p = p as usize;
                     sums.add(&self.terms.primitives[p], self.terms.materials[p]);
                 });
             }
             let (total, of_each) = sums.finish();
+            self.evaluations += CORNERS * count;
             let made = self.blocks.len() as u32;
             self.blocks.push(Block {
                 cell,
@@ -477,6 +483,12 @@ impl<'a> Slabs<'a> {
         }
         let block = self.nodes[index as usize].blocks[which as usize];
         self.blocks.get(block as usize)
+    }
+
+    /// Evaluations of one primitive's field at one point that were made for all rays of the beam.
+    #[must_use]
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
     }
 
     /// Calls `f` with the shared blocks of a slab and of those above it, where they have been asked for.

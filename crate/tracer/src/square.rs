@@ -4,7 +4,7 @@ use crate::beam::Beam;
 use crate::lens::Lens;
 use crate::nearby::{Nearby, Other};
 use crate::packet::{Near, Workspace};
-use crate::picture::{Picture, packet_number};
+use crate::picture::{Picture, Stats, packet_number};
 use crate::quick::LEFT_OUT_OF_PARTS;
 use crate::slabs::Slabs;
 
@@ -57,14 +57,15 @@ impl<'a> Square<'a> {
 }
 
 impl Square<'_> {
-    /// Leaves the space that it took to others.
-    pub fn leave(self, work: &mut Workspace) {
+    /// Leaves the space that it took to others, and counts what was done for all of its packets.
+    pub fn leave(self, work: &mut Workspace, stats: &mut Stats) {
         let slabs = match self {
             Self::Slabs(slabs) => Some(slabs),
             Self::Lumps(lumps) => lumps.slabs.flatten(),
             Self::Empty => None,
         };
         if let Some((slabs, _)) = slabs {
+            stats.field_evaluations += slabs.evaluations();
             work.scratch.spaces.push(slabs.into_space());
         }
     }

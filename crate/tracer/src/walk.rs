@@ -244,8 +244,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     /// The span of primitives that have an interpolant together.
     fn together(&mut self, index: u32, which: Which) -> Span<L> {
         let s = self.slabs.slab(index);
-        let (from, to, count) = (s.from, s.to, s.together(which).len());
-        let fresh = !s.is_made(which);
+        let (from, to) = (s.from, s.to);
         let Some(block) = self.slabs.block(index, which) else {
             return Span::zero();
         };
@@ -262,11 +261,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 slope: x * steps[0] + y * steps[1] + z * steps[2],
             }
         };
-        let span = Span::hermite(node(near), node(far), to - from);
-        if fresh {
-            self.evaluations += (8 * count) as u64;
-        }
-        span
+        Span::hermite(node(near), node(far), to - from)
     }
 
     /// Whether all rays are proved to stay on one side all through a slab; notes the side.

@@ -4,7 +4,7 @@ use common::{blend, element, empty, soft};
 use glam::DVec3;
 use scene::{Material, Scene, Shape};
 use std::cell::Cell;
-use tracer::{Pass, Picture, Stats, Tile, tiles};
+use tracer::{Pass, Picture, SampleCache, Stats, Tile, tiles};
 
 fn whole(scene: &Scene, size: [u32; 2], side: u32, pass: Pass) -> (Vec<u8>, Stats) {
     let picture = Picture::new(scene, size);
@@ -220,6 +220,77 @@ fn a_ball_casts_a_shadow_on_a_slab_and_not_on_itself() {
             }
         }
         assert!(shaded > 100, "{shaded}");
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn samples_that_are_kept_change_nothing_and_are_taken_once() {
+    // Not a multiple of packets, and with squares that are cut.
+    let size = [135, 91];
+    let scene = mixed(1);
+    let picture = Picture::new(&scene, size);
+    let all = u64::from(size[0] * size[1]);
+    let trace = |side, pass, cache: &mut SampleCache| {
+        let mut stats = Stats::default();
+        let mut parts = Vec::new();
+        for tile in tiles(size[0], size[1], side) {
+            let part = picture.trace_with(tile, pass, cache, &|| false, &mut stats);
+            parts.push(part.unwrap());
+        }
+        (parts, stats.primary_rays)
+    };
+    for side in [64, 48, 11] {
+        let (full, rays) = trace(side, Pass::Full, &mut SampleCache::default());
+        assert_eq!(rays, all);
+        let (smooth, alone) = trace(side, Pass::Smooth, &mut SampleCache::default());
+        let (_, once) = whole(&scene, size, 256, Pass::Smooth);
+        for room in [0, 1, 4, 6, 100] {
+            let cache = &mut picture.cache(room);
+            // What was kept of the coarse picture would be wrong.
+            let _ = trace(side, Pass::Coarse, cache);
+            let (pixels, rays) = trace(side, Pass::Full, cache);
+            assert!(pixels == full && rays <= all, "{side} {room}");
+            let (pixels, refined) = trace(side, Pass::Smooth, cache);
+            assert!(pixels == smooth, "{side} {room}");
+            assert!(refined <= alone);
+            let (pixels, again) = trace(side, Pass::Full, cache);
+            assert!(pixels == full);
+            // A picture of six squares.
+            if room >= 6 && side % 4 == 0 {
+                assert_eq!(rays + refined, once.primary_rays, "{side} {room}");
+                assert_eq!(again, 0);
+            }
+            if room == 0 {
+                assert_eq!((rays, refined), (all, alone));
+            }
+        }
+    }
+    // Where no pass would ask for them nothing is kept.
+    let mut plain = scene;
+    plain.settings.samples = 1;
+    let picture = Picture::new(&plain, size);
+    let cache = &mut picture.cache(100);
+    let tile = tiles(size[0], size[1], 64)[0];
+    let mut stats = Stats::default();
+    let _ = picture.trace_with(tile, Pass::Full, cache, &|| false, &mut stats);
+    assert_eq!(cache.squares(), 0);
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+#[test]
+fn no_sample_is_taken_twice_whatever_the_number_of_threads() {
+    let scene = mixed(2);
+    let size = [150, 140];
+    let (_, once) = whole(&scene, size, 256, Pass::Smooth);
+    for threads in [1, 2, 5] {
+        let told = std::sync::Mutex::new(Vec::new());
+        let tell = |share| told.lock().unwrap().push(share);
+        let (_, stats) = tracer::render(&scene, size, threads, Pass::Smooth, &tell);
+        assert_eq!(stats.primary_rays, once.primary_rays);
+        let told = told.into_inner().unwrap();
+        assert_eq!(told.len(), 2 * 9);
+        assert!(told.contains(&1.0) && told.iter().all(|share| (0.0..=1.0).contains(share)));
     }
 }
 

@@ -4,11 +4,15 @@ use crate::errors::Errors;
 use crate::{Answer, Kind, Order, Request};
 use scene::Scene;
 use std::collections::VecDeque;
-use tracer::{Pass, Picture, Stats, Tile};
+use tracer::{Pass, Picture, SampleCache, Stats, Tile};
 
 /// Rows of a tile that are traced in one step, but for the coarse pass, which is quick: between two steps the
 /// worker sees what has come in.
 const ROWS: u32 = 32;
+
+/// Squares of pixels of which a worker keeps the first samples, 100 kB each. Of a picture larger than they are, times the
+/// number of workers, some samples are taken twice.
+const KEPT: usize = 512;
 
 /// The picture a worker is busy with, and the tiles it still has to trace.
 #[derive(Default)]
@@ -63,7 +67,8 @@ impl Begun {
 
 /// A scene made ready for what is wanted of it.
 enum Prepared {
-    Colours(Box<Picture>),
+    /// With the first samples of its pixels, for the tiles that are made smooth.
+    Colours(Box<Picture>, SampleCache),
     Errors(Box<Errors>),
 }
 
@@ -120,7 +125,11 @@ impl Engine {
         }
         if let Some((scene, size, kind)) = self.wanted.take() {
             self.prepared = Some(match kind {
-                Kind::Colours => Prepared::Colours(Box::new(Picture::new(&scene, size))),
+                Kind::Colours => {
+                    let picture = Picture::new(&scene, size);
+                    let cache = picture.cache(KEPT);
+                    Prepared::Colours(Box::new(picture), cache)
+                }
                 Kind::Errors => Prepared::Errors(Box::new(Errors::new(&scene, size))),
             });
             return Step::Answer(Answer::Prepared {
@@ -129,14 +138,16 @@ impl Engine {
         }
         let next = self.begun.take();
         let next = next.or_else(|| self.queue.pop_front().map(Begun::new));
-        let (Some(prepared), Some(mut tile)) = (&self.prepared, next) else {
+        let (Some(prepared), Some(mut tile)) = (&mut self.prepared, next) else {
             // Tiles without a picture cannot come in (`accept` compares generations).
             return Step::Idle;
         };
         let since = clock();
         let (part, pass) = (tile.part(), tile.order.pass);
         let traced = match prepared {
-            Prepared::Colours(picture) => picture.trace(part, pass, stop, &mut tile.stats),
+            Prepared::Colours(picture, cache) => {
+                picture.trace_with(part, pass, cache, stop, &mut tile.stats)
+            }
             Prepared::Errors(errors) => errors.trace(part, stop),
         };
         let Some(pixels) = traced else {

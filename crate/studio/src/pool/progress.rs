@@ -32,7 +32,7 @@ pub struct Progress {
 }
 
 /// Typical cost of a tile in the passes, in units of the coarse one; used until it is measured.
-const TYPICAL: [f64; 3] = [1.0, 30.0, 45.0];
+const TYPICAL: [f64; 3] = [1.0, 30.0, 20.0];
 /// Tiles that must have been measured before a time is foretold.
 const ENOUGH: u32 = 4;
 

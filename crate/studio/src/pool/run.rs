@@ -38,8 +38,14 @@ pub struct Run {
     pub plan: Plan,
     tiles: Vec<Tile>,
     passes: &'static [Pass],
-    /// The first task never handed out. A task is a tile in a pass: pass · number of tiles + tile.
-    next: usize,
+    /// The pass whose tiles are handed out. A task is a tile in a pass: pass · number of tiles + tile.
+    pass: usize,
+    /// Its tiles that were never handed out, in their order.
+    left: Vec<usize>,
+    /// Whose part of the picture each tile lies in.
+    home: Vec<usize>,
+    /// Who was given each tile last, but for the coarse pass, and so has its first samples.
+    holder: Vec<Option<usize>>,
     /// Tasks handed out before, to be done again, each alone.
     pub again: Vec<usize>,
     failures: HashMap<usize, u32>,
@@ -56,8 +62,8 @@ pub struct Run {
 }
 
 impl Run {
-    /// Cuts a picture into tasks. One without pixels is finished at once.
-    pub fn new(plan: Plan, now: f64) -> Self {
+    /// Cuts a picture into tasks for so many workers. One without pixels is finished at once.
+    pub fn new(plan: Plan, workers: usize, now: f64) -> Self {
         let passes: &'static [Pass] = if plan.samples > 1 {
             &[Pass::Coarse, Pass::Full, Pass::Smooth]
         } else {
@@ -68,11 +74,15 @@ impl Run {
         } else {
             (passes, super::TILE)
         };
+        let tiles = tracer::tile::tiles(plan.size[0], plan.size[1], side);
         let mut run = Self {
             plan,
-            tiles: tracer::tile::tiles(plan.size[0], plan.size[1], side),
+            pass: 0,
+            left: (0..tiles.len()).collect(),
+            home: homes(plan.size, &tiles, workers),
+            holder: vec![None; tiles.len()],
+            tiles,
             passes,
-            next: 0,
             again: Vec::new(),
             failures: HashMap::new(),
             failed_tiles: HashSet::new(),
@@ -89,8 +99,9 @@ impl Run {
         run
     }
 
-    fn tasks(&self) -> usize {
-        self.tiles.len() * self.passes.len()
+    /// Tasks never handed out.
+    fn untaken(&self) -> usize {
+        self.left.len() + self.tiles.len() * (self.passes.len() - 1 - self.pass)
     }
 
     pub fn order(&self, task: usize, generation: u64) -> Order {
@@ -101,38 +112,61 @@ impl Run {
         }
     }
 
-    /// The next task, from those never handed out or from those to be done again.
-    pub fn take(&mut self, again: bool) -> Option<usize> {
+    /// The next task of a worker, from those never handed out or from those to be done again.
+    pub fn take(&mut self, worker: usize, again: bool) -> Option<usize> {
         loop {
             let task = if again {
                 self.again.pop()?
             } else {
-                self.next = (self.next < self.tasks()).then_some(self.next + 1)?;
-                self.next - 1
+                self.draw(worker)?
             };
+            let (pass, tile) = (task / self.tiles.len(), task % self.tiles.len());
             // A tile that was given up is not tried in later passes.
-            if !self.failed_tiles.contains(&(task % self.tiles.len())) {
+            if !self.failed_tiles.contains(&tile) {
+                if self.passes[pass] != Pass::Coarse {
+                    self.holder[tile] = Some(worker);
+                }
                 return Some(task);
             }
-            self.settled[task / self.tiles.len()] += 1;
+            self.settled[pass] += 1;
         }
+    }
+
+    /// A task never handed out, of the first pass that has one. A worker has a part of the picture to itself, and makes
+    /// smooth what it has sampled: so it finds again most samples that it needs. When that is done it helps the others,
+    /// from the end, so as to be in their way last.
+    fn draw(&mut self, worker: usize) -> Option<usize> {
+        while self.left.is_empty() {
+            self.pass = (self.pass + 1 < self.passes.len()).then_some(self.pass + 1)?;
+            self.left.extend(0..self.tiles.len());
+        }
+        let pass = self.passes[self.pass];
+        let mine = |tile: &usize| match pass {
+            Pass::Coarse => true,
+            Pass::Full => self.home[*tile] == worker,
+            Pass::Smooth => self.holder[*tile].is_none_or(|holder| holder == worker),
+        };
+        let place = self.left.iter().position(mine);
+        let tile = self.left.remove(place.unwrap_or(self.left.len() - 1));
+        Some(self.pass * self.tiles.len() + tile)
     }
 
     /// How many tasks never handed out a worker should hold, one of so many workers: enough not to
     /// wait for the page, but in the end no worker should have much more than the others.
     pub fn enough(&self, workers: usize) -> usize {
-        if self.next >= self.tasks() {
+        let untaken = self.untaken();
+        if untaken == 0 {
             return 0;
         }
-        let pass = self.next / self.tiles.len();
+        let pass = self.pass + usize::from(self.left.is_empty());
         let ahead = (AHEAD / self.costs.expected(pass)).clamp(2.0, MOST_AHEAD as f64) as usize;
-        let share = (self.tasks() - self.next).div_ceil(2 * workers.max(1));
+        let share = untaken.div_ceil(2 * workers.max(1));
         ahead.min(share)
     }
 
     /// Whether tiles of the coarse pass were never handed out.
     pub fn is_coarse(&self) -> bool {
-        self.passes[0] == Pass::Coarse && self.next < self.tiles.len()
+        self.passes[self.pass] == Pass::Coarse && !self.left.is_empty()
     }
 
     /// How many passes are complete.
@@ -203,7 +237,8 @@ impl Run {
     /// Hands out nothing more.
     pub fn abandon(&mut self) {
         self.again.clear();
-        self.next = self.tasks();
+        self.left.clear();
+        self.pass = self.passes.len() - 1;
     }
 
     /// Writes down how far the picture has come. The number of workers must be there already.
@@ -224,4 +259,23 @@ impl Run {
                 .then(|| self.expected().1 / progress.workers as f64);
         }
     }
+}
+
+/// Whose part of a picture each tile lies in: as many for each worker, one beside the other around the picture's middle,
+/// where all begin.
+fn homes(size: [u32; 2], tiles: &[Tile], workers: usize) -> Vec<usize> {
+    // Grows from 0 to 4 clockwise from the top, as the angle does.
+    let around = |tile: &Tile| {
+        let x = f64::from(2 * tile.x + tile.width) - f64::from(size[0]);
+        let y = f64::from(2 * tile.y + tile.height) - f64::from(size[1]);
+        let share = y / (x.abs() + y.abs()).max(f64::MIN_POSITIVE);
+        if x >= 0.0 { 1.0 + share } else { 3.0 - share }
+    };
+    let mut order: Vec<usize> = (0..tiles.len()).collect();
+    order.sort_by(|&a, &b| around(&tiles[a]).total_cmp(&around(&tiles[b])));
+    let mut homes = vec![0; tiles.len()];
+    for (i, tile) in order.into_iter().enumerate() {
+        homes[tile] = i * workers / tiles.len();
+    }
+    homes
 }

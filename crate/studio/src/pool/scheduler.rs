@@ -2,7 +2,8 @@
 //!
 //! Events go in (a worker started, answered, died; time passed), [`Command`]s come out. Rules:
 //!
-//! - Tiles are handed out pass by pass, in the order of [`tracer::tile::tiles`]. A worker holds the
+//! - Tiles are handed out pass by pass, in the order of [`tracer::tile::tiles`], to each worker first those of its own part
+//!   of the picture ([`Run::take`]). A worker holds the
 //!   tile it traces and some more, about [`AHEAD`](super::run::AHEAD) seconds of work, so that it need not wait for a
 //!   page that is busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
@@ -177,7 +178,7 @@ impl Scheduler {
         self.put_down(now);
         self.number += 1;
         self.error = None;
-        self.run = Some(Run::new(plan, now));
+        self.run = Some(Run::new(plan, self.slots.len(), now));
         self.wake(now);
         for index in 0..self.slots.len() {
             self.begin(index, now);
@@ -524,7 +525,9 @@ impl Scheduler {
         }
         let mut orders = Vec::new();
         while slot.holds.len() < enough {
-            let Some(task) = run.take(again) else { break };
+            let Some(task) = run.take(index, again) else {
+                break;
+            };
             if slot.holds.is_empty() {
                 slot.since = now;
             }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::pool::run::{LONGEST_LIMIT, MOST_AHEAD, RETRY, SLACK, TILE_LIMIT};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use tracer::Pass;
 
 const STATS: Stats = Stats {
@@ -96,26 +96,31 @@ impl Crowd {
             if self.hanging.contains(&i) {
                 continue;
             }
-            let Some(job) = self.desks[i].pop_front() else {
-                continue;
-            };
-            any = true;
-            match job {
-                Job::Start => self.scheduler.started(i, self.now),
-                Job::Note(number) => self.scheduler.noted(i, number, self.now),
-                Job::Prepare(number) => self.scheduler.prepared(i, number, self.now),
-                Job::Tile(order) if self.deadly.contains(&order) => {
-                    self.scheduler.died(i, "deadly", self.now);
-                }
-                Job::Tile(order) => {
-                    if self.scheduler.traced(i, order, &STATS, 1e-3, self.now) {
-                        self.done.push(order);
-                    }
-                }
-            }
-            self.obey();
+            any |= self.work_one(i);
         }
         any
+    }
+
+    /// A worker does one job. Says whether it had one.
+    fn work_one(&mut self, i: usize) -> bool {
+        let Some(job) = self.desks[i].pop_front() else {
+            return false;
+        };
+        match job {
+            Job::Start => self.scheduler.started(i, self.now),
+            Job::Note(number) => self.scheduler.noted(i, number, self.now),
+            Job::Prepare(number) => self.scheduler.prepared(i, number, self.now),
+            Job::Tile(order) if self.deadly.contains(&order) => {
+                self.scheduler.died(i, "deadly", self.now);
+            }
+            Job::Tile(order) => {
+                if self.scheduler.traced(i, order, &STATS, 1e-3, self.now) {
+                    self.done.push(order);
+                }
+            }
+        }
+        self.obey();
+        true
     }
 
     fn work_off(&mut self) {
@@ -190,6 +195,57 @@ fn the_coarse_pass_is_handed_out_at_once_in_turn() {
     }
     let wanted: Vec<_> = (0..tiles.len()).map(|i| Some(i % 3)).collect();
     assert_eq!(dealt, wanted);
+}
+
+#[test]
+fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
+    let run = |workers: usize, slow: Option<usize>| {
+        let mut crowd = Crowd::new(workers);
+        let mut by = HashMap::new();
+        crowd.start(1);
+        for round in 0.. {
+            assert!(round < 10_000, "endless");
+            for worker in 0..workers {
+                let Some(job) = crowd.desks[worker].front().copied() else {
+                    continue;
+                };
+                if slow == Some(worker) && round % 10 != 0 {
+                    continue;
+                }
+                crowd.work_one(worker);
+                if let Job::Tile(order) = job {
+                    by.insert((order.tile, order.pass), worker);
+                }
+            }
+            if crowd.progress().finished {
+                break;
+            }
+        }
+        by
+    };
+    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
+    for workers in [1, 2, 3] {
+        let by = run(workers, None);
+        for tile in &tiles {
+            assert_eq!(by[&(*tile, Pass::Full)], by[&(*tile, Pass::Smooth)]);
+        }
+        for worker in 0..workers {
+            let count = tiles
+                .iter()
+                .filter(|tile| by[&(**tile, Pass::Full)] == worker);
+            assert_eq!(count.count(), tiles.len() / workers, "{workers}");
+        }
+    }
+    // Two halves of the picture, left and right.
+    let by = run(2, None);
+    for tile in &tiles {
+        let left = usize::from(tile.x < 128);
+        assert_eq!(by[&(*tile, Pass::Full)], left);
+    }
+    // A slow worker is helped.
+    let by = run(2, Some(0));
+    let slow = |pass| tiles.iter().filter(|tile| by[&(**tile, pass)] == 0).count();
+    assert!(slow(Pass::Full) + slow(Pass::Smooth) < tiles.len() / 2 + 2);
 }
 
 #[test]
