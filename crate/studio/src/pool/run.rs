@@ -42,9 +42,9 @@ pub struct Run {
     pass: usize,
     /// Its tiles that were never handed out, in their order.
     left: Vec<usize>,
-    /// Whose part of the picture each tile lies in.
+    /// Who should have each tile, …
     home: Vec<usize>,
-    /// Who was given each tile last, but for the coarse pass, and so has its first samples.
+    /// … and who was given it last, but for the coarse pass, and so has its first samples.
     holder: Vec<Option<usize>>,
     /// Tasks handed out before, to be done again, each alone.
     pub again: Vec<usize>,
@@ -75,11 +75,21 @@ impl Run {
             (passes, super::TILE)
         };
         let tiles = tracer::tile::tiles(plan.size[0], plan.size[1], side);
+        // Everybody has one of the rectangles in each row of them and in each column: what takes long lies together, and what
+        // lies on a border is sampled by both.
+        let rectangle = |place: u32, whole: u32| {
+            (place / side) as usize * workers / whole.div_ceil(side) as usize
+        };
+        let home = |tile: &Tile| {
+            let column = rectangle(tile.x, plan.size[0]);
+            let row = rectangle(tile.y, plan.size[1]);
+            (column + row) % workers
+        };
         let mut run = Self {
             plan,
             pass: 0,
             left: (0..tiles.len()).collect(),
-            home: homes(plan.size, &tiles, workers),
+            home: tiles.iter().map(home).collect(),
             holder: vec![None; tiles.len()],
             tiles,
             passes,
@@ -132,9 +142,8 @@ impl Run {
         }
     }
 
-    /// A task never handed out, of the first pass that has one. A worker has a part of the picture to itself, and makes
-    /// smooth what it has sampled: so it finds again most samples that it needs. When that is done it helps the others,
-    /// from the end, so as to be in their way last.
+    /// A task never handed out, of the first pass that has one. Each worker has its tiles, and makes smooth what it has
+    /// sampled, as it keeps most samples that it needs for that. Then it helps the others, from the end, where they come last.
     fn draw(&mut self, worker: usize) -> Option<usize> {
         while self.left.is_empty() {
             self.pass = (self.pass + 1 < self.passes.len()).then_some(self.pass + 1)?;
@@ -146,9 +155,19 @@ impl Run {
             Pass::Full => self.home[*tile] == worker,
             Pass::Smooth => self.holder[*tile].is_none_or(|holder| holder == worker),
         };
-        let place = self.left.iter().position(mine);
-        let tile = self.left.remove(place.unwrap_or(self.left.len() - 1));
+        let last = self.left.len() - 1;
+        // The last one its holder makes smooth as soon as somebody who must sample it first.
+        let help = last > 0 || pass != Pass::Smooth;
+        let place = self.left.iter().position(mine).or(help.then_some(last))?;
+        let tile = self.left.remove(place);
         Some(self.pass * self.tiles.len() + tile)
+    }
+
+    /// What a worker has sampled is lost.
+    pub fn lose(&mut self, worker: usize) {
+        for holder in &mut self.holder {
+            holder.take_if(|holder| *holder == worker);
+        }
     }
 
     /// How many tasks never handed out a worker should hold, one of so many workers: enough not to
@@ -259,23 +278,4 @@ impl Run {
                 .then(|| self.expected().1 / progress.workers as f64);
         }
     }
-}
-
-/// Whose part of a picture each tile lies in: as many for each worker, one beside the other around the picture's middle,
-/// where all begin.
-fn homes(size: [u32; 2], tiles: &[Tile], workers: usize) -> Vec<usize> {
-    // Grows from 0 to 4 clockwise from the top, as the angle does.
-    let around = |tile: &Tile| {
-        let x = f64::from(2 * tile.x + tile.width) - f64::from(size[0]);
-        let y = f64::from(2 * tile.y + tile.height) - f64::from(size[1]);
-        let share = y / (x.abs() + y.abs()).max(f64::MIN_POSITIVE);
-        if x >= 0.0 { 1.0 + share } else { 3.0 - share }
-    };
-    let mut order: Vec<usize> = (0..tiles.len()).collect();
-    order.sort_by(|&a, &b| around(&tiles[a]).total_cmp(&around(&tiles[b])));
-    let mut homes = vec![0; tiles.len()];
-    for (i, tile) in order.into_iter().enumerate() {
-        homes[tile] = i * workers / tiles.len();
-    }
-    homes
 }

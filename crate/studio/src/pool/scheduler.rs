@@ -2,8 +2,8 @@
 //!
 //! Events go in (a worker started, answered, died; time passed), [`Command`]s come out. Rules:
 //!
-//! - Tiles are handed out pass by pass, in the order of [`tracer::tile::tiles`], to each worker first those of its own part
-//!   of the picture ([`Run::take`]). A worker holds the
+//! - Tiles are handed out pass by pass, in the order of [`tracer::tile::tiles`]; to be made smooth preferably to the worker
+//!   that has their samples ([`Run::take`]). A worker holds the
 //!   tile it traces and some more, about [`AHEAD`](super::run::AHEAD) seconds of work, so that it need not wait for a
 //!   page that is busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
@@ -429,6 +429,7 @@ impl Scheduler {
 
     /// Starts a worker, in the place of the old one if there is one.
     fn restart(&mut self, index: usize, now: f64) {
+        self.lose(index);
         let slot = &mut self.slots[index];
         slot.put_down();
         slot.stale = None;
@@ -438,8 +439,16 @@ impl Scheduler {
         self.commands.push(Command::Restart(index));
     }
 
+    /// What it had sampled goes with a worker.
+    fn lose(&mut self, index: usize) {
+        if let Some(run) = &mut self.run {
+            run.lose(index);
+        }
+    }
+
     /// Ends a worker for now.
     fn end(&mut self, index: usize, life: Life) {
+        self.lose(index);
         let slot = &mut self.slots[index];
         slot.put_down();
         slot.stale = None;

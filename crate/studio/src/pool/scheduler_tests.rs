@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::pool::run::{LONGEST_LIMIT, MOST_AHEAD, RETRY, SLACK, TILE_LIMIT};
-use std::collections::{HashMap, HashSet};
-use tracer::Pass;
+use std::collections::{HashMap, HashSet, VecDeque};
+use tracer::{Pass, Tile};
 
 const STATS: Stats = Stats {
     primary_rays: 1,
@@ -96,16 +96,14 @@ impl Crowd {
             if self.hanging.contains(&i) {
                 continue;
             }
-            any |= self.work_one(i);
+            any |= self.work_one(i).is_some();
         }
         any
     }
 
-    /// A worker does one job. Says whether it had one.
-    fn work_one(&mut self, i: usize) -> bool {
-        let Some(job) = self.desks[i].pop_front() else {
-            return false;
-        };
+    /// A worker does one job, if it has one.
+    fn work_one(&mut self, i: usize) -> Option<Job> {
+        let job = self.desks[i].pop_front()?;
         match job {
             Job::Start => self.scheduler.started(i, self.now),
             Job::Note(number) => self.scheduler.noted(i, number, self.now),
@@ -120,7 +118,7 @@ impl Crowd {
             }
         }
         self.obey();
-        true
+        Some(job)
     }
 
     fn work_off(&mut self) {
@@ -197,6 +195,12 @@ fn the_coarse_pass_is_handed_out_at_once_in_turn() {
     assert_eq!(dealt, wanted);
 }
 
+fn tile_at(x: u32, y: u32) -> Tile {
+    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
+    let at = tiles.into_iter().find(|tile| (tile.x, tile.y) == (x, y));
+    at.unwrap()
+}
+
 #[test]
 fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
     let run = |workers: usize, slow: Option<usize>| {
@@ -206,14 +210,10 @@ fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
         for round in 0.. {
             assert!(round < 10_000, "endless");
             for worker in 0..workers {
-                let Some(job) = crowd.desks[worker].front().copied() else {
-                    continue;
-                };
                 if slow == Some(worker) && round % 10 != 0 {
                     continue;
                 }
-                crowd.work_one(worker);
-                if let Job::Tile(order) = job {
+                if let Some(Job::Tile(order)) = crowd.work_one(worker) {
                     by.insert((order.tile, order.pass), worker);
                 }
             }
@@ -226,21 +226,22 @@ fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
     let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
     for workers in [1, 2, 3] {
         let by = run(workers, None);
-        for tile in &tiles {
-            assert_eq!(by[&(*tile, Pass::Full)], by[&(*tile, Pass::Smooth)]);
-        }
-        for worker in 0..workers {
-            let count = tiles
-                .iter()
-                .filter(|tile| by[&(**tile, Pass::Full)] == worker);
-            assert_eq!(count.count(), tiles.len() / workers, "{workers}");
+        // But for the last ones, with which one helps who is not done.
+        let moved = |tile: &&Tile| by[&(**tile, Pass::Full)] != by[&(**tile, Pass::Smooth)];
+        let moved = tiles.iter().filter(moved).count();
+        assert!(4 * moved <= tiles.len() && (workers > 1 || moved == 0));
+        // Each has a part of each row.
+        for y in [0, 64, 128] {
+            let row = |x: u32| by[&(tile_at(x, y), Pass::Full)];
+            let all: HashSet<usize> = [0, 64, 128, 192].map(row).into();
+            assert_eq!(all.len(), workers);
         }
     }
-    // Two halves of the picture, left and right.
+    // Few rectangles, so that they have few borders.
     let by = run(2, None);
-    for tile in &tiles {
-        let left = usize::from(tile.x < 128);
-        assert_eq!(by[&(*tile, Pass::Full)], left);
+    for [x, y] in [[0, 0], [128, 0], [0, 64], [128, 64], [0, 128], [128, 128]] {
+        let who = |x: u32| by[&(tile_at(x, y), Pass::Full)];
+        assert_eq!(who(x), who(x + 64));
     }
     // A slow worker is helped.
     let by = run(2, Some(0));
