@@ -101,9 +101,14 @@ fn pictures_are_the_same_whoever_traces_them() {
         for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
             let done = traced_by_two(&scene, size, pass, &tiles);
             assert_eq!(done.len(), tiles.len(), "{name}, {pass:?}");
+            // One that does all has more samples already, and so less work, for the same pixels.
             #[cfg(not(target_arch = "wasm32"))]
             assert!(
-                done == traced(&scene, size, pass, &tiles),
+                done.iter()
+                    .map(|(pixels, _)| pixels)
+                    .eq(traced(&scene, size, pass, &tiles)
+                        .iter()
+                        .map(|(pixels, _)| pixels)),
                 "{name}, {pass:?}: it matters how many workers there are"
             );
             let pixels = done.iter().flat_map(|(pixels, _)| pixels);

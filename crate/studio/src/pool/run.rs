@@ -123,12 +123,12 @@ impl Run {
     }
 
     /// The next task of a worker, from those never handed out or from those to be done again.
-    pub fn take(&mut self, worker: usize, again: bool) -> Option<usize> {
+    pub fn take(&mut self, worker: usize, idle: bool, again: bool) -> Option<usize> {
         loop {
             let task = if again {
                 self.again.pop()?
             } else {
-                self.draw(worker)?
+                self.draw(worker, idle)?
             };
             let (pass, tile) = (task / self.tiles.len(), task % self.tiles.len());
             // A tile that was given up is not tried in later passes.
@@ -143,8 +143,9 @@ impl Run {
     }
 
     /// A task never handed out, of the first pass that has one. Each worker has its tiles, and makes smooth what it has
-    /// sampled, as it keeps most samples that it needs for that. Then it helps the others, from the end, where they come last.
-    fn draw(&mut self, worker: usize) -> Option<usize> {
+    /// sampled, as it keeps most samples that it needs for that. When it is idle soon it helps the others, from the end, where
+    /// they come last.
+    fn draw(&mut self, worker: usize, idle: bool) -> Option<usize> {
         while self.left.is_empty() {
             self.pass = (self.pass + 1 < self.passes.len()).then_some(self.pass + 1)?;
             self.left.extend(0..self.tiles.len());
@@ -157,7 +158,7 @@ impl Run {
         };
         let last = self.left.len() - 1;
         // The last one its holder makes smooth as soon as somebody who must sample it first.
-        let help = last > 0 || pass != Pass::Smooth;
+        let help = idle && (last > 0 || pass != Pass::Smooth);
         let place = self.left.iter().position(mine).or(help.then_some(last))?;
         let tile = self.left.remove(place);
         Some(self.pass * self.tiles.len() + tile)

@@ -534,7 +534,7 @@ impl Scheduler {
         }
         let mut orders = Vec::new();
         while slot.holds.len() < enough {
-            let Some(task) = run.take(index, again) else {
+            let Some(task) = run.take(index, slot.holds.len() < 2, again) else {
                 break;
             };
             if slot.holds.is_empty() {
