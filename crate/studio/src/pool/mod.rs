@@ -12,6 +12,7 @@ mod core;
 pub mod progress;
 mod run;
 pub mod scheduler;
+mod share;
 
 #[cfg(target_arch = "wasm32")]
 mod browser;

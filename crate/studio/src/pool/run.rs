@@ -2,7 +2,8 @@
 
 use super::progress::{Costs, Progress, add_stats};
 use super::scheduler::ATTEMPTS;
-use std::collections::{HashMap, HashSet};
+use super::share::shares;
+use std::collections::{HashMap, HashSet, VecDeque};
 use tracer::{Pass, Stats, Tile};
 use worker::Order;
 
@@ -41,8 +42,11 @@ pub struct Run {
     /// The pass whose tiles are handed out. A task is a tile in a pass: pass · number of tiles + tile.
     pass: usize,
     /// Its tiles that were never handed out, in their order.
-    left: Vec<usize>,
-    /// Who should have each tile, …
+    left: VecDeque<usize>,
+    /// What the coarse pass did at each tile, 0 as long as nothing is known.
+    effort: Vec<u64>,
+    workers: usize,
+    /// Who should have each tile in the full pass, …
     home: Vec<usize>,
     /// … and who was given it last, but for the coarse pass, and so has its first samples.
     holder: Vec<Option<usize>>,
@@ -75,21 +79,13 @@ impl Run {
             (passes, super::TILE)
         };
         let tiles = tracer::tile::tiles(plan.size[0], plan.size[1], side);
-        // Everybody has one of the rectangles in each row of them and in each column: what takes long lies together, and what
-        // lies on a border is sampled by both.
-        let rectangle = |place: u32, whole: u32| {
-            (place / side) as usize * workers / whole.div_ceil(side) as usize
-        };
-        let home = |tile: &Tile| {
-            let column = rectangle(tile.x, plan.size[0]);
-            let row = rectangle(tile.y, plan.size[1]);
-            (column + row) % workers
-        };
         let mut run = Self {
             plan,
             pass: 0,
             left: (0..tiles.len()).collect(),
-            home: tiles.iter().map(home).collect(),
+            effort: vec![0; tiles.len()],
+            workers,
+            home: Vec::new(),
             holder: vec![None; tiles.len()],
             tiles,
             passes,
@@ -105,6 +101,7 @@ impl Run {
             fraction: 0.0,
             stats: Stats::default(),
         };
+        run.part();
         run.settle(now);
         run
     }
@@ -142,6 +139,16 @@ impl Run {
         }
     }
 
+    /// Says who should have each tile, by what is known of them. The coarse pass begins in the centre, so that what is not
+    /// known yet lies at the edge, where there is least to do.
+    fn part(&mut self) {
+        let known = self.effort.iter().copied().filter(|effort| *effort > 0);
+        let least = known.min().unwrap_or(1);
+        let cost = |effort: &u64| (*effort).max(least) as f64;
+        let costs: Vec<f64> = self.effort.iter().map(cost).collect();
+        self.home = shares(&self.tiles, &costs, self.workers);
+    }
+
     /// A task never handed out, of the first pass that has one. Each worker has its tiles, and makes smooth what it has
     /// sampled, as it keeps most samples that it needs for that. When it is idle soon it helps the others, from the end, where
     /// they come last.
@@ -149,6 +156,9 @@ impl Run {
         while self.left.is_empty() {
             self.pass = (self.pass + 1 < self.passes.len()).then_some(self.pass + 1)?;
             self.left.extend(0..self.tiles.len());
+            if self.passes[self.pass] == Pass::Full {
+                self.part();
+            }
         }
         let pass = self.passes[self.pass];
         let mine = |tile: &usize| match pass {
@@ -156,19 +166,13 @@ impl Run {
             Pass::Full => self.home[*tile] == worker,
             Pass::Smooth => self.holder[*tile].is_none_or(|holder| holder == worker),
         };
-        let last = self.left.len() - 1;
-        // The last one its holder makes smooth as soon as somebody who must sample it first.
-        let help = idle && (last > 0 || pass != Pass::Smooth);
-        let place = self.left.iter().position(mine).or(help.then_some(last))?;
-        let tile = self.left.remove(place);
+        let place = self.left.iter().position(mine);
+        let tile = match place {
+            Some(place) => self.left.remove(place)?,
+            None if idle => self.left.pop_back()?,
+            None => return None,
+        };
         Some(self.pass * self.tiles.len() + tile)
-    }
-
-    /// What a worker has sampled is lost.
-    pub fn lose(&mut self, worker: usize) {
-        for holder in &mut self.holder {
-            holder.take_if(|holder| *holder == worker);
-        }
     }
 
     /// How many tasks never handed out a worker should hold, one of so many workers: enough not to
@@ -236,6 +240,10 @@ impl Run {
     pub fn done(&mut self, task: usize, stats: &Stats, seconds: f64, now: f64) {
         let pass = task / self.tiles.len();
         self.settled[pass] += 1;
+        if self.passes[pass] == Pass::Coarse {
+            let effort = stats.primary_rays + stats.shadow_rays + stats.field_evaluations;
+            self.effort[task % self.tiles.len()] = effort;
+        }
         self.costs.add(pass, seconds.max(0.0));
         add_stats(&mut self.stats, stats);
         self.settle(now);

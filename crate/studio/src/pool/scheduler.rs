@@ -2,9 +2,9 @@
 //!
 //! Events go in (a worker started, answered, died; time passed), [`Command`]s come out. Rules:
 //!
-//! - Tiles are handed out pass by pass, in the order of [`tracer::tile::tiles`]; to be made smooth preferably to the worker
-//!   that has their samples ([`Run::take`]). A worker holds the
-//!   tile it traces and some more, about [`AHEAD`](super::run::AHEAD) seconds of work, so that it need not wait for a
+//! - Tiles are handed out pass by pass, the coarse pass to all in turn. From then on each worker has its part of the picture
+//!   ([`shares`](super::share::shares)), its tiles in the order of [`tracer::tile::tiles`], and makes smooth what it has
+//!   sampled; one without work helps the others. A worker holds the tile it traces and some more, about [`AHEAD`](super::run::AHEAD) seconds of work, so that it need not wait for a
 //!   page that is busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
 //!   replaced, so a slow tile never delays the new picture.
@@ -429,7 +429,6 @@ impl Scheduler {
 
     /// Starts a worker, in the place of the old one if there is one.
     fn restart(&mut self, index: usize, now: f64) {
-        self.lose(index);
         let slot = &mut self.slots[index];
         slot.put_down();
         slot.stale = None;
@@ -439,16 +438,8 @@ impl Scheduler {
         self.commands.push(Command::Restart(index));
     }
 
-    /// What it had sampled goes with a worker.
-    fn lose(&mut self, index: usize) {
-        if let Some(run) = &mut self.run {
-            run.lose(index);
-        }
-    }
-
     /// Ends a worker for now.
     fn end(&mut self, index: usize, life: Life) {
-        self.lose(index);
         let slot = &mut self.slots[index];
         slot.put_down();
         slot.stale = None;

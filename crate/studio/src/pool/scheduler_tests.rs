@@ -30,6 +30,8 @@ struct Crowd {
     deadly: HashSet<Order>,
     /// Workers that answer nothing.
     hanging: HashSet<usize>,
+    /// Evaluations that a tile takes.
+    effort: fn(&Tile) -> u64,
     restarts: usize,
     done: Vec<Order>,
 }
@@ -50,6 +52,7 @@ impl Crowd {
             desks: vec![VecDeque::new(); workers],
             deadly: HashSet::new(),
             hanging: HashSet::new(),
+            effort: |_| STATS.field_evaluations,
             restarts: 0,
             done: Vec::new(),
         };
@@ -112,7 +115,11 @@ impl Crowd {
                 self.scheduler.died(i, "deadly", self.now);
             }
             Job::Tile(order) => {
-                if self.scheduler.traced(i, order, &STATS, 1e-3, self.now) {
+                let stats = Stats {
+                    field_evaluations: (self.effort)(&order.tile),
+                    ..STATS
+                };
+                if self.scheduler.traced(i, order, &stats, 1e-3, self.now) {
                     self.done.push(order);
                 }
             }
@@ -195,18 +202,14 @@ fn the_coarse_pass_is_handed_out_at_once_in_turn() {
     assert_eq!(dealt, wanted);
 }
 
-fn tile_at(x: u32, y: u32) -> Tile {
-    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
-    let at = tiles.into_iter().find(|tile| (tile.x, tile.y) == (x, y));
-    at.unwrap()
-}
-
 #[test]
 fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
+    let size = [1024, 768];
     let run = |workers: usize, slow: Option<usize>| {
         let mut crowd = Crowd::new(workers);
         let mut by = HashMap::new();
-        crowd.start(1);
+        crowd.scheduler.start(Plan { size, ..plan(1) }, 0.0);
+        crowd.obey();
         for round in 0.. {
             assert!(round < 10_000, "endless");
             for worker in 0..workers {
@@ -223,32 +226,52 @@ fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
         }
         by
     };
-    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
+    let tiles = tracer::tile::tiles(size[0], size[1], crate::pool::TILE);
     for workers in [1, 2, 3] {
         let by = run(workers, None);
         // But for the last ones, with which one helps who is not done.
         let moved = |tile: &&Tile| by[&(**tile, Pass::Full)] != by[&(**tile, Pass::Smooth)];
         let moved = tiles.iter().filter(moved).count();
-        assert!(4 * moved <= tiles.len() && (workers > 1 || moved == 0));
-        // Each has a part of each row.
-        for y in [0, 64, 128] {
-            let row = |x: u32| by[&(tile_at(x, y), Pass::Full)];
-            let all: HashSet<usize> = [0, 64, 128, 192].map(row).into();
-            assert!(all.len() >= workers.min(2));
-        }
+        assert!(
+            16 * moved <= tiles.len() && (workers > 1 || moved == 0),
+            "{moved}"
+        );
     }
-    // Few rectangles, so that they have few borders.
+    // What lies together goes to one worker.
     let by = run(2, None);
-    let pairs = [[0, 0], [128, 0], [0, 64], [128, 64], [0, 128], [128, 128]];
-    let parted = pairs.iter().filter(|[x, y]| {
-        let who = |x: u32| by[&(tile_at(x, *y), Pass::Full)];
-        who(*x) != who(x + 64)
+    let parted = tiles.iter().filter(|tile| {
+        let right = tiles
+            .iter()
+            .find(|other| (other.x, other.y) == (tile.x + 64, tile.y));
+        right.is_some_and(|right| by[&(*right, Pass::Full)] != by[&(**tile, Pass::Full)])
     });
-    assert!(parted.count() <= 2);
+    let parted = parted.count();
+    assert!(parted <= 18, "{parted}");
     // A slow worker is helped.
     let by = run(2, Some(0));
     let slow = |pass| tiles.iter().filter(|tile| by[&(**tile, pass)] == 0).count();
     assert!(slow(Pass::Full) + slow(Pass::Smooth) < tiles.len() / 2 + 2);
+}
+
+#[test]
+fn parts_are_as_large_as_the_coarse_pass_says_that_they_take_equally_long() {
+    let mut crowd = Crowd::new(2);
+    crowd.effort = |tile| if tile.x == 0 { 1000 } else { 1 };
+    crowd.start(1);
+    let mut by = HashMap::new();
+    while !crowd.progress().finished {
+        for worker in 0..2 {
+            if let Some(Job::Tile(order)) = crowd.work_one(worker)
+                && order.pass == Pass::Full
+                && order.tile.x == 0
+            {
+                *by.entry(worker).or_insert(0) += 1;
+            }
+        }
+    }
+    let mut each: Vec<u32> = by.into_values().collect();
+    each.sort_unstable();
+    assert_eq!(each, [1, 2]);
 }
 
 #[test]
