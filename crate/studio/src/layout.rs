@@ -314,8 +314,8 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         tray::strip::show(&mut ui.new_child(builder), &app.tray, narrow, commands);
     }
     let margin = if narrow { 0.0 } else { 18.0 };
-    let rect = view::fit(place.shrink(margin), app.work.session.frame());
     let scale = ui.ctx().pixels_per_point();
+    let rect = view::fit(place.shrink(margin), app.work.session.frame(), scale);
     // Sizes are taken in whole pixels, so that a picture is not traced anew for a rounding error.
     app.place = [
         (rect.width() * scale).round(),

@@ -7,6 +7,7 @@ use crate::command::Command;
 use crate::render::Renderer;
 use crate::session::Session;
 use crate::theme;
+use egui::emath::GuiRounding;
 use egui::epaint::RectShape;
 use egui::{
     Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, TextureId, Ui, Vec2, vec2,
@@ -49,14 +50,19 @@ pub struct Scenery<'a> {
     pub round: f32,
 }
 
-/// The largest rectangle of the frame's proportions in the middle of a place.
+/// The largest rectangle of the frame's proportions in the middle of a place. It lies on whole pixels of the screen, and a
+/// picture made to fit it ([`crate::size::pixels`]) has as many, so that it is shown as sharp as it was traced.
 #[must_use]
-pub fn fit(place: Rect, frame: [u32; 2]) -> Rect {
+pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
     let frame = vec2(frame[0].max(1) as f32, frame[1].max(1) as f32);
     let scale = (place.width() / frame.x)
         .min(place.height() / frame.y)
         .max(0.0);
-    Rect::from_center_size(place.center(), frame * scale)
+    // From the shorter side, which the longer one's rounding does not change when it is computed from that again.
+    let shorter = (frame.min_elem() * scale * pixels_per_point + 1e-3).floor();
+    let size = (frame * (shorter / frame.min_elem())).round() / pixels_per_point;
+    let min = place.center() - 0.5 * size;
+    Rect::from_min_size(min.round_to_pixels(pixels_per_point), size)
 }
 
 /// Whether the draft is to be drawn at all. `slow`: the processor draws it, for which the workers have to wait. Then the
@@ -206,16 +212,43 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_picture_made_to_fit_lies_texel_on_pixel() {
+        for scale in [1.0, 1.25, 1.5, 2.0, 2.625] {
+            for frame in [[640, 480], [480, 640], [512, 512], [1920, 803], [37, 1000]] {
+                for step in 0..50 {
+                    let side = 100.3 + 7.7 * step as f32;
+                    let place = Rect::from_min_size(Pos2::new(3.3, 41.0), vec2(side, 350.6));
+                    let rect = fit(place, frame, scale);
+                    let pixels = [rect.left(), rect.top(), rect.width(), rect.height()];
+                    for at in pixels.map(|at| at * scale) {
+                        assert!((at - at.round()).abs() < 1e-2, "{frame:?} {side} {scale}");
+                    }
+                    let shown = [2, 3].map(|i| (pixels[i] * scale).round());
+                    let traced = crate::size::pixels(Default::default(), frame, shown, 8192);
+                    // A larger one is traced with fewer pixels.
+                    let small = f64::from(shown[0] * shown[1]) <= crate::size::FIT_PIXELS;
+                    assert!(
+                        !small || traced.map(|side| side as f32) == shown,
+                        "{frame:?} {side}"
+                    );
+                    let over = (rect.size() - place.size()).max_elem();
+                    assert!(over * scale <= 0.51, "{frame:?} {side} {scale}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn the_picture_keeps_the_frame_s_proportions() {
         let place = Rect::from_min_size(Pos2::new(10.0, 0.0), vec2(100.0, 300.0));
-        let wide = fit(place, [2, 1]);
+        let wide = fit(place, [2, 1], 1.0);
         assert_eq!(
             (wide.size(), wide.center()),
             (vec2(100.0, 50.0), place.center())
         );
-        let high = fit(place, [1, 4]);
+        let high = fit(place, [1, 4], 1.0);
         assert_eq!(high.size(), vec2(75.0, 300.0));
         let inverted = Rect::ZERO.shrink(9.0);
-        assert_eq!(fit(inverted, [0, 0]).size(), Vec2::ZERO);
+        assert_eq!(fit(inverted, [0, 0], 1.0).size(), Vec2::ZERO);
     }
 }

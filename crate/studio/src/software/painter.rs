@@ -6,13 +6,14 @@
 //! number as in the last frame are left alone.
 
 use std::{
-    hash::{DefaultHasher, Hash, Hasher},
+    hash::{Hash, Hasher},
     ops::Range,
 };
 
 use egui::{
     ClippedPrimitive, Color32, Mesh, Rect, TextureId, TexturesDelta,
     epaint::{Primitive, Vertex},
+    util::hash,
 };
 
 use super::{
@@ -92,7 +93,7 @@ impl Painter {
         let [columns, rows] = self.grid();
         self.shown.resize(columns * rows, 0);
         self.wanted.clear();
-        self.wanted.resize(columns * rows, number_of(&ground));
+        self.wanted.resize(columns * rows, hash(ground));
 
         self.collect(primitives, pixels_per_point);
         self.number();
@@ -162,7 +163,7 @@ impl Painter {
             let Some(texture) = self.textures.get(piece.texture) else {
                 continue;
             };
-            let number = number_of(&(&piece.shape, piece.texture, piece.area));
+            let number = hash((&piece.shape, piece.texture, piece.area));
             let showing = piece.shape.showing();
             for y in tiles(piece.area.y0, piece.area.y1) {
                 for x in tiles(piece.area.x0, piece.area.x1) {
@@ -285,12 +286,6 @@ fn tile(x: usize, y: usize) -> Area {
         x1: x0 + TILE,
         y1: y0 + TILE,
     }
-}
-
-fn number_of(value: &impl Hash) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    value.hash(&mut hasher);
-    hasher.finish()
 }
 
 /// A number for two numbers in order. The first is already well spread.

@@ -1,10 +1,12 @@
 //! Fills triangles and rectangles with colours and pictures, as egui's shader does on a GPU.
 
+use std::ops::Range;
+
 use egui::Color32;
 
 use super::{
     shape::{Area, Corner, Quad, STEPS, Triangle, bounds},
-    texture::{Tap, Texture},
+    texture::{Mix, Tap, Texture},
 };
 
 /// A picture being drawn on: red, green, blue, alpha in rows from the top.
@@ -14,7 +16,20 @@ pub struct Sheet {
     height: usize,
     pixels: Vec<[u8; 4]>,
     /// Kept to save allocations.
-    columns: Vec<Tap>,
+    columns: Columns,
+}
+
+/// The columns of pixels of a shape whose rows are rows of its texture.
+#[derive(Debug, Default)]
+struct Columns {
+    /// Where each lies in the texture.
+    taps: Vec<Tap>,
+    /// Whether each shows one texel.
+    exact: bool,
+    /// From the first to the last texel that they show.
+    texels: Range<usize>,
+    /// Those at the present row, where it lies between two.
+    between: Vec<Mix>,
 }
 
 impl Sheet {
@@ -24,7 +39,7 @@ impl Sheet {
             width,
             height,
             pixels: vec![[0; 4]; width * height],
-            columns: Vec::new(),
+            columns: Columns::default(),
         }
     }
 
@@ -70,14 +85,15 @@ impl Sheet {
         }
         let tint = quad.corners()[0].tint.to_array();
         let smooth = texture.is_smooth(quad.scale(0).abs().max(quad.scale(1).abs()));
-        let columns = self.columns(
+        let mut columns = self.columns(
             (area.x0..area.x1).map(|x| quad.texel(0, x)),
             texture,
             smooth,
         );
         for y in area.y0..area.y1 {
             let row = texture.tap(1, quad.texel(1, y), smooth);
-            copy_row(self.span(y, area.x0, area.x1), &columns, row, texture, tint);
+            let span = self.span(y, area.x0, area.x1);
+            columns.copy(0, span, row, texture, tint);
         }
         self.columns = columns;
     }
@@ -89,10 +105,16 @@ impl Sheet {
         coordinates: impl Iterator<Item = f32>,
         texture: &Texture,
         smooth: bool,
-    ) -> Vec<Tap> {
+    ) -> Columns {
         let mut columns = std::mem::take(&mut self.columns);
-        columns.clear();
-        columns.extend(coordinates.map(|at| texture.tap(0, at, smooth)));
+        let taps = &mut columns.taps;
+        taps.clear();
+        taps.extend(coordinates.map(|at| texture.tap(0, at, smooth)));
+        columns.exact = taps.iter().all(|tap| tap.weight == 0);
+        let ends = |tap: &Tap| [tap.near, tap.far];
+        let first = taps.iter().flat_map(ends).min().unwrap_or(0);
+        let last = taps.iter().flat_map(ends).max().unwrap_or(0);
+        columns.texels = first..last + 1;
         columns
     }
 
@@ -160,11 +182,11 @@ impl Sheet {
         if a == b && a == c && turned * f64::from(STEPS) < 1.0 {
             // The inside of a picture with round corners: its rows are rows of the texture.
             let across = (area.x0..area.x1).map(|x| texel[0].at(x, area.y0));
-            let columns = self.columns(across, texture, smooth);
+            let mut columns = self.columns(across, texture, smooth);
             triangle.rows(area, |y, x0, x1| {
                 let row = texture.tap(1, texel[1].at(area.x0, y), smooth);
-                let columns = &columns[(x0 - area.x0) as usize..(x1 - area.x0) as usize];
-                copy_row(self.span(y, x0, x1), columns, row, texture, a.to_array());
+                let first = (x0 - area.x0) as usize;
+                columns.copy(first, self.span(y, x0, x1), row, texture, a.to_array());
             });
             self.columns = columns;
             return;
@@ -186,17 +208,35 @@ impl Sheet {
     }
 }
 
-/// Draws a row of pixels that lies along a row of a texture.
-fn copy_row(span: &mut [[u8; 4]], columns: &[Tap], row: Tap, texture: &Texture, tint: [u8; 4]) {
-    if row.weight == 0 && columns.iter().all(|column| column.weight == 0) {
-        // Texels on pixels, as nearly all text is.
-        let texels = texture.row(row.near);
-        for (pixel, column) in span.iter_mut().zip(columns) {
-            blend(pixel, tinted(texels[column.near].to_array(), tint));
-        }
-    } else {
-        for (pixel, &column) in span.iter_mut().zip(columns) {
-            blend(pixel, tinted(texture.sample(column, row), tint));
+impl Columns {
+    /// Draws a row of pixels, the first of which is in the column of this number.
+    fn copy(
+        &mut self,
+        first: usize,
+        span: &mut [[u8; 4]],
+        row: Tap,
+        texture: &Texture,
+        tint: [u8; 4],
+    ) {
+        let taps = &self.taps[first..first + span.len()];
+        if self.exact && row.weight == 0 {
+            // Texels on pixels, as nearly all text is.
+            let texels = texture.row(row.near);
+            for (pixel, column) in span.iter_mut().zip(taps) {
+                blend(pixel, tinted(texels[column.near].to_array(), tint));
+            }
+        } else if self.texels.len() > 2 * span.len() {
+            for (pixel, &column) in span.iter_mut().zip(taps) {
+                blend(pixel, tinted(texture.sample(column, row), tint));
+            }
+        } else {
+            // Most texels are seen more than once.
+            texture.between(row, self.texels.clone(), &mut self.between);
+            let at = |x: usize| self.between[x - self.texels.start];
+            for (pixel, column) in span.iter_mut().zip(taps) {
+                let color = at(column.near).with(at(column.far), column.weight);
+                blend(pixel, tinted(color.rounded(), tint));
+            }
         }
     }
 }
@@ -367,6 +407,38 @@ mod tests {
                 let apart = whole.bytes().iter().zip(parts.bytes());
                 // The shade is computed from the left end of each span.
                 assert!(apart.into_iter().all(|(a, b)| a.abs_diff(*b) <= 1));
+            }
+        });
+    }
+
+    #[test]
+    fn a_picture_of_any_scale_shows_its_samples() {
+        let mut number = numbers(11, 256.0);
+        let texels = (0..12 * 9).map(|_| {
+            let [red, green, blue] = [(); 3].map(|()| number() as u8);
+            Color32::from_rgb(red, green, blue)
+        });
+        let image = ColorImage::new([12, 9], texels.collect());
+        with_texture(image, TextureOptions::LINEAR, |texture| {
+            for (width, height) in [(40.3, 21.7), (12.0, 9.5), (3.2, 4.9), (12.0, 9.0)] {
+                let at = |x: f32, y: f32| {
+                    let place = [2.25 + x * width, 1.5 + y * height];
+                    Corner::new(place, [x * 12.0, y * 9.0], Color32::WHITE).unwrap()
+                };
+                let corners = [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)];
+                let quad = Quad::new(corners).unwrap();
+                let mut sheet = sheet(50, 30);
+                sheet.quad(&quad, texture, sheet.area());
+                let area = quad.area();
+                assert!(!area.is_empty());
+                for y in area.y0..area.y1 {
+                    for x in area.x0..area.x1 {
+                        let [column, row] = [(0, x), (1, y)]
+                            .map(|(axis, at)| texture.tap(axis, quad.texel(axis, at), true));
+                        let drawn = sheet.pixels[y as usize * 50 + x as usize];
+                        assert_eq!(drawn, texture.sample(column, row), "{x} {y} {width}");
+                    }
+                }
             }
         });
     }

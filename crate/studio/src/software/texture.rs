@@ -1,6 +1,7 @@
 //! The textures that egui has given out: the font atlas and the app's pictures.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use egui::{
     Color32, ImageData, TextureFilter, TextureId, TextureOptions, TextureWrapMode, TexturesDelta,
@@ -150,23 +151,51 @@ impl Texture {
             return texel(near + column.near);
         }
         let far = row.far * self.size[0];
-        let corners = [
-            texel(near + column.near),
-            texel(near + column.far),
-            texel(far + column.near),
-            texel(far + column.far),
-        ];
-        std::array::from_fn(|channel| {
-            let [a, b, c, d] = corners.map(|corner| u32::from(corner[channel]));
-            let top = a * (256 - column.weight) + b * column.weight;
-            let bottom = c * (256 - column.weight) + d * column.weight;
-            ((top * (256 - row.weight) + bottom * row.weight + (1 << 15)) >> 16) as u8
-        })
+        let across = |row: usize| {
+            let [near, far] = [column.near, column.far].map(|x| Mix::of(self.texels[row + x]));
+            near.with(far, column.weight)
+        };
+        across(near).with(across(far), row.weight).rounded()
+    }
+
+    /// The texels of some columns at a place between two rows.
+    pub fn between(&self, row: Tap, columns: Range<usize>, between: &mut Vec<Mix>) {
+        let [near, far] = [row.near, row.far].map(|y| &self.row(y)[columns.clone()]);
+        between.clear();
+        let pairs = near.iter().zip(far);
+        between.extend(pairs.map(|(near, far)| Mix::of(*near).with(Mix::of(*far), row.weight)));
     }
 
     /// The texels of a row.
     pub fn row(&self, y: usize) -> &[Color32] {
         &self.texels[y * self.size[0]..(y + 1) * self.size[0]]
+    }
+}
+
+/// A texel, or what lies between texels: channels 0 and 2 in the halves of one number, 1 and 3 in those of another, so that
+/// two are blended at a time. Each blend makes them 256 times as large; there is room for two.
+#[derive(Clone, Copy, Debug)]
+pub struct Mix([u64; 2]);
+
+impl Mix {
+    #[inline]
+    fn of(texel: Color32) -> Self {
+        let [a, b, c, d] = texel.to_array().map(u64::from);
+        Self([a | c << 32, b | d << 32])
+    }
+
+    /// What lies between this and another, nearer to the other the larger the weight, 0 … 256.
+    #[inline]
+    pub fn with(self, other: Self, weight: u32) -> Self {
+        let (own, its) = (u64::from(256 - weight), u64::from(weight));
+        Self(std::array::from_fn(|i| self.0[i] * own + other.0[i] * its))
+    }
+
+    /// The channels after two blends.
+    #[inline]
+    pub fn rounded(self) -> [u8; 4] {
+        let [even, odd] = self.0.map(|pair| (pair + 0x8000_0000_8000) >> 16);
+        [even, odd, even >> 32, odd >> 32].map(|channel| channel as u8)
     }
 }
 
