@@ -5,7 +5,7 @@ use egui::{
     TexturesDelta, Ui, ViewportId, pos2, vec2,
 };
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor, wgpu};
-use studio::software::painter::Painter;
+use painter::Painter;
 
 const SIZE: [u32; 2] = [640, 448];
 const GROUND: Color32 = Color32::from_rgb(30, 40, 50);

@@ -4,7 +4,7 @@ use egui::{Context, FullOutput, Plugin};
 use wasm_bindgen::{Clamped, JsCast, JsValue};
 use web_sys::{CanvasRenderingContext2d, HtmlCanvasElement, ImageData};
 
-use super::painter::Painter;
+use painter::Painter;
 
 /// A line width that nothing draws with. A canvas forgets it together with its pixels when its size
 /// is set, even to what it was, and so shows that it must be painted anew.

@@ -1,9 +1,18 @@
-//! Paints egui's output, redrawing only what changed.
+//! Draws what egui wants on its screen with the processor, redrawing only what changed: for pages without a GPU.
 //!
 //! The window is divided into square tiles. Everything that can change a tile's pixels goes into a
 //! number for each tile: the triangles and rectangles that touch it, in order, with colours, clip
 //! and the time at which the part of the texture they show last changed. Tiles with the same
 //! number as in the last frame are left alone.
+//!
+//! `shape` says which pixels triangles and rectangles cover, `raster` fills them, and `texture` keeps the pictures. The last
+//! two follow egui's own shader: colours are sRGB values multiplied by their alpha, and are blended as such.
+//!
+//! It is a crate of its own because it is compiled for speed, and the rest of the page for size.
+
+mod raster;
+mod shape;
+mod texture;
 
 use std::{
     hash::{Hash, Hasher},
@@ -16,13 +25,11 @@ use egui::{
     util::hash,
 };
 
-use super::{
-    raster::Sheet,
-    shape::{self, Corner, Quad, Showing},
-    texture::Textures,
-};
+use raster::Sheet;
+use shape::{Corner, Quad, Showing};
+use texture::Textures;
 
-pub use super::shape::Area;
+pub use shape::Area;
 
 /// The side of a tile in pixels.
 const TILE: i32 = 64;
@@ -298,11 +305,22 @@ fn mixed(a: u64, b: u64) -> u64 {
 mod tests {
     use super::*;
     use egui::{
-        Context, Event, Modifiers, MouseWheelUnit, Pos2, RawInput, Rect, TextureOptions,
-        TouchPhase, Ui, Vec2, epaint::RectShape, pos2, vec2,
+        Context, Event, FontData, FontDefinitions, FontFamily, Modifiers, MouseWheelUnit, Pos2,
+        RawInput, Rect, TextureOptions, TouchPhase, Ui, Vec2, epaint::RectShape, pos2, vec2,
     };
+    use std::sync::Arc;
 
     const SIZE: [usize; 2] = [500, 300];
+
+    fn fonts() -> FontDefinitions {
+        let mut fonts = FontDefinitions::empty();
+        let data = FontData::from_static(epaint_default_fonts::UBUNTU_LIGHT);
+        fonts.font_data.insert("sans".to_owned(), Arc::new(data));
+        for family in [FontFamily::Proportional, FontFamily::Monospace] {
+            fonts.families.insert(family, vec!["sans".to_owned()]);
+        }
+        fonts
+    }
 
     /// A window without a browser.
     struct Window {
@@ -313,7 +331,7 @@ mod tests {
     impl Window {
         fn new() -> Self {
             let context = Context::default();
-            context.set_fonts(crate::fonts::definitions());
+            context.set_fonts(fonts());
             Self {
                 context,
                 painter: Painter::default(),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use egui::Color32;
 
-use super::{
+use crate::{
     shape::{Area, Corner, Quad, STEPS, Triangle, bounds},
     texture::{Mix, Tap, Texture},
 };
@@ -286,8 +286,8 @@ mod tests {
         epaint::{ImageDelta, textures::TextureFilter},
     };
 
-    use super::super::texture::Textures;
     use super::*;
+    use crate::texture::Textures;
 
     const BLACK: [u8; 4] = [0, 0, 0, 255];
     /// Added to what is there, so that it counts how often a pixel is drawn.
