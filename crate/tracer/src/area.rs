@@ -70,6 +70,11 @@ impl Area {
         }
     }
 
+    /// Whether there is no cell in it.
+    pub fn is_empty(self) -> bool {
+        self.left >= self.right || self.top >= self.bottom
+    }
+
     /// The same rectangle in cells that are smaller by a factor.
     pub fn times(self, factor: u32) -> Self {
         Self {

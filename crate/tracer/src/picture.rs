@@ -126,7 +126,8 @@ impl Picture {
         self.trace_with(tile, pass, &mut SampleCache::default(), stop, stats)
     }
 
-    /// The same with a cache of this picture's first samples: those that it has are not taken again, others are kept in it.
+    /// The same with a cache of this picture's first samples ([`Picture::cache`]): those that it has are not taken again,
+    /// others are kept in it. Nothing is done with one for another size, or for a tile that reaches beyond the picture.
     #[must_use]
     pub fn trace_with(
         &self,
@@ -137,6 +138,11 @@ impl Picture {
         stats: &mut Stats,
     ) -> Option<Vec<u8>> {
         let mut work = Workspace::default();
+        let area = Area::from(tile);
+        if cache.size() != self.size || area.right > self.size[0] || area.bottom > self.size[1] {
+            let mut none = SampleCache::default();
+            return self.trace_in(tile, pass, &mut none, stop, &mut work, stats);
+        }
         self.trace_in(tile, pass, cache, stop, &mut work, stats)
     }
 
@@ -153,7 +159,7 @@ impl Picture {
         let area = Area::from(tile);
         if pass == Pass::Smooth && self.samples > 1 {
             let samples = self.sample(self.around(area), 1, cache, stop, work, stats)?;
-            cache.keep(&samples);
+            cache.keep(&samples, area);
             return self.smooth(area, samples, stop, work, stats);
         }
         let mut pixels = Pixels::new(self, area, stop)?;
@@ -172,7 +178,7 @@ impl Picture {
         for square in area.blocks([SQUARE; 2]) {
             let part = square.meet(area);
             let samples = self.sample(part, 1, cache, stop, work, stats)?;
-            cache.keep(&samples);
+            cache.keep(&samples, part);
             pixels.show::<1>(part, &samples);
         }
         Some(pixels.rgba)

@@ -59,13 +59,14 @@ pub fn render_picture(
             stats += shared_out(&tiles, threads, trace, &mut show, &step);
             continue;
         }
-        // First the first samples of all pixels, then the others: so none is taken twice, whatever the number of threads.
+        // First the first samples of all pixels, then the others: so none is taken twice but for those at the borders of sheets,
+        // whatever the number of threads.
         let mut cache = picture.cache(tiles.len());
         let none = SampleCache::default();
         let sample = |tile, work: &mut Workspace, stats: &mut Stats| {
             picture.sample(Area::from(tile), 1, &none, &|| false, work, stats)
         };
-        let keep = |_, samples| cache.keep(&samples);
+        let keep = |tile, samples| cache.keep(&samples, Area::from(tile));
         stats += shared_out(&tiles, threads, sample, keep, &step);
         let refine = |tile, work: &mut Workspace, stats: &mut Stats| {
             let area = Area::from(tile);

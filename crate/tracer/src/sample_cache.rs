@@ -65,8 +65,14 @@ impl SampleCache {
         self.squares.get(self.index(square))?.as_deref()
     }
 
-    /// Keeps the samples of the packets that lie in their area, as far as packets lie in the picture.
-    pub(crate) fn keep(&mut self, samples: &Samples) {
+    /// The pixels of the picture that it is for.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Keeps the samples of the packets that lie in their area, as far as packets lie in the picture. Of squares that are
+    /// outside `tile` only if something of them is kept already: strips along its edges are not worth a square's room.
+    pub(crate) fn keep(&mut self, samples: &Samples, tile: Area) {
         let [right, bottom] = self.size;
         let picture = Area {
             left: 0,
@@ -80,6 +86,9 @@ impl SampleCache {
                 continue;
             };
             if place.is_none() {
+                if square.meet(tile).is_empty() {
+                    continue;
+                }
                 let Some(left) = self.room.checked_sub(1) else {
                     continue;
                 };

@@ -277,6 +277,62 @@ fn samples_that_are_kept_change_nothing_and_are_taken_once() {
     assert_eq!(cache.squares(), 0);
 }
 
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn a_cache_keeps_no_squares_for_strips_and_serves_no_other_picture() {
+    let scene = mixed(1);
+    let size = [135, 91];
+    let picture = Picture::new(&scene, size);
+    let mut stats = Stats::default();
+    let mut trace = |picture: &Picture, tile, cache: &mut SampleCache| {
+        let with = picture.trace_with(tile, Pass::Full, cache, &|| false, &mut stats);
+        assert_eq!(
+            with,
+            picture.trace(tile, Pass::Full, &|| false, &mut Stats::default())
+        );
+    };
+    let middle = tiles(size[0], size[1], 64)
+        .into_iter()
+        .find(|tile| (tile.x, tile.y) == (64, 0))
+        .unwrap();
+    let cache = &mut picture.cache(100);
+    let _ = picture.trace_with(
+        middle,
+        Pass::Smooth,
+        cache,
+        &|| false,
+        &mut Stats::default(),
+    );
+    assert_eq!(cache.squares(), 1);
+    trace(&picture, middle, cache);
+    // Beyond the edge, and with what is known there.
+    let over = Tile { x: 100, ..middle };
+    trace(&picture, over, cache);
+    trace(&picture, over, cache);
+    // Another picture has another size here.
+    let other = Picture::new(&scene, [140, 91]);
+    trace(&other, middle, cache);
+    assert_eq!(cache.squares(), 1);
+}
+
+/// Two sheets of 2048 pixels, of which the second is narrow.
+#[cfg(not(target_arch = "wasm32"))]
+#[test]
+fn a_picture_of_several_sheets_is_that_of_its_tiles() {
+    let scene = mixed(1);
+    for size in [[2101, 40], [40, 2101]] {
+        let picture = Picture::new(&scene, size);
+        let (rgba, _) = tracer::render(&scene, size, 2, Pass::Smooth, &|_| {});
+        for tile in tiles(size[0], size[1], 256) {
+            let part = picture.trace(tile, Pass::Smooth, &|| false, &mut Stats::default());
+            for (y, line) in part.unwrap().chunks(4 * tile.width as usize).enumerate() {
+                let at = 4 * ((tile.y as usize + y) * size[0] as usize + tile.x as usize);
+                assert!(&rgba[at..at + line.len()] == line, "{tile:?} {y}");
+            }
+        }
+    }
+}
+
 #[cfg(not(target_arch = "wasm32"))]
 #[test]
 fn no_sample_is_taken_twice_whatever_the_number_of_threads() {

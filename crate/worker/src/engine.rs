@@ -10,9 +10,9 @@ use tracer::{Pass, Picture, SampleCache, Stats, Tile};
 /// worker sees what has come in.
 const ROWS: u32 = 32;
 
-/// Squares of pixels of which a worker keeps the first samples, 100 kB each. Of a picture larger than they are, times the
-/// number of workers, some samples are taken twice.
-const KEPT: usize = 512;
+/// Squares of pixels of which a worker keeps the first samples, 100 kB each: those of a picture that fits a screen
+/// (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some samples twice.
+const KEPT: usize = 256;
 
 /// The picture a worker is busy with, and the tiles it still has to trace.
 #[derive(Default)]
@@ -279,6 +279,58 @@ mod tests {
             let whole =
                 Picture::new(&scene, size).trace(tile, pass, &|| false, &mut Stats::default());
             assert_eq!(traced, whole, "{pass:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_made_smooth_is_what_it_would_be_alone_picture_after_picture() {
+        let size = [150, 100];
+        let mut engine = Engine::default();
+        for (generation, x) in [(1, 0.2), (2, -0.2)] {
+            let text =
+                format!("surface flesh diffuse Coral, blobbiness -2\nsphere flesh 1 <{x} -0.3 0>");
+            let file = rats::File {
+                name: "main.rat".into(),
+                text,
+            };
+            let compiled = rats::compile(&rats::Project { files: vec![file] });
+            assert_eq!(compiled.diagnostics, []);
+            let mut scene = Box::new(compiled.scene);
+            scene.settings.samples = 3;
+            let tiles = tracer::tile::tiles(size[0], size[1], 64);
+            let orders = |pass| {
+                let order = move |&tile| Order {
+                    generation,
+                    tile,
+                    pass,
+                };
+                tiles.iter().map(order)
+            };
+            engine.accept(Request::Begin {
+                generation,
+                scene: scene.clone(),
+                size,
+                kind: Kind::Colours,
+            });
+            let both = orders(Pass::Full).chain(orders(Pass::Smooth));
+            engine.accept(Request::Trace(both.collect()));
+            let (mut rays, mut alone) = (0, Stats::default());
+            while !engine.is_idle() {
+                let Step::Answer(Answer::Traced {
+                    order,
+                    pixels,
+                    stats,
+                    ..
+                }) = step(&mut engine)
+                else {
+                    continue;
+                };
+                let picture = Picture::new(&scene, size);
+                let wanted = picture.trace(order.tile, order.pass, &|| false, &mut alone);
+                assert_eq!(Some(pixels), wanted, "{order:?}");
+                rays += stats.primary_rays;
+            }
+            assert!(rays > 15_000 && rays + 15_000 < alone.primary_rays);
         }
     }
 

@@ -3,6 +3,7 @@
 use super::progress::{Costs, Progress, add_stats};
 use super::scheduler::ATTEMPTS;
 use super::share::shares;
+use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet, VecDeque};
 use tracer::{Pass, Stats, Tile};
 use worker::Order;
@@ -41,7 +42,7 @@ pub struct Run {
     passes: &'static [Pass],
     /// The pass whose tiles are handed out. A task is a tile in a pass: pass · number of tiles + tile.
     pass: usize,
-    /// Its tiles that were never handed out, in their order.
+    /// Its tiles that were never handed out, in the order in which they are.
     left: VecDeque<usize>,
     /// What the coarse pass did at each tile, 0 as long as nothing is known.
     effort: Vec<u64>,
@@ -156,8 +157,15 @@ impl Run {
         while self.left.is_empty() {
             self.pass = (self.pass + 1 < self.passes.len()).then_some(self.pass + 1)?;
             self.left.extend(0..self.tiles.len());
-            if self.passes[self.pass] == Pass::Full {
-                self.part();
+            match self.passes[self.pass] {
+                Pass::Full => self.part(),
+                // What takes long comes first. Then those who are done early find small tiles to help with, which they have
+                // to sample first.
+                Pass::Smooth => {
+                    let longest = |tile: &usize| Reverse(self.effort[*tile]);
+                    self.left.make_contiguous().sort_by_key(longest);
+                }
+                Pass::Coarse => {}
             }
         }
         let pass = self.passes[self.pass];

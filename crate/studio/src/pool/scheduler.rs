@@ -3,9 +3,9 @@
 //! Events go in (a worker started, answered, died; time passed), [`Command`]s come out. Rules:
 //!
 //! - Tiles are handed out pass by pass, the coarse pass to all in turn. From then on each worker has its part of the picture
-//!   ([`shares`](super::share::shares)), its tiles in the order of [`tracer::tile::tiles`], and makes smooth what it has
-//!   sampled; one without work helps the others. A worker holds the tile it traces and some more, about [`AHEAD`](super::run::AHEAD) seconds of work, so that it need not wait for a
-//!   page that is busy drawing. It drops those itself when a new picture begins.
+//!   ([`shares`](super::share::shares)) and makes smooth what it has sampled; one without work helps the others. A worker
+//!   holds the tile it traces and some more, about [`AHEAD`](super::run::AHEAD) seconds of work, so that it need not wait
+//!   for a page that is busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
 //!   replaced, so a slow tile never delays the new picture.
 //! - A worker that dies, or that gives no sign of life for its time limit, is replaced and the tiles
