@@ -287,6 +287,33 @@ mod tests {
     }
 
     #[test]
+    fn channels_are_blended_each_by_itself() {
+        let mut state = 1u64;
+        let mut byte = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 56) as u8
+        };
+        for round in 0..2000 {
+            let texels: [[u8; 4]; 4] = std::array::from_fn(|_| {
+                std::array::from_fn(|_| if round < 20 { 255 } else { byte() })
+            });
+            let [across, down] = [byte(), byte()].map(u32::from);
+            let [a, b, c, d] =
+                texels.map(|[r, g, b, a]| Mix::of(Color32::from_rgba_premultiplied(r, g, b, a)));
+            let mixed = a.with(b, across).with(c.with(d, across), down).rounded();
+            for channel in 0..4 {
+                let [a, b, c, d] = texels.map(|texel| u32::from(texel[channel]));
+                let top = a * (256 - across) + b * across;
+                let bottom = c * (256 - across) + d * across;
+                let whole = top * (256 - down) + bottom * down;
+                assert_eq!(u32::from(mixed[channel]), (whole + (1 << 15)) >> 16);
+            }
+        }
+    }
+
+    #[test]
     fn samples_outside_follow_the_wrap_mode() {
         let with = |wrap_mode| {
             ramp(TextureOptions {

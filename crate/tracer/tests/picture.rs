@@ -279,7 +279,7 @@ fn samples_that_are_kept_change_nothing_and_are_taken_once() {
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
-fn a_cache_keeps_no_squares_for_strips_and_serves_no_other_picture() {
+fn a_cache_keeps_no_squares_for_strips_and_serves_no_other_size() {
     let scene = mixed(1);
     let size = [135, 91];
     let picture = Picture::new(&scene, size);
@@ -309,7 +309,6 @@ fn a_cache_keeps_no_squares_for_strips_and_serves_no_other_picture() {
     let over = Tile { x: 100, ..middle };
     trace(&picture, over, cache);
     trace(&picture, over, cache);
-    // Another picture has another size here.
     let other = Picture::new(&scene, [140, 91]);
     trace(&other, middle, cache);
     assert_eq!(cache.squares(), 1);

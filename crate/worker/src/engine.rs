@@ -12,7 +12,7 @@ const ROWS: u32 = 32;
 
 /// Squares of pixels of which a worker keeps the first samples, 100 kB each: those of a picture that fits a screen
 /// (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some samples twice.
-const KEPT: usize = 256;
+const KEPT: usize = 272;
 
 /// The picture a worker is busy with, and the tiles it still has to trace.
 #[derive(Default)]

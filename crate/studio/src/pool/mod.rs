@@ -2,7 +2,7 @@
 //!
 //! A [`Pool`] keeps one tracer per processor core: web workers in the page, threads in native
 //! builds (tests). [`Pool::start`] cuts the picture into small tiles, coarse first, then every
-//! pixel, then anti-aliased, the centre of the picture before its edges, and hands them out;
+//! pixel, both from the centre of the picture to its edges, then anti-aliased, and hands them out;
 //! finished ones are fetched with [`Pool::poll`]. Starting a picture cancels the one before.
 //!
 //! Who does what, and what happens when a worker dies or hangs, is decided in [`scheduler`], which

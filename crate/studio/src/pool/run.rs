@@ -49,7 +49,7 @@ pub struct Run {
     workers: usize,
     /// Who should have each tile in the full pass, …
     home: Vec<usize>,
-    /// … and who was given it last, but for the coarse pass, and so has its first samples.
+    /// … and who was given it last, but for the coarse pass, and so has its first samples if it was not restarted since.
     holder: Vec<Option<usize>>,
     /// Tasks handed out before, to be done again, each alone.
     pub again: Vec<usize>,
@@ -140,8 +140,8 @@ impl Run {
         }
     }
 
-    /// Says who should have each tile, by what is known of them. The coarse pass begins in the centre, so that what is not
-    /// known yet lies at the edge, where there is least to do.
+    /// Says who should have each tile, by what is known of them: little when the first tiles of the full pass are handed out,
+    /// all when the coarse pass is complete.
     fn part(&mut self) {
         let known = self.effort.iter().copied().filter(|effort| *effort > 0);
         let least = known.min().unwrap_or(1);
@@ -229,9 +229,11 @@ impl Run {
     /// Notes which passes are complete, and the end of the picture.
     pub fn settle(&mut self, now: f64) {
         let complete = |pass: usize| self.settled[pass] == self.tiles.len();
+        let mut parted = false;
         for pass in 0..self.passes.len() {
-            if complete(pass) {
-                self.pass_seconds[pass].get_or_insert(now - self.begun);
+            if complete(pass) && self.pass_seconds[pass].is_none() {
+                self.pass_seconds[pass] = Some(now - self.begun);
+                parted |= self.passes[pass] == Pass::Coarse;
             }
         }
         let (all, left) = self.expected();
@@ -241,6 +243,9 @@ impl Run {
         if (0..self.passes.len()).all(complete) {
             self.ended.get_or_insert(now);
             self.fraction = 1.0;
+        }
+        if parted {
+            self.part();
         }
     }
 
@@ -293,6 +298,67 @@ impl Run {
                 .map(|pass| self.passes[pass]);
             progress.remaining_seconds = (self.costs.enough() && progress.workers > 0)
                 .then(|| self.expected().1 / progress.workers as f64);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_as_large_as_the_coarse_pass_says_that_they_take_equally_long() {
+        // The tiles on the left are dear.
+        let effort = |tile: &Tile| if tile.x < 128 { 100 } else { 1 };
+        for workers in [2, 3, 5] {
+            for early in [0, 7] {
+                let plan = Plan {
+                    generation: 1,
+                    size: [640, 512],
+                    samples: 3,
+                    small: false,
+                };
+                let mut run = Run::new(plan, workers, 0.0);
+                let tiles = run.tiles.clone();
+                let coarse = |run: &mut Run, some: std::ops::Range<usize>| {
+                    for task in some {
+                        let stats = Stats {
+                            field_evaluations: effort(&tiles[task]),
+                            ..Stats::default()
+                        };
+                        run.done(task, &stats, 1e-3, 0.0);
+                    }
+                };
+                for task in 0..tiles.len() {
+                    assert_eq!(run.take(0, false, false), Some(task));
+                }
+                // Some of the full pass are handed out before more is known than this.
+                coarse(&mut run, 0..10);
+                let mut full = vec![0; workers];
+                let mut take = |run: &mut Run, worker: usize| {
+                    let task = run.take(worker, false, false)?;
+                    if task >= 2 * tiles.len() {
+                        return None;
+                    }
+                    full[worker] += effort(&tiles[task % tiles.len()]);
+                    Some(task)
+                };
+                for _ in 0..early {
+                    take(&mut run, 0);
+                }
+                coarse(&mut run, 10..tiles.len());
+                for worker in 0..workers {
+                    while take(&mut run, worker).is_some() {}
+                }
+                let all: u64 = tiles.iter().map(effort).sum();
+                assert_eq!(full.iter().sum::<u64>(), all);
+                let mean = all as f64 / workers as f64;
+                for taken in &full {
+                    let apart = (*taken as f64 - mean).abs();
+                    assert!(early > 0 || apart <= 200.0, "{workers}: {full:?}");
+                    assert!(apart <= 500.0, "{workers}, {early} early: {full:?}");
+                }
+            }
         }
     }
 }

@@ -197,7 +197,10 @@ impl Scheduler {
             enough += 1;
             let before = self.held();
             for index in 0..self.slots.len() {
-                self.give(index, enough, false, now);
+                // Who should have which tile of the next pass is not known yet.
+                if self.run.as_ref().is_some_and(Run::is_coarse) {
+                    self.give(index, enough, false, now);
+                }
             }
             // Nobody is awake.
             if self.held() == before {

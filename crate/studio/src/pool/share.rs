@@ -1,7 +1,7 @@
 //! Which tiles of a picture each worker should trace.
 //!
-//! Each gets one connected part: what lies on a border between two parts is sampled by both when the picture is made
-//! smooth. The parts are not equally large but take equally long, as far as the coarse pass tells.
+//! Each gets one part, nearly always a connected one: what lies on a border between two parts is sampled by both when the
+//! picture is made smooth. The parts are not equally large but take equally long, as far as the coarse pass tells.
 
 use tracer::Tile;
 
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_take_equally_long_and_are_connected() {
+    fn parts_take_equally_long_and_no_tile_is_alone() {
         let tiles = tracer::tile::tiles(512, 384, 64);
         // What takes long lies on a diagonal, at one end more of it.
         let cost = |tile: &Tile| {
