@@ -1,6 +1,7 @@
 //! Rectangles of pixels, and the samples taken in them.
 use crate::sample::Sample;
 use crate::tile::Tile;
+use std::ops::Range;
 
 /// A rectangle of cells.
 #[derive(Clone, Copy, Debug)]
@@ -38,13 +39,6 @@ impl Area {
 
     pub fn holds(&self, x: u32, y: u32) -> bool {
         (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
-    }
-
-    pub fn contains(&self, part: Self) -> bool {
-        self.left <= part.left
-            && part.right <= self.right
-            && self.top <= part.top
-            && part.bottom <= self.bottom
     }
 
     /// The left and the right half, or the upper and the lower.
@@ -138,6 +132,18 @@ impl Samples {
         let end = self.index(self.area.right, y);
         let row = &self.cells[start..end];
         columns.map(move |x| &row[(x - self.area.left) as usize])
+    }
+
+    /// Some of a row's samples.
+    pub fn part(&self, y: u32, columns: Range<u32>) -> &[Sample] {
+        let from = self.index(columns.start, y);
+        &self.cells[from..from + columns.len()]
+    }
+
+    /// Some of a row's samples, to be written.
+    pub fn part_mut(&mut self, y: u32, columns: Range<u32>) -> &mut [Sample] {
+        let from = self.index(columns.start, y);
+        &mut self.cells[from..from + columns.len()]
     }
 
     /// Cells outside the area are ignored.

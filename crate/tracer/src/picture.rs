@@ -287,6 +287,9 @@ impl Picture {
                 return None;
             }
             let known = cache.square(block).filter(|_| scale == 1);
+            if known.is_some_and(|known| known.tell_all(block, &mut samples)) {
+                continue;
+            }
             let mut square = None;
             for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
                 let cell = |lane: usize| {

@@ -7,6 +7,7 @@
 use crate::area::{Area, Samples};
 use crate::picture::{PACKET_SIZE, SQUARE};
 use crate::sample::Sample;
+use std::ops::Range;
 
 /// Packets across and down a square.
 const COLUMNS: u32 = SQUARE / PACKET_SIZE[0];
@@ -95,13 +96,7 @@ impl SampleCache {
                 self.room = left;
             }
             let kept = place.get_or_insert_with(Box::default);
-            for packet in square
-                .meet(picture)
-                .meet(samples.area())
-                .blocks(PACKET_SIZE)
-            {
-                kept.keep(square, packet, packet.meet(picture), samples);
-            }
+            kept.keep(square, picture, samples);
         }
     }
 }
@@ -116,18 +111,57 @@ impl Default for Kept {
 }
 
 impl Kept {
-    /// Keeps the pixels of a packet that lie in the picture, if all of these have samples.
-    fn keep(&mut self, square: Area, packet: Area, pixels: Area, samples: &Samples) {
-        let column = (packet.left - square.left) / PACKET_SIZE[0];
-        let row = (packet.top - square.top) / PACKET_SIZE[1];
-        let (known, bit) = (&mut self.known[row as usize], 1 << column);
-        if *known & bit != 0 || !samples.area().contains(pixels) {
+    /// Keeps the packets of a square that lie in the samples' area, as far as they lie in the picture.
+    fn keep(&mut self, square: Area, picture: Area, samples: &Samples) {
+        let area = samples.area();
+        let columns = whole(
+            area.left..area.right,
+            square.left,
+            picture.right,
+            PACKET_SIZE[0],
+        );
+        let rows = whole(
+            area.top..area.bottom,
+            square.top,
+            picture.bottom,
+            PACKET_SIZE[1],
+        );
+        let left = square.left + columns.start * PACKET_SIZE[0];
+        let right = (square.left + columns.end * PACKET_SIZE[0]).min(picture.right);
+        if left >= right {
             return;
         }
-        *known |= bit;
-        for (x, y) in pixels.pixels() {
-            self.samples[index(square, x, y)] = *samples.get(x, y);
+        for row in rows {
+            self.known[row as usize] |= bits(&columns);
+            let top = square.top + row * PACKET_SIZE[1];
+            for y in top..(top + PACKET_SIZE[1]).min(picture.bottom) {
+                let from = index(square, left, y);
+                let kept = &mut self.samples[from..from + (right - left) as usize];
+                kept.copy_from_slice(samples.part(y, left..right));
+            }
         }
+    }
+
+    /// Writes all samples of a square that are wanted, if all are known. Says whether they are.
+    pub fn tell_all(&self, square: Area, samples: &mut Samples) -> bool {
+        let area = square.meet(samples.area());
+        let columns = (area.left - square.left) / PACKET_SIZE[0]
+            ..(area.right - square.left).div_ceil(PACKET_SIZE[0]);
+        let rows = (area.top - square.top) / PACKET_SIZE[1]
+            ..(area.bottom - square.top).div_ceil(PACKET_SIZE[1]);
+        let wanted = bits(&columns);
+        let known = &self.known[rows.start as usize..rows.end as usize];
+        let all = known.iter().all(|known| known & wanted == wanted);
+        if all {
+            for y in area.top..area.bottom {
+                let from = index(square, area.left, y);
+                let kept = &self.samples[from..from + (area.right - area.left) as usize];
+                samples
+                    .part_mut(y, area.left..area.right)
+                    .copy_from_slice(kept);
+            }
+        }
+        all
     }
 
     /// Writes the samples of a square's packet, given by its column and row, as far as they are wanted. Says whether they
@@ -145,4 +179,22 @@ impl Kept {
 
 fn index(square: Area, x: u32, y: u32) -> usize {
     ((y - square.top) * SQUARE + (x - square.left)) as usize
+}
+
+/// The packets of a square, each of `size` pixels along an axis, that lie within some pixels as far as they lie before `end`.
+/// The square begins at `start`.
+fn whole(pixels: Range<u32>, start: u32, end: u32, size: u32) -> Range<u32> {
+    let first = (pixels.start.max(start) - start).div_ceil(size);
+    let to = pixels.end.min(start + SQUARE);
+    let last = if to >= end {
+        (to - start).div_ceil(size)
+    } else {
+        (to - start) / size
+    };
+    first..last.max(first)
+}
+
+/// The bits of some columns.
+fn bits(columns: &Range<u32>) -> u16 {
+    ((1_u32 << columns.end) - (1 << columns.start)) as u16
 }
