@@ -112,7 +112,7 @@ impl<R: Real> Ceiling<R> {
         let away = distance * self.scale;
         let square = away * away;
         let chord = (R::splat(1.0) - square).max(zero);
-        self.peak * R::select(zero.lt(self.compact), chord, square.decay())
+        self.peak * R::select(zero.lt(self.compact), chord, square.decay_at_most())
     }
 }
 
@@ -418,7 +418,12 @@ impl<R: Real> Course<R> {
     pub fn most(&self, from: R, to: R) -> Limits<R> {
         let nearest = self.center.max(from).min(to);
         let away = nearest - self.center;
-        let (value, fall) = self.kernel.falling(self.least + self.pace * away * away);
+        let square = self.least + self.pace * away * away;
+        let (value, fall) = match &self.segment {
+            // It is added to many of its kind, and rarely is what decides.
+            None => self.kernel.falling_at_most(square),
+            Some(_) => self.kernel.falling(square),
+        };
         let twice = self.pace + self.pace;
         match &self.segment {
             None => Limits {
@@ -454,6 +459,25 @@ impl<R: Real> Course<R> {
                     kink: most * kink * rate,
                 }
             }
+        }
+    }
+
+    /// Whether this is the course of a Gaussian point.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_gaussian_point(&self) -> bool {
+        self.kernel == Kernel::Gauss && self.segment.is_none()
+    }
+
+    /// The course of a Gaussian point as what it is, for loops over nothing else: they are compiled without all other cases.
+    #[inline(always)]
+    #[must_use]
+    pub fn gaussian_point(self) -> Self {
+        debug_assert!(self.is_gaussian_point());
+        Self {
+            kernel: Kernel::Gauss,
+            segment: None,
+            ..self
         }
     }
 

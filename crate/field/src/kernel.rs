@@ -202,6 +202,17 @@ impl Kernel {
         (value, -fall)
     }
 
+    /// No less than G(q) and −G′(q), but cheaper.
+    #[inline(always)]
+    pub(crate) fn falling_at_most<R: Real>(self, q: R) -> (R, R) {
+        if self == Self::Gauss {
+            let g = q.decay_at_most();
+            (g, g)
+        } else {
+            self.falling(q)
+        }
+    }
+
     /// G(q) and −G′(q), lane by lane.
     #[inline(always)]
     pub(crate) fn falling<R: Real>(self, q: R) -> (R, R) {

@@ -14,7 +14,7 @@
 //! the piece shorter, as far as may serve, but no shorter than the tolerance. Eight rays go in step; each has its own pieces.
 use field::{Course, Limits, Real};
 use wide::bytemuck::cast;
-use wide::{f32x8, i32x8};
+use wide::{f32x4, f32x8};
 
 /// A lump on the way of a packet's rays.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +25,18 @@ pub struct Step {
     pub strong: f32,
     /// Its index in the list.
     pub index: u32,
+}
+
+impl Step {
+    /// Its field along the rays; see [`Stairs::plain`].
+    #[inline(always)]
+    fn course<const PLAIN: bool>(&self) -> Course<f32x8> {
+        if PLAIN {
+            self.course.gaussian_point()
+        } else {
+            self.course
+        }
+    }
 }
 
 /// Where rays meet a lump.
@@ -45,17 +57,19 @@ pub struct Stairs<'a> {
     pub steps: &'a [Step],
     /// In order of `from`.
     pub turns: &'a [Turn],
+    /// Whether all of them are Gaussian points, for which the way is compiled apart: nearly all scenes have such packets.
+    pub plain: bool,
 }
 
 impl<'a> Stairs<'a> {
-    /// The lumps that a ray may meet between two parameters, with their numbers.
+    /// The lumps that a ray may meet between two parameters.
     #[inline(always)]
-    pub fn between(self, first: f32, last: f32) -> impl Iterator<Item = (u32, &'a Step)> {
+    pub fn between(self, first: f32, last: f32) -> impl Iterator<Item = &'a Step> {
         self.turns
             .iter()
             .take_while(move |turn| turn.from <= last)
             .filter(move |turn| turn.to >= first)
-            .map(move |turn| (turn.step, &self.steps[turn.step as usize]))
+            .map(move |turn| &self.steps[turn.step as usize])
     }
 }
 
@@ -96,9 +110,6 @@ pub struct Climbed {
     pub evaluations: u64,
 }
 
-/// No lump.
-const NONE: i32 = -1;
-
 /// T, less what rounding takes from sums: a ray that rounding alone keeps outside meets the surface.
 const LEVEL: f32 = 1.0 - 1e-6;
 
@@ -133,15 +144,30 @@ struct Sum {
     most: f32x8,
     bend: f32x8,
     kink: f32x8,
-    /// The largest of the values that make up `most`, and the number of its lump, or [`NONE`].
-    largest: f32x8,
-    lump: i32x8,
+    /// Of which lumps: what rays meet between these parameters.
+    between: [f32; 2],
 }
 
-/// Climbs. `None` if a ray starts inside or none of this ends, which is for others to deal with.
-#[inline(never)]
+/// Climbs. `None` if a ray starts inside or none of this ends, which is for others to deal with. `tops` is working space.
 #[must_use]
-pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
+pub fn climb(lumps: Stairs<'_>, way: &Way, tops: &mut Vec<f32x8>) -> Option<Climbed> {
+    if tops.len() < lumps.turns.len() {
+        tops.resize(lumps.turns.len(), f32x8::splat(0.0));
+    }
+    if lumps.plain {
+        climb_among::<true>(lumps, way, tops)
+    } else {
+        climb_among::<false>(lumps, way, tops)
+    }
+}
+
+/// See [`climb`] and [`Stairs::plain`].
+#[inline(never)]
+fn climb_among<const PLAIN: bool>(
+    lumps: Stairs<'_>,
+    way: &Way,
+    tops: &mut [f32x8],
+) -> Option<Climbed> {
     let zero = f32x8::splat(0.0);
     let level = f32x8::splat(LEVEL);
     let surely = f32x8::splat(LEVEL - way.noise);
@@ -156,7 +182,7 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
     // Where rays come from outside of all lumps' reach there is nothing yet.
     let (mut low_value, mut low_slope) = (zero, zero);
     if low.simd_le(zero).to_bitmask() & going != 0 {
-        (low_value, low_slope) = values(lumps, low, way.alive, &mut evaluations);
+        (low_value, low_slope) = values::<PLAIN>(lumps, low, way.alive, &mut evaluations);
     }
     if level.simd_le(low_value).to_bitmask() & going != 0 {
         return None;
@@ -182,7 +208,7 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
                 evaluations,
             };
             if met != 0 {
-                polish(
+                polish::<PLAIN>(
                     lumps,
                     &mut climbed,
                     low_value,
@@ -192,7 +218,7 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
             return Some(climbed);
         }
         let at = next;
-        let sum = Sum::on(lumps, low, at, going, &mut evaluations);
+        let sum = Sum::on::<PLAIN>(lumps, low, at, going, tops, &mut evaluations);
         let length = at - low;
         let short = length.simd_le(tolerance).to_bitmask();
         let above = level.simd_le(sum.value).to_bitmask() & going;
@@ -246,7 +272,7 @@ pub fn climb(lumps: Stairs<'_>, way: &Way) -> Option<Climbed> {
                 .fast_max(down)
                 .fast_min(f32x8::splat(0.5) * length)
                 .fast_max(f32x8::splat(LEAST) * length);
-            let closer = sum.closer(lumps, failed, [low, at], low + served, tolerance) - low;
+            let closer = sum.closer(lumps, tops, failed, [low, at], low + served, tolerance) - low;
             step = self::mask(failed).select(closer, step);
         }
         let goal = low.simd_lt(way.guess).select(way.guess, way.to);
@@ -305,24 +331,32 @@ pub fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
     (least(low), -least(-high))
 }
 
-/// The least of eight numbers.
+/// The least of eight numbers. By lanes: as wasm, a choice between two single numbers is a jump, and these cannot be foreseen.
 #[inline(always)]
 #[must_use]
 pub fn least(x: f32x8) -> f32 {
-    let [a, b]: [wide::f32x4; 2] = wide::bytemuck::cast(x);
-    let [a, b, c, d] = a.fast_min(b).to_array();
-    let less = |a: f32, b: f32| if a < b { a } else { b };
-    less(less(a, b), less(c, d))
+    let less = |a: f32x4, b: f32x4| a.simd_lt(b).select(a, b);
+    let [a, b]: [f32x4; 2] = cast(x);
+    let four = less(a, b);
+    let [a, b, c, d] = four.to_array();
+    let two = less(four, f32x4::new([c, d, a, b]));
+    let [a, b, c, d] = two.to_array();
+    less(two, f32x4::new([b, a, d, c])).to_array()[0]
 }
 
 /// The field at t, and its slope.
 #[inline(always)]
-fn values(lumps: Stairs<'_>, t: f32x8, bits: u32, evaluations: &mut u64) -> (f32x8, f32x8) {
+fn values<const PLAIN: bool>(
+    lumps: Stairs<'_>,
+    t: f32x8,
+    bits: u32,
+    evaluations: &mut u64,
+) -> (f32x8, f32x8) {
     let (first, last) = extremes(t, t, bits);
     let (mut value, mut slope) = (f32x8::splat(0.0), f32x8::splat(0.0));
-    for (_, lump) in lumps.between(first, last) {
+    for lump in lumps.between(first, last) {
         *evaluations += 8;
-        let (v, s) = lump.course.at(t);
+        let (v, s) = lump.course::<PLAIN>().at(t);
         value += v;
         slope += s;
     }
@@ -330,8 +364,17 @@ fn values(lumps: Stairs<'_>, t: f32x8, bits: u32, evaluations: &mut u64) -> (f32
 }
 
 impl Sum {
+    ///
+    /// The largest values that make up `most` are written to `tops`, one for each lump.
     #[inline(always)]
-    fn on(lumps: Stairs<'_>, from: f32x8, to: f32x8, bits: u32, evaluations: &mut u64) -> Self {
+    fn on<const PLAIN: bool>(
+        lumps: Stairs<'_>,
+        from: f32x8,
+        to: f32x8,
+        bits: u32,
+        tops: &mut [f32x8],
+        evaluations: &mut u64,
+    ) -> Self {
         let (first, last) = extremes(from, to, bits);
         let zero = f32x8::splat(0.0);
         let mut sum = Self {
@@ -340,11 +383,10 @@ impl Sum {
             most: zero,
             bend: zero,
             kink: zero,
-            largest: zero,
-            lump: i32x8::splat(NONE),
+            between: [first, last],
         };
-        for (number, lump) in lumps.between(first, last) {
-            let course = &lump.course;
+        for (lump, top) in lumps.between(first, last).zip(tops) {
+            let course = lump.course::<PLAIN>();
             let (value, slope, here) = course.bent(to);
             let Limits { most, bend, kink } = if course.rises_until(to) {
                 Limits {
@@ -364,9 +406,7 @@ impl Sum {
             if course.has_kinks() {
                 sum.kink += kink;
             }
-            let larger = cast(sum.largest.simd_lt(most));
-            sum.largest = sum.largest.fast_max(most);
-            sum.lump = i32x8::select(larger, i32x8::splat(number as i32), sum.lump);
+            *top = most;
         }
         sum
     }
@@ -377,23 +417,25 @@ impl Sum {
     fn closer(
         &self,
         lumps: Stairs<'_>,
-        mut lanes: u32,
+        tops: &[f32x8],
+        lanes: u32,
         [from, to]: [f32x8; 2],
         served: f32x8,
         tolerance: f32x8,
     ) -> f32x8 {
+        let [first, last] = self.between;
+        let zero = f32x8::splat(0.0);
+        let largest = tops_of(lumps, tops, first, last).fold(zero, |l, (_, top)| l.fast_max(*top));
         let (mut near, mut far) = (f32x8::splat(1.0), f32x8::splat(-1.0));
-        let numbers = self.lump.to_array();
-        while lanes != 0 {
-            let number = numbers[lanes.trailing_zeros() as usize];
-            let same = self.lump.simd_eq(i32x8::splat(number));
-            lanes &= !(same.to_bitmask());
-            let Some(step) = lumps.steps.get(number as usize) else {
-                continue;
-            };
-            let [a, b] = step.course.within(f32x8::splat(step.strong));
-            near = cast::<_, f32x8>(same).select(a, near);
-            far = cast::<_, f32x8>(same).select(b, far);
+        let mut left = mask(lanes) & zero.simd_lt(largest);
+        for (lump, top) in tops_of(lumps, tops, first, last) {
+            let here = left & largest.simd_eq(*top);
+            if here.any() {
+                let [a, b] = lump.course.within(f32x8::splat(lump.strong));
+                near = here.select(a, near);
+                far = here.select(b, far);
+                left &= !here;
+            }
         }
         let strong = near.simd_lt(far);
         let ends = strong & (from + tolerance).simd_lt(far) & far.simd_lt(to);
@@ -402,10 +444,20 @@ impl Sum {
     }
 }
 
+/// The lumps of a [`Sum`] with the largest values that it found.
+fn tops_of<'a>(
+    lumps: Stairs<'a>,
+    tops: &'a [f32x8],
+    first: f32,
+    last: f32,
+) -> impl Iterator<Item = (&'a Step, &'a f32x8)> {
+    lumps.between(first, last).zip(tops)
+}
+
 /// Steps towards the crossings: Newton's, or between the ends where those lead out. At the far end value, slope and
 /// bend are known.
 #[inline(never)]
-fn polish(
+fn polish<const PLAIN: bool>(
     lumps: Stairs<'_>,
     climbed: &mut Climbed,
     mut low_value: f32x8,
@@ -438,7 +490,7 @@ fn polish(
         if !near.to_bitmask() & climbed.met == 0 {
             break;
         }
-        (value, slope) = values(lumps, at, climbed.met, &mut climbed.evaluations);
+        (value, slope) = values::<PLAIN>(lumps, at, climbed.met, &mut climbed.evaluations);
         let over = level.simd_le(value);
         high = over.select(at, high);
         high_value = over.select(value, high_value);
@@ -516,6 +568,10 @@ mod tests {
         }
     }
 
+    fn plain(steps: &[Step]) -> bool {
+        steps.iter().all(|step| step.course.is_gaussian_point())
+    }
+
     /// All from the start on.
     fn turns(steps: &[Step]) -> Vec<Turn> {
         let turn = |step| Turn {
@@ -581,8 +637,9 @@ mod tests {
             let lumps = Stairs {
                 steps: &steps,
                 turns: &turns,
+                plain: plain(&steps),
             };
-            let Some(climbed) = climb(lumps, &way) else {
+            let Some(climbed) = climb(lumps, &way, &mut Vec::new()) else {
                 // Only where a ray starts inside.
                 let starts = rays.iter().any(|&(origin, direction)| {
                     scan(&primitives, origin, direction).0 == Some(0.0)
@@ -635,8 +692,9 @@ mod tests {
             let lumps = Stairs {
                 steps: &steps,
                 turns: &turns,
+                plain: plain(&steps),
             };
-            let Some(climbed) = climb(lumps, &way) else {
+            let Some(climbed) = climb(lumps, &way, &mut Vec::new()) else {
                 continue;
             };
             for (i, &(origin, direction)) in rays.iter().enumerate() {
@@ -695,7 +753,8 @@ mod tests {
         let lumps = Stairs {
             steps: &steps,
             turns: &turns,
+            plain: plain(&steps),
         };
-        assert!(climb(lumps, &way).is_none());
+        assert!(climb(lumps, &way, &mut Vec::new()).is_none());
     }
 }

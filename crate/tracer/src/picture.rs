@@ -367,7 +367,7 @@ impl Picture {
     /// What a ray sees that hits nothing.
     pub(crate) fn nothing(&self) -> Sample {
         Sample {
-            colour: self.background.max(Vec3::ZERO).min(Vec3::ONE),
+            colour: shade::clamped(self.background),
             key: 0,
             depth: f32::INFINITY,
             cost: 1.0,

@@ -27,6 +27,8 @@ const STRONG: f32 = 0.15;
 pub struct Quick {
     steps: Vec<Step>,
     turns: Vec<Turn>,
+    plain: bool,
+    tops: Vec<f32x8>,
     list: Nearby,
     marks: Marks,
     /// What the surface is like at the hits of the last packet that was looked at; parameters are counted from its list's
@@ -39,6 +41,7 @@ impl Quick {
         Stairs {
             steps: &self.steps,
             turns: &self.turns,
+            plain: self.plain,
         }
     }
 }
@@ -209,10 +212,11 @@ impl Soft {
         let mut evaluations = 0;
         work.steps.clear();
         work.turns.clear();
+        work.plain = true;
         let limit = f32x8::from_lanes(|i| (limits[i] - near.base).at_most(1e30));
         // Every ray is inside by its own `sure`, and all are by `hidden`.
         let (mut sure, mut hidden) = (far, f32::INFINITY);
-        let mut steepest = 0.0f32;
+        let mut steepest = f32x8::splat(0.0);
         for index in marked(&work.marks) {
             let near = near.get(index);
             // What rays meet only where they are inside of another.
@@ -254,7 +258,8 @@ impl Soft {
                 sure = sure.fast_min(certain);
                 hidden = extremes(sure, sure, alive).1;
             }
-            steepest = steepest.at_least(near.steep);
+            steepest = steepest.fast_max(f32x8::splat(near.steep));
+            work.plain &= course.is_gaussian_point();
             work.turns.push(Turn {
                 from: least(step_from),
                 to: -least(-step_to),
@@ -279,7 +284,10 @@ impl Soft {
         // Shadows are not as sharp as that; and where their rays start the field is nearly T in any case.
         let noise = match quest {
             Quest::Entry => 0.0,
-            _ => (LOST + MISPLACED * steepest * (1.0 + furthest)).at_most(NOISIEST),
+            _ => {
+                let steepest = steepest.to_array()[0];
+                (LOST + MISPLACED * steepest * (1.0 + furthest)).at_most(NOISIEST)
+            }
         };
         let way = Way {
             from,
@@ -290,7 +298,10 @@ impl Soft {
             tolerance: self.tolerance(near) as f32,
             noise,
         };
-        let mut climbed = climb(work.stairs(), &way)?;
+        let mut tops = core::mem::take(&mut work.tops);
+        let climbed = climb(work.stairs(), &way, &mut tops);
+        work.tops = tops;
+        let mut climbed = climbed?;
         if climbed.doubtful != 0 && quest == Quest::First {
             self.settle_doubts(near, &exact(), &mut climbed);
         }
@@ -367,7 +378,7 @@ impl Soft {
             weights.clear();
             let place: [f32x8; 3] =
                 core::array::from_fn(|i| rays.origin[i] + rays.direction[i] * at);
-            for (_, step) in work.stairs().between(first, last) {
+            for step in work.stairs().between(first, last) {
                 let near = near.get(step.index as usize);
                 let jet = near.lump.jet(core::array::from_fn(|i| {
                     place[i] - f32x8::splat(near.middle[i])

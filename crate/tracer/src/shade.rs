@@ -2,9 +2,9 @@
 //!
 //! `ambient + Σ light·(diffuse·(N·L) + specular·(R·V)^shine)`, where N is the normal, L points to
 //! the light, R is L mirrored at N and V points to the eye.
-use field::Cut;
 use glam::{DVec3, Vec3};
 use scene::{Light, LightKind, Material};
+use wide::f32x4;
 
 /// A surface's colours for Phong's model; those of several materials can be mixed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -79,15 +79,21 @@ pub fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
 #[must_use]
 pub fn bytes(colour: Vec3, gamma: f32) -> [u8; 3] {
     let power = if gamma > 0.0 { 1.0 / gamma } else { 1.0 };
-    let byte = |v: f32| {
-        // A NaN ends as 0.
-        let v = v.at_least(0.0).clamp(0.0, 1.0);
-        let v = if power == 1.0 {
-            v
-        } else {
-            libm::powf(v, power)
-        };
-        (v * 255.0 + 0.5) as u8
-    };
-    [byte(colour.x), byte(colour.y), byte(colour.z)]
+    let mut colour = clamped(colour).to_array();
+    if power != 1.0 {
+        colour = colour.map(|v| libm::powf(v, power));
+    }
+    let [red, green, blue] = colour.map(|v| (v * 255.0 + 0.5) as u8);
+    [red, green, blue]
+}
+
+/// Each channel between 0 and 1; 0 for what is no number. By lanes: as wasm, a choice between two single numbers is a jump, and
+/// these cannot be foreseen.
+#[must_use]
+pub fn clamped(colour: Vec3) -> Vec3 {
+    let [zero, one] = [0.0, 1.0].map(f32x4::splat);
+    let colour = f32x4::new([colour.x, colour.y, colour.z, 0.0]);
+    let colour = zero.simd_lt(colour).select(colour, zero);
+    let [red, green, blue, _] = colour.simd_lt(one).select(colour, one).to_array();
+    Vec3::new(red, green, blue)
 }

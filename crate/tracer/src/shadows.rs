@@ -9,7 +9,7 @@ use crate::picture::{Picture, Stats};
 use crate::quick::{Asked, Rays};
 use crate::ray::Ray;
 use crate::sample::Sample;
-use crate::shade::towards;
+use crate::shade::{clamped, towards};
 use crate::soft::PACKET;
 use crate::walk::{Bundle, Quest};
 use glam::{DVec3, Vec3};
@@ -116,7 +116,7 @@ impl Picture {
         }
         work.shadows = shadows;
         for sample in samples.iter_mut().flatten() {
-            sample.colour = sample.colour.max(Vec3::ZERO).min(Vec3::ONE);
+            sample.colour = clamped(sample.colour);
         }
         work.samples = samples;
     }

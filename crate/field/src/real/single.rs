@@ -125,6 +125,11 @@ impl Real for f32 {
     }
 
     #[inline(always)]
+    fn decay_at_most(self) -> Self {
+        decay_at_most(self)
+    }
+
+    #[inline(always)]
     fn ln(self) -> Self {
         ln(self)
     }
@@ -132,8 +137,8 @@ impl Real for f32 {
 
 impl Binary for f32 {
     #[inline(always)]
-    fn power_of_two(shifted: Self) -> Self {
-        f32::from_bits(shifted.to_bits() << 23)
+    fn bits_up<const BITS: u32>(self) -> Self {
+        f32::from_bits(self.to_bits() << BITS)
     }
 
     #[inline(always)]
@@ -152,8 +157,8 @@ pub(super) const ROOT_HALF_BITS: i32 = 0x3F35_04F3;
 
 /// What the exponential and the logarithm need to know of how single precision numbers are stored.
 pub(super) trait Binary: Real {
-    /// 2ⁿ of an integer −126 ≤ n ≤ 127, given [`ROUNDER`] + n: its low bits are those of an exponent. 0 for n = −127.
-    fn power_of_two(shifted: Self) -> Self;
+    /// The number whose bits are these, so many places further up.
+    fn bits_up<const BITS: u32>(self) -> Self;
     /// m in [√½, √2) and the integer n of x = m·2ⁿ, x positive and normal.
     fn parts(self) -> (Self, Self);
 }
@@ -163,7 +168,7 @@ pub(super) trait Binary: Real {
 /// (and a little more), which is 3·10⁻⁹.
 #[inline(always)]
 pub(super) fn decay<R: Binary>(x: R) -> R {
-    // From there on n = −127, for which `power_of_two` gives 0.
+    // From there on n = −127, which stands for 0.
     let x = x.min(R::splat(88.1));
     // Adding 1.5·2²³ rounds to a whole number, and leaves that in the low bits.
     let shifted = R::splat(ROUNDER) - x * R::splat(core::f64::consts::LOG2_E);
@@ -182,8 +187,23 @@ pub(super) fn decay<R: Binary>(x: R) -> R {
     let square = r * r;
     let low = R::splat(1.0) + r + square * (a + b * r);
     let power = low + square * square * (c + d * r + e * square);
-    power * R::power_of_two(shifted)
+    // 2ⁿ: the low bits are those of an exponent.
+    power * shifted.bits_up::<23>()
 }
+
+/// No less than `e⁻ˣ`, x ≥ 0: with the exponent that is stored in front of them, the bits of n + f are (1 + f)·2ⁿ, where f is
+/// between 0 and 1; that is the chord of 2ⁿ⁺ᶠ, which is convex, and above it by no more than 6.2 %.
+#[inline(always)]
+pub(super) fn decay_at_most<R: Binary>(x: R) -> R {
+    // No exponent is less than 1.
+    let x = x.min(R::splat(87.3));
+    let shifted = R::splat(EIGHT_BITS) - x * R::splat(core::f64::consts::LOG2_E);
+    shifted.bits_up::<15>()
+}
+
+/// 1.5·2¹⁵, so that a sum with it is rounded to 8 bits after the point, the exponent of 2⁰, and the last of these bits, which is
+/// more than what is lost by rounding down.
+const EIGHT_BITS: f64 = 49_152.0 + 127.0 + 1.0 / 256.0;
 
 /// 1.5·2²³, and the exponent that a number of single precision stores for 2⁰.
 const ROUNDER: f64 = 12_582_912.0 + 127.0;
@@ -276,6 +296,22 @@ mod tests {
             let off = (f64::from(decay(x)) - want).abs();
             // Below the smallest normal number digits go.
             assert!(off <= 2e-7 * want + 9e-39, "{x}: off {off}, of {want}");
+        }
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn decay_is_bounded() {
+        for i in 0..=900_000 {
+            let x = i as f32 * 1e-4;
+            let (bound, want) = (f64::from(decay_at_most(x)), libm::exp(-f64::from(x)));
+            let most = 1.07 * want + 2e-38;
+            assert!((want..=most).contains(&bound), "{x}: {bound}, of {want}");
+        }
+        for x in [0.0, 1e9, f32::MAX, f32::INFINITY] {
+            let bound = f64::from(decay_at_most(x));
+            let want = libm::exp(-f64::from(x));
+            assert!((want..=want + 1e-2).contains(&bound), "{x}: {bound}");
         }
     }
 

@@ -115,6 +115,11 @@ impl Real for f32x8 {
     }
 
     #[inline(always)]
+    fn decay_at_most(self) -> Self {
+        single::decay_at_most(self)
+    }
+
+    #[inline(always)]
     fn ln(self) -> Self {
         single::ln(self)
     }
@@ -122,8 +127,8 @@ impl Real for f32x8 {
 
 impl Binary for f32x8 {
     #[inline(always)]
-    fn power_of_two(shifted: Self) -> Self {
-        cast(cast::<Self, i32x8>(shifted) << 23)
+    fn bits_up<const BITS: u32>(self) -> Self {
+        cast(cast::<Self, i32x8>(self) << BITS)
     }
 
     #[inline(always)]
