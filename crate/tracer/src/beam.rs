@@ -97,20 +97,23 @@ impl Beam {
         if self.spread >= 1.0 {
             return true;
         }
-        let reach = radius + self.radius;
         let d = center - self.axis.origin;
+        let square = d.length_squared();
         let along = d.dot(self.axis.direction);
-        let across = (d.length_squared() - along * along).at_least(0.0).sqrt();
-        // The distance from the axis' point at t less the beam's growth, sqrt(across² +
-        // (along−t)²) − spread·t, is least where its derivative vanishes, if that is at t ≥ 0.
-        let slope = (1.0 - self.spread * self.spread).at_least(0.0).sqrt();
-        let at = along + across * self.spread / slope;
-        let least = if at > 0.0 {
-            across * slope - self.spread * along
+        let across = (square - along * along).at_least(0.0);
+        let d = d.abs();
+        let reach = (radius + self.radius) * (1.0 + ROUNDING) + ROUNDING * (d.x + d.y + d.z);
+        // The distance from the axis' point at t less the beam's growth, sqrt(across² + (along−t)²) − spread·t, is least where
+        // its derivative vanishes, at t = along + across·spread/slope, if that is ≥ 0. All are squares here, as trees ask often
+        // and roots take time.
+        let spread = self.spread * self.spread;
+        let slope = 1.0 - spread;
+        if along > 0.0 || across * spread > along * along * slope {
+            let reach = reach + self.spread * along;
+            reach >= 0.0 && across * slope <= reach * reach
         } else {
-            d.length()
-        };
-        least <= reach * (1.0 + ROUNDING) + ROUNDING * d.length()
+            square <= reach * reach
+        }
     }
 
     /// The parameters between which a ray of the beam may be inside a ball: t ≥ 0 is distance
@@ -120,5 +123,66 @@ impl Beam {
         let distance = self.axis.origin.distance(center);
         let slack = radius + self.radius + ROUNDING * distance;
         [(distance - slack).at_least(0.0), distance + slack]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn a_beam_meets_the_balls_that_come_near_its_axis() {
+        const STEP: f64 = 2e-3;
+        let mut state = 12u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
+        };
+        let (mut met, mut missed, mut behind) = (0, 0, 0);
+        for case in 0..3000 {
+            let mut place = || DVec3::new(next(), next(), next());
+            let (origin, direction, center) = (place(), place().normalize(), 0.7 * place());
+            let beam = Beam {
+                axis: Ray { origin, direction },
+                radius: if case % 3 == 0 {
+                    0.0
+                } else {
+                    0.1 * next().abs()
+                },
+                spread: [0.0, 0.05 * next().abs(), 0.95 * next().abs()][case % 3],
+                ahead: 0.0,
+            };
+            let radius = 0.3 * next().abs();
+            // The distance less what the beam has grown.
+            let apart = |i: u32| {
+                let t = f64::from(i) * STEP;
+                beam.axis.at(t).distance(center) - beam.spread * t
+            };
+            let least = (0..6000).map(apart).fold(f64::INFINITY, f64::min);
+            let reach = radius + beam.radius;
+            let meets = beam.meets(center, radius);
+            // Widest beams are nearest further away than this.
+            let seen = beam.spread < 0.8;
+            assert!(meets || least > reach, "{beam:?} {center} {radius}");
+            assert!(
+                !(meets && seen) || least <= reach + STEP,
+                "{beam:?} {center} {radius}"
+            );
+            met += u32::from(meets);
+            missed += u32::from(!meets);
+            behind += u32::from(!meets && (center - origin).dot(direction) < 0.0);
+            assert!(!meets || beam.meets(center, radius * 1.5));
+        }
+        assert!(
+            met > 150 && missed > 300 && behind > 300,
+            "{met} {missed} {behind}"
+        );
+        let nowhere = Beam::of_ray(Ray {
+            origin: DVec3::ZERO,
+            direction: DVec3::X,
+        });
+        assert!(nowhere.meets(DVec3::X * 3.0, 0.0) && !nowhere.meets(DVec3::X * -3.0, 1.0));
+        assert!(!nowhere.meets(DVec3::NAN, 1.0));
     }
 }

@@ -1,6 +1,8 @@
 //! A hierarchy of bounding balls: finds the few of many things that a beam may meet.
 use crate::beam::Beam;
+use field::Cut;
 use glam::DVec3;
+use wide::f64x4;
 
 /// A binary tree of balls over items that each have a ball.
 #[derive(Clone, Debug, Default)]
@@ -47,6 +49,20 @@ impl Hierarchy {
         }
     }
 
+    /// The same tree over balls of other radii, given by number and centre.
+    #[must_use]
+    pub fn with_radii(&self, radius: impl Fn(u32, DVec3, f64) -> f64) -> Self {
+        let mut tree = self.clone();
+        for (&i, (center, r)) in tree.items.iter().zip(&mut tree.balls) {
+            *r = radius(i, *center, *r);
+        }
+        for node in &mut tree.nodes {
+            let below = node.first as usize..(node.first + node.count) as usize;
+            (node.center, node.radius) = around(tree.balls[below].iter().copied());
+        }
+        tree
+    }
+
     /// How many nodes the tree has; 0 is the root.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -78,13 +94,6 @@ impl Hierarchy {
     /// Calls `found` with the number and ball of each item whose ball the beam may meet.
     pub fn search(&self, beam: &Beam, found: impl FnMut(u32, DVec3, f64)) {
         self.select(|center, radius| beam.meets(center, radius), found);
-    }
-
-    /// Calls `f` with the number and ball of each item.
-    pub fn each(&self, mut f: impl FnMut(u32, DVec3, f64)) {
-        for (&i, &(center, radius)) in self.items.iter().zip(&self.balls) {
-            f(i, center, radius);
-        }
     }
 
     /// The same as [`Hierarchy::search`] with the items whose balls meet a ball.
@@ -123,18 +132,44 @@ impl Hierarchy {
     }
 }
 
-fn build(items: &mut [(u32, DVec3, f64)], first: u32, leaf: usize, nodes: &mut Vec<Node>) {
-    let low = items
-        .iter()
-        .fold(DVec3::INFINITY, |m, i| m.min(i.1 - DVec3::splat(i.2)));
-    let high = items
-        .iter()
-        .fold(DVec3::NEG_INFINITY, |m, i| m.max(i.1 + DVec3::splat(i.2)));
+/// The lowest and the highest corner of the box around some balls. By lanes: as wasm, a choice between two single numbers is a
+/// jump, and these cannot be foreseen.
+fn corners(balls: impl Iterator<Item = (DVec3, f64)>) -> [DVec3; 2] {
+    let far = f64x4::splat(f64::INFINITY);
+    let [low, high] = balls.fold([far, -far], |[low, high], (center, radius)| {
+        let center = f64x4::new([center.x, center.y, center.z, 0.0]);
+        let radius = f64x4::splat(radius);
+        let (a, b) = (center - radius, center + radius);
+        [
+            a.simd_lt(low).select(a, low),
+            high.simd_lt(b).select(b, high),
+        ]
+    });
+    [low, high].map(|corner| {
+        let [x, y, z, _] = corner.to_array();
+        DVec3::new(x, y, z)
+    })
+}
+
+/// A ball around some balls: around the middle of their box.
+fn around(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
+    let [low, high] = corners(balls.clone());
     let center = 0.5 * (low + high);
-    let radius = items
-        .iter()
-        .map(|i| i.1.distance(center) + i.2)
-        .fold(0.0, f64::max);
+    let radius = balls.fold(0.0f64, |most, (other, radius)| {
+        let square = other.distance_squared(center);
+        let room = most - radius;
+        // Roots take time, and most balls are well inside.
+        if room >= 0.0 && square <= room * room {
+            most
+        } else {
+            most.at_least(square.sqrt() + radius)
+        }
+    });
+    (center, radius)
+}
+
+fn build(items: &mut [(u32, DVec3, f64)], first: u32, leaf: usize, nodes: &mut Vec<Node>) {
+    let (center, radius) = around(items.iter().map(|i| (i.1, i.2)));
     let index = nodes.len();
     nodes.push(Node {
         center,
@@ -146,8 +181,7 @@ fn build(items: &mut [(u32, DVec3, f64)], first: u32, leaf: usize, nodes: &mut V
     if items.len() <= leaf {
         return;
     }
-    let low = items.iter().fold(DVec3::INFINITY, |m, i| m.min(i.1));
-    let high = items.iter().fold(DVec3::NEG_INFINITY, |m, i| m.max(i.1));
+    let [low, high] = corners(items.iter().map(|i| (i.1, 0.0)));
     let extent = high - low;
     let axis = (0..3)
         .max_by(|&a, &b| extent[a].total_cmp(&extent[b]))
@@ -214,6 +248,42 @@ mod tests {
                     assert!(found.contains(&i));
                 }
             }
+        }
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn balls_of_nodes_hold_all_below_also_with_other_radii() {
+        let mut state = 5u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
+        };
+        let mut ball = |i| (i, DVec3::new(next(), next(), next()), 0.1 * next().abs());
+        let items: Vec<_> = (0..300).map(&mut ball).collect();
+        let larger = |i: u32, r: f64| r * f64::from(1 + i % 5);
+        let tree = Hierarchy::new(items.clone());
+        let other = tree.with_radii(|i, center, radius| {
+            assert_eq!((center, radius), (items[i as usize].1, items[i as usize].2));
+            larger(i, radius)
+        });
+        let whole = |tree: &Hierarchy, radius: &dyn Fn(u32) -> f64| {
+            for node in 0..tree.len() {
+                let (center, around) = tree.ball(node);
+                let below = tree.items(node).iter();
+                let most = below.map(|&i| items[i as usize].1.distance(center) + radius(i));
+                let most = most.fold(0.0, f64::max);
+                assert!((around - most).abs() < 1e-12, "{node}: {around} {most}");
+            }
+        };
+        whole(&tree, &|i| items[i as usize].2);
+        whole(&other, &|i| larger(i, items[i as usize].2));
+        // As one that is built over those.
+        let built = items.iter().map(|&(i, c, r)| (i, c, larger(i, r)));
+        let built = Hierarchy::new(built.collect());
+        assert_eq!(built.items(0), other.items(0));
+        for node in 0..built.len() {
+            assert_eq!(built.ball(node), other.ball(node));
         }
     }
 

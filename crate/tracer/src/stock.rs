@@ -3,7 +3,7 @@ use crate::beam::Beam;
 use crate::hierarchy::Hierarchy;
 use crate::nearby::{Extent, Near, Nearby, Other};
 use crate::soft::NEXT_TO_NOTHING;
-use field::{Bead, Lump, Primitive, THRESHOLD};
+use field::{Bead, Cut, Lump, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -112,16 +112,14 @@ impl Stock {
     /// The balls beyond which each primitive is next to nothing, given those beyond which it is not followed.
     #[must_use]
     pub fn reaches(&self, tree: &Hierarchy) -> Hierarchy {
-        let mut balls = Vec::with_capacity(self.ends.len());
-        tree.each(|i, center, radius| {
+        tree.with_radii(|i, center, radius| {
             let reach = |item: &Item| {
                 let lump = &item.near.lump;
                 item.middle.distance(center) + lump.radius(lump.reach(self.least))
             };
             let items = self.of(i as usize).iter();
-            balls.push((i, center, items.map(reach).fold(radius, f64::max)));
-        });
-        Hierarchy::new(balls)
+            items.map(reach).fold(radius, Cut::at_least)
+        })
     }
 
     /// Whether a primitive that is a lump, or some, can be more than `level` in a ball; others are taken to be.
@@ -168,7 +166,7 @@ impl Stock {
                 let radius = f64::from(item.extent.radius);
                 let near = beam.reach(item.middle, radius)[0];
                 if near < limit && (items.len() == 1 || beam.meets(item.middle, radius)) {
-                    found.push((near, (first + k) as u32));
+                    found.push(key(near, (first + k) as u32));
                 }
             }
         });
@@ -176,11 +174,11 @@ impl Stock {
             list.others = others;
             return false;
         }
-        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let base = found.first().map_or(0.0, |lump| lump.0);
+        found.sort_unstable();
+        let base = found.first().map_or(0.0, |&first| unkey(first).0);
         list.begin(beam.axis.at(base), base);
         list.others = others;
-        for (near, i) in found {
+        for (near, i) in found.into_iter().map(unkey) {
             let item = &self.items[i as usize];
             let middle = (item.middle - list.middle).as_vec3().to_array();
             let from = (near - base) as f32;
@@ -196,6 +194,25 @@ impl Stock {
         }
         true
     }
+}
+
+/// A parameter ≥ 0, rounded down to single precision, and an index, as one number that is larger for a larger parameter, or, if these
+/// are the same, a larger index: such are sorted quickly.
+fn key(parameter: f64, index: u32) -> u64 {
+    // Not −0.
+    let parameter = parameter + 0.0;
+    let nearest = parameter as f32;
+    let below = if f64::from(nearest) > parameter {
+        nearest.next_down()
+    } else {
+        nearest
+    };
+    u64::from(below.to_bits()) << 32 | u64::from(index)
+}
+
+/// What [`key`] was made of.
+fn unkey(key: u64) -> (f64, u32) {
+    (f64::from(f32::from_bits((key >> 32) as u32)), key as u32)
 }
 
 #[cfg(test)]
@@ -279,5 +296,34 @@ mod tests {
         let stock = Stock::new(&[face], &[0]);
         assert!(stock.ball(0).is_none());
         assert!(stock.counts(0, DVec3::splat(1e6), 0.1, 1.0));
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn keys_are_in_order_and_never_above() {
+        let places = [
+            -0.0,
+            0.0,
+            1e-60,
+            1e-40,
+            0.1,
+            1.0,
+            1.0 + 1e-12,
+            7.3,
+            1e30,
+            1e60,
+        ];
+        let mut before = 0;
+        for (i, place) in places.into_iter().enumerate() {
+            let key = key(place, i as u32);
+            let (below, index) = unkey(key);
+            assert_eq!(index as usize, i);
+            let least = (place * (1.0 - 2e-7) - 1e-44).min(f64::from(f32::MAX));
+            assert!((least..=place).contains(&below), "{place}: {below}");
+            assert!(key >= before, "{place}");
+            before = key;
+        }
+        // What single precision cannot tell apart is in the order of the indices.
+        assert!(key(1.0 + 1e-12, 3) < key(1.0, 4) && key(1.0, 9) < key(1.1, 2));
     }
 }
