@@ -1,5 +1,5 @@
 // How long a person waits for the picture after a keystroke, by the page's own clock, with one worker
-// and with two. What is asserted holds on any machine; with SINEW_FIGURES set the figures are
+// and with two, in turn. What is asserted holds on any machine; with SINEW_FIGURES set the figures are
 // written to that file as JSON (`cargo xtask bench browser`).
 import assert from 'node:assert/strict';
 import { writeFile } from 'node:fs/promises';
@@ -12,7 +12,7 @@ const KIND = 'webgl2';
 const SIZE = process.env.SINEW_FIGURES ? [512, 512] : [128, 128];
 const MODELS = ['seahorse', 'cowrie'];
 /** Keystrokes of which the quickest counts. One is enough to see that it works. */
-const ROUNDS = process.env.SINEW_FIGURES ? 7 : 1;
+const ROUNDS = process.env.SINEW_FIGURES ? 9 : 1;
 
 let browser;
 before(async () => {
@@ -89,7 +89,7 @@ const figures = [];
 let backend;
 for (const name of MODELS) {
   test(`${name}: from a keystroke to the picture`, async () => {
-    const runs = [];
+    const pages = [];
     for (const workers of [1, 2]) {
       const sinew = await open(workers);
       // Digits behind it change the picture a little.
@@ -100,14 +100,21 @@ for (const name of MODELS) {
       assert.equal(status.workers, workers);
       backend = status.backend;
       await reachEditor(sinew);
-      const best = { workers };
-      for (let round = 0; round < ROUNDS; round++) {
+      pages.push({ sinew, best: { workers } });
+    }
+    // In turn: a machine may be half as quick a minute later.
+    for (let round = 0; round < ROUNDS; round++) {
+      for (const { sinew, best } of pages) {
+        await sinew.page.bringToFront();
         const times = await keystroke(sinew, round % 2 === 0 ? '1' : 'Backspace');
         assert.ok(times.tracing <= times.smooth, JSON.stringify(times));
         for (const [key, time] of Object.entries(times)) {
           best[key] = Math.min(best[key] ?? Infinity, time);
         }
       }
+    }
+    const runs = [];
+    for (const { sinew, best } of pages) {
       const image = await sinew.image();
       assert.deepEqual([image.width, image.height], SIZE);
       assert.deepEqual(sinew.troubles, []);

@@ -491,7 +491,7 @@ impl<R: Real> Course<R> {
     }
 
     /// Whether the largest value between two parameters is that at the further one, in all lanes: then
-    /// [`Course::at`] there says what [`Course::most`] would.
+    /// [`Course::bent`] there bounds what is between them, and no worse than [`Course::most`] would.
     #[inline(always)]
     #[must_use]
     pub fn rises_until(&self, to: R) -> bool {

@@ -364,8 +364,7 @@ fn values<const PLAIN: bool>(
 }
 
 impl Sum {
-    ///
-    /// The largest values that make up `most` are written to `tops`, one for each lump.
+    /// Adds up what counts between two parameters. What each lump adds to `most` is written to `tops`.
     #[inline(always)]
     fn on<const PLAIN: bool>(
         lumps: Stairs<'_>,
@@ -444,7 +443,7 @@ impl Sum {
     }
 }
 
-/// The lumps of a [`Sum`] with the largest values that it found.
+/// The lumps of a [`Sum`] with what each added to `most`.
 fn tops_of<'a>(
     lumps: Stairs<'a>,
     tops: &'a [f32x8],
@@ -725,6 +724,43 @@ mod tests {
             }
         }
         assert!(doubted > 30 && sure > 100, "{doubted} {sure}");
+    }
+
+    /// What is compiled for Gaussian points alone comes to the same bits.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn gaussian_points_alone_are_as_among_others() {
+        let mut next = random(31);
+        let mut hits = 0;
+        for case in 0..60 {
+            let mut primitives = lumps(&mut next, 4 + case % 20);
+            let gaussian = |p: &Primitive| {
+                matches!(p.skeleton, Skeleton::Point { .. }) && p.kernel == Kernel::Gauss
+            };
+            primitives.retain(gaussian);
+            let rays: [(DVec3, DVec3); 8] = core::array::from_fn(|_| {
+                let origin = DVec3::new(next() - 0.5, next() - 0.5, -4.0) * 0.5;
+                let aim = DVec3::new(next() - 0.5, next() - 0.5, 0.0);
+                (origin, (aim - origin).normalize())
+            });
+            let steps = steps(&primitives, &rays);
+            let turns = turns(&steps);
+            assert!(plain(&steps) && !steps.is_empty());
+            let [alone, among] = [true, false].map(|plain| {
+                let lumps = Stairs {
+                    steps: &steps,
+                    turns: &turns,
+                    plain,
+                };
+                let climbed = climb(lumps, &way(1e-3), &mut Vec::new())?;
+                hits += climbed.met.count_ones();
+                let places = [climbed.t, climbed.between[0], climbed.between[1]];
+                let bits = places.map(|t| t.to_array().map(f32::to_bits));
+                Some((bits, climbed.met, climbed.doubtful, climbed.evaluations))
+            });
+            assert_eq!(alone, among, "case {case}");
+        }
+        assert!(hits > 50, "{hits}");
     }
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]

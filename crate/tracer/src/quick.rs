@@ -298,10 +298,13 @@ impl Soft {
             tolerance: self.tolerance(near) as f32,
             noise,
         };
-        let mut tops = core::mem::take(&mut work.tops);
-        let climbed = climb(work.stairs(), &way, &mut tops);
-        work.tops = tops;
-        let mut climbed = climbed?;
+        // Not by `stairs`, which would borrow `tops`, too.
+        let lumps = Stairs {
+            steps: &work.steps,
+            turns: &work.turns,
+            plain: work.plain,
+        };
+        let mut climbed = climb(lumps, &way, &mut work.tops)?;
         if climbed.doubtful != 0 && quest == Quest::First {
             self.settle_doubts(near, &exact(), &mut climbed);
         }

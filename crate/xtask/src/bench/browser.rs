@@ -69,7 +69,7 @@ fn tables(figures: &Value, two: f64) -> Option<Piece> {
     let mut goals = Vec::new();
     let mut page = format!(
         "From a keystroke to the traced picture of 512×512 pixels on the screen, milliseconds by the page's own \
-         clock, with a pause in typing waited for and the text compiled; the quickest of {} keystrokes \
+         clock, with a pause in typing waited for and the text compiled; the quickest of {} keystrokes, with one worker and with two in turn \
          (`tests/speed.test.mjs`, {}).\n\n\
          | model | workers | coarse | full | smooth | of that, compiling |\n|---|--:|--:|--:|--:|--:|\n",
         figures["rounds"],
