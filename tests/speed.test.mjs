@@ -49,7 +49,8 @@ async function keystroke(sinew, key) {
   const times = sinew.page.evaluate(() => {
     const { revision } = sinew.status();
     return new Promise((resolve, reject) => {
-      let pressed;
+      const asked = performance.now();
+      let pressed = Infinity;
       const press = () => {
         pressed = performance.now();
       };
@@ -59,7 +60,10 @@ async function keystroke(sinew, key) {
       const look = () => {
         const status = sinew.status();
         const since = performance.now() - pressed;
-        if (since > 120_000) reject(new Error(`no picture: ${JSON.stringify(status)}`));
+        if (performance.now() - asked > 120_000) {
+          reject(new Error(`no picture: ${JSON.stringify(status)}`));
+          return;
+        }
         // The old picture counts as finished until the new text is compiled.
         begun ||= status.revision > revision && status.phase !== 'done';
         if (begun && status.fresh) {

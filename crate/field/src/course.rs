@@ -384,7 +384,7 @@ impl<R: Real> Course<R> {
         }
     }
 
-    /// The same with what [`Course::most`] says of the second derivative at t alone.
+    /// The same with a bound on the second derivative at t alone, as that of [`Course::most`].
     #[inline(always)]
     #[must_use]
     pub fn bent(&self, t: R) -> (R, R, R) {

@@ -83,7 +83,8 @@ pub trait Real:
 
     /// e^(−x), x ≥ −88. In single precision 0 for x from 87.69 on, and meaningless below −88.
     fn decay(self) -> Self;
-    /// No less than e^(−x), x ≥ 0, and no more than 7 % above it, but above 10⁻³⁸ everywhere: for bounds, at a fifth of the cost.
+    /// No less than e^(−x), x ≥ 0, and no more than 7 % above it; in single precision nowhere less than 10⁻³⁸, and at a fifth
+    /// of the cost. x must be a number.
     #[inline(always)]
     fn decay_at_most(self) -> Self {
         self.decay()

@@ -154,6 +154,62 @@ tests! {
         assert!(tight > 2000, "{tight}");
     }
 
+    /// As shipped bounds hold, too, and those of points are not much more than exact ones: Gaussian ones 7 %.
+    fn bounds_in_single_precision_hold() {
+        let mut random = Random::new(55);
+        let (mut loose, mut rising) = (0, 0);
+        for (primitive, origin, direction) in cases() {
+            let exact = course::<f64>(&primitive, origin, direction);
+            let shipped = course::<f32x8>(&primitive, origin, direction);
+            let ceiling = primitive.lump::<f32>().expect("a lump").ceiling();
+            let within: [f64; 8] = core::array::from_fn(|_| random.range(0.0, 6.0) / primitive.width);
+            let lanes = |x: f64| f32x8::splat(x as f32);
+            let [peak, scale, compact] = [ceiling.peak, ceiling.scale, ceiling.compact].map(lanes);
+            let most = field::Ceiling { peak, scale, compact }.at(f32x8::from_lanes(|i| within[i]));
+            for (i, distance) in within.into_iter().enumerate() {
+                let (most, want) = (most.lane(i), ceiling.at(distance));
+                // 2·10⁻³⁸ of the peak is what bounds do not go below.
+                let room = 1e-5 * want + 1e-6 * (ceiling.compact + 1e-30) * ceiling.peak;
+                assert!(most >= want - room && most <= 1.07 * want + room, "{primitive:?} {distance}: {most} {want}");
+            }
+            let from: [f64; 8] = core::array::from_fn(|_| random.range(0.0, 20.0) / primitive.width);
+            let to = from.map(|from| from + random.decades(-3.0, 1.0) / primitive.width);
+            let ends = [from, to].map(|ends| f32x8::from_lanes(|i| ends[i]));
+            let limits = shipped.most(ends[0], ends[1]);
+            for i in 0..8 {
+                let [from, to] = ends.map(|ends| ends.lane(i));
+                let [most, bend, kink] = [limits.most, limits.bend, limits.kink].map(|x| x.lane(i));
+                let step = (to - from) / 40.0;
+                let at = |i: u32| exact.at(from + step * f64::from(i));
+                let largest = (0..=40).map(|i| at(i).0).fold(0.0, f64::max);
+                let room = 3e-4 * (1.0 + largest);
+                assert!(largest <= most + room, "{primitive:?} {from} {to}: {largest} {most}");
+                if step * primitive.width > 1e-3 {
+                    let bent = (0..40).map(|i| (at(i).1 - at(i + 1).1) / step).fold(0.0, f64::max);
+                    let room = 3e-3 * (bend + primitive.width * primitive.width);
+                    assert!(bent <= bend + kink / step + room, "{primitive:?} {from} {to}: {bent} {bend} {kink}");
+                }
+                if matches!(primitive.skeleton, Skeleton::Segment { .. }) {
+                    continue;
+                }
+                let want = exact.most(from, to);
+                let steep = primitive.width * primitive.width;
+                assert!(most <= 1.07 * want.most + 1e-4 && bend <= 1.07 * want.bend + 1e-3 * steep, "{primitive:?}: {limits:?} {want:?}");
+                loose += u32::from(most > 1.03 * want.most + 1e-5);
+            }
+            if shipped.rises_until(ends[1]) {
+                // What stands in for it there is no worse.
+                let (value, _, here) = shipped.bent(ends[1]);
+                for i in 0..8 {
+                    let (value, here) = (value.lane(i), here.lane(i));
+                    assert!(value <= limits.most.lane(i) && here <= limits.bend.lane(i));
+                    rising += 1;
+                }
+            }
+        }
+        assert!(loose > 100 && rising > 100, "{loose} {rising}");
+    }
+
     /// Where a ramp stops to rise the slope falls by what is said, and where it begins to it does not fall.
     fn kinks_of_ramps_are_told() {
         let mut random = Random::new(54);

@@ -19,6 +19,8 @@ pub struct Beam {
 
 /// Bounds are computed in floating point; this much is added to each so that they stay bounds.
 const ROUNDING: f64 = 1e-9;
+/// What rounding may leave of two equal squares' difference, in units of the squares.
+const SQUARES: f64 = 2e-15;
 
 impl Beam {
     /// The beam around a single ray.
@@ -100,7 +102,8 @@ impl Beam {
         let d = center - self.axis.origin;
         let square = d.length_squared();
         let along = d.dot(self.axis.direction);
-        let across = (square - along * along).at_least(0.0);
+        // A difference of large numbers, in which what is left may be rounding: less that.
+        let across = (square - along * along - SQUARES * square).at_least(0.0);
         let d = d.abs();
         let reach = (radius + self.radius) * (1.0 + ROUNDING) + ROUNDING * (d.x + d.y + d.z);
         // The distance from the axis' point at t less the beam's growth, sqrt(across² + (along−t)²) − spread·t, is least where
@@ -108,12 +111,12 @@ impl Beam {
         // and roots take time.
         let spread = self.spread * self.spread;
         let slope = 1.0 - spread;
-        if along > 0.0 || across * spread > along * along * slope {
-            let reach = reach + self.spread * along;
-            reach >= 0.0 && across * slope <= reach * reach
+        let (apart, reach) = if along > 0.0 || across * spread > along * along * slope {
+            (across * slope, reach + self.spread * along)
         } else {
-            square <= reach * reach
-        }
+            (square, reach)
+        };
+        reach >= 0.0 && apart <= reach * reach
     }
 
     /// The parameters between which a ray of the beam may be inside a ball: t ≥ 0 is distance
@@ -183,6 +186,12 @@ mod tests {
             direction: DVec3::X,
         });
         assert!(nowhere.meets(DVec3::X * 3.0, 0.0) && !nowhere.meets(DVec3::X * -3.0, 1.0));
-        assert!(!nowhere.meets(DVec3::NAN, 1.0));
+        // Also what is tiny, and on the axis itself.
+        for _ in 0..1000 {
+            let direction = DVec3::new(next(), next(), next()).normalize();
+            let origin = DVec3::new(next(), next(), next());
+            let ray = Ray { origin, direction };
+            assert!(Beam::of_ray(ray).meets(ray.at(5.0), 0.0));
+        }
     }
 }

@@ -12,9 +12,9 @@
 //! If F(to) ≥ T there is a crossing on the piece, and when `N·h² + 2K·h < 2(T − F(from))` it is the only one: a
 //! second one before it would need more bending. Then Newton's steps lead to it. All else makes
 //! the piece shorter, as far as may serve, but no shorter than the tolerance. Eight rays go in step; each has its own pieces.
+use crate::lanes::least;
 use field::{Course, Limits, Real};
-use wide::bytemuck::cast;
-use wide::{f32x4, f32x8};
+use wide::f32x8;
 
 /// A lump on the way of a packet's rays.
 #[derive(Clone, Copy, Debug)]
@@ -331,19 +331,6 @@ pub fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
     (least(low), -least(-high))
 }
 
-/// The least of eight numbers. By lanes: as wasm, a choice between two single numbers is a jump, and these cannot be foreseen.
-#[inline(always)]
-#[must_use]
-pub fn least(x: f32x8) -> f32 {
-    let less = |a: f32x4, b: f32x4| a.simd_lt(b).select(a, b);
-    let [a, b]: [f32x4; 2] = cast(x);
-    let four = less(a, b);
-    let [a, b, c, d] = four.to_array();
-    let two = less(four, f32x4::new([c, d, a, b]));
-    let [a, b, c, d] = two.to_array();
-    less(two, f32x4::new([b, a, d, c])).to_array()[0]
-}
-
 /// The field at t, and its slope.
 #[inline(always)]
 fn values<const PLAIN: bool>(
@@ -621,6 +608,8 @@ mod tests {
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn the_first_crossing_is_found_and_no_other() {
+        // Kept, as it is between packets.
+        let mut tops = Vec::new();
         let mut next = random(11);
         let (mut hits, mut misses) = (0, 0);
         for case in 0..40 {
@@ -638,7 +627,7 @@ mod tests {
                 turns: &turns,
                 plain: plain(&steps),
             };
-            let Some(climbed) = climb(lumps, &way, &mut Vec::new()) else {
+            let Some(climbed) = climb(lumps, &way, &mut tops) else {
                 // Only where a ray starts inside.
                 let starts = rays.iter().any(|&(origin, direction)| {
                     scan(&primitives, origin, direction).0 == Some(0.0)
@@ -667,6 +656,8 @@ mod tests {
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn rays_that_noise_may_have_kept_outside_are_in_doubt() {
+        // Kept, as it is between packets.
+        let mut tops = Vec::new();
         const NOISE: f64 = 0.05;
         let mut next = random(23);
         let (mut doubted, mut sure) = (0, 0);
@@ -693,7 +684,7 @@ mod tests {
                 turns: &turns,
                 plain: plain(&steps),
             };
-            let Some(climbed) = climb(lumps, &way, &mut Vec::new()) else {
+            let Some(climbed) = climb(lumps, &way, &mut tops) else {
                 continue;
             };
             for (i, &(origin, direction)) in rays.iter().enumerate() {
@@ -730,6 +721,8 @@ mod tests {
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn gaussian_points_alone_are_as_among_others() {
+        // Kept, as it is between packets.
+        let mut tops = Vec::new();
         let mut next = random(31);
         let mut hits = 0;
         for case in 0..60 {
@@ -752,7 +745,7 @@ mod tests {
                     turns: &turns,
                     plain,
                 };
-                let climbed = climb(lumps, &way(1e-3), &mut Vec::new())?;
+                let climbed = climb(lumps, &way(1e-3), &mut tops)?;
                 hits += climbed.met.count_ones();
                 let places = [climbed.t, climbed.between[0], climbed.between[1]];
                 let bits = places.map(|t| t.to_array().map(f32::to_bits));

@@ -3,7 +3,8 @@
 //! The digger is written once, for any number of rays side by side: eight in single precision for
 //! pictures, one in double precision for exact answers.
 use field::Real;
-use wide::f32x8;
+use wide::bytemuck::cast;
+use wide::{f32x4, f32x8};
 
 /// Numbers of several rays, side by side, whose comparisons can steer the program.
 pub trait Lanes: Real {
@@ -34,5 +35,36 @@ impl Lanes for f64 {
     #[inline(always)]
     fn single(value: f32) -> Self {
         Self::from(value)
+    }
+}
+
+/// The least of eight numbers. By lanes: as wasm, a choice between two single numbers is a jump, and these cannot be foreseen.
+#[inline(always)]
+#[must_use]
+pub fn least(x: f32x8) -> f32 {
+    let less = |a: f32x4, b: f32x4| a.simd_lt(b).select(a, b);
+    let [a, b]: [f32x4; 2] = cast(x);
+    let four = less(a, b);
+    let [a, b, c, d] = four.to_array();
+    let two = less(four, f32x4::new([c, d, a, b]));
+    let [a, b, c, d] = two.to_array();
+    less(two, f32x4::new([b, a, d, c])).to_array()[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn the_least_is_found_in_every_lane() {
+        for lane in 0..8 {
+            let mut numbers = [3.0, 4.0, 5.0, f32::INFINITY, 7.0, 8.0, 9.0, 3.5];
+            for low in [-1.0, 2.0, f32::NEG_INFINITY] {
+                numbers[lane] = low;
+                assert_eq!(least(f32x8::new(numbers)), low, "{lane}");
+            }
+        }
+        assert_eq!(least(f32x8::splat(f32::INFINITY)), f32::INFINITY);
     }
 }

@@ -6,7 +6,7 @@
 //! cancels, so single precision gives the deviation to its own last digits, wherever the eye is.
 use crate::area::Area;
 use crate::beam::Beam;
-use crate::climb::least;
+use crate::lanes::least;
 use crate::nearby::Nearby;
 use crate::picture::Picture;
 use crate::quick::Rays;

@@ -3,8 +3,9 @@
 //! The lumps near a square of pixels are listed once, those near each of its parts when a packet in it asks, those near
 //! the packet anew for each; then [`climb`](mod@crate::climb) follows the packet's rays.
 use crate::beam::Beam;
-use crate::climb::{Climbed, Stairs, Step, Turn, Way, climb, extremes, least};
+use crate::climb::{Climbed, Stairs, Step, Turn, Way, climb, extremes};
 use crate::flesh::{Flesh, NEAR_ENOUGH};
+use crate::lanes::least;
 use crate::nearby::{Marks, Nearby, marked};
 use crate::ray::Ray;
 use crate::soft::{PACKET, Soft};
@@ -27,7 +28,9 @@ const STRONG: f32 = 0.15;
 pub struct Quick {
     steps: Vec<Step>,
     turns: Vec<Turn>,
+    /// Whether all of the steps are Gaussian points.
     plain: bool,
+    /// Working space of the climb.
     tops: Vec<f32x8>,
     list: Nearby,
     marks: Marks,
@@ -258,7 +261,8 @@ impl Soft {
                 sure = sure.fast_min(certain);
                 hidden = extremes(sure, sure, alive).1;
             }
-            steepest = steepest.fast_max(f32x8::splat(near.steep));
+            let steep = f32x8::splat(near.steep);
+            steepest = steepest.simd_lt(steep).select(steep, steepest);
             work.plain &= course.is_gaussian_point();
             work.turns.push(Turn {
                 from: least(step_from),

@@ -97,3 +97,41 @@ pub fn clamped(colour: Vec3) -> Vec3 {
     let [red, green, blue, _] = colour.simd_lt(one).select(colour, one).to_array();
     Vec3::new(red, green, blue)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn colours_are_cut_to_what_a_screen_shows() {
+        let (far, none) = (f32::INFINITY, f32::NAN);
+        for (colour, want) in [
+            ([0.0, 0.5, 1.0], [0.0, 0.5, 1.0]),
+            ([-0.0, -1.0, 2.0], [0.0, 0.0, 1.0]),
+            ([-far, far, none], [0.0, 1.0, 0.0]),
+        ] {
+            assert_eq!(clamped(Vec3::from(colour)), Vec3::from(want), "{colour:?}");
+        }
+    }
+
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn bytes_are_corrected_by_gamma() {
+        let colour = Vec3::new(0.25, 0.6, f32::NAN);
+        // 0.25 · 255 = 63.75, and its root is half.
+        for (gamma, want) in [
+            (1.0, [64, 153, 0]),
+            (2.0, [128, 198, 0]),
+            (0.0, [64, 153, 0]),
+            (-1.0, [64, 153, 0]),
+            (f32::NAN, [64, 153, 0]),
+        ] {
+            assert_eq!(bytes(colour, gamma), want, "{gamma}");
+        }
+        assert_eq!(
+            bytes(Vec3::new(-1.0, 2.0, f32::INFINITY), 2.2),
+            [0, 255, 255]
+        );
+    }
+}

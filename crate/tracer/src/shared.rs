@@ -6,7 +6,7 @@
 //! dimensions). Cubic polynomials are met exactly, and what is left is bounded by the fourth derivative, so that
 //! distant primitives, whose sum is smooth, cost a ray almost nothing however many they are.
 use crate::beam::Beam;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, least};
 use field::{Cut, Primitive};
 use glam::DVec3;
 use wide::f32x8;
@@ -228,11 +228,13 @@ impl Shared {
                 (slope - straight) as f32
             })
         });
-        let largest = |all: &[f32; 8]| all.iter().fold(0.0f32, |m, x| m.at_least(x.abs()));
-        let value = values
-            .iter()
-            .copied()
-            .fold(f32::NEG_INFINITY, f32::at_least);
+        // What is no number counts as nothing.
+        let greatest = |all: f32x8, nothing: f32x8| {
+            let numbers = nothing.simd_lt(all).select(all, nothing);
+            -least(-numbers)
+        };
+        let largest = |all: &[f32; 8]| greatest(f32x8::new(*all).abs(), f32x8::ZERO);
+        let value = greatest(sum.0[0], f32x8::splat(f32::NEG_INFINITY));
         // |x(1−x)²| + |x²(1−x)| ≤ ¼.
         let bends: f32 = excess.iter().map(largest).sum();
         let bends = 0.25 * bends;

@@ -286,6 +286,7 @@ pub(super) fn sin_cos<R: Real>(x: R) -> (R, R) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wide::f32x8;
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
@@ -307,6 +308,8 @@ mod tests {
             let (bound, want) = (f64::from(decay_at_most(x)), libm::exp(-f64::from(x)));
             let most = 1.07 * want + 2e-38;
             assert!((want..=most).contains(&bound), "{x}: {bound}, of {want}");
+            let lanes = f32x8::splat(x).decay_at_most().to_array();
+            assert_eq!(lanes.map(f32::to_bits), [decay_at_most(x).to_bits(); 8]);
         }
         for x in [0.0, 1e9, f32::MAX, f32::INFINITY] {
             let bound = f64::from(decay_at_most(x));
