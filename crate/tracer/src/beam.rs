@@ -132,31 +132,28 @@ impl Beam {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tests::common::Numbers;
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn a_beam_meets_the_balls_that_come_near_its_axis() {
         const STEP: f64 = 2e-3;
-        let mut state = 12u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
-        };
+        let mut numbers = Numbers(12);
         let (mut met, mut missed, mut behind) = (0, 0, 0);
         for case in 0..3000 {
-            let mut place = || DVec3::new(next(), next(), next());
+            let mut place = || numbers.vector();
             let (origin, direction, center) = (place(), place().normalize(), 0.7 * place());
             let beam = Beam {
                 axis: Ray { origin, direction },
                 radius: if case % 3 == 0 {
                     0.0
                 } else {
-                    0.1 * next().abs()
+                    0.1 * numbers.unit()
                 },
-                spread: [0.0, 0.05 * next().abs(), 0.95 * next().abs()][case % 3],
+                spread: [0.0, 0.05 * numbers.unit(), 0.95 * numbers.unit()][case % 3],
                 ahead: 0.0,
             };
-            let radius = 0.3 * next().abs();
+            let radius = 0.3 * numbers.unit();
             // The distance less what the beam has grown.
             let apart = |i: u32| {
                 let t = f64::from(i) * STEP;
@@ -188,8 +185,8 @@ mod tests {
         assert!(nowhere.meets(DVec3::X * 3.0, 0.0) && !nowhere.meets(DVec3::X * -3.0, 1.0));
         // Also what is tiny, and on the axis itself.
         for _ in 0..1000 {
-            let direction = DVec3::new(next(), next(), next()).normalize();
-            let origin = DVec3::new(next(), next(), next());
+            let direction = numbers.vector().normalize();
+            let origin = numbers.vector();
             let ray = Ray { origin, direction };
             assert!(Beam::of_ray(ray).meets(ray.at(5.0), 0.0));
         }

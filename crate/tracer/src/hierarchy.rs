@@ -201,6 +201,7 @@ fn build(items: &mut [(u32, DVec3, f64)], first: u32, leaf: usize, nodes: &mut V
 mod tests {
     use super::*;
     use crate::ray::Ray;
+    use crate::tests::common::Numbers;
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
@@ -254,12 +255,8 @@ mod tests {
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn balls_of_nodes_hold_all_below_also_with_other_radii() {
-        let mut state = 5u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
-        };
-        let mut ball = |i| (i, DVec3::new(next(), next(), next()), 0.1 * next().abs());
+        let mut numbers = Numbers(5);
+        let mut ball = |i| (i, numbers.vector(), 0.1 * numbers.unit());
         let items: Vec<_> = (0..300).map(&mut ball).collect();
         let larger = |i: u32, r: f64| r * f64::from(1 + i % 5);
         let tree = Hierarchy::new(items.clone());
