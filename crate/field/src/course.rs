@@ -420,8 +420,8 @@ impl<R: Real> Course<R> {
         let away = nearest - self.center;
         let square = self.least + self.pace * away * away;
         let (value, fall) = match &self.segment {
-            // It is added to many of its kind, and rarely is what decides.
             None => self.kernel.falling_at_most(square),
+            // Few are near each other, so that a loose bound fails more often than it saves.
             Some(_) => self.kernel.falling(square),
         };
         let twice = self.pace + self.pace;

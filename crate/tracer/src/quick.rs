@@ -219,6 +219,7 @@ impl Soft {
         let limit = f32x8::from_lanes(|i| (limits[i] - near.base).at_most(1e30));
         // Every ray is inside by its own `sure`, and all are by `hidden`.
         let (mut sure, mut hidden) = (far, f32::INFINITY);
+        // The same in all lanes: a choice between two single numbers is a jump in wasm.
         let mut steepest = f32x8::splat(0.0);
         for index in marked(&work.marks) {
             let near = near.get(index);
