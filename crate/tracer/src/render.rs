@@ -118,11 +118,3 @@ fn parts(sheet: Tile) -> Vec<Tile> {
     }
     parts
 }
-
-impl std::ops::AddAssign for Stats {
-    fn add_assign(&mut self, other: Self) {
-        self.primary_rays += other.primary_rays;
-        self.shadow_rays += other.shadow_rays;
-        self.field_evaluations += other.field_evaluations;
-    }
-}

@@ -83,13 +83,6 @@ impl Costs {
     }
 }
 
-/// Adds the work of one tile to that of the picture.
-pub(super) fn add_stats(sum: &mut Stats, stats: &Stats) {
-    sum.primary_rays += stats.primary_rays;
-    sum.shadow_rays += stats.shadow_rays;
-    sum.field_evaluations += stats.field_evaluations;
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

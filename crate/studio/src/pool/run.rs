@@ -1,15 +1,16 @@
 //! The picture being traced: which tiles in which passes are to be done, are done, or were given up.
 
-use super::progress::{Costs, Progress, add_stats};
+use super::progress::{Costs, Progress};
 use super::scheduler::ATTEMPTS;
 use super::share::shares;
-use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet, VecDeque};
 use tracer::{Pass, Stats, Tile};
 use worker::Order;
 
 /// Seconds of work a worker is given ahead.
 pub const AHEAD: f64 = 0.25;
+/// The same of the full pass, as long as it is not known who should have what.
+pub const EARLY: f64 = 0.05;
 /// Most tiles a worker is given ahead.
 pub const MOST_AHEAD: usize = 64;
 /// Least seconds a tile may take.
@@ -20,6 +21,11 @@ pub const SLACK: f64 = 20.0;
 pub const RETRY: f64 = 4.0;
 /// … but never longer than so many seconds.
 pub const LONGEST_LIMIT: f64 = 600.0;
+/// A pixel that gets more rays takes so many times longer for each than a typical one of its tile: edges are dear. Measured
+/// in seahorse, cowrie and sphereflake: 2.3, 1.5 and 1.0.
+const EDGE_RAY: f64 = 1.5;
+/// Seconds that the picture must be done earlier by, for each second that help costs.
+const WORTH: f64 = 0.25;
 
 /// A picture as the scheduler sees it.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +52,10 @@ pub struct Run {
     left: VecDeque<usize>,
     /// What the coarse pass did at each tile, 0 as long as nothing is known.
     effort: Vec<u64>,
-    workers: usize,
+    /// What the full pass came to at each tile, if it is known: seconds, and [`Stats::edges`].
+    full: Vec<Option<(f64, u64)>>,
+    /// Which workers take requests at present.
+    pub awake: Vec<bool>,
     /// Who should have each tile in the full pass, …
     home: Vec<usize>,
     /// … and who was given it last, but for the coarse pass, and so has its first samples if it was not restarted since.
@@ -56,7 +65,8 @@ pub struct Run {
     failures: HashMap<usize, u32>,
     failed_tiles: HashSet<usize>,
     pub failed_preparations: u32,
-    /// Tasks of each pass that are done or given up.
+    /// Which tasks are done or given up, and how many of each pass.
+    over: Vec<bool>,
     settled: [usize; 3],
     pass_seconds: [Option<f64>; 3],
     costs: Costs,
@@ -85,9 +95,11 @@ impl Run {
             pass: 0,
             left: (0..tiles.len()).collect(),
             effort: vec![0; tiles.len()],
-            workers,
+            full: vec![None; tiles.len()],
+            awake: vec![false; workers],
             home: Vec::new(),
             holder: vec![None; tiles.len()],
+            over: vec![false; tiles.len() * passes.len()],
             tiles,
             passes,
             again: Vec::new(),
@@ -136,8 +148,14 @@ impl Run {
                 }
                 return Some(task);
             }
-            self.settled[pass] += 1;
+            self.close(task);
         }
+    }
+
+    /// Notes that nothing more will be done for a task.
+    fn close(&mut self, task: usize) {
+        self.over[task] = true;
+        self.settled[task / self.tiles.len()] += 1;
     }
 
     /// Says who should have each tile, by what is known of them: little when the first tiles of the full pass are handed out,
@@ -147,40 +165,89 @@ impl Run {
         let least = known.min().unwrap_or(1);
         let cost = |effort: &u64| (*effort).max(least) as f64;
         let costs: Vec<f64> = self.effort.iter().map(cost).collect();
-        self.home = shares(&self.tiles, &costs, self.workers);
+        self.home = shares(&self.tiles, &costs, self.awake.len());
     }
 
     /// A task never handed out, of the first pass that has one. Each worker has its tiles, and makes smooth what it has
-    /// sampled, as it keeps most samples that it needs for that. When it is idle soon it helps the others, from the end, where
-    /// they come last.
+    /// sampled, as it keeps most samples that it needs for that. When it is idle soon it helps the others, if that is worth it.
     fn draw(&mut self, worker: usize, idle: bool) -> Option<usize> {
         while self.left.is_empty() {
             self.pass = (self.pass + 1 < self.passes.len()).then_some(self.pass + 1)?;
             self.left.extend(0..self.tiles.len());
-            match self.passes[self.pass] {
-                Pass::Full => self.part(),
-                // What takes long comes first. Then those who are done early find small tiles to help with, which they have
-                // to sample first.
-                Pass::Smooth => {
-                    let longest = |tile: &usize| Reverse(self.effort[*tile]);
-                    self.left.make_contiguous().sort_by_key(longest);
-                }
-                Pass::Coarse => {}
+            if self.passes[self.pass] == Pass::Full {
+                self.part();
             }
         }
-        let pass = self.passes[self.pass];
-        let mine = |tile: &usize| match pass {
-            Pass::Coarse => true,
-            Pass::Full => self.home[*tile] == worker,
-            Pass::Smooth => self.holder[*tile].is_none_or(|holder| holder == worker),
+        let mine = |tile: &usize| self.keeper(*tile).is_none_or(|keeper| keeper == worker);
+        let place = if self.passes[self.pass] == Pass::Smooth {
+            // What takes long comes first, so that all are done at about the same time.
+            let mine = self.left.iter().enumerate().filter(|(_, tile)| mine(tile));
+            mine.map(|(place, tile)| (place, self.cost(*tile).0))
+                .rev()
+                .max_by(|a, b| a.1.total_cmp(&b.1))
+                .map(|(place, _)| place)
+        } else {
+            self.left.iter().position(mine)
         };
-        let place = self.left.iter().position(mine);
-        let tile = match place {
-            Some(place) => self.left.remove(place)?,
-            None if idle => self.left.pop_back()?,
-            None => return None,
-        };
+        let place = place.or_else(|| idle.then(|| self.worth_taking(worker))?)?;
+        let tile = self.left.remove(place)?;
         Some(self.pass * self.tiles.len() + tile)
+    }
+
+    /// Who should do a tile in the pass whose tiles are handed out; `None` if it is as good as any other.
+    fn keeper(&self, tile: usize) -> Option<usize> {
+        let keeper = match self.passes[self.pass] {
+            Pass::Coarse => None,
+            Pass::Full => Some(self.holder[tile].unwrap_or(self.home[tile])),
+            Pass::Smooth => self.holder[tile],
+        };
+        keeper.filter(|worker| self.awake[*worker])
+    }
+
+    /// About what a tile costs in that pass the worker that should do it, and any other, in a unit that depends on the pass.
+    fn cost(&self, tile: usize) -> (f64, f64) {
+        if self.passes[self.pass] != Pass::Smooth {
+            let effort = self.effort[tile].max(1) as f64;
+            return (effort, effort);
+        }
+        // Another one takes the first samples again.
+        let Some((seconds, edges)) = self.full[tile] else {
+            let seconds = self.costs.expected(self.pass);
+            return (seconds, 2.0 * seconds);
+        };
+        let Tile { width, height, .. } = self.tiles[tile];
+        let rays = 2.0 * edges as f64 * f64::from(self.plan.samples).powi(2);
+        let own = EDGE_RAY * seconds * rays / (f64::from(width) * f64::from(height)).max(1.0);
+        (own, own + seconds)
+    }
+
+    /// The place among those never handed out of a tile of another worker that a worker without work should do: of the one
+    /// that has most to do, the tile with which both are done earliest; none if that one is done earlier without help.
+    fn worth_taking(&self, worker: usize) -> Option<usize> {
+        let first = self.pass * self.tiles.len();
+        let mut load = vec![0.0; self.awake.len()];
+        for tile in (0..self.tiles.len()).filter(|tile| !self.over[first + tile]) {
+            if let Some(keeper) = self.keeper(tile) {
+                load[keeper] += self.cost(tile).0;
+            }
+        }
+        let of_others = self.left.iter().enumerate();
+        let of_others =
+            of_others.filter_map(|(place, tile)| Some((place, *tile, self.keeper(*tile)?)));
+        let (.., most) = of_others
+            .clone()
+            .max_by(|a, b| load[a.2].total_cmp(&load[b.2]))?;
+        let gain = |tile: usize| {
+            let (own, strange) = self.cost(tile);
+            let done = (load[worker] + strange).max(load[most] - own);
+            (load[most] - done, strange)
+        };
+        of_others
+            .filter(|(.., keeper)| *keeper == most)
+            .map(|(place, tile, _)| (place, gain(tile)))
+            .filter(|(_, (gained, cost))| *gained > WORTH * cost)
+            .max_by(|a, b| a.1.0.total_cmp(&b.1.0))
+            .map(|(place, _)| place)
     }
 
     /// How many tasks never handed out a worker should hold, one of so many workers: enough not to
@@ -191,7 +258,12 @@ impl Run {
             return 0;
         }
         let pass = self.pass + usize::from(self.left.is_empty());
-        let ahead = (AHEAD / self.costs.expected(pass)).clamp(2.0, MOST_AHEAD as f64) as usize;
+        let seconds = if pass > 0 && self.settled[0] < self.tiles.len() {
+            EARLY
+        } else {
+            AHEAD
+        };
+        let ahead = (seconds / self.costs.expected(pass)).clamp(2.0, MOST_AHEAD as f64) as usize;
         let share = untaken.div_ceil(2 * workers.max(1));
         ahead.min(share)
     }
@@ -252,13 +324,18 @@ impl Run {
     /// A task is done.
     pub fn done(&mut self, task: usize, stats: &Stats, seconds: f64, now: f64) {
         let pass = task / self.tiles.len();
-        self.settled[pass] += 1;
-        if self.passes[pass] == Pass::Coarse {
-            let effort = stats.primary_rays + stats.shadow_rays + stats.field_evaluations;
-            self.effort[task % self.tiles.len()] = effort;
+        let tile = task % self.tiles.len();
+        self.close(task);
+        match self.passes[pass] {
+            Pass::Coarse => {
+                self.effort[tile] =
+                    stats.primary_rays + stats.shadow_rays + stats.field_evaluations;
+            }
+            Pass::Full => self.full[tile] = Some((seconds.max(0.0), stats.edges)),
+            Pass::Smooth => {}
         }
         self.costs.add(pass, seconds.max(0.0));
-        add_stats(&mut self.stats, stats);
+        self.stats += *stats;
         self.settle(now);
     }
 
@@ -268,9 +345,8 @@ impl Run {
         *failures += 1;
         let give_up = *failures >= ATTEMPTS;
         if give_up {
-            let tiles = self.tiles.len();
-            self.failed_tiles.insert(task % tiles);
-            self.settled[task / tiles] += 1;
+            self.failed_tiles.insert(task % self.tiles.len());
+            self.close(task);
         }
         give_up
     }
@@ -319,6 +395,7 @@ mod tests {
                     small: false,
                 };
                 let mut run = Run::new(plan, workers, 0.0);
+                run.awake.fill(true);
                 let tiles = run.tiles.clone();
                 let coarse = |run: &mut Run, some: std::ops::Range<usize>| {
                     for task in some {

@@ -279,6 +279,12 @@ impl Scheduler {
         slot.deaths = 0;
         run.done(task, stats, seconds, now);
         self.fill(index, now);
+        // Who had nothing to do may be worth its help now.
+        for other in 0..self.slots.len() {
+            if self.slots[other].prepared && self.slots[other].holds.is_empty() {
+                self.fill(other, now);
+            }
+        }
         true
     }
 
@@ -520,12 +526,18 @@ impl Scheduler {
     /// Gives a worker tiles until it has so many, from those never handed out or from those to be done
     /// again.
     fn give(&mut self, index: usize, enough: usize, again: bool, now: f64) {
-        let (Some(run), slot) = (&mut self.run, &mut self.slots[index]) else {
+        let (Some(run), slot) = (&mut self.run, &self.slots[index]) else {
             return;
         };
         if slot.life != Life::Awake || !slot.begun {
             return;
         }
+        run.awake = self
+            .slots
+            .iter()
+            .map(|slot| slot.life == Life::Awake)
+            .collect();
+        let slot = &mut self.slots[index];
         let mut orders = Vec::new();
         while slot.holds.len() < enough {
             let Some(task) = run.take(index, slot.holds.len() < 2, again) else {

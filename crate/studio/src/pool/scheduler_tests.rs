@@ -9,6 +9,8 @@ const STATS: Stats = Stats {
     primary_rays: 1,
     shadow_rays: 2,
     field_evaluations: 3,
+    // As many as make smoothing take as long as the first samples do.
+    edges: 150,
 };
 
 fn plan(generation: u64) -> Plan {
@@ -32,6 +34,8 @@ struct Crowd {
     hanging: HashSet<usize>,
     /// Evaluations that a tile takes.
     effort: fn(&Tile) -> u64,
+    /// Its pixels that get more rays.
+    edges: fn(&Tile) -> u64,
     restarts: usize,
     done: Vec<Order>,
 }
@@ -53,6 +57,7 @@ impl Crowd {
             deadly: HashSet::new(),
             hanging: HashSet::new(),
             effort: |_| STATS.field_evaluations,
+            edges: |_| STATS.edges,
             restarts: 0,
             done: Vec::new(),
         };
@@ -117,6 +122,7 @@ impl Crowd {
             Job::Tile(order) => {
                 let stats = Stats {
                     field_evaluations: (self.effort)(&order.tile),
+                    edges: (self.edges)(&order.tile),
                     ..STATS
                 };
                 if self.scheduler.traced(i, order, &stats, 1e-3, self.now) {
@@ -253,10 +259,75 @@ fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
     assert!(slow(Pass::Full) + slow(Pass::Smooth) < tiles.len() / 2 + 2);
 }
 
+/// Who made which tile smooth, where the left half of the picture, the first worker's, has so many edges and the right one
+/// has none; and how many others' tiles the second took.
+fn helped(edges: fn(&Tile) -> u64) -> usize {
+    let mut crowd = Crowd::new(2);
+    crowd.edges = edges;
+    // Both are awake.
+    crowd.work();
+    let size = [512, 512];
+    crowd.scheduler.start(Plan { size, ..plan(1) }, 0.0);
+    crowd.obey();
+    let (mut by, mut busy) = (HashMap::new(), [0; 2]);
+    while !crowd.progress().finished {
+        crowd.now += 1e-3;
+        for worker in 0..2 {
+            // What is smooth already is done at once, the other tiles take as long as the scheduler thinks.
+            if busy[worker] > 0 {
+                busy[worker] -= 1;
+                continue;
+            }
+            if let Some(Job::Tile(order)) = crowd.work_one(worker) {
+                by.insert((order.tile, order.pass), worker);
+                if order.pass == Pass::Smooth {
+                    busy[worker] = edges(&order.tile) / STATS.edges;
+                }
+            }
+        }
+    }
+    let moved = |(tile, pass): &&(Tile, Pass)| {
+        *pass == Pass::Smooth && by[&(*tile, Pass::Full)] != by[&(*tile, *pass)]
+    };
+    by.keys().filter(moved).count()
+}
+
+#[test]
+fn a_worker_without_work_helps_only_where_that_is_worth_taking_samples_again() {
+    // Nothing would be gained with tiles that take a tenth of the time of their samples, …
+    assert_eq!(helped(|tile| if tile.x < 256 { 15 } else { 0 }), 0);
+    // … but much with those that take ten times as long.
+    let many = helped(|tile| if tile.x < 256 { 1500 } else { 0 });
+    assert!((10..=16).contains(&many), "{many} of 32");
+}
+
+#[test]
+fn tiles_of_a_worker_that_cannot_go_on_are_done_by_the_others() {
+    for edges in [|_: &Tile| 0, |_: &Tile| 1500] {
+        // Whenever it dies.
+        for after in 0..60 {
+            let mut crowd = Crowd::new(2);
+            crowd.edges = edges;
+            crowd.start(1);
+            for _ in 0..after {
+                crowd.work();
+            }
+            crowd.hanging.insert(0);
+            while crowd.scheduler.slots[0].life != Life::GivenUp {
+                crowd.scheduler.slots[0].failed_starts = ATTEMPTS;
+                crowd.scheduler.died(0, "gone", crowd.now);
+                crowd.obey();
+            }
+            crowd.work_off();
+            assert!(crowd.progress().finished, "after {after}");
+        }
+    }
+}
+
 #[test]
 fn what_takes_long_is_made_smooth_first() {
     let mut crowd = Crowd::new(2);
-    crowd.effort = |tile| if tile.x == 0 { 1000 } else { 1 };
+    crowd.edges = |tile| if tile.x == 0 { 1000 } else { 1 };
     crowd.start(1);
     crowd.work_off();
     let smooth = crowd.done.iter().filter(|order| order.pass == Pass::Smooth);
