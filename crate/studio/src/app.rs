@@ -133,6 +133,11 @@ pub struct App {
 /// keeps the workers waiting.
 const REST: f32 = 0.4;
 
+/// Has the window drawn again, once: what egui is asked for at once it draws twice.
+pub(crate) fn once(ctx: &Context) {
+    ctx.request_repaint_after_secs(1e-3);
+}
+
 fn is_drawn_by_processor(backend: Backend, state: Option<&egui_wgpu::RenderState>) -> bool {
     let by_software = |state: &egui_wgpu::RenderState| {
         let info = state.adapter.get_info();
@@ -170,7 +175,7 @@ impl App {
             0.0
         };
         let repaint = ctx.clone();
-        let pool = Pool::new(move || repaint.request_repaint());
+        let pool = Pool::new(move || once(&repaint));
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
         let mut app = Self {
@@ -336,6 +341,11 @@ impl App {
             self.lab.pictures.pause();
             self.renderer.tick(ctx, now, || session.scene());
         }
+    }
+
+    /// Whether a picture is being traced by the processor that draws the window, too: what need not be drawn is not.
+    pub(crate) fn is_short_of_time(&self) -> bool {
+        self.rest > 0.0 && self.renderer.phase() == Phase::Tracing
     }
 
     /// Whether nothing more will happen to the picture by itself.

@@ -125,6 +125,9 @@ fn text_or_asset(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
             places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
             let hints = app.settings.hints;
             app.editor.lit = app.hands.lit(&app.work.session);
+            if app.is_short_of_time() {
+                ui.visuals_mut().text_cursor.blink = false;
+            }
             app.editor.show(ui, &app.work.session, hints, commands);
         }
     }
