@@ -77,13 +77,14 @@ async function keystroke(sinew, key) {
             return;
           }
         }
-        requestAnimationFrame(look);
+        // Not with each frame: the page has none while nothing is to be drawn.
+        setTimeout(look, 4);
       };
-      requestAnimationFrame(look);
+      look();
     });
   });
   // The page must be looking before the key comes.
-  await sinew.page.evaluate(() => new Promise(requestAnimationFrame));
+  await sinew.page.evaluate(() => new Promise((done) => setTimeout(done)));
   await sinew.page.keyboard.press(key);
   return times;
 }

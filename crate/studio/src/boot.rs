@@ -22,7 +22,7 @@ use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
 use web_sys::{Document, HtmlCanvasElement, WebGl2RenderingContext, Window};
 
 use crate::backend::{self, Backend};
-use crate::software;
+use crate::{frames, software};
 
 /// The order of trial.
 const ORDER: [Backend; 3] = [Backend::WebGpu, Backend::WebGl2, Backend::None];
@@ -98,6 +98,7 @@ impl Boot {
 
     async fn run(self: Rc<Self>, backend: Backend) -> Result<(), String> {
         let canvas = self.fresh_canvas()?;
+        frames::rest();
         let runner = WebRunner::new();
         let options = eframe::WebOptions {
             wgpu_options: options(backend).await?,
@@ -110,6 +111,7 @@ impl Boot {
                 canvas.clone(),
                 options,
                 Box::new(move |context| {
+                    frames::watch(&context.egui_ctx);
                     if backend == Backend::None {
                         software::install(&context.egui_ctx, &app)?;
                     } else {

@@ -28,6 +28,8 @@ pub mod examples;
 pub mod files;
 pub mod film;
 pub mod fonts;
+#[cfg(target_arch = "wasm32")]
+mod frames;
 pub mod gallery;
 #[cfg(target_arch = "wasm32")]
 pub mod handle;

@@ -71,6 +71,8 @@ pub enum Answer {
         /// What had been asked.
         order: Order,
         /// Four bytes each, for what the [`Kind`] says; rows from the top.
+        // Copied as a whole, not byte by byte.
+        #[serde(with = "serde_bytes")]
         pixels: Vec<u8>,
         /// The work done for it.
         stats: Stats,

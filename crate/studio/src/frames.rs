@@ -1,0 +1,192 @@
+//! Lets the page rest while nothing is to be drawn.
+//!
+//! eframe asks the browser for an animation frame after every one, drawn or not, which costs a processor 8 % of its
+//! time in Chromium (60 Hz, nothing ever drawn), at the expense of the workers or of a battery. So the page's
+//! `requestAnimationFrame` is replaced: what asks for a frame gets it when there may be something to draw, that is when
+//! egui has asked for it or an event came that eframe may listen to, else a few times a second ([`QUIET`]), in case
+//! something was missed.
+
+use js_sys::{Function, Reflect};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::time::Duration;
+use wasm_bindgen::prelude::*;
+
+/// Milliseconds between frames while nothing happens.
+const QUIET: f64 = 250.0;
+
+/// Frames that are given without delay once something happens: egui and eframe often want another after the first.
+const TOGETHER: u32 = 3;
+
+/// Given frames that can still be cancelled, more than anyone waits for.
+const GIVEN: usize = 8;
+
+/// What people and the browser do to a page.
+const EVENTS: &str = "beforeinput blur compositionend compositionstart compositionupdate copy cut dragend dragenter \
+    dragleave dragover drop focus hashchange input keydown keyup mousedown mouseleave mousemove mouseup paste \
+    pointercancel pointerdown pointerleave pointermove pointerup popstate resize scroll touchcancel touchend touchmove \
+    touchstart visibilitychange wheel";
+
+thread_local! {
+    static FRAMES: RefCell<Option<Frames>> = const { RefCell::new(None) };
+}
+
+struct Frames {
+    window: web_sys::Window,
+    /// The browser's own functions.
+    request: Function,
+    cancel: Function,
+    /// The last number given to a request.
+    number: i32,
+    /// Who waits for a frame, by number.
+    held: VecDeque<(i32, Function)>,
+    /// The numbers by which the browser knows requests.
+    given: VecDeque<(i32, JsValue)>,
+    /// Frames still to be given without delay.
+    left: u32,
+    /// When egui wants the next one, in milliseconds of the page's clock; infinite if it does not.
+    due: f64,
+    /// When those who wait get theirs whatever happens.
+    latest: f64,
+    /// The timer that wakes the page, and when.
+    timer: Option<(i32, f64)>,
+    on_timer: Closure<dyn FnMut()>,
+}
+
+/// Takes over the page's animation frames, once. Without a window or a clock nothing is done.
+pub fn rest() {
+    if FRAMES.with_borrow(Option::is_some) {
+        return;
+    }
+    let Some(window) = web_sys::window().filter(|window| window.performance().is_some()) else {
+        return;
+    };
+    let own = |name: &str| Reflect::get(&window, &name.into()).ok()?.dyn_into().ok();
+    let (Some(request), Some(cancel)) = (own("requestAnimationFrame"), own("cancelAnimationFrame"))
+    else {
+        return;
+    };
+    let ask =
+        Closure::<dyn FnMut(Function) -> i32>::new(|callback| with(|frames| frames.ask(callback)));
+    let withdraw = Closure::<dyn FnMut(i32)>::new(|number| with(|frames| frames.withdraw(number)));
+    let new = [
+        ("requestAnimationFrame", ask.into_js_value()),
+        ("cancelAnimationFrame", withdraw.into_js_value()),
+    ];
+    for (name, function) in new {
+        // A window whose functions cannot be replaced goes on as it was.
+        let _ = Reflect::set(&window, &name.into(), &function);
+    }
+    let on_event = Closure::<dyn FnMut()>::new(|| wake(Duration::ZERO)).into_js_value();
+    for event in EVENTS.split_whitespace() {
+        // Before anyone who might keep it to himself. One that is missed is drawn a little later.
+        let listener = on_event.unchecked_ref();
+        let _ = window.add_event_listener_with_callback_and_bool(event, listener, true);
+    }
+    let on_timer = Closure::new(|| {
+        with(|frames| {
+            frames.timer = None;
+            frames.look();
+        });
+    });
+    FRAMES.set(Some(Frames {
+        window,
+        request,
+        cancel,
+        number: 0,
+        held: VecDeque::new(),
+        given: VecDeque::new(),
+        left: TOGETHER,
+        due: f64::INFINITY,
+        latest: f64::INFINITY,
+        timer: None,
+        on_timer,
+    }));
+}
+
+/// Has frames given when this egui wants them.
+pub fn watch(context: &egui::Context) {
+    context.set_repaint_observer(|info| wake(info.delay));
+}
+
+/// A frame is wanted so soon.
+fn wake(delay: Duration) {
+    with(|frames| {
+        if delay.is_zero() {
+            frames.left = TOGETHER;
+        } else {
+            // Not a moment before eframe finds that it is time.
+            let due = frames.now() + 1000.0 * delay.as_secs_f64() + 1.0;
+            frames.due = frames.due.min(due);
+        }
+        frames.look();
+    });
+}
+
+fn with<T: Default>(act: impl FnOnce(&mut Frames) -> T) -> T {
+    FRAMES.with_borrow_mut(|frames| frames.as_mut().map(act).unwrap_or_default())
+}
+
+impl Frames {
+    fn now(&self) -> f64 {
+        self.window
+            .performance()
+            .map_or(0.0, |performance| performance.now())
+    }
+
+    /// Someone asks for a frame. Gives the number of the request.
+    fn ask(&mut self, callback: Function) -> i32 {
+        self.number = self.number.wrapping_add(1);
+        self.held.push_back((self.number, callback));
+        self.latest = self.latest.min(self.now() + QUIET);
+        self.look();
+        self.number
+    }
+
+    /// Someone does not want a frame any more.
+    fn withdraw(&mut self, number: i32) {
+        self.held.retain(|(held, _)| *held != number);
+        let given = self.given.iter().find(|(given, _)| *given == number);
+        if let Some((_, number)) = given {
+            // Refused only by a window that is closed.
+            let _ = self.cancel.call1(&self.window, number);
+        }
+    }
+
+    /// Gives those who wait their frame, or sees to it that they get it later.
+    fn look(&mut self) {
+        if self.held.is_empty() {
+            return;
+        }
+        let (now, next) = (self.now(), self.due.min(self.latest));
+        if self.left > 0 || next <= now {
+            self.left = self.left.saturating_sub(1);
+            self.latest = f64::INFINITY;
+            if self.due <= now {
+                self.due = f64::INFINITY;
+            }
+            for (number, callback) in self.held.drain(..) {
+                // Refused only by a window that is closed.
+                if let Ok(known) = self.request.call1(&self.window, &callback) {
+                    self.given.push_back((number, known));
+                }
+            }
+            while self.given.len() > GIVEN {
+                self.given.pop_front();
+            }
+            return;
+        }
+        if let Some((timer, at)) = self.timer {
+            if at <= next {
+                return;
+            }
+            self.window.clear_timeout_with_handle(timer);
+        }
+        let listener = self.on_timer.as_ref().unchecked_ref();
+        let wait = (next - now).ceil() as i32;
+        let timer = self
+            .window
+            .set_timeout_with_callback_and_timeout_and_arguments_0(listener, wait);
+        self.timer = timer.ok().map(|timer| (timer, next));
+    }
+}
