@@ -112,6 +112,14 @@ impl Engine {
         !self.new && self.wanted.is_none() && self.begun.is_none() && self.queue.is_empty()
     }
 
+    /// Whether a tile of this pass is traced next.
+    #[must_use]
+    pub fn goes_on_with(&self, pass: Pass) -> bool {
+        let begun = self.begun.as_ref().map(|begun| &begun.order);
+        let next = begun.or(self.queue.front());
+        next.is_some_and(|order| order.pass == pass)
+    }
+
     /// Takes note of a new picture, prepares it if that was not done yet, or traces the next tile or
     /// some rows of it.
     ///
@@ -231,7 +239,9 @@ mod tests {
             panic!("no tile");
         };
         assert_eq!((done, pixels.len()), (order(1), 8 * 8 * 4));
-        assert!(engine.is_idle());
+        assert!(engine.is_idle() && !engine.goes_on_with(Pass::Full));
+        engine.accept(Request::Trace(vec![order(1)]));
+        assert!(engine.goes_on_with(Pass::Full) && !engine.goes_on_with(Pass::Coarse));
     }
 
     #[test]

@@ -83,9 +83,10 @@ pub fn serve() -> Result<(), JsValue> {
 }
 
 impl Desk {
-    /// Sends an answer, a tile together with those that follow soon.
+    /// Sends an answer, a tile together with those of its pass that follow soon: the last of a pass may complete a picture.
     fn answer(&mut self, answer: Answer) {
-        let can_wait = matches!(answer, Answer::Traced { .. }) && !self.engine.is_idle();
+        let can_wait =
+            matches!(&answer, Answer::Traced { order, .. } if self.engine.goes_on_with(order.pass));
         self.answers.push(answer);
         if can_wait {
             self.send_old();

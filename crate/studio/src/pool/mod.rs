@@ -9,6 +9,7 @@
 //! knows nothing of workers and is tested by itself; `browser` and `threads` carry it out.
 
 mod core;
+mod deal;
 pub mod progress;
 mod run;
 pub mod scheduler;

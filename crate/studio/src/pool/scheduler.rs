@@ -4,7 +4,7 @@
 //!
 //! - Tiles are handed out pass by pass, the coarse pass to all in turn. From then on each worker has its part of the picture
 //!   ([`shares`](super::share::shares)) and makes smooth what it has sampled; one without work helps the others. A worker
-//!   holds the tile it traces and some more, about [`AHEAD`](super::run::AHEAD) seconds of work, so that it need not wait
+//!   holds the tile it traces and some more, about [`AHEAD`](super::deal::AHEAD) seconds of work, so that it need not wait
 //!   for a page that is busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
 //!   replaced, so a slow tile never delays the new picture.
@@ -199,7 +199,7 @@ impl Scheduler {
             for index in 0..self.slots.len() {
                 // Who should have which tile of the next pass is not known yet.
                 if self.run.as_ref().is_some_and(Run::is_coarse) {
-                    self.give(index, enough, false, now);
+                    self.give(index, Some(enough), false, now);
                 }
             }
             // Nobody is awake.
@@ -277,11 +277,13 @@ impl Scheduler {
         }
         slot.holds.pop_front();
         slot.deaths = 0;
+        let complete = run.complete_passes();
         run.done(task, stats, seconds, now);
+        let news = run.complete_passes() > complete;
         self.fill(index, now);
-        // Who had nothing to do may be worth its help now.
         for other in 0..self.slots.len() {
-            if self.slots[other].prepared && self.slots[other].holds.is_empty() {
+            // More is known with each pass; and who had nothing to do may be worth its help now.
+            if self.slots[other].prepared && (news || self.slots[other].holds.is_empty()) {
                 self.fill(other, now);
             }
         }
@@ -502,30 +504,16 @@ impl Scheduler {
 
     /// Gives a worker tiles until it has enough.
     fn fill(&mut self, index: usize, now: f64) {
-        let workers = self
-            .slots
-            .iter()
-            .filter(|slot| slot.life == Life::Awake)
-            .count();
-        let (Some(run), slot) = (&mut self.run, &mut self.slots[index]) else {
-            return;
-        };
-        if slot.life != Life::Awake || !slot.begun {
-            return;
-        }
+        let Some(run) = &self.run else { return };
         let again = !run.again.is_empty();
         // What is done again is done alone, so let the worker first finish what it has.
-        let enough = if again || !slot.prepared {
-            1
-        } else {
-            run.enough(workers)
-        };
+        let enough = (again || !self.slots[index].prepared).then_some(1);
         self.give(index, enough, again, now);
     }
 
-    /// Gives a worker tiles until it has so many, from those never handed out or from those to be done
+    /// Gives a worker tiles until it has so many, or else enough, from those never handed out or from those to be done
     /// again.
-    fn give(&mut self, index: usize, enough: usize, again: bool, now: f64) {
+    fn give(&mut self, index: usize, enough: Option<usize>, again: bool, now: f64) {
         let (Some(run), slot) = (&mut self.run, &self.slots[index]) else {
             return;
         };
@@ -539,7 +527,11 @@ impl Scheduler {
             .collect();
         let slot = &mut self.slots[index];
         let mut orders = Vec::new();
-        while slot.holds.len() < enough {
+        let workers = run.awake.iter().filter(|awake| **awake).count();
+        while enough.map_or_else(
+            || run.is_too_little(&slot.holds, workers),
+            |enough| slot.holds.len() < enough,
+        ) {
             let Some(task) = run.take(index, slot.holds.len() < 2, again) else {
                 break;
             };

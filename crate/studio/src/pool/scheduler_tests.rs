@@ -1,7 +1,8 @@
 //! The scheduler against a crowd of imagined workers and an imagined clock.
 
 use super::*;
-use crate::pool::run::{LONGEST_LIMIT, MOST_AHEAD, RETRY, SLACK, TILE_LIMIT};
+use crate::pool::deal::MOST_AHEAD;
+use crate::pool::run::{LONGEST_LIMIT, RETRY, SLACK, TILE_LIMIT};
 use std::collections::{HashMap, HashSet, VecDeque};
 use tracer::{Pass, Tile};
 
@@ -328,6 +329,8 @@ fn tiles_of_a_worker_that_cannot_go_on_are_done_by_the_others() {
 fn what_takes_long_is_made_smooth_first() {
     let mut crowd = Crowd::new(2);
     crowd.edges = |tile| if tile.x == 0 { 1000 } else { 1 };
+    // Both are awake.
+    crowd.work();
     crowd.start(1);
     crowd.work_off();
     let smooth = crowd.done.iter().filter(|order| order.pass == Pass::Smooth);

@@ -1,0 +1,263 @@
+//! Which task a worker is given next.
+//!
+//! A tile is done in each pass by the worker that keeps its samples, as far as that is known: from the full pass on each
+//! has its part of the picture ([`shares`]). What a tile costs is foretold by what the passes before came to. A worker is
+//! given work ahead, as a page that draws takes its time to answer, but not so much that the others have nothing left to
+//! help with.
+
+use super::run::Run;
+use super::share::shares;
+use std::collections::VecDeque;
+use tracer::{Pass, Tile};
+
+/// Seconds of work a worker is given ahead.
+pub const AHEAD: f64 = 0.25;
+/// The same of the full pass, as long as it is not known who should have what.
+const EARLY: f64 = 0.05;
+/// Most tiles a worker is given ahead.
+pub const MOST_AHEAD: usize = 64;
+/// A pixel that gets more rays takes so many times longer for each than a typical one of its tile: edges are dear. Measured
+/// in seahorse, cowrie and sphereflake: 2.3, 1.5 and 1.0.
+const EDGE_RAY: f64 = 1.5;
+/// Seconds that the picture must be done earlier by, for each second that help costs.
+const WORTH: f64 = 0.25;
+
+impl Run {
+    /// The next task of a worker, from those never handed out or from those to be done again.
+    pub fn take(&mut self, worker: usize, idle: bool, again: bool) -> Option<usize> {
+        loop {
+            let task = if again {
+                self.again.pop()?
+            } else {
+                self.draw(worker, idle)?
+            };
+            let (pass, tile) = (task / self.tiles.len(), task % self.tiles.len());
+            // A tile that was given up is not tried in later passes.
+            if !self.failed_tiles.contains(&tile) {
+                if self.passes[pass] != Pass::Coarse {
+                    self.holder[tile] = Some(worker);
+                }
+                return Some(task);
+            }
+            self.close(task);
+        }
+    }
+
+    /// Says who should have each tile, by what is known of them: little when the first tiles of the full pass are handed out,
+    /// all when the coarse pass is complete.
+    pub(super) fn part(&mut self) {
+        let known = self.effort.iter().copied().filter(|effort| *effort > 0);
+        let least = known.min().unwrap_or(1);
+        let cost = |effort: &u64| (*effort).max(least) as f64;
+        let costs: Vec<f64> = self.effort.iter().map(cost).collect();
+        self.home = shares(&self.tiles, &costs, self.awake.len());
+    }
+
+    /// A task never handed out, of the first pass that has one for this worker. Each has its tiles, and makes smooth what it
+    /// has sampled, as it keeps most samples that it needs for that. When it is idle soon it helps the others, if that is
+    /// worth it.
+    fn draw(&mut self, worker: usize, idle: bool) -> Option<usize> {
+        for pass in 0..self.passes.len() {
+            let left = self.left[pass].len();
+            if self.passes[pass] == Pass::Full && left == self.tiles.len() {
+                self.part();
+            }
+            let place = self.own(pass, worker);
+            let place = place.or_else(|| idle.then(|| self.worth_taking(pass, worker))?);
+            if let Some(tile) = place.and_then(|place| self.left[pass].remove(place)) {
+                return Some(pass * self.tiles.len() + tile);
+            }
+        }
+        None
+    }
+
+    /// The place among those of a pass never handed out of the tile that a worker should do next: its own, or nobody's.
+    fn own(&self, pass: usize, worker: usize) -> Option<usize> {
+        let places = self.left[pass].iter().enumerate();
+        if self.passes[pass] != Pass::Smooth {
+            let mut places = places;
+            let mine = |tile| {
+                self.keeper(pass, tile)
+                    .is_none_or(|keeper| keeper == worker)
+            };
+            return places.position(|(_, tile)| mine(*tile));
+        }
+        // What takes long comes first, so that all are done at about the same time.
+        let sampled = self.left[..pass].iter().all(VecDeque::is_empty);
+        let mine = |tile| match self.keeper(pass, tile) {
+            Some(keeper) => keeper == worker,
+            None => sampled,
+        };
+        places
+            .filter(|(_, tile)| mine(**tile))
+            .map(|(place, tile)| (place, self.cost(pass, *tile).0))
+            .rev()
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(place, _)| place)
+    }
+
+    /// Who should do a tile in a pass; `None` if it is as good as any other.
+    fn keeper(&self, pass: usize, tile: usize) -> Option<usize> {
+        let keeper = match self.passes[pass] {
+            Pass::Coarse => None,
+            Pass::Full => Some(self.holder[tile].unwrap_or(self.home[tile])),
+            Pass::Smooth => self.holder[tile],
+        };
+        keeper.filter(|worker| self.awake[*worker])
+    }
+
+    /// About how many seconds a tile takes in a pass the worker that should do it, and any other.
+    fn cost(&self, pass: usize, tile: usize) -> (f64, f64) {
+        let usual = self.costs.expected(pass);
+        match self.passes[pass] {
+            Pass::Coarse => (usual, usual),
+            Pass::Full => {
+                let (sum, count) = self.known_effort;
+                let known = Some(self.effort[tile]).filter(|effort| *effort > 0);
+                let share = known.map_or(1.0, |effort| effort as f64 * count as f64 / sum as f64);
+                (usual * share, usual * share)
+            }
+            // Another one takes the first samples again.
+            Pass::Smooth => {
+                let Some((seconds, edges)) = self.full[tile] else {
+                    return (usual, 2.0 * usual);
+                };
+                let Tile { width, height, .. } = self.tiles[tile];
+                let rays = 2.0 * edges as f64 * f64::from(self.plan.samples).powi(2);
+                let pixels = f64::from(width) * f64::from(height);
+                let own = EDGE_RAY * seconds * rays / pixels.max(1.0);
+                (own, own + seconds)
+            }
+        }
+    }
+
+    /// The place among those of a pass never handed out of a tile of another worker that one without work should do: of the
+    /// one that has most to do, the tile with which both are done earliest; none if that one is done earlier without help.
+    fn worth_taking(&self, pass: usize, worker: usize) -> Option<usize> {
+        let first = pass * self.tiles.len();
+        let mut load = vec![0.0; self.awake.len()];
+        for tile in (0..self.tiles.len()).filter(|tile| !self.over[first + tile]) {
+            if let Some(keeper) = self.keeper(pass, tile) {
+                load[keeper] += self.cost(pass, tile).0;
+            }
+        }
+        let others = self.left[pass].iter().enumerate();
+        let others =
+            others.filter_map(|(place, tile)| Some((place, *tile, self.keeper(pass, *tile)?)));
+        let others = others.filter(|(.., keeper)| *keeper != worker);
+        let (.., most) = others
+            .clone()
+            .max_by(|a, b| load[a.2].total_cmp(&load[b.2]))?;
+        let gain = |tile: usize| {
+            let (own, strange) = self.cost(pass, tile);
+            let done = (load[worker] + strange).max(load[most] - own);
+            (load[most] - done, strange)
+        };
+        others
+            .filter(|(.., keeper)| *keeper == most)
+            .map(|(place, tile, _)| (place, gain(tile)))
+            .filter(|(_, (gained, cost))| *gained > WORTH * cost)
+            .max_by(|a, b| a.1.0.total_cmp(&b.1.0))
+            .map(|(place, _)| place)
+    }
+
+    /// Whether a worker, one of so many, that holds these tasks should be given one more: so that it need not wait for the
+    /// page, but that in the end none has much more than the others.
+    pub fn is_too_little(&self, holds: &VecDeque<usize>, workers: usize) -> bool {
+        let untaken: usize = self.left.iter().map(VecDeque::len).sum();
+        if untaken == 0 || holds.len() >= MOST_AHEAD {
+            return false;
+        }
+        // One is traced while the next one waits.
+        if holds.len() < 2.min(untaken.div_ceil(workers.max(1))) {
+            return true;
+        }
+        let tiles = self.tiles.len();
+        let seconds = |task: &usize| self.cost(task / tiles, task % tiles).0;
+        let held: f64 = holds.iter().map(seconds).sum();
+        let mut left = 0.0;
+        let mut exact = true;
+        for pass in (0..self.passes.len()).filter(|pass| !self.left[*pass].is_empty()) {
+            // Of the passes after the first that is not handed out little is known.
+            if exact {
+                let each = self.left[pass].iter().map(|tile| self.cost(pass, *tile).0);
+                left += each.sum::<f64>();
+            } else {
+                left += self.costs.expected(pass) * self.left[pass].len() as f64;
+            }
+            exact = false;
+        }
+        let coarse = self.settled[0] < tiles && self.left[0].is_empty();
+        let ahead = if coarse { EARLY } else { AHEAD };
+        held < ahead.min(left / (2 * workers.max(1)) as f64)
+    }
+
+    /// Whether tiles of the coarse pass were never handed out.
+    pub fn is_coarse(&self) -> bool {
+        self.passes[0] == Pass::Coarse && !self.left[0].is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pool::run::Plan;
+    use tracer::Stats;
+
+    #[test]
+    fn parts_are_as_large_as_the_coarse_pass_says_that_they_take_equally_long() {
+        // The tiles on the left are dear.
+        let effort = |tile: &Tile| if tile.x < 128 { 100 } else { 1 };
+        for workers in [2, 3, 5] {
+            for early in [0, 7] {
+                let plan = Plan {
+                    generation: 1,
+                    size: [640, 512],
+                    samples: 3,
+                    small: false,
+                };
+                let mut run = Run::new(plan, workers, 0.0);
+                run.awake.fill(true);
+                let tiles = run.tiles.clone();
+                let coarse = |run: &mut Run, some: std::ops::Range<usize>| {
+                    for task in some {
+                        let stats = Stats {
+                            field_evaluations: effort(&tiles[task]),
+                            ..Stats::default()
+                        };
+                        run.done(task, &stats, 1e-3, 0.0);
+                    }
+                };
+                for task in 0..tiles.len() {
+                    assert_eq!(run.take(0, false, false), Some(task));
+                }
+                // Some of the full pass are handed out before more is known than this.
+                coarse(&mut run, 0..10);
+                let mut full = vec![0; workers];
+                let mut take = |run: &mut Run, worker: usize| {
+                    let task = run.take(worker, false, false)?;
+                    if task >= 2 * tiles.len() {
+                        return None;
+                    }
+                    full[worker] += effort(&tiles[task % tiles.len()]);
+                    Some(task)
+                };
+                for _ in 0..early {
+                    take(&mut run, 0);
+                }
+                coarse(&mut run, 10..tiles.len());
+                for worker in 0..workers {
+                    while take(&mut run, worker).is_some() {}
+                }
+                let all: u64 = tiles.iter().map(effort).sum();
+                assert_eq!(full.iter().sum::<u64>(), all);
+                let mean = all as f64 / workers as f64;
+                for taken in &full {
+                    let apart = (*taken as f64 - mean).abs();
+                    assert!(early > 0 || apart <= 200.0, "{workers}: {full:?}");
+                    assert!(apart <= 500.0, "{workers}, {early} early: {full:?}");
+                }
+            }
+        }
+    }
+}
