@@ -279,6 +279,27 @@ fn samples_that_are_kept_change_nothing_and_are_taken_once() {
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
+fn the_edges_of_a_full_pass_foretell_what_the_smooth_one_takes() {
+    let (mut scene, size) = (mixed(1), [135, 91]);
+    let all = u64::from(size[0] * size[1]);
+    let mut edges = |samples: u32, pass| {
+        scene.settings.samples = samples;
+        let (_, stats) = whole(&scene, size, 48, pass);
+        (stats.edges, stats.primary_rays)
+    };
+    assert_eq!(edges(1, Pass::Full), (0, all));
+    let (foretold, _) = edges(3, Pass::Full);
+    assert_eq!(edges(3, Pass::Coarse).0, 0);
+    let (none, rays) = edges(3, Pass::Smooth);
+    assert_eq!(none, 0);
+    // With 6×6 rays a pixel that gets more has 27 more than with 3×3.
+    let refined = (edges(6, Pass::Smooth).1 - rays) / 27;
+    let ratio = refined as f64 / foretold as f64;
+    assert!((1.5..3.0).contains(&ratio), "{refined} for {foretold}");
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_cache_keeps_no_squares_for_strips_and_serves_no_other_size() {
     let scene = mixed(1);
     let size = [135, 91];

@@ -1,0 +1,76 @@
+// A page at rest: the browser is asked for few frames, and for one at once when something happens.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { launch } from './page.mjs';
+
+let browser;
+let sinew;
+before(async () => {
+  browser = await launch('none');
+  const count = () => {
+    globalThis.asked = 0;
+    const request = globalThis.requestAnimationFrame;
+    globalThis.requestAnimationFrame = (callback) => {
+      globalThis.asked += 1;
+      return request(callback);
+    };
+  };
+  sinew = await browser.open({ before: (page) => page.addInitScript(count) });
+  await sinew.load('surface s diffuse Gold\nsphere s 1 0 0 0\n');
+  await sinew.finished();
+});
+after(() => browser?.close());
+
+/** Frames that the browser is asked for in two seconds, once the page has come to rest. */
+async function atRest() {
+  for (let attempt = 0; ; attempt++) {
+    const asked = await sinew.page.evaluate(async () => {
+      const before = globalThis.asked;
+      await new Promise((done) => setTimeout(done, 2000));
+      return globalThis.asked - before;
+    });
+    // What has just happened may still be fading.
+    if (asked <= 16 || attempt === 4) return asked;
+  }
+}
+
+test('few frames while nothing happens', async () => {
+  const asked = await atRest();
+  // At 60 Hz they would be 120. A few come in any case, should an event have been missed.
+  assert.ok(asked >= 2 && asked <= 16, `${asked} in two seconds`);
+});
+
+const HAPPENINGS = {
+  'an event': () => document.querySelector('canvas').dispatchEvent(new MouseEvent('mousemove')),
+  'a script': () => sinew.load('surface s diffuse Gold\nsphere s 1 0.1 0 0\n'),
+};
+for (const [what, happens] of Object.entries(HAPPENINGS)) {
+  test(`${what} is answered with a frame at once`, async () => {
+    await atRest();
+    const asked = await sinew.page.evaluate(`(() => {
+      const before = globalThis.asked;
+      (${happens})();
+      return globalThis.asked - before;
+    })()`);
+    assert.equal(asked, 1);
+    await sinew.finished();
+  });
+}
+
+test('whoever asks for a frame gets it, unless he takes that back', async () => {
+  await atRest();
+  const came = await sinew.page.evaluate(async () => {
+    const came = [];
+    requestAnimationFrame(() => came.push('first'));
+    cancelAnimationFrame(requestAnimationFrame(() => came.push('held back')));
+    await new Promise((done) => setTimeout(done, 1000));
+    // Given by the browser, but not come.
+    globalThis.dispatchEvent(new Event('mousemove'));
+    cancelAnimationFrame(requestAnimationFrame(() => came.push('given')));
+    requestAnimationFrame(() => came.push('last'));
+    await new Promise((done) => setTimeout(done, 1000));
+    return came;
+  });
+  assert.deepEqual(came, ['first', 'last']);
+  assert.deepEqual(sinew.troubles, []);
+});
