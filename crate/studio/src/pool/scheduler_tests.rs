@@ -273,16 +273,16 @@ fn helped(edges: fn(&Tile) -> u64) -> usize {
     let (mut by, mut busy) = (HashMap::new(), [0; 2]);
     while !crowd.progress().finished {
         crowd.now += 1e-3;
-        for worker in 0..2 {
+        for (worker, busy) in busy.iter_mut().enumerate() {
             // What is smooth already is done at once, the other tiles take as long as the scheduler thinks.
-            if busy[worker] > 0 {
-                busy[worker] -= 1;
+            if *busy > 0 {
+                *busy -= 1;
                 continue;
             }
             if let Some(Job::Tile(order)) = crowd.work_one(worker) {
                 by.insert((order.tile, order.pass), worker);
                 if order.pass == Pass::Smooth {
-                    busy[worker] = edges(&order.tile) / STATS.edges;
+                    *busy = edges(&order.tile) / STATS.edges;
                 }
             }
         }
