@@ -3,8 +3,8 @@
 //! eframe asks the browser for an animation frame after every one, drawn or not, which costs a processor 8 % of its
 //! time in Chromium (60 Hz, nothing ever drawn), at the expense of the workers or of a battery. So the page's
 //! `requestAnimationFrame` is replaced: what asks for a frame gets it when there may be something to draw, that is when
-//! egui has asked for it or an event came that eframe may listen to, else a few times a second ([`QUIET`]), in case
-//! something was missed.
+//! egui has asked for it or one of the events came that eframe listens to, else a few times a second ([`QUIET`]), for
+//! what is told to nobody else, such as another colour scheme of the system.
 
 use js_sys::{Function, Reflect};
 use std::cell::RefCell;
@@ -23,8 +23,8 @@ const GIVEN: usize = 8;
 
 /// What people and the browser do to a page.
 const EVENTS: &str = "beforeinput blur compositionend compositionstart compositionupdate copy cut dragend dragenter \
-    dragleave dragover drop focus hashchange input keydown keyup mousedown mouseleave mousemove mouseup paste \
-    pointercancel pointerdown pointerleave pointermove pointerup popstate resize scroll touchcancel touchend touchmove \
+    dragleave dragover drop focus gesturechange gestureend gesturestart hashchange input keydown keyup load mousedown \
+    mouseleave mousemove mouseup pagehide pageshow paste pointercancel pointerdown pointerleave pointermove pointerup popstate resize scroll touchcancel touchend touchmove \
     touchstart visibilitychange wheel";
 
 thread_local! {
@@ -107,6 +107,11 @@ pub fn rest() {
 /// Has frames given when this egui wants them.
 pub fn watch(context: &egui::Context) {
     context.set_repaint_observer(|info| wake(info.delay));
+}
+
+/// egui begins to draw: what it wanted before that does not count any more, as eframe sees it, too.
+pub fn begun() {
+    with(|frames| frames.due = f64::INFINITY);
 }
 
 /// A frame is wanted so soon.

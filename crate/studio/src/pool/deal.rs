@@ -16,6 +16,8 @@ pub const AHEAD: f64 = 0.25;
 const EARLY: f64 = 0.05;
 /// Most tiles a worker is given ahead.
 pub const MOST_AHEAD: usize = 64;
+/// Among so many of its tiles a worker looks for the one that takes longest: a picture may have very many.
+const LOOKED_AT: usize = 256;
 /// A pixel that gets more rays takes so many times longer for each than a typical one of its tile: edges are dear. Measured
 /// in seahorse, cowrie and sphereflake: 2.3, 1.5 and 1.0.
 const EDGE_RAY: f64 = 1.5;
@@ -90,9 +92,10 @@ impl Run {
         };
         places
             .filter(|(_, tile)| mine(**tile))
+            .take(LOOKED_AT)
             .map(|(place, tile)| (place, self.cost(pass, *tile).0))
-            .rev()
-            .max_by(|a, b| a.1.total_cmp(&b.1))
+            // The first of equals.
+            .min_by(|a, b| b.1.total_cmp(&a.1))
             .map(|(place, _)| place)
     }
 
@@ -175,21 +178,22 @@ impl Run {
         let tiles = self.tiles.len();
         let seconds = |task: &usize| self.cost(task / tiles, task % tiles).0;
         let held: f64 = holds.iter().map(seconds).sum();
-        let mut left = 0.0;
-        let mut exact = true;
-        for pass in (0..self.passes.len()).filter(|pass| !self.left[*pass].is_empty()) {
-            // Of the passes after the first that is not handed out little is known.
-            if exact {
-                let each = self.left[pass].iter().map(|tile| self.cost(pass, *tile).0);
-                left += each.sum::<f64>();
-            } else {
-                left += self.costs.expected(pass) * self.left[pass].len() as f64;
-            }
-            exact = false;
-        }
         let coarse = self.settled[0] < tiles && self.left[0].is_empty();
-        let ahead = if coarse { EARLY } else { AHEAD };
-        held < ahead.min(left / (2 * workers.max(1)) as f64)
+        if held >= if coarse { EARLY } else { AHEAD } {
+            return false;
+        }
+        // No more is added up than it takes to know, as a picture may have very many tiles.
+        let enough = held * (2 * workers.max(1)) as f64;
+        let mut left = 0.0;
+        for pass in 0..self.passes.len() {
+            for tile in &self.left[pass] {
+                left += self.cost(pass, *tile).0;
+                if left > enough {
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     /// Whether tiles of the coarse pass were never handed out.
@@ -259,5 +263,85 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn who_would_not_speed_up_a_pass_goes_on_with_his_own_tiles_of_the_next() {
+        let plan = Plan {
+            generation: 1,
+            size: [128, 128],
+            samples: 3,
+            small: false,
+        };
+        let mut run = Run::new(plan, 2, 0.0);
+        run.awake.fill(true);
+        let stats = Stats {
+            field_evaluations: 10,
+            edges: 150,
+            ..Stats::default()
+        };
+        let (tiles, mut done) = (4, 0.0);
+        let mut finish = |run: &mut Run, task| {
+            done += 1e-3;
+            run.done(task, &stats, 1e-3, done);
+        };
+        while run.is_coarse() {
+            let task = run.take(0, false, false).unwrap();
+            finish(&mut run, task);
+        }
+        let full: Vec<usize> = (0..2).map(|_| run.take(1, false, false).unwrap()).collect();
+        let first = run.take(0, false, false).unwrap();
+        assert!(full.iter().chain([&first]).all(|task| task / tiles == 1));
+        // Each has two tiles of the full pass left, one of the first worker's was never handed out.
+        let next = run.take(1, true, false).unwrap();
+        assert_eq!(next / tiles, 2, "its own of the smooth pass");
+        assert!(full.contains(&(next - tiles)));
+        for task in full {
+            finish(&mut run, task);
+        }
+        // Now help is worth it.
+        let next = run.take(1, true, false).unwrap();
+        assert_eq!(next / tiles, 1);
+        assert_eq!(run.take(0, true, false).map(|task| task / tiles), Some(2));
+    }
+
+    #[test]
+    fn a_worker_holds_little_as_long_as_it_is_not_known_who_should_have_what() {
+        let plan = Plan {
+            generation: 1,
+            size: [1024, 768],
+            samples: 3,
+            small: false,
+        };
+        let mut run = Run::new(plan, 2, 0.0);
+        run.awake.fill(true);
+        let fill = |run: &mut Run| {
+            let mut holds = VecDeque::new();
+            while run.is_too_little(&holds, 2) {
+                let task = run.take(0, false, false);
+                holds.extend(task);
+                if task.is_none() {
+                    break;
+                }
+            }
+            holds
+        };
+        let stats = Stats {
+            field_evaluations: 10,
+            ..Stats::default()
+        };
+        let mut coarse = Vec::new();
+        while run.is_coarse() {
+            coarse.extend(run.take(0, false, false));
+        }
+        let last = coarse.split_off(coarse.len() - 1);
+        for task in coarse {
+            run.done(task, &stats, 1e-4, 0.0);
+        }
+        // 3 ms each, as far as can be foretold.
+        let early = fill(&mut run).len();
+        assert!((10..=18).contains(&early), "{early}");
+        run.done(last[0], &stats, 1e-4, 0.0);
+        assert!(fill(&mut run).len() > 3 * early);
     }
 }

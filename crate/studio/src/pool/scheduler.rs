@@ -3,7 +3,8 @@
 //! Events go in (a worker started, answered, died; time passed), [`Command`]s come out. Rules:
 //!
 //! - Tiles are handed out pass by pass, the coarse pass to all in turn. From then on each worker has its part of the picture
-//!   ([`shares`](super::share::shares)) and makes smooth what it has sampled; one without work helps the others. A worker
+//!   ([`shares`](super::share::shares)) and makes smooth what it has sampled; one without work helps the others where that
+//!   is worth it, and else goes on with its own tiles of the next pass. A worker
 //!   holds the tile it traces and some more, about [`AHEAD`](super::deal::AHEAD) seconds of work, so that it need not wait
 //!   for a page that is busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
@@ -508,7 +509,17 @@ impl Scheduler {
         let again = !run.again.is_empty();
         // What is done again is done alone, so let the worker first finish what it has.
         let enough = (again || !self.slots[index].prepared).then_some(1);
+        let complete = run.complete_passes();
         self.give(index, enough, again, now);
+        let (Some(run), slot) = (&self.run, &self.slots[index]) else {
+            return;
+        };
+        // What had been given up may have been the last of a pass, or the last to be done again.
+        if run.complete_passes() > complete {
+            self.fill_all(now);
+        } else if again && run.again.is_empty() && slot.holds.is_empty() {
+            self.fill(index, now);
+        }
     }
 
     /// Gives a worker tiles until it has so many, or else enough, from those never handed out or from those to be done

@@ -327,15 +327,106 @@ fn tiles_of_a_worker_that_cannot_go_on_are_done_by_the_others() {
 
 #[test]
 fn what_takes_long_is_made_smooth_first() {
+    // Neither the first nor the last of the first worker's, in the order of the tiles.
+    fn is_dear(tile: &Tile) -> bool {
+        [(64, 0), (0, 64)].contains(&(tile.x, tile.y))
+    }
     let mut crowd = Crowd::new(2);
-    crowd.edges = |tile| if tile.x == 0 { 1000 } else { 1 };
+    crowd.edges = |tile| if is_dear(tile) { 1000 } else { 1 };
     // Both are awake.
     crowd.work();
     crowd.start(1);
     crowd.work_off();
     let smooth = crowd.done.iter().filter(|order| order.pass == Pass::Smooth);
-    let first: Vec<u32> = smooth.take(5).map(|order| order.tile.x).collect();
-    assert_eq!(first.iter().filter(|x| **x == 0).count(), 3, "{first:?}");
+    let left: Vec<Tile> = smooth.map(|o| o.tile).filter(|tile| tile.x < 128).collect();
+    assert_eq!(left.len(), 6);
+    assert!(is_dear(&left[0]) && is_dear(&left[1]), "{left:?}");
+}
+
+#[test]
+fn a_worker_that_had_nothing_to_do_is_asked_again_when_more_is_known() {
+    let mut crowd = Crowd::new(2);
+    crowd.edges = |tile| if tile.x == 0 { 1500 } else { 0 };
+    crowd.work();
+    let size = [128, 192];
+    crowd.scheduler.start(Plan { size, ..plan(1) }, 0.0);
+    crowd.obey();
+    let coarse = |crowd: &Crowd| crowd.progress().pass_seconds[0].is_none();
+    while coarse(&crowd) {
+        crowd.work();
+    }
+    // The second one does all that it is given; then it is the first one's turn.
+    while crowd.work_one(1).is_some() {}
+    let before = crowd.done.len();
+    while crowd.desks[1].is_empty() && crowd.work_one(0).is_some() {}
+    assert!(crowd.done.len() > before && !crowd.progress().finished);
+    assert!(matches!(crowd.desks[1].front(), Some(Job::Tile(order)) if order.tile.x == 0));
+    crowd.work_off();
+    assert!(crowd.progress().finished);
+}
+
+#[test]
+fn whatever_happens_a_picture_ends() {
+    const EDGES: [fn(&Tile) -> u64; 3] = [|_| 0, |tile| 9 * tile.x as u64, |_| 2000];
+    let mut seed = 1_u64;
+    let mut random = |below: u64| {
+        // Knuth's MMIX generator.
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) % below
+    };
+    for case in 0..3000 {
+        let workers = 1 + random(4) as usize;
+        let mut crowd = Crowd::new(workers);
+        crowd.edges = EDGES[random(3) as usize];
+        let size = [64 * (1 + random(4)) as u32, 64 * (1 + random(3)) as u32];
+        let samples = 1 + random(3) as u32;
+        let small = random(8) == 0;
+        let plan = Plan {
+            size,
+            samples,
+            small,
+            ..plan(1)
+        };
+        for _ in 0..random(6) {
+            crowd.work();
+        }
+        crowd.scheduler.start(plan, crowd.now);
+        crowd.obey();
+        let tiles = tracer::tile::tiles(size[0], size[1], crate::pool::TILE);
+        for tile in tiles {
+            for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
+                if random(12) == 0 {
+                    let generation = crowd.scheduler.number();
+                    crowd.deadly.insert(Order {
+                        generation,
+                        tile,
+                        pass,
+                    });
+                }
+            }
+        }
+        for step in 0.. {
+            assert!(step < 100_000, "endless: {case}");
+            let worker = random(workers as u64) as usize;
+            if random(200) == 0 {
+                crowd.scheduler.died(worker, "by chance", crowd.now);
+                crowd.obey();
+            }
+            crowd.now += 1e-3;
+            let _ = crowd.work_one(worker);
+            if crowd.desks.iter().all(VecDeque::is_empty) {
+                break;
+            }
+        }
+        let progress = crowd.progress();
+        assert!(
+            progress.finished || progress.error.is_some(),
+            "{case}: {progress:?}"
+        );
+        assert!(!crowd.scheduler.is_busy(), "{case}");
+    }
 }
 
 #[test]
