@@ -23,9 +23,9 @@ const GIVEN: usize = 8;
 
 /// What people and the browser do to a page.
 const EVENTS: &str = "beforeinput blur compositionend compositionstart compositionupdate copy cut dragend dragenter \
-    dragleave dragover drop focus gesturechange gestureend gesturestart hashchange input keydown keyup load mousedown \
-    mouseleave mousemove mouseup pagehide pageshow paste pointercancel pointerdown pointerleave pointermove pointerup popstate resize scroll touchcancel touchend touchmove \
-    touchstart visibilitychange wheel";
+    dragleave dragover drop focus gesturechange gestureend gesturestart hashchange input keydown keyup load \
+    mousedown mouseleave mousemove mouseup pagehide pageshow paste pointercancel pointerdown pointerleave \
+    pointermove pointerup popstate resize scroll touchcancel touchend touchmove touchstart visibilitychange wheel";
 
 thread_local! {
     static FRAMES: RefCell<Option<Frames>> = const { RefCell::new(None) };

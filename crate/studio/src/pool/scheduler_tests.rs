@@ -260,8 +260,8 @@ fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
     assert!(slow(Pass::Full) + slow(Pass::Smooth) < tiles.len() / 2 + 2);
 }
 
-/// Who made which tile smooth, where the left half of the picture, the first worker's, has so many edges and the right one
-/// has none; and how many others' tiles the second took.
+/// How many tiles are made smooth by another worker than the one that has sampled them, with two workers and a picture of
+/// which each has a half.
 fn helped(edges: fn(&Tile) -> u64) -> usize {
     let mut crowd = Crowd::new(2);
     crowd.edges = edges;
@@ -274,7 +274,7 @@ fn helped(edges: fn(&Tile) -> u64) -> usize {
     while !crowd.progress().finished {
         crowd.now += 1e-3;
         for (worker, busy) in busy.iter_mut().enumerate() {
-            // What is smooth already is done at once, the other tiles take as long as the scheduler thinks.
+            // What has no edges is smooth at once, the other tiles take as long as the scheduler thinks.
             if *busy > 0 {
                 *busy -= 1;
                 continue;
