@@ -14,10 +14,7 @@ mod raster;
 mod shape;
 mod texture;
 
-use std::{
-    hash::{Hash, Hasher},
-    ops::Range,
-};
+use std::ops::Range;
 
 use egui::{
     ClippedPrimitive, Color32, Mesh, Rect, TextureId, TexturesDelta,
@@ -26,13 +23,15 @@ use egui::{
 };
 
 use raster::Sheet;
-use shape::{Corner, Quad, Showing};
+use shape::{Corner, Quad, Showing, mixed};
 use texture::Textures;
 
 pub use shape::Area;
 
 /// The side of a tile in pixels.
 const TILE: i32 = 64;
+/// Shapes that touch at most so many tiles, as nearly all do, count as changed in all of them or in none.
+const SMALL: usize = 4;
 
 /// Draws frames of egui on a sheet of pixels.
 #[derive(Debug, Default)]
@@ -165,20 +164,26 @@ impl Painter {
 
     /// Computes the numbers of all tiles.
     fn number(&mut self) {
-        let columns = self.grid()[0];
+        let across = self.grid()[0];
         for piece in &self.pieces {
             let Some(texture) = self.textures.get(piece.texture) else {
                 continue;
             };
-            let number = hash((&piece.shape, piece.texture, piece.area));
-            let showing = piece.shape.showing();
-            for y in tiles(piece.area.y0, piece.area.y1) {
-                for x in tiles(piece.area.x0, piece.area.x1) {
-                    let seen = piece.area.intersect(tile(x, y));
-                    let [from, to] = showing.within(seen);
-                    let changed = texture.changed(from, to);
-                    let wanted = &mut self.wanted[y * columns + x];
-                    *wanted = mixed(mixed(*wanted, number), changed);
+            let number = piece.number();
+            let columns = tiles(piece.area.x0, piece.area.x1);
+            let rows = tiles(piece.area.y0, piece.area.y1);
+            // Which part of a small shape is seen in a tile is not worth finding out.
+            let parts = (columns.len() * rows.len() > SMALL).then(|| piece.shape.showing());
+            let [from, to] = shape::texels(piece.shape.corners());
+            let whole = mixed(number, texture.changed(from, to));
+            for y in rows {
+                for x in columns.clone() {
+                    let wanted = &mut self.wanted[y * across + x];
+                    let seen = parts.as_ref().map_or(whole, |parts| {
+                        let [from, to] = parts.within(piece.area.intersect(tile(x, y)));
+                        mixed(number, texture.changed(from, to))
+                    });
+                    *wanted = mixed(*wanted, seen);
                 }
             }
         }
@@ -206,6 +211,19 @@ impl Painter {
     }
 }
 
+impl Piece {
+    /// A number for the shape, its texture and where it may be seen.
+    fn number(&self) -> u64 {
+        let texture = match self.texture {
+            TextureId::Managed(id) => id,
+            TextureId::User(id) => !id,
+        };
+        let corners = self.shape.corners().iter();
+        self.area
+            .number(corners.fold(texture, |before, corner| corner.number(before)))
+    }
+}
+
 impl Shape {
     fn area(&self) -> Area {
         match self {
@@ -214,20 +232,18 @@ impl Shape {
         }
     }
 
+    fn corners(&self) -> &[Corner] {
+        match self {
+            Self::Triangle(corners) => corners,
+            Self::Quad(quad) => quad.corners(),
+        }
+    }
+
     /// The texels it shows.
     fn showing(&self) -> Showing {
         match self {
             Self::Triangle(corners) => Showing::triangle(corners),
             Self::Quad(quad) => Showing::quad(quad),
-        }
-    }
-}
-
-impl Hash for Shape {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        match self {
-            Self::Triangle(corners) => corners.hash(state),
-            Self::Quad(quad) => quad.corners().hash(state),
         }
     }
 }
@@ -293,12 +309,6 @@ fn tile(x: usize, y: usize) -> Area {
         x1: x0 + TILE,
         y1: y0 + TILE,
     }
-}
-
-/// A number for two numbers in order. The first is already well spread.
-fn mixed(a: u64, b: u64) -> u64 {
-    // An odd multiplier (2⁶⁴ over the golden ratio) loses nothing and carries low bits up.
-    (a.rotate_left(5) ^ b).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use egui::Color32;
 
 use crate::{
     shape::{Area, Corner, Quad, STEPS, Triangle, bounds},
-    texture::{Mix, Tap, Texture},
+    texture::{Tap, Texture, blended},
 };
 
 /// A picture being drawn on: red, green, blue, alpha in rows from the top.
@@ -26,10 +26,17 @@ struct Columns {
     taps: Vec<Tap>,
     /// Whether each shows one texel.
     exact: bool,
-    /// From the first to the last texel that they show.
-    texels: Range<usize>,
-    /// Those at the present row, where it lies between two.
-    between: Vec<Mix>,
+    /// Whether they follow each other as the texels do.
+    ordered: bool,
+    /// How near each channel of each column is to its second texel, 0 … 256.
+    weights: Vec<[u16; 4]>,
+    /// The channels of the texels at the present row, see [`Texture::between`], …
+    between: Vec<u16>,
+    /// … of the two of each column, …
+    near: Vec<[u16; 4]>,
+    far: Vec<[u16; 4]>,
+    /// … and what lies between them.
+    colors: Vec<[u8; 4]>,
 }
 
 impl Sheet {
@@ -111,10 +118,12 @@ impl Sheet {
         taps.clear();
         taps.extend(coordinates.map(|at| texture.tap(0, at, smooth)));
         columns.exact = taps.iter().all(|tap| tap.weight == 0);
-        let ends = |tap: &Tap| [tap.near, tap.far];
-        let first = taps.iter().flat_map(ends).min().unwrap_or(0);
-        let last = taps.iter().flat_map(ends).max().unwrap_or(0);
-        columns.texels = first..last + 1;
+        let follows = |pair: &[Tap]| pair[0].near <= pair[1].near && pair[0].far <= pair[1].far;
+        columns.ordered = taps.windows(2).all(follows);
+        columns.weights.clear();
+        columns
+            .weights
+            .extend(taps.iter().map(|tap| [tap.weight as u16; 4]));
         columns
     }
 
@@ -209,6 +218,17 @@ impl Sheet {
 }
 
 impl Columns {
+    /// From the first to the last texel that some columns show.
+    fn texels(&self, taps: &[Tap]) -> Range<usize> {
+        let least = |tap: &Tap| tap.near.min(tap.far);
+        let most = |tap: &Tap| tap.near.max(tap.far);
+        if let ([first, ..], [.., last], true) = (taps, taps, self.ordered) {
+            return least(first)..most(last) + 1;
+        }
+        let first = taps.iter().map(least).min().unwrap_or(0);
+        first..taps.iter().map(most).max().unwrap_or(0) + 1
+    }
+
     /// Draws a row of pixels, the first of which is in the column of this number.
     fn copy(
         &mut self,
@@ -223,19 +243,44 @@ impl Columns {
             // Texels on pixels, as nearly all text is.
             let texels = texture.row(row.near);
             for (pixel, column) in span.iter_mut().zip(taps) {
-                blend(pixel, tinted(texels[column.near].to_array(), tint));
+                blend(pixel, tinted(texels[column.near], tint));
             }
-        } else if self.texels.len() > 2 * span.len() {
+            return;
+        }
+        let seen = self.texels(taps);
+        if seen.len() > 2 * span.len() {
             for (pixel, &column) in span.iter_mut().zip(taps) {
                 blend(pixel, tinted(texture.sample(column, row), tint));
             }
         } else {
-            // Most texels are seen more than once.
-            texture.between(row, self.texels.clone(), &mut self.between);
-            let at = |x: usize| self.between[x - self.texels.start];
-            for (pixel, column) in span.iter_mut().zip(taps) {
-                let color = at(column.near).with(at(column.far), column.weight);
-                blend(pixel, tinted(color.rounded(), tint));
+            // Most texels are seen more than once. Each step is the same for all numbers side by side.
+            let start = seen.start;
+            texture.between(row, seen, &mut self.between);
+            let (texels, _) = self.between.as_chunks::<4>();
+            self.near.clear();
+            self.near
+                .extend(taps.iter().map(|tap| texels[tap.near - start]));
+            self.far.clear();
+            self.far
+                .extend(taps.iter().map(|tap| texels[tap.far - start]));
+            let weights = self.weights[first..first + span.len()].as_flattened();
+            self.colors.resize(span.len(), [0; 4]);
+            let pairs = self.near.as_flattened().iter().zip(self.far.as_flattened());
+            let colors = self.colors.as_flattened_mut().iter_mut();
+            for ((color, (near, far)), weight) in colors.zip(pairs).zip(weights) {
+                *color = blended(*near, *far, *weight);
+            }
+            let opaque = self
+                .colors
+                .iter()
+                .fold(255, |least, color| least & color[3])
+                == 255;
+            if opaque && tint == [255; 4] {
+                span.copy_from_slice(&self.colors);
+            } else {
+                for (pixel, color) in span.iter_mut().zip(&self.colors) {
+                    blend(pixel, tinted(*color, tint));
+                }
             }
         }
     }

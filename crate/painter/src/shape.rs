@@ -5,8 +5,6 @@
 //! a left one, so that neighbours neither leave gaps nor blend twice. Corners are snapped to 1/256
 //! of a pixel and the edges are evaluated in integers, so this is exact.
 
-use std::hash::{Hash, Hasher};
-
 use egui::Color32;
 
 /// Steps in a pixel to which corners are snapped, as on GPUs.
@@ -15,7 +13,7 @@ pub const STEPS: i32 = 256;
 const FAR: f32 = (1 << 21) as f32;
 
 /// The pixels x0 ≤ x < x1, y0 ≤ y < y1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
     /// First column.
     pub x0: i32,
@@ -39,6 +37,15 @@ impl Area {
         }
     }
 
+    /// A number for another number and this.
+    pub fn number(self, before: u64) -> u64 {
+        let rows = joined([self.y0 as u32, self.y1 as u32]);
+        mixed(
+            mixed(before, joined([self.x0 as u32, self.x1 as u32])),
+            rows,
+        )
+    }
+
     /// Whether there is no pixel in it.
     #[must_use]
     pub fn is_empty(self) -> bool {
@@ -57,24 +64,38 @@ pub struct Corner {
     pub tint: Color32,
 }
 
-impl Hash for Corner {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.position.hash(state);
-        self.texel.map(f32::to_bits).hash(state);
-        self.tint.hash(state);
-    }
-}
-
 impl Corner {
     /// A corner at a position in pixels; `None` if a coordinate is not a number.
     pub fn new(position: [f32; 2], texel: [f32; 2], tint: Color32) -> Option<Self> {
         let defined = position.iter().chain(&texel).all(|c| !c.is_nan());
         defined.then(|| Self {
-            position: position.map(|c| (c.clamp(-FAR, FAR) * STEPS as f32).round() as i32),
+            position: position
+                .map(|c| (c.clamp(-FAR, FAR) * STEPS as f32).round_ties_even() as i32),
             texel,
             tint,
         })
     }
+
+    /// A number for another number and this.
+    pub fn number(&self, before: u64) -> u64 {
+        let words = [
+            joined(self.position.map(|c| c as u32)),
+            joined(self.texel.map(f32::to_bits)),
+            u64::from(u32::from_le_bytes(self.tint.to_array())),
+        ];
+        words.into_iter().fold(before, mixed)
+    }
+}
+
+/// A number for two numbers in order. The first is already well spread.
+pub fn mixed(a: u64, b: u64) -> u64 {
+    // An odd multiplier (2⁶⁴ over the golden ratio) loses nothing and carries low bits up.
+    (a.rotate_left(5) ^ b).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
+/// A number for two halves.
+fn joined([a, b]: [u32; 2]) -> u64 {
+    u64::from(a) << 32 | u64::from(b)
 }
 
 /// The first pixel whose centre is not before a position in steps.
@@ -287,6 +308,20 @@ pub fn bounds(corners: &[Corner; 3]) -> Area {
     }
 }
 
+/// The least and the greatest texture coordinates at some corners.
+pub fn texels(corners: &[Corner]) -> [[f32; 2]; 2] {
+    // No corner is NaN. As wasm, `f32::min` is a call, comparisons are not.
+    let lower = |a: f32, b: f32| if b < a { b } else { a };
+    let higher = |a: f32, b: f32| if b > a { b } else { a };
+    let ends = [[f32::INFINITY; 2], [f32::NEG_INFINITY; 2]];
+    corners.iter().fold(ends, |[least, most], corner| {
+        [
+            [0, 1].map(|axis| lower(least[axis], corner.texel[axis])),
+            [0, 1].map(|axis| higher(most[axis], corner.texel[axis])),
+        ]
+    })
+}
+
 /// The texels that a shape shows.
 pub struct Showing {
     /// Of the whole shape: the least and the greatest coordinates.
@@ -300,10 +335,7 @@ impl Showing {
     pub fn triangle(corners: &[Corner; 3]) -> Self {
         let [a, b, c] = corners.map(|corner| corner.texel);
         Self {
-            all: [
-                [0, 1].map(|axis| a[axis].min(b[axis]).min(c[axis])),
-                [0, 1].map(|axis| a[axis].max(b[axis]).max(c[axis])),
-            ],
+            all: texels(corners),
             at: (a != b || a != c)
                 .then(|| Triangle::new(corners))
                 .flatten()

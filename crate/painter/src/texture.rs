@@ -1,6 +1,5 @@
 //! The textures that egui has given out: the font atlas and the app's pictures.
 
-use std::collections::HashMap;
 use std::ops::Range;
 
 use egui::{
@@ -18,7 +17,8 @@ const ROUNDING: f32 = 1.0 / 512.0;
 #[derive(Debug)]
 pub struct Texture {
     size: [usize; 2],
-    texels: Vec<Color32>,
+    /// Red, green, blue, alpha in rows from the top.
+    texels: Vec<[u8; 4]>,
     options: TextureOptions,
     /// For every block, in rows, the time of its last change.
     changed: Vec<u64>,
@@ -41,7 +41,7 @@ impl Texture {
             size: image.size,
             options: delta.options,
             changed: vec![now; image.size[0].div_ceil(BLOCK) * image.size[1].div_ceil(BLOCK)],
-            texels: image.pixels,
+            texels: image.pixels.iter().map(Color32::to_array).collect(),
         }
     }
 
@@ -56,7 +56,11 @@ impl Texture {
         for y in 0..height {
             let from = y * image.size[0];
             let to = (top + y) * self.size[0] + left;
-            self.texels[to..to + width].copy_from_slice(&image.pixels[from..from + width]);
+            let row = image.pixels[from..from + width].iter();
+            let texels = self.texels[to..to + width].iter_mut();
+            texels
+                .zip(row)
+                .for_each(|(texel, new)| *texel = new.to_array());
         }
         let columns = self.size[0].div_ceil(BLOCK);
         for y in top / BLOCK..(top + height).div_ceil(BLOCK) {
@@ -128,7 +132,7 @@ impl Texture {
             };
         }
         // Weights in 1/256, as GPUs have them. Rounding makes samples at texel centres exact.
-        let fixed = ((at - 0.5) * 256.0).round() as i64;
+        let fixed = ((at - 0.5) * 256.0).round_ties_even() as i64;
         let near = wrap(fixed >> 8);
         let weight = (fixed & 255) as u32;
         Tap {
@@ -146,63 +150,46 @@ impl Texture {
     #[inline]
     pub fn sample(&self, column: Tap, row: Tap) -> [u8; 4] {
         let near = row.near * self.size[0];
-        let texel = |index: usize| self.texels[index].to_array();
         if column.weight == 0 && row.weight == 0 {
-            return texel(near + column.near);
+            return self.texels[near + column.near];
         }
         let far = row.far * self.size[0];
-        let across = |row: usize| {
-            let [near, far] = [column.near, column.far].map(|x| Mix::of(self.texels[row + x]));
-            near.with(far, column.weight)
+        let [own, its] = [256 - row.weight, row.weight].map(|weight| weight as u16);
+        let down = |x: usize| -> [u16; 4] {
+            let [near, far] = [near, far].map(|row| self.texels[row + x].map(u16::from));
+            std::array::from_fn(|c| near[c] * own + far[c] * its)
         };
-        across(near).with(across(far), row.weight).rounded()
+        let (left, right) = (down(column.near), down(column.far));
+        std::array::from_fn(|c| blended(left[c], right[c], column.weight as u16))
     }
 
-    /// The texels of some columns at a place between two rows.
-    pub fn between(&self, row: Tap, columns: Range<usize>, between: &mut Vec<Mix>) {
-        let [near, far] = [row.near, row.far].map(|y| &self.row(y)[columns.clone()]);
+    /// The channels of the texels of some columns at a place between two rows, 256 times as large.
+    pub fn between(&self, row: Tap, columns: Range<usize>, between: &mut Vec<u16>) {
+        let [near, far] =
+            [row.near, row.far].map(|y| self.row(y)[columns.clone()].as_flattened().iter());
+        let [own, its] = [256 - row.weight, row.weight].map(|weight| weight as u16);
+        let blend = |(near, far): (&u8, &u8)| u16::from(*near) * own + u16::from(*far) * its;
         between.clear();
-        let pairs = near.iter().zip(far);
-        between.extend(pairs.map(|(near, far)| Mix::of(*near).with(Mix::of(*far), row.weight)));
+        between.extend(near.zip(far).map(blend));
     }
 
     /// The texels of a row.
-    pub fn row(&self, y: usize) -> &[Color32] {
+    pub fn row(&self, y: usize) -> &[[u8; 4]] {
         &self.texels[y * self.size[0]..(y + 1) * self.size[0]]
     }
 }
 
-/// A texel, or what lies between texels: channels 0 and 2 in the halves of one number, 1 and 3 in those of another, so that
-/// two are blended at a time. Each blend makes them 256 times as large; there is room for two.
-#[derive(Clone, Copy, Debug)]
-pub struct Mix([u64; 2]);
-
-impl Mix {
-    #[inline]
-    fn of(texel: Color32) -> Self {
-        let [a, b, c, d] = texel.to_array().map(u64::from);
-        Self([a | c << 32, b | d << 32])
-    }
-
-    /// What lies between this and another, nearer to the other the larger the weight, 0 … 256.
-    #[inline]
-    pub fn with(self, other: Self, weight: u32) -> Self {
-        let (own, its) = (u64::from(256 - weight), u64::from(weight));
-        Self(std::array::from_fn(|i| self.0[i] * own + other.0[i] * its))
-    }
-
-    /// The channels after two blends.
-    #[inline]
-    pub fn rounded(self) -> [u8; 4] {
-        let [even, odd] = self.0.map(|pair| (pair + 0x8000_0000_8000) >> 16);
-        [even, odd, even >> 32, odd >> 32].map(|channel| channel as u8)
-    }
+/// What lies between two channels that are 256 times as large, nearer to the second the larger the weight, 0 … 256.
+#[inline]
+pub fn blended(near: u16, far: u16, weight: u16) -> u8 {
+    let [near, far, weight] = [near, far, weight].map(u32::from);
+    ((near * (256 - weight) + far * weight + (1 << 15)) >> 16) as u8
 }
 
-/// All textures in use.
+/// All textures in use. They are few, and what is asked for most, the font, came first.
 #[derive(Debug, Default)]
 pub struct Textures {
-    textures: HashMap<TextureId, Texture>,
+    textures: Vec<(TextureId, Texture)>,
     /// Counts the changes.
     now: u64,
 }
@@ -213,15 +200,14 @@ impl Textures {
         for (id, images) in delta.set.drain() {
             for image in images {
                 self.now += 1;
-                match image.pos {
-                    Some(position) => {
-                        if let Some(texture) = self.textures.get_mut(&id) {
-                            texture.patch(&image, position, self.now);
-                        }
+                let known = self.textures.iter_mut().find(|(known, _)| *known == id);
+                match (known, image.pos) {
+                    (Some((_, texture)), Some(position)) => {
+                        texture.patch(&image, position, self.now);
                     }
-                    None => {
-                        self.textures.insert(id, Texture::new(image, self.now));
-                    }
+                    (None, Some(_)) => {}
+                    (Some((_, texture)), None) => *texture = Texture::new(image, self.now),
+                    (None, None) => self.textures.push((id, Texture::new(image, self.now))),
                 }
             }
         }
@@ -230,15 +216,14 @@ impl Textures {
     /// Forgets textures that are no longer used.
     pub fn free(&mut self, delta: &mut TexturesDelta) {
         for id in delta.free.drain() {
-            self.textures.remove(&id);
+            self.textures.retain(|(known, _)| *known != id);
         }
     }
 
     /// A texture that has texels.
     pub fn get(&self, id: TextureId) -> Option<&Texture> {
-        self.textures
-            .get(&id)
-            .filter(|texture| !texture.texels.is_empty())
+        let (_, texture) = self.textures.iter().find(|(known, _)| *known == id)?;
+        (!texture.texels.is_empty()).then_some(texture)
     }
 }
 
@@ -300,9 +285,19 @@ mod tests {
                 std::array::from_fn(|_| if round < 20 { 255 } else { byte() })
             });
             let [across, down] = [byte(), byte()].map(u32::from);
-            let [a, b, c, d] =
-                texels.map(|[r, g, b, a]| Mix::of(Color32::from_rgba_premultiplied(r, g, b, a)));
-            let mixed = a.with(b, across).with(c.with(d, across), down).rounded();
+            let color = |[r, g, b, a]: [u8; 4]| Color32::from_rgba_premultiplied(r, g, b, a);
+            let image = ColorImage::new([2, 2], texels.map(color).to_vec());
+            let texture = Texture::new(ImageDelta::full(image, TextureOptions::LINEAR), 1);
+            let [column, row] = [across, down].map(|weight| Tap {
+                near: 0,
+                far: 1,
+                weight,
+            });
+            let mixed = texture.sample(column, row);
+            let mut between = Vec::new();
+            texture.between(row, 0..2, &mut between);
+            let along = |c: usize| blended(between[c], between[4 + c], across as u16);
+            assert_eq!(std::array::from_fn(along), mixed);
             for channel in 0..4 {
                 let [a, b, c, d] = texels.map(|texel| u32::from(texel[channel]));
                 let top = a * (256 - across) + b * across;

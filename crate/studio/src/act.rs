@@ -1,6 +1,6 @@
 //! Carrying out what the user asked for.
 
-use crate::app::{App, Dialog, Tab, once};
+use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::intake::Taken;
 use crate::lab::Lesson;
@@ -216,7 +216,6 @@ impl App {
                 }
             }
         }
-        once(ctx);
     }
 
     fn open_lab(&mut self, lesson: Lesson) {

@@ -134,7 +134,7 @@ pub struct App {
 const REST: f32 = 0.4;
 
 /// Has the window drawn again, once: what egui is asked for at once it draws twice.
-pub(crate) fn once(ctx: &Context) {
+fn once(ctx: &Context) {
     ctx.request_repaint_after_secs(1e-3);
 }
 
@@ -299,7 +299,8 @@ impl App {
         for answer in answers {
             answer();
         }
-        let mut waits = vec![self.work.wait(now)];
+        // What is to be written while frames are dear is written with the next one, which comes soon.
+        let mut waits = vec![self.work.wait(now).filter(|_| !self.is_short_of_time())];
         if !self.lab.is_open() {
             waits.push(self.renderer.wait(now));
         }
@@ -400,12 +401,20 @@ impl App {
         self.keys(&ctx, &mut commands);
         crate::layout::show(self, ui, &mut commands);
         let now = platform::now(&ctx);
+        let acts = !commands.is_empty();
         for command in commands {
             self.carry_out(&ctx, command, now);
         }
         self.work.settle(now);
         // Workers need not wait for this frame to be drawn.
         self.trace(&ctx, now);
+        let dear = self.is_short_of_time();
+        platform::set_frames_dear(dear);
+        match (acts, dear) {
+            (true, true) => ctx.request_repaint(),
+            (true, false) => once(&ctx),
+            (false, _) => {}
+        }
     }
 }
 

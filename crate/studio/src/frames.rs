@@ -5,6 +5,9 @@
 //! `requestAnimationFrame` is replaced: what asks for a frame gets it when there may be something to draw, that is when
 //! egui has asked for it or one of the events came that eframe listens to, else a few times a second ([`QUIET`]), for
 //! what is told to nobody else, such as another colour scheme of the system.
+//!
+//! egui draws twice more after each event, to let things settle. Where each frame keeps the tracer waiting, these come
+//! [`PACE`] apart, unless a pointer is at work ([`LIVELY`]).
 
 use js_sys::{Function, Reflect};
 use std::cell::RefCell;
@@ -15,17 +18,27 @@ use wasm_bindgen::prelude::*;
 /// Milliseconds between frames while nothing happens.
 const QUIET: f64 = 250.0;
 
+/// Milliseconds between frames for what egui wants at once, while frames are dear.
+const PACE: f64 = 100.0;
+
+/// Milliseconds after an event of a pointer in which they count as cheap: scrolling and dragging must stay smooth.
+const LIVELY: f64 = 500.0;
+
 /// Frames that are given without delay once something happens: egui and eframe often want another after the first.
 const TOGETHER: u32 = 3;
 
 /// Given frames that can still be cancelled, more than anyone waits for.
 const GIVEN: usize = 8;
 
-/// What people and the browser do to a page.
+/// What people and the browser do to a page, …
 const EVENTS: &str = "beforeinput blur compositionend compositionstart compositionupdate copy cut dragend dragenter \
-    dragleave dragover drop focus gesturechange gestureend gesturestart hashchange input keydown keyup load \
-    mousedown mouseleave mousemove mouseup pagehide pageshow paste pointercancel pointerdown pointerleave \
-    pointermove pointerup popstate resize scroll touchcancel touchend touchmove touchstart visibilitychange wheel";
+    dragleave dragover drop focus hashchange input keydown load pagehide pageshow paste popstate resize scroll \
+    visibilitychange";
+/// … with a pointer, …
+const POINTER: &str = "gesturechange gestureend gesturestart mousedown mouseleave mousemove mouseup pointercancel \
+    pointerdown pointerleave pointermove pointerup touchcancel touchend touchmove touchstart wheel";
+/// … and what is of no haste.
+const LATER: &str = "keyup";
 
 thread_local! {
     static FRAMES: RefCell<Option<Frames>> = const { RefCell::new(None) };
@@ -48,6 +61,14 @@ struct Frames {
     due: f64,
     /// When those who wait get theirs whatever happens.
     latest: f64,
+    /// Whether each frame keeps the tracer waiting, …
+    dear: bool,
+    /// … but for this time.
+    lively: f64,
+    /// When egui last began to draw.
+    drawn: f64,
+    /// Whether a frame was given that has not come yet.
+    coming: bool,
     /// The timer that wakes the page, and when.
     timer: Option<(i32, f64)>,
     on_timer: Closure<dyn FnMut()>,
@@ -77,12 +98,20 @@ pub fn rest() {
         // A window whose functions cannot be replaced goes on as it was.
         let _ = Reflect::set(&window, &name.into(), &function);
     }
-    let on_event = Closure::<dyn FnMut()>::new(|| wake(Duration::ZERO)).into_js_value();
-    for event in EVENTS.split_whitespace() {
-        // Before anyone who might keep it to himself. One that is missed is drawn a little later.
-        let listener = on_event.unchecked_ref();
-        let _ = window.add_event_listener_with_callback_and_bool(event, listener, true);
-    }
+    let listen = |events: &str, act: fn(&mut Frames)| {
+        let listener = Closure::<dyn FnMut()>::new(move || with(act)).into_js_value();
+        for event in events.split_whitespace() {
+            // Before anyone who might keep it to himself. One that is missed is drawn a little later.
+            let listener = listener.unchecked_ref();
+            let _ = window.add_event_listener_with_callback_and_bool(event, listener, true);
+        }
+    };
+    listen(EVENTS, Frames::happened);
+    listen(POINTER, |frames| {
+        frames.lively = frames.now() + LIVELY;
+        frames.happened();
+    });
+    listen(LATER, |frames| frames.want(Duration::ZERO));
     let on_timer = Closure::new(|| {
         with(|frames| {
             frames.timer = None;
@@ -99,6 +128,10 @@ pub fn rest() {
         left: TOGETHER,
         due: f64::INFINITY,
         latest: f64::INFINITY,
+        dear: false,
+        lively: f64::NEG_INFINITY,
+        drawn: f64::NEG_INFINITY,
+        coming: false,
         timer: None,
         on_timer,
     }));
@@ -106,25 +139,25 @@ pub fn rest() {
 
 /// Has frames given when this egui wants them.
 pub fn watch(context: &egui::Context) {
-    context.set_repaint_observer(|info| wake(info.delay));
+    context.set_repaint_observer(|info| with(|frames| frames.want(info.delay)));
 }
 
 /// egui begins to draw: what it wanted before that does not count any more, as eframe sees it, too.
 pub fn begun() {
-    with(|frames| frames.due = f64::INFINITY);
+    with(|frames| {
+        frames.due = f64::INFINITY;
+        frames.drawn = frames.now();
+    });
 }
 
-/// A frame is wanted so soon.
-fn wake(delay: Duration) {
+/// Says whether each frame keeps the tracer waiting from now on.
+pub fn dear(dear: bool) {
     with(|frames| {
-        if delay.is_zero() {
-            frames.left = TOGETHER;
-        } else {
-            // Not a moment before eframe finds that it is time.
-            let due = frames.now() + 1000.0 * delay.as_secs_f64() + 1.0;
-            frames.due = frames.due.min(due);
+        if dear && !frames.dear && frames.left > 0 && frames.now() >= frames.lively {
+            frames.left = 0;
+            frames.due = frames.due.min(frames.drawn + PACE);
         }
-        frames.look();
+        frames.dear = dear;
     });
 }
 
@@ -139,8 +172,34 @@ impl Frames {
             .map_or(0.0, |performance| performance.now())
     }
 
+    /// egui wants a frame so soon.
+    fn want(&mut self, delay: Duration) {
+        let now = self.now();
+        if !delay.is_zero() {
+            // Not a moment before eframe finds that it is time.
+            self.due = self.due.min(now + 1000.0 * delay.as_secs_f64() + 1.0);
+        } else if self.dear && now >= self.lively {
+            self.due = self.due.min(now.max(self.drawn + PACE));
+        } else {
+            self.left = TOGETHER;
+        }
+        self.look();
+    }
+
+    /// Something happened that may be seen at once.
+    fn happened(&mut self) {
+        let now = self.now();
+        if !self.dear || now < self.lively {
+            self.left = TOGETHER;
+        } else if !self.coming {
+            self.due = self.due.min(now);
+        }
+        self.look();
+    }
+
     /// Someone asks for a frame. Gives the number of the request.
     fn ask(&mut self, callback: Function) -> i32 {
+        self.coming = false;
         self.number = self.number.wrapping_add(1);
         self.held.push_back((self.number, callback));
         self.latest = self.latest.min(self.now() + QUIET);
@@ -167,6 +226,7 @@ impl Frames {
         if self.left > 0 || next <= now {
             self.left = self.left.saturating_sub(1);
             self.latest = f64::INFINITY;
+            self.coming = true;
             if self.due <= now {
                 self.due = f64::INFINITY;
             }

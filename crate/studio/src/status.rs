@@ -79,6 +79,7 @@ pub fn show(
         let bar = Rect::from_min_size(strip.min, vec2(width, 2.0));
         ui.painter().rect_filled(bar, 0.0, palette.accent);
     }
+    // What is there only at times counts always: egui draws twice more where it finds a button at a new place.
     ui.horizontal_centered(|ui| {
         ui.add_space(12.0);
         ui.label(
@@ -92,6 +93,8 @@ pub fn show(
                     .color(palette.weak)
                     .size(13.0),
             );
+        } else {
+            ui.skip_ahead_auto_ids(1);
         }
         let quiet = |text: &str| {
             Button::new(RichText::new(text).size(13.0).color(palette.accent))
@@ -111,6 +114,8 @@ pub fn show(
             if again.clicked() {
                 commands.push(Command::Again);
             }
+        } else {
+            ui.skip_ahead_auto_ids(1);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(12.0);

@@ -25,6 +25,9 @@ pub fn stopwatch() -> f64 {
     unix_time() / 1000.0
 }
 
+/// Says whether each frame keeps the tracer waiting.
+pub fn set_frames_dear(_dear: bool) {}
+
 /// Milliseconds since 1970.
 #[must_use]
 pub fn unix_time() -> f64 {

@@ -28,6 +28,11 @@ pub fn stopwatch() -> f64 {
         / 1000.0
 }
 
+/// Says whether each frame keeps the tracer waiting.
+pub fn set_frames_dear(dear: bool) {
+    crate::frames::dear(dear);
+}
+
 /// Milliseconds since 1970.
 #[must_use]
 pub fn unix_time() -> f64 {

@@ -182,7 +182,7 @@ impl Tray {
             // Another work that was just opened is not being written.
             let quiet = if self.seen.is_some() { QUIET } else { 0.0 };
             self.seen = Some(seen);
-            self.due = Some(now + quiet);
+            self.due = (Order::of(session) != self.order).then_some(now + quiet);
         }
         if self.due.is_some_and(|due| now >= due) {
             self.due = None;
