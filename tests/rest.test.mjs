@@ -1,7 +1,7 @@
 // A page at rest: the browser is asked for few frames, and for one at once when something happens.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { launch } from './page.mjs';
+import { example, launch } from './page.mjs';
 
 let browser;
 let sinew;
@@ -72,5 +72,37 @@ test('whoever asks for a frame gets it, unless he takes that back', async () => 
     return came;
   });
   assert.deepEqual(came, ['first', 'last']);
+  assert.deepEqual(sinew.troubles, []);
+});
+
+test('where each frame keeps the tracer waiting, few are drawn for what can wait, and one at once for the rest', async () => {
+  await sinew.resize(1400, 1400);
+  const told = await sinew.page.evaluate(async (text) => {
+    const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+    sinew.load(text);
+    for (let wait = 0; wait < 500 && sinew.status().phase !== 'tracing'; wait++) await pause(10);
+    // The pointer that was last here is forgotten.
+    await pause(800);
+    const before = globalThis.asked;
+    const end = performance.now() + 1000;
+    while (performance.now() < end) {
+      globalThis.dispatchEvent(new KeyboardEvent('keyup', { key: 'Shift' }));
+      await pause(5);
+    }
+    const paced = globalThis.asked - before;
+    let atOnce = false;
+    // A frame may be on its way already.
+    for (let attempt = 0; attempt < 20 && !atOnce; attempt++) {
+      await pause(37);
+      const before = globalThis.asked;
+      globalThis.dispatchEvent(new KeyboardEvent('keydown', { key: 'Shift' }));
+      atOnce = globalThis.asked > before;
+    }
+    return { paced, atOnce, phase: sinew.status().phase };
+  }, (await example('seahorse')).replace(/^shoot$/m, ''));
+  assert.equal(told.phase, 'tracing');
+  // One in 100 ms, and those of the workers; at 60 Hz there would be 60, and 20 on a slow machine.
+  assert.ok(told.paced >= 2 && told.paced <= 16, `${told.paced} frames in a second`);
+  assert.ok(told.atOnce);
   assert.deepEqual(sinew.troubles, []);
 });

@@ -65,8 +65,8 @@ struct Frames {
     dear: bool,
     /// … but for this time.
     lively: f64,
-    /// When egui last began to draw.
-    drawn: f64,
+    /// When the last frame was given.
+    last: f64,
     /// Whether a frame was given that has not come yet.
     coming: bool,
     /// The timer that wakes the page, and when.
@@ -130,7 +130,7 @@ pub fn rest() {
         latest: f64::INFINITY,
         dear: false,
         lively: f64::NEG_INFINITY,
-        drawn: f64::NEG_INFINITY,
+        last: f64::NEG_INFINITY,
         coming: false,
         timer: None,
         on_timer,
@@ -144,10 +144,7 @@ pub fn watch(context: &egui::Context) {
 
 /// egui begins to draw: what it wanted before that does not count any more, as eframe sees it, too.
 pub fn begun() {
-    with(|frames| {
-        frames.due = f64::INFINITY;
-        frames.drawn = frames.now();
-    });
+    with(|frames| frames.due = f64::INFINITY);
 }
 
 /// Says whether each frame keeps the tracer waiting from now on.
@@ -155,7 +152,7 @@ pub fn dear(dear: bool) {
     with(|frames| {
         if dear && !frames.dear && frames.left > 0 && frames.now() >= frames.lively {
             frames.left = 0;
-            frames.due = frames.due.min(frames.drawn + PACE);
+            frames.due = frames.due.min(frames.last + PACE);
         }
         frames.dear = dear;
     });
@@ -179,7 +176,7 @@ impl Frames {
             // Not a moment before eframe finds that it is time.
             self.due = self.due.min(now + 1000.0 * delay.as_secs_f64() + 1.0);
         } else if self.dear && now >= self.lively {
-            self.due = self.due.min(now.max(self.drawn + PACE));
+            self.due = self.due.min(now.max(self.last + PACE));
         } else {
             self.left = TOGETHER;
         }
@@ -226,6 +223,7 @@ impl Frames {
         if self.left > 0 || next <= now {
             self.left = self.left.saturating_sub(1);
             self.latest = f64::INFINITY;
+            self.last = now;
             self.coming = true;
             if self.due <= now {
                 self.due = f64::INFINITY;
