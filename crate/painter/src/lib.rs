@@ -464,6 +464,28 @@ mod tests {
     }
 
     #[test]
+    fn a_patch_of_a_small_picture_is_seen() {
+        let mut window = Window::new();
+        let picture = egui::ColorImage::filled([60, 60], Color32::RED);
+        let mut texture = window
+            .context
+            .load_texture("picture", picture, TextureOptions::LINEAR);
+        let id = texture.id();
+        let show = |ui: &mut Ui| {
+            // In the corners of four tiles.
+            let place = Rect::from_min_size(pos2(40.0, 40.0), vec2(60.0, 60.0));
+            let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter().image(id, place, all, Color32::WHITE);
+        };
+        window.frame(1.0, Vec::new(), show);
+        assert!(window.frame(1.0, Vec::new(), show).is_empty());
+        let blue = egui::ColorImage::filled([1, 1], Color32::BLUE);
+        texture.set_partial([59, 59], blue, TextureOptions::LINEAR);
+        // Compares with a window that is drawn anew.
+        assert!(!window.frame(1.0, Vec::new(), show).is_empty());
+    }
+
+    #[test]
     fn shapes_are_cut_off_at_their_clip() {
         let mut window = Window::new();
         let clip = Rect::from_min_max(pos2(10.4, 20.0), pos2(30.6, 40.0));

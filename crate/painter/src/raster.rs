@@ -457,6 +457,44 @@ mod tests {
     }
 
     #[test]
+    fn enlarged_pictures_are_tinted_and_blended() {
+        let ground = Color32::from_rgb(10, 90, 200);
+        let mut number = numbers(5, 256.0);
+        for opaque in [true, false] {
+            let texels = (0..12 * 9).map(|_| {
+                let [red, green, blue, alpha] = [(); 4].map(|()| number() as u8);
+                let alpha = if opaque { 255 } else { alpha };
+                Color32::from_rgba_unmultiplied(red, green, blue, alpha)
+            });
+            let image = ColorImage::new([12, 9], texels.collect());
+            with_texture(image, TextureOptions::LINEAR, |texture| {
+                let shaded = Color32::from_rgba_premultiplied(200, 100, 50, 220);
+                for tint in [Color32::WHITE, shaded] {
+                    let at = |x, y, u, v| Corner::new([x, y], [u, v], tint).unwrap();
+                    let corners = [
+                        at(2.0, 3.0, 0.0, 0.0),
+                        at(34.0, 3.0, 12.0, 0.0),
+                        at(2.0, 30.0, 0.0, 9.0),
+                        at(34.0, 30.0, 12.0, 9.0),
+                    ];
+                    let quad = Quad::new(corners).unwrap();
+                    let mut drawn = sheet(40, 40);
+                    drawn.clear(drawn.area(), ground);
+                    drawn.quad(&quad, texture, drawn.area());
+                    for (x, y) in (3..30).flat_map(|y| (2..34).map(move |x| (x, y))) {
+                        let [column, row] = [(0, x), (1, y)]
+                            .map(|(axis, at)| texture.tap(axis, quad.texel(axis, at), true));
+                        let mut pixel = ground.to_array();
+                        let color = texture.sample(column, row);
+                        blend(&mut pixel, tinted(color, tint.to_array()));
+                        assert_eq!(drawn.span(y, x, x + 1)[0], pixel, "{x} {y}");
+                    }
+                }
+            });
+        }
+    }
+
+    #[test]
     fn a_picture_of_any_scale_shows_its_samples() {
         let mut number = numbers(11, 256.0);
         let texels = (0..12 * 9).map(|_| {
