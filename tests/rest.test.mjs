@@ -8,6 +8,8 @@ let sinew;
 before(async () => {
   browser = await launch('none');
   const count = () => {
+    // One worker, so that a picture takes long on any machine.
+    Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => 1 });
     globalThis.asked = 0;
     const request = globalThis.requestAnimationFrame;
     globalThis.requestAnimationFrame = (callback) => {
