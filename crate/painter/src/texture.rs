@@ -45,7 +45,8 @@ impl Texture {
         }
     }
 
-    /// Writes a patch; what of it lies outside the texture is left out.
+    /// Writes a patch; what of it lies outside the texture is left out. Where it is what was there, nothing has changed: a
+    /// picture that is traced more finely has the same background.
     fn patch(&mut self, delta: &ImageDelta, [left, top]: [usize; 2], now: u64) {
         let ImageData::Color(image) = &delta.image;
         let width = image.size[0].min(self.size[0].saturating_sub(left));
@@ -53,22 +54,38 @@ impl Texture {
         if width == 0 || height == 0 {
             return;
         }
+        let columns = self.size[0].div_ceil(BLOCK);
         for y in 0..height {
             let from = y * image.size[0];
             let to = (top + y) * self.size[0] + left;
-            let row = image.pixels[from..from + width].iter();
-            let texels = self.texels[to..to + width].iter_mut();
-            texels
-                .zip(row)
-                .for_each(|(texel, new)| *texel = new.to_array());
-        }
-        let columns = self.size[0].div_ceil(BLOCK);
-        for y in top / BLOCK..(top + height).div_ceil(BLOCK) {
-            for x in left / BLOCK..(left + width).div_ceil(BLOCK) {
-                self.changed[y * columns + x] = now;
+            let row = &image.pixels[from..from + width];
+            let texels = &mut self.texels[to..to + width];
+            let first = (top + y) / BLOCK * columns;
+            let mut x = 0;
+            while x < width {
+                let block = (left + x) / BLOCK;
+                let end = width.min((block + 1) * BLOCK - left);
+                let pairs = texels[x..end].iter_mut().zip(&row[x..end]);
+                // Without a branch for each texel.
+                let apart = pairs.fold(0, |apart, (texel, new)| {
+                    let before = u32::from_ne_bytes(*texel);
+                    *texel = new.to_array();
+                    apart | before ^ u32::from_ne_bytes(*texel)
+                });
+                if apart != 0 {
+                    self.changed[first + block] = now;
+                }
+                x = end;
             }
         }
-        self.options = delta.options;
+    }
+
+    /// From now on it is shown so.
+    fn set_options(&mut self, options: TextureOptions, now: u64) {
+        if self.options != options {
+            self.options = options;
+            self.changed.fill(now);
+        }
     }
 
     /// Width and height in texels.
@@ -203,10 +220,17 @@ impl Textures {
                 let known = self.textures.iter_mut().find(|(known, _)| *known == id);
                 match (known, image.pos) {
                     (Some((_, texture)), Some(position)) => {
+                        texture.set_options(image.options, self.now);
                         texture.patch(&image, position, self.now);
                     }
                     (None, Some(_)) => {}
-                    (Some((_, texture)), None) => *texture = Texture::new(image, self.now),
+                    (Some((_, texture)), None) => {
+                        if texture.size == image.image.size() && texture.options == image.options {
+                            texture.patch(&image, [0; 2], self.now);
+                        } else {
+                            *texture = Texture::new(image, self.now);
+                        }
+                    }
                     (None, None) => self.textures.push((id, Texture::new(image, self.now))),
                 }
             }
@@ -351,5 +375,34 @@ mod tests {
         // A sample at 191.6 also reads the texel 192, which is in the changed block.
         assert_eq!(texture.changed([180.0, 80.0], [191.6, 90.0]), 2);
         assert_eq!(texture.changed([180.0, 80.0], [191.5, 90.0]), 1);
+    }
+    #[test]
+    fn a_picture_or_patch_changes_only_the_blocks_in_which_it_differs() {
+        let id = TextureId::Managed(7);
+        let mut textures = Textures::default();
+        let mut set = |image: ColorImage, pos, options| {
+            let mut delta = TexturesDelta::default();
+            let image = match pos {
+                Some(pos) => ImageDelta::partial(pos, image, options),
+                None => ImageDelta::full(image, options),
+            };
+            delta.push(id, image);
+            textures.set(&mut delta);
+            let texture = textures.get(id).unwrap();
+            [[10.0; 2], [80.0, 10.0], [130.0, 80.0]].map(|at| texture.changed(at, at))
+        };
+        let linear = TextureOptions::LINEAR;
+        let dot = |x, y| grey([140, 100], move |u, v| if (u, v) == (x, y) { 9 } else { 0 });
+        assert_eq!(set(dot(80, 63), None, linear), [1; 3]);
+        assert_eq!(set(dot(80, 63), None, linear), [1; 3]);
+        assert_eq!(set(dot(80, 62), None, linear), [1, 3, 1]);
+        // Over the corners of four blocks, only in the last of which something differs.
+        let patch = grey([10, 10], |x, y| if (x, y) == (9, 9) { 5 } else { 0 });
+        let changed = set(patch.clone(), Some([120, 60]), linear);
+        assert_eq!(changed, [1, 3, 4]);
+        assert_eq!(set(patch, Some([120, 60]), linear), [1, 3, 4]);
+        let same = grey([1, 1], |_, _| 0);
+        assert_eq!(set(same, Some([0, 0]), TextureOptions::NEAREST), [6; 3]);
+        assert_eq!(set(grey([140, 101], |_, _| 0), None, linear), [7; 3]);
     }
 }

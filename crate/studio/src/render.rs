@@ -307,7 +307,8 @@ impl Renderer {
             return;
         };
         let size = image.size.map(|side| side as usize);
-        let pixels = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
+        // All of it is opaque.
+        let pixels = ColorImage::from_rgba_premultiplied(size, &image.rgba);
         match &mut self.texture {
             Some(texture) => texture.set(pixels, TextureOptions::LINEAR),
             None => {
@@ -321,7 +322,7 @@ impl Renderer {
             return;
         };
         let size = [tile.width as usize, tile.height as usize];
-        let pixels = ColorImage::from_rgba_unmultiplied(size, &picture::cut(image, tile));
+        let pixels = ColorImage::from_rgba_premultiplied(size, &picture::cut(image, tile));
         texture.set_partial(
             [tile.x as usize, tile.y as usize],
             pixels,

@@ -1,4 +1,5 @@
 //! Rectangles of pixels, and the samples taken in them.
+use crate::picture::PACKET_SIZE;
 use crate::sample::Sample;
 use crate::tile::Tile;
 use std::ops::Range;
@@ -19,6 +20,17 @@ impl From<Tile> for Area {
             top: tile.y,
             right: tile.x.saturating_add(tile.width),
             bottom: tile.y.saturating_add(tile.height),
+        }
+    }
+}
+
+impl From<Area> for Tile {
+    fn from(area: Area) -> Self {
+        Self {
+            x: area.left,
+            y: area.top,
+            width: area.right - area.left,
+            height: area.bottom - area.top,
         }
     }
 }
@@ -89,6 +101,30 @@ impl Area {
                 bottom: (j + 1) * height,
             })
         })
+    }
+
+    /// The packets of an area in a picture of `size` pixels, which are refined together.
+    pub fn packets(self, size: [u32; 2]) -> Self {
+        let [across, down] = PACKET_SIZE;
+        Self {
+            left: self.left / across * across,
+            top: self.top / down * down,
+            right: self.right.min(size[0]).next_multiple_of(across),
+            bottom: self.bottom.min(size[1]).next_multiple_of(down),
+        }
+    }
+
+    /// The pixels whose first samples are needed to make an area smooth in a picture of `size` pixels: those of the packets in
+    /// it and of all around them.
+    pub fn around(self, size: [u32; 2]) -> Self {
+        let packets = self.packets(size);
+        let [across, down] = PACKET_SIZE;
+        Self {
+            left: packets.left.saturating_sub(across),
+            top: packets.top.saturating_sub(down),
+            right: (packets.right + across).min(size[0]).max(self.right),
+            bottom: (packets.bottom + down).min(size[1]).max(self.bottom),
+        }
     }
 
     /// Row by row.

@@ -71,6 +71,7 @@ mod digger;
 mod flesh;
 pub mod hard;
 mod hierarchy;
+mod known;
 mod lanes;
 mod lens;
 mod map;
@@ -102,6 +103,7 @@ pub mod tile;
 mod unit;
 mod walk;
 
+pub use known::{Known, around};
 pub use picture::{Hit, Picture, Stats};
 pub use ray::Ray;
 pub use reference::Reference;

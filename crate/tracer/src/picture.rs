@@ -170,7 +170,7 @@ impl Picture {
     ) -> Option<Vec<u8>> {
         let area = Area::from(tile);
         if pass == Pass::Smooth && self.samples > 1 {
-            let samples = self.sample(self.around(area), 1, cache, stop, work, stats)?;
+            let samples = self.sample(area.around(self.size), 1, cache, stop, work, stats)?;
             cache.keep(&samples, area);
             return self.smooth(area, samples, stop, work, stats);
         }
@@ -206,30 +206,6 @@ impl Picture {
         SampleCache::new(self.size, if self.samples > 1 { room } else { 0 })
     }
 
-    /// The packets of an area, whose pixels are refined together.
-    fn whole(&self, area: Area) -> Area {
-        let [across, down] = PACKET_SIZE;
-        Area {
-            left: area.left / across * across,
-            top: area.top / down * down,
-            right: area.right.min(self.size[0]).next_multiple_of(across),
-            bottom: area.bottom.min(self.size[1]).next_multiple_of(down),
-        }
-    }
-
-    /// The pixels whose first samples [`Picture::smooth`] needs for an area: those of the packets in it and of all around
-    /// them.
-    pub(crate) fn around(&self, area: Area) -> Area {
-        let whole = self.whole(area);
-        let [across, down] = PACKET_SIZE;
-        Area {
-            left: whole.left.saturating_sub(across),
-            top: whole.top.saturating_sub(down),
-            right: (whole.right + across).min(self.size[0]).max(area.right),
-            bottom: (whole.bottom + down).min(self.size[1]).max(area.bottom),
-        }
-    }
-
     /// Takes more samples where the first ones, of an area and of what is around it, differ, and writes the area's RGBA bytes.
     pub(crate) fn smooth(
         &self,
@@ -239,7 +215,7 @@ impl Picture {
         work: &mut Workspace,
         stats: &mut Stats,
     ) -> Option<Vec<u8>> {
-        self.refine(self.whole(area), &mut samples, stop, work, stats)?;
+        self.refine(area.packets(self.size), &mut samples, stop, work, stats)?;
         let mut pixels = Pixels::new(self, area, stop)?;
         pixels.show::<1>(area, &samples);
         Some(pixels.rgba)

@@ -70,7 +70,7 @@ pub fn render_picture(
         stats += shared_out(&tiles, threads, sample, keep, &step);
         let refine = |tile, work: &mut Workspace, stats: &mut Stats| {
             let area = Area::from(tile);
-            let around = picture.around(area);
+            let around = area.around(picture.size);
             let samples = picture.sample(around, 1, &cache, &|| false, work, stats)?;
             picture.smooth(area, samples, &|| false, work, stats)
         };

@@ -4,7 +4,9 @@
 //! smooth needs those of its neighbours' edges; and a picture is shown with one ray a pixel before it is made smooth. Without
 //! a cache all of these are traced again. What comes out of a cache is what would be traced, bit for bit, as packets are
 //! always traced whole.
+use crate::Tile;
 use crate::area::{Area, Samples};
+use crate::known::Known;
 use crate::picture::{PACKET_SIZE, SQUARE};
 use crate::sample::Sample;
 use std::ops::Range;
@@ -69,6 +71,36 @@ impl SampleCache {
     /// The pixels of the picture that it is for.
     pub(crate) fn size(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// The samples of a tile, if all are known and one of them hit something: others are taken again as soon as told.
+    #[must_use]
+    pub fn tell(&self, tile: Tile) -> Option<Known> {
+        let area = Area::from(tile);
+        let [right, bottom] = self.size;
+        if area.is_empty() || area.right > right || area.bottom > bottom {
+            return None;
+        }
+        let mut samples = Samples::new(area);
+        for square in area.blocks([SQUARE; 2]) {
+            self.square(square)
+                .filter(|known| known.tell_all(square, &mut samples))?;
+        }
+        let hit = |y| {
+            let row = samples.part(y, area.left..area.right);
+            row.iter().any(|sample| sample.depth < f32::INFINITY)
+        };
+        (area.top..area.bottom)
+            .any(hit)
+            .then(|| Known::new(tile, &samples))
+    }
+
+    /// Keeps what another cache for this picture told, as far as it is whole packets. Nothing is done with what does not lie
+    /// in the picture.
+    pub fn learn(&mut self, known: &Known) {
+        if let Some(samples) = known.samples(self.size) {
+            self.keep(&samples, known.tile().into());
+        }
     }
 
     /// Keeps the samples of the packets that lie in their area, as far as packets lie in the picture. Of squares that are

@@ -279,6 +279,66 @@ fn samples_that_are_kept_change_nothing_and_are_taken_once() {
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
+fn samples_that_another_took_are_as_good_as_ones_own() {
+    let size = [135, 91];
+    let mut scene = mixed(1);
+    // A wall, so that something is seen everywhere.
+    let wall = Shape::Sphere {
+        center: DVec3::new(0.0, 0.0, -60.0),
+        radius: 55.0,
+    };
+    scene.elements.push(element(wall, 3));
+    let picture = Picture::new(&scene, size);
+    let tiles = tiles(size[0], size[1], 64);
+    let trace = |tile, pass, cache: &mut SampleCache| {
+        let mut stats = Stats::default();
+        let part = picture.trace_with(tile, pass, cache, &|| false, &mut stats);
+        (part.unwrap(), stats.primary_rays)
+    };
+    let first = &mut picture.cache(100);
+    for tile in &tiles {
+        assert_eq!(first.tell(*tile), None, "nothing is known yet");
+    }
+    for tile in &tiles {
+        let _ = trace(*tile, Pass::Full, first);
+    }
+    let told: Vec<_> = tiles.iter().filter_map(|tile| first.tell(*tile)).collect();
+    assert_eq!(told.len(), tiles.len());
+    for known in &told {
+        let tile = known.tile();
+        // Only what is needed for this tile, in pieces.
+        let wanted = tracer::around(tile, size);
+        let second = &mut picture.cache(100);
+        let parts = told.iter().filter_map(|other| other.part(wanted));
+        parts.for_each(|part| second.learn(&part));
+        assert_eq!(second.tell(tile).as_ref(), Some(known));
+        let (own, rays) = trace(tile, Pass::Smooth, first);
+        let (its, again) = trace(tile, Pass::Smooth, second);
+        assert!(own == its, "{tile:?}");
+        assert_eq!(rays, again, "{tile:?}");
+        assert_eq!(known.part(tile).as_ref(), Some(known));
+    }
+    // Where nothing is seen there is nothing to tell.
+    let mut nothing = empty();
+    nothing.settings.samples = 3;
+    let empty = Picture::new(&nothing, size);
+    let cache = &mut empty.cache(100);
+    let _ = empty.trace_with(
+        tiles[0],
+        Pass::Full,
+        cache,
+        &|| false,
+        &mut Stats::default(),
+    );
+    assert_eq!((cache.squares(), cache.tell(tiles[0])), (1, None));
+    // Pieces of another picture.
+    let cache = &mut Picture::new(&scene, [100, 60]).cache(100);
+    told.iter().for_each(|known| cache.learn(known));
+    assert!(told.iter().all(|known| cache.tell(known.tile()).is_none()));
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
 fn the_edges_of_a_full_pass_foretell_what_the_smooth_one_takes() {
     let (mut scene, size) = (mixed(1), [135, 91]);
     let all = u64::from(size[0] * size[1]);

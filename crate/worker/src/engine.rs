@@ -4,7 +4,7 @@ use crate::errors::Errors;
 use crate::{Answer, Kind, Order, Request};
 use scene::Scene;
 use std::collections::VecDeque;
-use tracer::{Pass, Picture, SampleCache, Stats, Tile};
+use tracer::{Known, Pass, Picture, SampleCache, Stats, Tile};
 
 /// Rows of a tile that are traced in one step, but for the coarse pass, which is quick: between two steps the
 /// worker sees what has come in.
@@ -12,7 +12,7 @@ const ROWS: u32 = 32;
 
 /// Squares of pixels of which a worker keeps the first samples, 100 kB each: those of a picture that fits a screen
 /// (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some samples twice.
-const KEPT: usize = 272;
+pub const KEPT: usize = 272;
 
 /// The picture a worker is busy with, and the tiles it still has to trace.
 #[derive(Default)]
@@ -22,7 +22,11 @@ pub struct Engine {
     new: bool,
     /// Set until the scene has been prepared.
     wanted: Option<(Box<Scene>, [u32; 2], Kind)>,
+    /// Whether other workers want to hear of first samples.
+    shared: bool,
     prepared: Option<Prepared>,
+    /// First samples that others took, as long as they are not kept with our own.
+    learnt: Vec<Known>,
     queue: VecDeque<Order>,
     begun: Option<Begun>,
 }
@@ -94,9 +98,16 @@ impl Engine {
                 scene,
                 size,
                 kind,
+                shared,
             } => {
                 self.forget(generation);
                 self.wanted = Some((scene, size, kind));
+                self.shared = shared;
+            }
+            Request::Learn { generation, known } => {
+                if generation == self.generation {
+                    self.learnt.extend(known);
+                }
             }
             Request::Trace(orders) => {
                 let present = |order: &Order| order.generation == self.generation;
@@ -154,6 +165,7 @@ impl Engine {
         let (part, pass) = (tile.part(), tile.order.pass);
         let traced = match prepared {
             Prepared::Colours(picture, cache) => {
+                self.learnt.drain(..).for_each(|known| cache.learn(&known));
                 picture.trace_with(part, pass, cache, stop, &mut tile.stats)
             }
             Prepared::Errors(errors) => errors.trace(part, stop),
@@ -168,11 +180,18 @@ impl Engine {
             self.begun = Some(tile);
             return Step::Part;
         }
+        let known = match prepared {
+            Prepared::Colours(_, cache) if self.shared && pass == Pass::Full => {
+                cache.tell(tile.order.tile)
+            }
+            _ => None,
+        };
         Step::Answer(Answer::Traced {
             order: tile.order,
             pixels: tile.pixels,
             stats: tile.stats,
             seconds: tile.seconds,
+            known,
         })
     }
 
@@ -181,6 +200,7 @@ impl Engine {
         self.new = true;
         self.wanted = None;
         self.prepared = None;
+        self.learnt.clear();
         self.queue.clear();
         self.begun = None;
     }
@@ -196,6 +216,7 @@ mod tests {
             scene: Box::default(),
             size: [8, 8],
             kind: Kind::Colours,
+            shared: false,
         }
     }
 
@@ -269,6 +290,7 @@ mod tests {
                 scene: scene.clone(),
                 size,
                 kind: Kind::Colours,
+                shared: false,
             });
             engine.accept(Request::Trace(vec![Order {
                 generation: 1,
@@ -321,6 +343,7 @@ mod tests {
                 scene: scene.clone(),
                 size,
                 kind: Kind::Colours,
+                shared: false,
             });
             let both = orders(Pass::Full).chain(orders(Pass::Smooth));
             engine.accept(Request::Trace(both.collect()));
@@ -342,6 +365,105 @@ mod tests {
             }
             assert!(rays > 15_000 && rays + 15_000 < alone.primary_rays);
         }
+    }
+
+    /// A ball before a wall, which are made smooth.
+    fn ball() -> Box<Scene> {
+        let text = "surface flesh diffuse Coral, blobbiness -2\nsurface wall diffuse White\nsphere flesh 1 <0.2 -0.3 0>\nsphere wall 50 <0 0 -60>";
+        let file = rats::File {
+            name: "main.rat".into(),
+            text: text.into(),
+        };
+        let mut scene = rats::compile(&rats::Project { files: vec![file] }).scene;
+        scene.settings.samples = 3;
+        Box::new(scene)
+    }
+
+    #[test]
+    fn what_another_worker_tells_is_not_traced_again() {
+        let size = [150, 100];
+        let tiles = tracer::tile::tiles(size[0], size[1], 64);
+        let worker = |shared| {
+            let mut engine = Engine::default();
+            engine.accept(Request::Begin {
+                generation: 1,
+                scene: ball(),
+                size,
+                kind: Kind::Colours,
+                shared,
+            });
+            engine
+        };
+        let work = |engine: &mut Engine, pass| {
+            let order = |&tile| Order {
+                generation: 1,
+                tile,
+                pass,
+            };
+            engine.accept(Request::Trace(tiles.iter().map(order).collect()));
+            let (mut told, mut seen, mut rays) = (Vec::new(), Vec::new(), 0);
+            while !engine.is_idle() {
+                if let Step::Answer(Answer::Traced {
+                    pixels,
+                    stats,
+                    known,
+                    ..
+                }) = step(engine)
+                {
+                    seen.push(pixels);
+                    told.extend(known);
+                    rays += stats.primary_rays;
+                }
+            }
+            (told, seen, rays)
+        };
+        let mut first = worker(true);
+        let (told, _, all) = work(&mut first, Pass::Full);
+        assert_eq!((told.len(), all), (tiles.len(), 15_000));
+        let (none, smooth, rays) = work(&mut first, Pass::Smooth);
+        assert_eq!(none, []);
+        let learn = |generation, known: &[Known]| Request::Learn {
+            generation,
+            known: known.to_vec(),
+        };
+        // Before the scene is prepared, as a worker that starts late is told.
+        let mut second = worker(true);
+        second.accept(learn(1, &told));
+        assert_eq!(
+            work(&mut second, Pass::Smooth),
+            (Vec::new(), smooth.clone(), rays)
+        );
+        // What belongs to another picture is no use.
+        let mut third = worker(false);
+        third.accept(learn(2, &told));
+        let (none, same, alone) = work(&mut third, Pass::Smooth);
+        assert!(same == smooth && none.is_empty());
+        assert!(alone >= rays + all, "{alone} {rays}");
+        let mut fourth = worker(false);
+        assert_eq!(work(&mut fourth, Pass::Full).0, []);
+        // Nonsense does no harm.
+        let mut fifth = worker(false);
+        let nonsense = |tile: Tile, bytes: Vec<u8>| -> Known {
+            crate::message::unpack(&crate::message::pack(&(tile, bytes)).unwrap()).unwrap()
+        };
+        let far = Tile {
+            x: u32::MAX - 3,
+            ..tiles[0]
+        };
+        let huge = Tile {
+            width: u32::MAX,
+            height: u32::MAX,
+            ..tiles[0]
+        };
+        let flat = Tile {
+            height: 0,
+            ..tiles[0]
+        };
+        let bad = [tiles[0], far, huge, flat].map(|tile| nonsense(tile, vec![7; 24]));
+        assert!(bad.iter().all(|known| known.part(known.tile()).is_none()));
+        fifth.accept(learn(1, &bad));
+        let (_, same, again) = work(&mut fifth, Pass::Smooth);
+        assert!(same == smooth && again == alone);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use scene::Scene;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use tracer::{Pass, Stats, Tile};
+use tracer::{Known, Pass, Stats, Tile};
 
 /// One tile to trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -38,6 +38,15 @@ pub enum Request {
         size: [u32; 2],
         /// What of it is wanted.
         kind: Kind,
+        /// Whether others trace it, too, and want to hear of the first samples that were taken.
+        shared: bool,
+    },
+    /// Others took these first samples, which are not to be taken again.
+    Learn {
+        /// The picture.
+        generation: u64,
+        /// What they know.
+        known: Vec<Known>,
     },
     /// Trace these tiles after those already queued.
     Trace(Vec<Order>),
@@ -78,6 +87,8 @@ pub enum Answer {
         stats: Stats,
         /// Time it took.
         seconds: f64,
+        /// The first samples, if others want to hear of them and there is something to see.
+        known: Option<Known>,
     },
     /// The worker cannot go on, for this reason. The page replaces it.
     Failed(String),

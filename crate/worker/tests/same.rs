@@ -47,6 +47,7 @@ fn traced(scene: &Scene, size: [u32; 2], pass: Pass, tiles: &[Tile]) -> Vec<(Vec
         scene: Box::new(scene.clone()),
         size,
         kind: Kind::Colours,
+        shared: false,
     });
     let order = |&tile| Order {
         generation: 1,

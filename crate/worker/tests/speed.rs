@@ -35,6 +35,7 @@ fn picture(scene: &Scene, size: [u32; 2]) -> (f64, usize) {
         scene: Box::new(scene.clone()),
         size,
         kind: Kind::Colours,
+        shared: false,
     });
     let order = |tile| Order {
         generation: 1,

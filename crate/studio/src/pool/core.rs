@@ -1,10 +1,13 @@
 //! What the pools of web workers and of threads share: the scheduler, the scene, finished tiles.
 
+use super::hearsay::Hearsay;
 use super::run::Plan;
 use super::scheduler::{Command, Scheduler};
-use super::{Job, Progress, TileDone};
+use super::{Job, Progress, TILE, TileDone};
+use tracer::{Known, Pass};
+use worker::engine::KEPT;
 use worker::message::pack;
-use worker::{Answer, Request};
+use worker::{Answer, Kind, Request};
 
 /// Something that runs workers. What they answer goes to [`Core::answers`], together with the index.
 pub trait Workers {
@@ -20,9 +23,11 @@ pub trait Workers {
 pub struct Core<W> {
     pub scheduler: Scheduler,
     pub workers: W,
+    count: usize,
     /// The packed request that begins the present picture.
     begin: Vec<u8>,
     done: Vec<TileDone>,
+    hearsay: Hearsay,
 }
 
 impl<W: Workers> Core<W> {
@@ -30,18 +35,30 @@ impl<W: Workers> Core<W> {
         Self {
             scheduler: Scheduler::new(count),
             workers,
+            count,
             begin: Vec::new(),
             done: Vec::new(),
+            hearsay: Hearsay::default(),
         }
     }
 
     pub fn start(&mut self, job: Job<'_>, now: f64) {
         self.done.clear();
+        self.hearsay.begin(job.size);
+        let tiles: usize = job
+            .size
+            .map(|side| side.div_ceil(TILE) as usize)
+            .iter()
+            .product();
+        // What no worker could keep anyway need not be sent.
+        let kept = tiles <= KEPT && job.kind == Kind::Colours;
+        let shared = kept && !job.small && job.scene.settings.samples > 1 && self.count > 1;
         let plan = Plan {
             generation: job.generation,
             size: job.size,
             samples: job.scene.settings.samples,
             small: job.small,
+            shared,
         };
         self.scheduler.start(plan, now);
         let request = Request::Begin {
@@ -49,6 +66,7 @@ impl<W: Workers> Core<W> {
             scene: Box::new(job.scene.clone()),
             size: job.size,
             kind: job.kind,
+            shared,
         };
         match pack(&request) {
             Ok(bytes) => self.begin = bytes,
@@ -92,9 +110,18 @@ impl<W: Workers> Core<W> {
                 pixels,
                 stats,
                 seconds,
+                known,
             } => {
                 let complete = self.scheduler.complete_passes();
                 let wanted = self.scheduler.traced(index, order, &stats, seconds, now);
+                if order.pass == Pass::Smooth {
+                    self.hearsay.smoothed(index, order.tile);
+                }
+                if let (true, Some(known)) = (wanted, known) {
+                    for (other, known) in self.hearsay.hear(index, known) {
+                        self.teach(other, vec![known]);
+                    }
+                }
                 if let (true, Some(generation)) = (wanted, self.scheduler.generation()) {
                     self.done.push(TileDone {
                         generation,
@@ -133,19 +160,38 @@ impl<W: Workers> Core<W> {
             for command in commands {
                 match command {
                     Command::Restart(index) => {
+                        self.hearsay.forget(index);
                         if let Err(reason) = self.workers.restart(index) {
                             self.scheduler.died(index, &reason, now);
                         }
                     }
-                    Command::End(index) => self.workers.end(index),
+                    Command::End(index) => {
+                        self.hearsay.forget(index);
+                        self.workers.end(index);
+                    }
                     Command::Begin(index) => self.workers.send(index, &self.begin),
-                    Command::Trace(index, orders) => self.send(index, &Request::Trace(orders)),
+                    Command::Trace(index, orders) => {
+                        let smooth = orders.iter().filter(|order| order.pass == Pass::Smooth);
+                        let known = smooth
+                            .flat_map(|order| self.hearsay.tell(index, order.tile))
+                            .collect();
+                        self.teach(index, known);
+                        self.send(index, &Request::Trace(orders));
+                    }
                     Command::Stop(index) => {
                         let generation = self.scheduler.number();
                         self.send(index, &Request::Stop { generation });
                     }
                 }
             }
+        }
+    }
+
+    /// Tells a worker first samples that it did not take.
+    fn teach(&mut self, index: usize, known: Vec<Known>) {
+        if !known.is_empty() {
+            let generation = self.scheduler.number();
+            self.send(index, &Request::Learn { generation, known });
         }
     }
 

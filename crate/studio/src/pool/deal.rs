@@ -120,7 +120,7 @@ impl Run {
                 let share = known.map_or(1.0, |effort| effort as f64 * count as f64 / sum as f64);
                 (usual * share, usual * share)
             }
-            // Another one takes the first samples again.
+            // Another one takes the first samples again if it does not hear of them.
             Pass::Smooth => {
                 let Some((seconds, edges)) = self.full[tile] else {
                     return (usual, 2.0 * usual);
@@ -129,7 +129,8 @@ impl Run {
                 let rays = 2.0 * edges as f64 * f64::from(self.plan.samples).powi(2);
                 let pixels = f64::from(width) * f64::from(height);
                 let own = EDGE_RAY * seconds * rays / pixels.max(1.0);
-                (own, own + seconds)
+                let again = if self.plan.shared { 0.0 } else { seconds };
+                (own, own + again)
             }
         }
     }
@@ -215,6 +216,7 @@ mod tests {
             size,
             samples: 3,
             small: false,
+            shared: false,
         };
         let mut run = Run::new(plan, workers, 0.0);
         run.awake.fill(true);

@@ -10,6 +10,7 @@
 
 mod core;
 mod deal;
+mod hearsay;
 pub mod progress;
 mod run;
 pub mod scheduler;

@@ -25,6 +25,8 @@ pub struct Plan {
     pub samples: u32,
     /// Whether only the last pass is wanted, in one go.
     pub small: bool,
+    /// Whether workers hear of each other's first samples.
+    pub shared: bool,
 }
 
 /// The picture being traced.

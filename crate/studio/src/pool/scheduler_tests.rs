@@ -20,6 +20,7 @@ fn plan(generation: u64) -> Plan {
         size: [256, 192],
         samples: 3,
         small: false,
+        shared: false,
     }
 }
 

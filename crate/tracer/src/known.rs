@@ -1,0 +1,113 @@
+//! First samples that one tracer has taken and another one need not take again.
+//!
+//! Which pixels get more rays depends on the samples around them, so that whoever makes a tile smooth needs those of its
+//! neighbours' edges, and all of its own if another one traced it before. Samples are the same wherever they were taken,
+//! so they may as well be sent.
+use crate::Tile;
+use crate::area::{Area, Samples};
+use crate::sample::Sample;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Bytes of a sample.
+const BYTES: usize = 24;
+
+/// The first samples of all pixels of a rectangle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Known {
+    tile: Tile,
+    /// Row by row; of each the colour, the key, the depth and the cost, least byte first.
+    #[serde(with = "serde_bytes")]
+    bytes: Vec<u8>,
+}
+
+impl Known {
+    pub(crate) fn new(tile: Tile, samples: &Samples) -> Self {
+        let area = Area::from(tile);
+        let mut bytes = Vec::with_capacity(BYTES * (tile.width * tile.height) as usize);
+        for y in area.top..area.bottom {
+            let row = samples.part(y, area.left..area.right);
+            bytes.extend(row.iter().flat_map(|sample| written(sample)));
+        }
+        Self { tile, bytes }
+    }
+
+    /// Which pixels.
+    #[must_use]
+    pub fn tile(&self) -> Tile {
+        self.tile
+    }
+
+    /// What is known of those pixels that lie in another rectangle, too; `None` if none does.
+    #[must_use]
+    pub fn part(&self, tile: Tile) -> Option<Self> {
+        let own = Area::from(self.tile);
+        let part = own.meet(tile.into());
+        if part.is_empty() || !self.is_whole() {
+            return None;
+        }
+        let width = BYTES * self.tile.width as usize;
+        let columns = [part.left, part.right].map(|x| BYTES * (x - own.left) as usize);
+        let rows = (part.top - own.top) as usize..(part.bottom - own.top) as usize;
+        let rows = self
+            .bytes
+            .chunks_exact(width)
+            .take(rows.end)
+            .skip(rows.start);
+        let mut bytes = Vec::with_capacity((columns[1] - columns[0]) * rows.len());
+        rows.for_each(|row| bytes.extend_from_slice(&row[columns[0]..columns[1]]));
+        Some(Self {
+            tile: part.into(),
+            bytes,
+        })
+    }
+
+    /// Whether there are as many samples as pixels: another program may have written them.
+    fn is_whole(&self) -> bool {
+        let pixels = u64::from(self.tile.width) * u64::from(self.tile.height);
+        pixels.checked_mul(BYTES as u64) == Some(self.bytes.len() as u64)
+    }
+
+    /// The samples; `None` if these are not as many as the rectangle has pixels, or if it reaches beyond a picture of this size.
+    pub(crate) fn samples(&self, size: [u32; 2]) -> Option<Samples> {
+        let area = Area::from(self.tile);
+        let inside = !area.is_empty() && area.right <= size[0] && area.bottom <= size[1];
+        if !inside || !self.is_whole() {
+            return None;
+        }
+        let (read, _) = self.bytes.as_chunks::<BYTES>();
+        let mut read = read.iter().map(sample);
+        let mut samples = Samples::new(area);
+        for y in area.top..area.bottom {
+            let row = samples.part_mut(y, area.left..area.right);
+            row.iter_mut()
+                .zip(&mut read)
+                .for_each(|(to, from)| *to = from);
+        }
+        Some(samples)
+    }
+}
+
+fn written(sample: &Sample) -> [u8; BYTES] {
+    let Vec3 { x, y, z } = sample.colour;
+    let [x, y, z, depth, cost] = [x, y, z, sample.depth, sample.cost].map(f32::to_le_bytes);
+    let words = [x, y, z, sample.key.to_le_bytes(), depth, cost];
+    core::array::from_fn(|i| words[i / 4][i % 4])
+}
+
+fn sample(bytes: &[u8; BYTES]) -> Sample {
+    let (words, _) = bytes.as_chunks::<4>();
+    let number = |i: usize| f32::from_le_bytes(words[i]);
+    Sample {
+        colour: Vec3::new(number(0), number(1), number(2)),
+        key: u32::from_le_bytes(words[3]),
+        depth: number(4),
+        cost: number(5),
+    }
+}
+
+/// The pixels whose first samples are needed to make a tile smooth in a picture of `size` pixels: its own and some around it.
+#[must_use]
+pub fn around(tile: Tile, size: [u32; 2]) -> Tile {
+    Area::from(tile).around(size).into()
+}
