@@ -82,6 +82,10 @@ pub struct Picture {
 pub(crate) const SQUARE: u32 = 64;
 /// Side of the blocks of pixels that have one ray at first.
 pub(crate) const BLOCK: u32 = 8;
+/// Rays a block apart hit so far from each other that a beam from all their hits to a light would be wide all along: it
+/// takes up a part of them, so many times as wide. Measured: the coarse pass takes 0.6 of the time that it took with 1 for
+/// hermite-crab and coral-crab, 0.8 for generators; 1.1 for shell-3.
+const SPARSE: f64 = 0.25;
 /// Pixels of a packet.
 pub(crate) const PACKET_SIZE: [u32; 2] = [4, 2];
 
@@ -334,6 +338,7 @@ impl Picture {
                 if seen.something() {
                     let [first, .., last] = &seen.rays;
                     let across = first.direction.distance(last.direction);
+                    let across = if scale > 1 { SPARSE * across } else { across };
                     self.shine(core::slice::from_ref(&seen), across, work, stats);
                     for ((x, y), sample) in pixels.into_iter().zip(&work.samples[0]) {
                         samples.set(x, y, *sample);
