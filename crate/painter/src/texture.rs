@@ -376,6 +376,7 @@ mod tests {
         assert_eq!(texture.changed([180.0, 80.0], [191.6, 90.0]), 2);
         assert_eq!(texture.changed([180.0, 80.0], [191.5, 90.0]), 1);
     }
+
     #[test]
     fn a_picture_or_patch_changes_only_the_blocks_in_which_it_differs() {
         let id = TextureId::Managed(7);

@@ -16,7 +16,8 @@ const BYTES: usize = 24;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Known {
     tile: Tile,
-    /// Row by row; of each the colour, the key, the depth and the cost, least byte first.
+    /// Row by row, or one if all are alike, as those are that see nothing; of each the colour, the key, the depth and the cost,
+    /// least byte first.
     #[serde(with = "serde_bytes")]
     bytes: Vec<u8>,
 }
@@ -24,11 +25,15 @@ pub struct Known {
 impl Known {
     pub(crate) fn new(tile: Tile, samples: &Samples) -> Self {
         let area = Area::from(tile);
-        let mut bytes = Vec::with_capacity(BYTES * (tile.width * tile.height) as usize);
-        for y in area.top..area.bottom {
-            let row = samples.part(y, area.left..area.right);
-            bytes.extend(row.iter().flat_map(|sample| written(sample)));
-        }
+        let rows = || (area.top..area.bottom).map(|y| samples.part(y, area.left..area.right));
+        let first = samples.get(area.left, area.top);
+        let bytes = if rows().flatten().all(|sample| sample == first) {
+            written(first).to_vec()
+        } else {
+            let mut bytes = Vec::with_capacity(BYTES * tile.width as usize * tile.height as usize);
+            rows().for_each(|row| bytes.extend(row.iter().flat_map(written)));
+            bytes
+        };
         Self { tile, bytes }
     }
 
@@ -46,6 +51,12 @@ impl Known {
         if part.is_empty() || !self.is_whole() {
             return None;
         }
+        if self.bytes.len() == BYTES {
+            return Some(Self {
+                tile: part.into(),
+                bytes: self.bytes.clone(),
+            });
+        }
         let width = BYTES * self.tile.width as usize;
         let columns = [part.left, part.right].map(|x| BYTES * (x - own.left) as usize);
         let rows = (part.top - own.top) as usize..(part.bottom - own.top) as usize;
@@ -62,13 +73,15 @@ impl Known {
         })
     }
 
-    /// Whether there are as many samples as pixels: another program may have written them.
+    /// Whether there is one sample or as many as pixels: another program may have written them.
     fn is_whole(&self) -> bool {
         let pixels = u64::from(self.tile.width) * u64::from(self.tile.height);
-        pixels.checked_mul(BYTES as u64) == Some(self.bytes.len() as u64)
+        let (one, all) = (BYTES as u64, pixels.checked_mul(BYTES as u64));
+        [Some(one), all].contains(&Some(self.bytes.len() as u64))
     }
 
-    /// The samples; `None` if these are not as many as the rectangle has pixels, or if it reaches beyond a picture of this size.
+    /// The samples; `None` if they are neither one nor as many as the rectangle has pixels, or if it reaches beyond a picture of
+    /// this size.
     pub(crate) fn samples(&self, size: [u32; 2]) -> Option<Samples> {
         let area = Area::from(self.tile);
         let inside = !area.is_empty() && area.right <= size[0] && area.bottom <= size[1];
@@ -76,7 +89,7 @@ impl Known {
             return None;
         }
         let (read, _) = self.bytes.as_chunks::<BYTES>();
-        let mut read = read.iter().map(sample);
+        let mut read = read.iter().map(sample).cycle();
         let mut samples = Samples::new(area);
         for y in area.top..area.bottom {
             let row = samples.part_mut(y, area.left..area.right);

@@ -73,7 +73,7 @@ impl SampleCache {
         self.size
     }
 
-    /// The samples of a tile, if all are known and one of them hit something: others are taken again as soon as told.
+    /// The samples of a tile, if all are known.
     #[must_use]
     pub fn tell(&self, tile: Tile) -> Option<Known> {
         let area = Area::from(tile);
@@ -86,17 +86,11 @@ impl SampleCache {
             self.square(square)
                 .filter(|known| known.tell_all(square, &mut samples))?;
         }
-        let hit = |y| {
-            let row = samples.part(y, area.left..area.right);
-            row.iter().any(|sample| sample.depth < f32::INFINITY)
-        };
-        (area.top..area.bottom)
-            .any(hit)
-            .then(|| Known::new(tile, &samples))
+        Some(Known::new(tile, &samples))
     }
 
-    /// Keeps what another cache for this picture told, as far as it is whole packets. Nothing is done with what does not lie
-    /// in the picture.
+    /// Keeps what another cache for this picture told, as far as it is whole packets: of each square that it lies in anything of,
+    /// which takes that square's room. Nothing is done with what does not lie in the picture.
     pub fn learn(&mut self, known: &Known) {
         if let Some(samples) = known.samples(self.size) {
             self.keep(&samples, known.tile().into());

@@ -281,13 +281,7 @@ fn samples_that_are_kept_change_nothing_and_are_taken_once() {
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 fn samples_that_another_took_are_as_good_as_ones_own() {
     let size = [135, 91];
-    let mut scene = mixed(1);
-    // A wall, so that something is seen everywhere.
-    let wall = Shape::Sphere {
-        center: DVec3::new(0.0, 0.0, -60.0),
-        radius: 55.0,
-    };
-    scene.elements.push(element(wall, 3));
+    let scene = mixed(1);
     let picture = Picture::new(&scene, size);
     let tiles = tiles(size[0], size[1], 64);
     let trace = |tile, pass, cache: &mut SampleCache| {
@@ -318,23 +312,31 @@ fn samples_that_another_took_are_as_good_as_ones_own() {
         assert_eq!(rays, again, "{tile:?}");
         assert_eq!(known.part(tile).as_ref(), Some(known));
     }
-    // Where nothing is seen there is nothing to tell.
-    let mut nothing = empty();
-    nothing.settings.samples = 3;
-    let empty = Picture::new(&nothing, size);
-    let cache = &mut empty.cache(100);
-    let _ = empty.trace_with(
-        tiles[0],
-        Pass::Full,
-        cache,
-        &|| false,
-        &mut Stats::default(),
-    );
-    assert_eq!((cache.squares(), cache.tell(tiles[0])), (1, None));
-    // Pieces of another picture.
+    // Pieces of a picture that is larger.
     let cache = &mut Picture::new(&scene, [100, 60]).cache(100);
     told.iter().for_each(|known| cache.learn(known));
-    assert!(told.iter().all(|known| cache.tell(known.tile()).is_none()));
+    assert_eq!(cache.squares(), 0);
+    // Only whole packets are kept: 4×2 pixels.
+    let odd = |x, y, width, height| Tile {
+        x,
+        y,
+        width,
+        height,
+    };
+    let learn = |tile| {
+        let mut cache = picture.cache(100);
+        let part = |known: &tracer::Known| known.part(tile);
+        told.iter()
+            .filter_map(part)
+            .for_each(|part| cache.learn(&part));
+        cache
+    };
+    assert_eq!(learn(odd(13, 9, 6, 2)).tell(odd(13, 9, 6, 2)), None);
+    let cache = learn(odd(13, 9, 12, 5));
+    assert!(cache.tell(odd(16, 10, 8, 4)).is_some());
+    for one in [odd(13, 10, 4, 2), odd(16, 9, 4, 2), odd(16, 10, 9, 2)] {
+        assert_eq!(cache.tell(one), None, "{one:?}");
+    }
 }
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]

@@ -11,8 +11,9 @@ use tracer::{Known, Pass, Picture, SampleCache, Stats, Tile};
 const ROWS: u32 = 32;
 
 /// Squares of pixels of which a worker keeps the first samples, 100 kB each: those of a picture that fits a screen
-/// (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some samples twice.
-pub const KEPT: usize = 272;
+/// (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some samples twice. In pictures of more squares
+/// workers do not hear of each other's, as the page would have to keep them all.
+pub const KEPT: usize = 320;
 
 /// The picture a worker is busy with, and the tiles it still has to trace.
 #[derive(Default)]
@@ -25,7 +26,7 @@ pub struct Engine {
     /// Whether other workers want to hear of first samples.
     shared: bool,
     prepared: Option<Prepared>,
-    /// First samples that others took, as long as they are not kept with our own.
+    /// First samples that others took, at most [`KEPT`], until the scene is prepared.
     learnt: Vec<Known>,
     queue: VecDeque<Order>,
     begun: Option<Begun>,
@@ -105,8 +106,16 @@ impl Engine {
                 self.shared = shared;
             }
             Request::Learn { generation, known } => {
-                if generation == self.generation {
-                    self.learnt.extend(known);
+                let wanted = self.shared && generation == self.generation;
+                match &mut self.prepared {
+                    Some(Prepared::Colours(_, cache)) if wanted => {
+                        known.iter().for_each(|known| cache.learn(known));
+                    }
+                    None if wanted => {
+                        let room = KEPT.saturating_sub(self.learnt.len());
+                        self.learnt.extend(known.into_iter().take(room));
+                    }
+                    _ => {}
                 }
             }
             Request::Trace(orders) => {
@@ -146,7 +155,8 @@ impl Engine {
             self.prepared = Some(match kind {
                 Kind::Colours => {
                     let picture = Picture::new(&scene, size);
-                    let cache = picture.cache(KEPT);
+                    let mut cache = picture.cache(KEPT);
+                    self.learnt.drain(..).for_each(|known| cache.learn(&known));
                     Prepared::Colours(Box::new(picture), cache)
                 }
                 Kind::Errors => Prepared::Errors(Box::new(Errors::new(&scene, size))),
@@ -165,7 +175,6 @@ impl Engine {
         let (part, pass) = (tile.part(), tile.order.pass);
         let traced = match prepared {
             Prepared::Colours(picture, cache) => {
-                self.learnt.drain(..).for_each(|known| cache.learn(&known));
                 picture.trace_with(part, pass, cache, stop, &mut tile.stats)
             }
             Prepared::Errors(errors) => errors.trace(part, stop),
@@ -367,9 +376,9 @@ mod tests {
         }
     }
 
-    /// A ball before a wall, which are made smooth.
+    /// A ball that is made smooth.
     fn ball() -> Box<Scene> {
-        let text = "surface flesh diffuse Coral, blobbiness -2\nsurface wall diffuse White\nsphere flesh 1 <0.2 -0.3 0>\nsphere wall 50 <0 0 -60>";
+        let text = "surface flesh diffuse Coral, blobbiness -2\nsphere flesh 1 <0.2 -0.3 0>";
         let file = rats::File {
             name: "main.rat".into(),
             text: text.into(),
@@ -434,15 +443,18 @@ mod tests {
             (Vec::new(), smooth.clone(), rays)
         );
         // What belongs to another picture is no use.
-        let mut third = worker(false);
+        let mut third = worker(true);
         third.accept(learn(2, &told));
-        let (none, same, alone) = work(&mut third, Pass::Smooth);
-        assert!(same == smooth && none.is_empty());
+        let (_, same, alone) = work(&mut third, Pass::Smooth);
+        assert!(same == smooth);
         assert!(alone >= rays + all, "{alone} {rays}");
+        // Who shares nothing neither tells nor listens.
         let mut fourth = worker(false);
-        assert_eq!(work(&mut fourth, Pass::Full).0, []);
+        fourth.accept(learn(1, &told));
+        let (none, _, rays) = work(&mut fourth, Pass::Full);
+        assert!(none.is_empty() && rays == all);
         // Nonsense does no harm.
-        let mut fifth = worker(false);
+        let mut fifth = worker(true);
         let nonsense = |tile: Tile, bytes: Vec<u8>| -> Known {
             crate::message::unpack(&crate::message::pack(&(tile, bytes)).unwrap()).unwrap()
         };
@@ -459,7 +471,7 @@ mod tests {
             height: 0,
             ..tiles[0]
         };
-        let bad = [tiles[0], far, huge, flat].map(|tile| nonsense(tile, vec![7; 24]));
+        let bad = [tiles[0], far, huge, flat].map(|tile| nonsense(tile, vec![7; 25]));
         assert!(bad.iter().all(|known| known.part(known.tile()).is_none()));
         fifth.accept(learn(1, &bad));
         let (_, same, again) = work(&mut fifth, Pass::Smooth);

@@ -50,7 +50,7 @@ impl<W: Workers> Core<W> {
             .map(|side| side.div_ceil(TILE) as usize)
             .iter()
             .product();
-        // What no worker could keep anyway need not be sent.
+        // Of more the page would have to keep too much.
         let kept = tiles <= KEPT && job.kind == Kind::Colours;
         let shared = kept && !job.small && job.scene.settings.samples > 1 && self.count > 1;
         let plan = Plan {
@@ -77,6 +77,7 @@ impl<W: Workers> Core<W> {
 
     pub fn cancel(&mut self, now: f64) {
         self.scheduler.cancel(now);
+        self.hearsay = Hearsay::default();
         self.carry_out(now);
     }
 
@@ -95,6 +96,9 @@ impl<W: Workers> Core<W> {
         let mut news = false;
         for answer in answers {
             news |= self.answer(index, answer, now);
+        }
+        if self.scheduler.is_over() {
+            self.hearsay = Hearsay::default();
         }
         self.carry_out(now);
         news
@@ -173,7 +177,7 @@ impl<W: Workers> Core<W> {
                     Command::Trace(index, orders) => {
                         let smooth = orders.iter().filter(|order| order.pass == Pass::Smooth);
                         let known = smooth
-                            .flat_map(|order| self.hearsay.tell(index, order.tile))
+                            .flat_map(|order| self.hearsay.order(index, order.tile))
                             .collect();
                         self.teach(index, known);
                         self.send(index, &Request::Trace(orders));
@@ -197,7 +201,7 @@ impl<W: Workers> Core<W> {
 
     fn send(&mut self, index: usize, request: &Request) {
         // Packing fails only when memory runs out; the worker then misses a message, hangs as far as
-        // the scheduler can see, and is replaced.
+        // the scheduler can see, and is replaced, but for [`Request::Learn`]: then it takes samples again.
         if let Ok(bytes) = pack(request) {
             self.workers.send(index, &bytes);
         }

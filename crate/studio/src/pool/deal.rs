@@ -120,7 +120,7 @@ impl Run {
                 let share = known.map_or(1.0, |effort| effort as f64 * count as f64 / sum as f64);
                 (usual * share, usual * share)
             }
-            // Another one takes the first samples again if it does not hear of them.
+            // Another one takes the first samples again unless it hears of them.
             Pass::Smooth => {
                 let Some((seconds, edges)) = self.full[tile] else {
                     return (usual, 2.0 * usual);
@@ -304,6 +304,32 @@ mod tests {
         let next = run.take(1, true, false).unwrap();
         assert_eq!(next / tiles, 1);
         assert_eq!(run.take(0, true, false).map(|task| task / tiles), Some(2));
+    }
+
+    #[test]
+    fn help_to_make_smooth_is_worth_more_where_samples_are_told() {
+        for shared in [false, true] {
+            let mut run = run([128, 64], 2);
+            run.plan.shared = shared;
+            // Making smooth takes as long as the first samples did.
+            let stats = Stats {
+                field_evaluations: 10,
+                edges: 152,
+                ..Stats::default()
+            };
+            // Both tiles are the first worker's.
+            run.awake[1] = false;
+            for _ in 0..4 {
+                let task = run.take(0, false, false).unwrap();
+                run.done(task, &stats, 1e-3, 0.0);
+            }
+            run.awake[1] = true;
+            let (own, strange) = run.cost(2, 0);
+            assert!((own - 1e-3).abs() < 1e-4, "{own}");
+            assert!((strange - if shared { own } else { own + 1e-3 }).abs() < 1e-9);
+            // With samples taken again both would be done no earlier.
+            assert_eq!(run.take(1, true, false).is_some(), shared);
+        }
     }
 
     #[test]

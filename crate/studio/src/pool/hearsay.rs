@@ -11,7 +11,7 @@ pub struct Hearsay {
     /// The picture's width and height, pixels.
     size: [u32; 2],
     told: Vec<Told>,
-    /// Who has which tile to make smooth.
+    /// Which worker has which tile to make smooth.
     orders: Vec<(usize, Tile)>,
 }
 
@@ -26,25 +26,31 @@ struct Told {
 impl Hearsay {
     /// Of a new picture nothing is known.
     pub fn begin(&mut self, size: [u32; 2]) {
-        self.size = size;
-        self.told.clear();
-        self.orders.clear();
+        *self = Self {
+            size,
+            ..Self::default()
+        };
     }
 
     /// A worker tells the samples of a tile. Gives what of it others wait for.
     pub fn hear(&mut self, worker: usize, known: Known) -> Vec<(usize, Known)> {
         let tile = known.tile();
-        let wanted = |(other, tile): &(usize, Tile)| {
-            let part = || known.part(around(*tile, self.size));
-            (*other != worker).then(part)?.map(|part| (*other, part))
-        };
-        let news = self.orders.iter().filter_map(wanted).collect();
+        let mut to = vec![worker];
+        let mut news = Vec::new();
+        for &(other, ordered) in &self.orders {
+            if other == worker {
+                continue;
+            }
+            if let Some(part) = known.part(around(ordered, self.size)) {
+                news.push((other, part));
+                if ordered == tile {
+                    to.push(other);
+                }
+            }
+        }
         match self.told.iter_mut().find(|told| told.known.tile() == tile) {
-            Some(told) => told.to.push(worker),
-            None => self.told.push(Told {
-                known,
-                to: vec![worker],
-            }),
+            Some(told) => told.to.extend(to),
+            None => self.told.push(Told { known, to }),
         }
         news
     }
@@ -57,21 +63,15 @@ impl Hearsay {
         self.orders.retain(|(other, _)| *other != worker);
     }
 
-    /// A worker has made a tile smooth.
-    pub fn smoothed(&mut self, worker: usize, tile: Tile) {
-        self.orders.retain(|order| *order != (worker, tile));
-    }
-
-    /// What a worker that is to make a tile smooth does not know but should. It is taken as told.
-    pub fn tell(&mut self, worker: usize, tile: Tile) -> Vec<Known> {
+    /// A worker is given a tile to make smooth: what it does not know but should.
+    pub fn order(&mut self, worker: usize, tile: Tile) -> Vec<Known> {
         self.orders.push((worker, tile));
         let wanted = around(tile, self.size);
         let mut unknown = Vec::new();
-        for told in self
-            .told
-            .iter_mut()
-            .filter(|told| !told.to.contains(&worker))
-        {
+        for told in &mut self.told {
+            if told.to.contains(&worker) {
+                continue;
+            }
             unknown.extend(told.known.part(wanted));
             if told.known.tile() == tile {
                 told.to.push(worker);
@@ -79,23 +79,24 @@ impl Hearsay {
         }
         unknown
     }
+
+    /// A worker has made a tile smooth.
+    pub fn smoothed(&mut self, worker: usize, tile: Tile) {
+        self.orders.retain(|order| *order != (worker, tile));
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::Scene;
     use tracer::{Pass, Picture, Stats};
 
     const SIZE: [u32; 2] = [192, 100];
 
-    /// The tiles of a picture that shows something everywhere, from the left, and what is known of them.
+    /// The tiles of a picture, from the left, and what is known of them.
     fn known() -> Vec<(Tile, Known)> {
-        let text = "surface flesh diffuse Coral\nplane flesh <0 0 1> <0 0 -9>";
-        let file = rats::File {
-            name: "main.rat".into(),
-            text: text.into(),
-        };
-        let mut scene = rats::compile(&rats::Project { files: vec![file] }).scene;
+        let mut scene = Scene::default();
         scene.settings.samples = 2;
         let picture = Picture::new(&scene, SIZE);
         let mut cache = picture.cache(100);
@@ -104,9 +105,9 @@ mod tests {
         let mut known = |tile| {
             let mut stats = Stats::default();
             let _ = picture.trace_with(tile, Pass::Full, &mut cache, &|| false, &mut stats);
-            (tile, cache.tell(tile).expect("it shows something"))
+            (tile, cache.tell(tile).expect("it was sampled"))
         };
-        tiles.into_iter().map(|tile| known(tile)).collect()
+        tiles.into_iter().map(known).collect()
     }
 
     fn places(known: &[Known]) -> Vec<[u32; 4]> {
@@ -123,22 +124,23 @@ mod tests {
         hearsay.begin(SIZE);
         // The left column is one worker's, the others another's.
         for (tile, known) in &known {
-            hearsay.hear(usize::from(tile.x > 0), known.clone());
+            let news = hearsay.hear(usize::from(tile.x > 0), known.clone());
+            assert!(news.is_empty(), "nobody waits");
         }
         let [upper, lower, middle, below, ..] = [0, 1, 2, 3, 4, 5].map(|i| known[i].0);
         assert_eq!((upper.x, middle.x), (0, 64));
         // Packets are 4×2 pixels.
         assert_eq!(
-            places(&hearsay.tell(0, upper)),
+            places(&hearsay.order(0, upper)),
             [[64, 0, 4, 64], [64, 64, 4, 2]]
         );
         assert_eq!(
-            places(&hearsay.tell(1, middle)),
+            places(&hearsay.order(1, middle)),
             [[60, 0, 4, 64], [60, 64, 4, 2]]
         );
         // Help: all of the tile, once.
         assert_eq!(
-            places(&hearsay.tell(0, middle)),
+            places(&hearsay.order(0, middle)),
             [
                 [64, 0, 64, 64],
                 [64, 64, 64, 2],
@@ -146,13 +148,41 @@ mod tests {
                 [128, 64, 4, 2]
             ]
         );
-        assert_eq!(places(&hearsay.tell(0, lower)), [[64, 64, 4, 36]]);
+        assert_eq!(places(&hearsay.order(0, lower)), [[64, 64, 4, 36]]);
         // What was told is what it would be told again once it was forgotten.
-        let before = hearsay.tell(1, below);
+        let before = hearsay.order(1, below);
         hearsay.forget(0);
-        assert_eq!(hearsay.tell(1, below), before);
-        assert_eq!(places(&hearsay.tell(0, middle)).len(), 6);
+        assert_eq!(hearsay.order(1, below), before);
+        assert_eq!(places(&hearsay.order(0, middle)).len(), 6);
         hearsay.begin(SIZE);
-        assert!(hearsay.tell(0, middle).is_empty());
+        assert!(hearsay.order(0, middle).is_empty());
+    }
+    #[test]
+    fn a_worker_hears_of_what_is_told_after_its_order() {
+        let known = known();
+        let [upper, lower, middle] = [0, 1, 2].map(|i| known[i].0);
+        let tell = |hearsay: &mut Hearsay, worker, tile: usize| {
+            let news = hearsay.hear(worker, known[tile].1.clone()).into_iter();
+            let (to, news): (Vec<_>, Vec<_>) = news.unzip();
+            (to, places(&news))
+        };
+        let mut hearsay = Hearsay::default();
+        hearsay.begin(SIZE);
+        assert!(hearsay.order(0, upper).is_empty());
+        assert_eq!(tell(&mut hearsay, 0, 1), (vec![], vec![]));
+        assert_eq!(tell(&mut hearsay, 1, 2), (vec![0], vec![[64, 0, 4, 64]]));
+        // All of the tile that it was given, which it then knows.
+        assert_eq!(tell(&mut hearsay, 1, 0), (vec![0], vec![[0, 0, 64, 64]]));
+        let strips = [[64, 0, 4, 64]];
+        assert_eq!(places(&hearsay.order(0, lower)), [[64, 62, 4, 2]]);
+        assert_eq!(places(&hearsay.order(0, upper)), strips);
+        // A tile done again by another one.
+        assert_eq!(tell(&mut hearsay, 2, 2).0, [0, 0, 0]);
+        assert!(!places(&hearsay.order(2, middle)).contains(&[64, 0, 64, 64]));
+        hearsay.smoothed(0, upper);
+        hearsay.forget(2);
+        assert_eq!(tell(&mut hearsay, 1, 2), (vec![0], vec![[64, 62, 4, 2]]));
+        hearsay.smoothed(0, lower);
+        assert_eq!(tell(&mut hearsay, 1, 2), (vec![], vec![]));
     }
 }

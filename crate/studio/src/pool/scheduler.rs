@@ -163,6 +163,12 @@ impl Scheduler {
         self.run.as_ref().map_or(0, Run::complete_passes)
     }
 
+    /// Whether there is no picture, or nothing more will come of the present one.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.run.as_ref().is_none_or(|run| run.ended.is_some())
+    }
+
     /// Workers can be started from now on.
     pub fn launch(&mut self, now: f64) {
         self.launched = true;
