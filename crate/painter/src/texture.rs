@@ -404,6 +404,9 @@ mod tests {
         assert_eq!(set(patch, Some([120, 60]), linear), [1, 3, 4]);
         let same = grey([1, 1], |_, _| 0);
         assert_eq!(set(same, Some([0, 0]), TextureOptions::NEAREST), [6; 3]);
-        assert_eq!(set(grey([140, 101], |_, _| 0), None, linear), [7; 3]);
+        let flat = |height| grey([140, height], |_, _| 0);
+        assert_eq!(set(flat(100), None, TextureOptions::NEAREST)[0], 6);
+        assert_eq!(set(flat(100), None, linear), [8; 3]);
+        assert_eq!(set(flat(101), None, linear), [9; 3]);
     }
 }
