@@ -102,7 +102,7 @@ mod tests {
         let mut cache = picture.cache(100);
         let mut tiles = tracer::tiles(SIZE[0], SIZE[1], 64);
         tiles.sort_by_key(|tile| (tile.x, tile.y));
-        let mut known = |tile| {
+        let known = |tile| {
             let mut stats = Stats::default();
             let _ = picture.trace_with(tile, Pass::Full, &mut cache, &|| false, &mut stats);
             (tile, cache.tell(tile).expect("it was sampled"))
