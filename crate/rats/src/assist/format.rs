@@ -153,12 +153,12 @@ impl Marks {
             let is_pair = glued_equal(items, index);
             match item.datum {
                 Datum::Sign(b'<' | b'>' | b'=' | b'!') if is_pair => {
-                    if glued_sign(items, index).is_none() {
+                    if stands_alone(items, index, index + 1) {
                         self.breathe(tokens, items, index, index + 1);
                     }
                     index += 1;
                 }
-                Datum::Sign(b'<' | b'>') if glued_sign(items, index).is_none() => {
+                Datum::Sign(b'<' | b'>') if stands_alone(items, index, index) => {
                     self.breathe(tokens, items, index, index);
                 }
                 _ => {}
@@ -169,8 +169,12 @@ impl Marks {
 
     /// A space before item `first` and one after item `last`.
     fn breathe(&mut self, tokens: &[Token], items: &[Item], first: usize, last: usize) {
-        // Between `=` and `=` a space would part what belongs together.
-        if glued_equal(items, last) {
+        // Between `=` and `=` a space would part what belongs together, and before `*=` it would make a sign
+        // with space around of what is none now.
+        let next_begins_pair = glued_equal(items, last + 1)
+            && matches!(items[last + 1].datum, Datum::Sign(b'+' | b'*' | b'!'))
+            && glued_sign(items, last + 1).is_some();
+        if glued_equal(items, last) || next_begins_pair {
             return;
         }
         self.at(tokens, items[first].start as usize).before = true;
@@ -182,17 +186,29 @@ const EQUAL: Datum = Datum::Sign(b'=');
 
 /// The sign right before an item, if no space lies between.
 fn glued_sign(items: &[Item], index: usize) -> Option<u8> {
-    let before = items.get(index.checked_sub(1)?)?;
+    let (before, item) = (items.get(index.checked_sub(1)?)?, items.get(index)?);
     match before.datum {
-        Datum::Sign(b')') => None,
-        Datum::Sign(sign) if before.end == items[index].start => Some(sign),
+        // After these a space stands anyway, or means nothing.
+        Datum::Sign(b')' | b',' | b'{' | b'}') => None,
+        Datum::Sign(sign) if before.end == item.start => Some(sign),
         _ => None,
     }
 }
 
+/// Whether no sign stands right before a comparison, nor another comparison right after it.
+fn stands_alone(items: &[Item], first: usize, last: usize) -> bool {
+    let runs_on = || {
+        glued_sign(items, last + 1).is_some()
+            && matches!(items[last + 1].datum, Datum::Sign(b'<' | b'>'))
+    };
+    glued_sign(items, first).is_none() && !runs_on()
+}
+
 /// Whether `=` follows an item without space.
 fn glued_equal(items: &[Item], index: usize) -> bool {
-    let end = items[index].end;
+    let Some(end) = items.get(index).map(|item| item.end) else {
+        return false;
+    };
     items
         .get(index + 1)
         .is_some_and(|next| next.datum == EQUAL && next.start == end)

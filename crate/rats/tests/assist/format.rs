@@ -69,6 +69,23 @@ fn spaces() {
     check("", "");
 }
 
+/// What is laid out is settled, whatever signs run into each other: a space after one must not make others of those behind it.
+#[test]
+fn signs_that_run_into_each_other() {
+    check("var a+=*=b", "var a+=*=b\n");
+    check("var a = 1 ,=b", "var a = 1, = b\n");
+    check("if a<<=b{}", "if a<<=b {}\n");
+    for start in ["var a", "if a", "surface a", "for a", "define f(a"] {
+        // All words of up to four letters.
+        for number in 0..8_usize.pow(4) {
+            let letter = |place: u32| char::from(b"=<>!+*),"[number / 8_usize.pow(place) % 8]);
+            let signs: String = (0..4).map(letter).collect();
+            let once = format(&format!("{start}{signs}b"));
+            assert_eq!(format(&once), once, "{start}{signs}b");
+        }
+    }
+}
+
 /// What we give to read is laid out as we lay it out.
 #[test]
 fn examples_and_library() {
