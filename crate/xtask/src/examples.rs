@@ -1,6 +1,6 @@
 //! The thumbnails of the gallery.
 
-use crate::shell::{PORTABLE, cargo, command, portable, root, run, target};
+use crate::shell::{Build, cargo, command, root, run, target};
 use anyhow::{Context, Result, bail};
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
@@ -19,18 +19,14 @@ pub fn sinew() -> Result<PathBuf> {
         .with_extension(std::env::consts::EXE_EXTENSION))
 }
 
-/// The same built for any processor of its kind, where `.cargo/config.toml` asks for this machine's: it draws the same bits,
-/// later.
-pub fn portable_sinew() -> Result<Option<PathBuf>> {
-    if !cfg!(target_arch = "x86_64") {
-        return Ok(None);
-    }
-    let mut build = cargo(&["build", "--release", "--package", "cli"]);
-    run(build.envs(portable()))?;
-    let program = target().join(PORTABLE).join("release/sinew");
-    Ok(Some(
-        program.with_extension(std::env::consts::EXE_EXTENSION),
-    ))
+/// The same built in another way.
+pub fn sinew_built(build: Build) -> Result<PathBuf> {
+    let mut cargo = cargo(&["build", "--release", "--package", "cli"]);
+    run(cargo.envs(build.settings()))?;
+    Ok(build
+        .target()
+        .join("release/sinew")
+        .with_extension(std::env::consts::EXE_EXTENSION))
 }
 
 /// The datasets of the gallery, in the order of their names.

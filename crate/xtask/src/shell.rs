@@ -22,15 +22,40 @@ pub fn target() -> PathBuf {
         .map_or_else(|| root().join("target"), |dir| root().join(dir))
 }
 
-/// The folder in [`target`] of what is built for any processor of this one's kind.
-pub const PORTABLE: &str = "portable";
+/// A way of building for this machine that is not `.cargo/config.toml`'s.
+#[derive(Clone, Copy, Debug)]
+pub struct Build {
+    /// The folder in [`target`] of what is built so.
+    pub folder: &'static str,
+    /// What the compiler is told.
+    pub flags: &'static str,
+}
 
-/// What to set for cargo to build that, where `.cargo/config.toml` asks for all that this processor can do.
-pub fn portable() -> [(&'static str, std::ffi::OsString); 2] {
-    [
-        ("RUSTFLAGS", "-C target-cpu=x86-64".into()),
-        ("CARGO_TARGET_DIR", target().join(PORTABLE).into()),
-    ]
+/// For any processor of this one's kind, where `.cargo/config.toml` asks for all that this one can do: the same bits, later.
+pub const PORTABLE: Build = Build {
+    folder: "portable",
+    flags: "-C target-cpu=x86-64",
+};
+
+/// For this processor, which may round a product and a sum once instead of twice: other bits, sooner.
+pub const FUSED: Build = Build {
+    folder: "fused",
+    flags: "-C target-cpu=native -C llvm-args=-fp-contract=fast",
+};
+
+impl Build {
+    /// What to set for cargo.
+    pub fn settings(self) -> [(&'static str, std::ffi::OsString); 2] {
+        [
+            ("RUSTFLAGS", self.flags.into()),
+            ("CARGO_TARGET_DIR", self.target().into()),
+        ]
+    }
+
+    /// Where cargo puts what it builds so.
+    pub fn target(self) -> PathBuf {
+        target().join(self.folder)
+    }
 }
 
 /// A command that runs in the root of the repository.

@@ -1,7 +1,7 @@
 //! Pictures against a certified reference: what `crate/tracer/examples/certify.rs` prints.
 
 use super::Piece;
-use crate::shell::{cargo, root, run_and_read};
+use crate::shell::{Build, cargo, root, run_and_read};
 use anyhow::{Result, bail};
 
 /// How many rays are held against the reference.
@@ -9,12 +9,20 @@ const RAYS: &str = "1000000";
 
 /// Runs it. It writes its own tables.
 pub fn measure() -> Result<Piece> {
+    let (command, output) = certify(RAYS, None)?;
+    Ok((
+        Vec::new(),
+        format!("`{command}`:\n\n{}\n\n", output.trim_end()),
+    ))
+}
+
+/// What the certifier, perhaps built in another way, says of so many rays; and the command that it is.
+pub fn certify(rays: &str, build: Option<Build>) -> Result<(String, String)> {
     let example = "crate/tracer/examples/certify.rs";
     if !root().join(example).is_file() {
         bail!("there is no {example}");
     }
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = threads.to_string();
     let options = [
         "run",
         "--release",
@@ -23,14 +31,11 @@ pub fn measure() -> Result<Piece> {
         "--example",
         "certify",
         "--",
-        RAYS,
-        &threads,
+        rays,
     ];
-    let output = run_and_read(&mut cargo(&options))?;
-    let page = format!(
-        "`cargo {}`:\n\n{}\n\n",
-        options[..options.len() - 1].join(" "),
-        output.trim_end()
-    );
-    Ok((Vec::new(), page))
+    let mut command = cargo(&options);
+    command.arg(threads.to_string());
+    command.envs(build.into_iter().flat_map(Build::settings));
+    let output = run_and_read(&mut command)?;
+    Ok((format!("cargo {}", options.join(" ")), output))
 }

@@ -7,6 +7,7 @@
 mod browser;
 mod certify;
 mod fields;
+mod fused;
 mod goal;
 mod memory;
 mod models;
@@ -32,6 +33,8 @@ pub enum Part {
     Speed,
     /// Soft against hard models.
     Models,
+    /// The tracer with fused multiply-adds against that of pictures.
+    Fused,
     /// The tracer as wasm against native.
     Wasm,
     /// The page in a real browser.
@@ -131,6 +134,7 @@ fn title(part: Part) -> &'static str {
     match part {
         Part::Speed => "The tracer, one thread",
         Part::Models => "Soft and hard models",
+        Part::Fused => "With fused multiply-adds",
         Part::Wasm => "The tracer as wasm",
         Part::Browser => "The page in a browser",
         Part::Certify => "Certified",
@@ -144,6 +148,7 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
     let result = match part {
         Part::Speed => peers::measure(),
         Part::Models => models::measure(),
+        Part::Fused => fused::measure().map(|piece| (Vec::new(), piece)),
         Part::Wasm => wasm::measure(),
         Part::Browser => browser::measure(),
         Part::Certify => certify::measure(),

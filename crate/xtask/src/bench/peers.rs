@@ -6,7 +6,7 @@ use super::scenes::{FLAKES, Scenes};
 use super::series::{ROUNDS, Runs, alternate};
 use super::{Piece, ours, povray};
 use crate::examples;
-use crate::shell::find;
+use crate::shell::{PORTABLE, find};
 use anyhow::Result;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -83,7 +83,9 @@ pub fn measure() -> Result<Piece> {
     page += "Ours is built for this machine's processor, as `.cargo/config.toml` says; the columns called portable are of the \
              same program built with `RUSTFLAGS=\"-C target-cpu=x86-64\"`, for any. It draws the same pictures, bit for \
              bit. POV-Ray is what its package brings, as a rule built for any processor, too.\n\n";
-    let portable = examples::portable_sinew()?;
+    let portable = cfg!(target_arch = "x86_64")
+        .then(|| examples::sinew_built(PORTABLE))
+        .transpose()?;
     let mut best = HashMap::new();
     for smooth in [false, true] {
         let programs = (&scenes, portable.as_deref());

@@ -38,7 +38,10 @@ pub fn check() -> Result<String> {
     // `.cargo/config.toml` asks for all that this processor can do.
     if cfg!(target_arch = "x86_64") {
         let mut test = cargo(&same);
-        let output = run_and_read(test.args(["--", "--nocapture"]).envs(shell::portable()))?;
+        let output = run_and_read(
+            test.args(["--", "--nocapture"])
+                .envs(shell::PORTABLE.settings()),
+        )?;
         compare(&pictures, output.lines().filter_map(picture))?;
         machines += " and of any x86-64";
     }
