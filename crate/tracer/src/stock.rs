@@ -57,12 +57,12 @@ impl Stock {
             least: NEXT_TO_NOTHING / LEFT_OUT * left_out,
         };
         for (i, p) in primitives.iter().enumerate() {
-            let item = |lump: Lump<f32>, middle: DVec3, core: f64, part: bool| Item {
+            let item = |lump: Lump<f32>, middle: DVec3, square: f64, core: f64, part: bool| Item {
                 middle,
                 near: Near {
                     lump,
                     middle: [0.0; 3],
-                    square: lump.reach(left_out) as f32,
+                    square: square as f32,
                     // A little inside, so that rounding does not put it outside.
                     core: core as f32 - 1e-4,
                     part,
@@ -71,18 +71,22 @@ impl Stock {
                     material: material[i],
                     from: 0.0,
                 },
-                extent: Extent::of(&lump, lump.radius(lump.reach(left_out))),
+                extent: Extent::of(&lump, lump.radius(square)),
             };
             if let Some(lump) = p.lump::<f32>() {
-                let core = lump.core(lump.reach(left_out), left_out);
-                stock.items.push(item(lump, p.lump_middle(), core, false));
+                let square = lump.reach(left_out);
+                let core = lump.core(square, left_out);
+                stock
+                    .items
+                    .push(item(lump, p.lump_middle(), square, core, false));
             } else if let Some(beads) = strings.get(&i) {
                 let lumps: Option<Vec<_>> = beads.iter().map(Bead::lump).collect();
                 let own = lumps.into_iter().flatten().zip(beads).map(|(lump, bead)| {
                     // Where the bone has its surface if it goes on as it is there.
                     let value = p.value(bead.center.to_array());
-                    let core = libm::log(value / THRESHOLD).min(lump.reach(left_out));
-                    item(lump, bead.center, core, true)
+                    let square = lump.reach(left_out);
+                    let core = libm::log(value / THRESHOLD).min(square);
+                    item(lump, bead.center, square, core, true)
                 });
                 stock.items.extend(own);
             }
@@ -112,7 +116,7 @@ impl Stock {
     /// The balls beyond which each primitive is next to nothing, given those beyond which it is not followed.
     #[must_use]
     pub fn reaches(&self, tree: &Hierarchy) -> Hierarchy {
-        tree.with_radii(|i, center, radius| {
+        tree.enlarged(|i, center, radius| {
             let reach = |item: &Item| {
                 let lump = &item.near.lump;
                 item.middle.distance(center) + lump.radius(lump.reach(self.least))
