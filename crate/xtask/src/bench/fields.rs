@@ -43,6 +43,16 @@ pub fn measure() -> Result<String> {
     page(&native, &wasm)
 }
 
+/// Nanoseconds that a value with its gradient takes natively in eight lanes, for each of them, by kernel and kind of skeleton.
+pub fn nanoseconds(cells: &[[&str; 2]]) -> Result<Vec<Option<f64>>> {
+    let native = figures(cargo(&["test"]).args(["--release"]))?;
+    let of = |[kernel, kind]: &[&str; 2]| {
+        let millions = cell(&native, "speed", kernel, kind, 0).parse::<f64>();
+        millions.ok().map(|millions| 1e3 / millions)
+    };
+    Ok(cells.iter().map(of).collect())
+}
+
 /// Runs the measurement of the field's chart, ignored tests and all, and gives its lines.
 fn figures(command: &mut Command) -> Result<Vec<Vec<String>>> {
     let test = ["--package", "field", "--test", "chart_figures", "--"];

@@ -2,21 +2,22 @@
 
 use super::goal::short;
 use super::scenes::Scenes;
-use super::{Piece, ours};
+use super::{Piece, fields, ours};
 use crate::shell::{command, find, read};
 use anyhow::Result;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Stdio;
 
-/// The scenes that are looked into.
-const SCENES: [&str; 6] = [
-    "flake-820",
-    "flake-7381",
-    "flake-820-cauchy",
-    "coral",
-    "seahorse",
-    "tee",
+/// The scenes that are looked into, with kernel and kind of most of their primitives.
+const SCENES: [(&str, [&str; 2]); 7] = [
+    ("flake-10", ["gauss", "point"]),
+    ("flake-820", ["gauss", "point"]),
+    ("flake-7381", ["gauss", "point"]),
+    ("flake-820-cauchy", ["cauchy", "point"]),
+    ("coral", ["gauss", "segment"]),
+    ("seahorse", ["cauchy", "arc"]),
+    ("tee", ["cauchy", "segment"]),
 ];
 /// Functions in which less of the time was spent are not listed, percent.
 const LEAST: f64 = 2.0;
@@ -25,7 +26,10 @@ const LEAST: f64 = 2.0;
 pub fn measure() -> Result<Piece> {
     let scenes = Scenes::new()?;
     let mut page = String::from(
-        "Counts of work for a ray from the eye, one ray a pixel, and what they come to.\n\n",
+        "Counts of work for a ray from the eye, one ray a pixel, and what they come to. The last columns say what the evaluations would \
+         take if each took as long as one with its gradient in the part *Fields*, and which share of the time that is: where it is \
+         large, evaluating is what bounds the tracer; where it is small, it is what saves evaluations (bounds, lists, steps and \
+         their proofs), roots, and colours.\n\n",
     );
     counts(&scenes, &mut page)?;
     if find("perf").is_some() {
@@ -37,7 +41,8 @@ pub fn measure() -> Result<Piece> {
 }
 
 fn counts(scenes: &Scenes, page: &mut String) -> Result<()> {
-    for (i, scene) in SCENES.iter().enumerate() {
+    let alone = fields::nanoseconds(&SCENES.map(|(_, cell)| cell))?;
+    for (i, ((scene, _), alone)) in SCENES.iter().zip(alone).enumerate() {
         let cost = ours::time(&scenes.sinew, &[&scenes.dataset(scene)])?;
         let counts: Vec<&(String, f64)> = cost
             .counts
@@ -48,7 +53,8 @@ fn counts(scenes: &Scenes, page: &mut String) -> Result<()> {
             let names: Vec<&str> = counts.iter().map(|(name, _)| name.as_str()).collect();
             writeln!(
                 page,
-                "| scene | ns a ray | {} | ns a field evaluation |\n|---|--:|{}--:|",
+                "| scene | ns a ray | {} | ns a field evaluation | evaluating alone, ns a ray | share |\n\
+                 |---|--:|{}--:|--:|--:|",
                 names.join(" | "),
                 "--:|".repeat(names.len())
             )?;
@@ -64,10 +70,14 @@ fn counts(scenes: &Scenes, page: &mut String) -> Result<()> {
             .map_or(f64::NAN, |(_, count)| *count);
         writeln!(
             page,
-            "| {scene} | {} | {} | {} |",
+            "| {scene} | {} | {} | {} | {} |",
             short(nanoseconds(cost.rays)),
             cells.join(" | "),
-            short(nanoseconds(evaluations))
+            short(nanoseconds(evaluations)),
+            alone.map_or("– | –".into(), |alone| {
+                let share = 100.0 * alone / nanoseconds(evaluations);
+                format!("{} | {share:.0} %", short(alone * evaluations / cost.rays))
+            })
         )?;
     }
     page.push('\n');
@@ -80,7 +90,7 @@ fn sampled(scenes: &Scenes, page: &mut String) -> Result<()> {
         "Functions in which `perf record` saw the processor, with what is inlined into them; those over {LEAST} %.\n\n\
          | scene | share of the time |\n|---|---|"
     )?;
-    for scene in SCENES {
+    for (scene, _) in SCENES {
         let data = scenes.path("perf.data");
         let functions = sample(&scenes.sinew, &scenes.dataset(scene), &data);
         let listed: Vec<String> = functions
