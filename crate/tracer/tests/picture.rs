@@ -549,11 +549,11 @@ fn strange_scenes_end() {
         scenes.push(scene);
     }
     for (i, scene) in scenes.iter().enumerate() {
-        let start = std::time::Instant::now();
-        let (pixels, _) = whole(scene, [17, 9], 16, Pass::Smooth);
+        let (pixels, stats) = whole(scene, [17, 9], 16, Pass::Smooth);
         assert_eq!(pixels.len(), 4 * 17 * 9);
-        let seconds = start.elapsed().as_secs_f64();
-        assert!(seconds < 20.0, "scene {i} took {seconds} s");
+        // By counts, as times are the machine's; the dearest makes 3.1·10⁷.
+        let evaluations = stats.field_evaluations;
+        assert!(evaluations < 1 << 26, "scene {i} took {evaluations}");
         let _ = Picture::new(scene, [4, 4]).hits(DVec3::new(0.1, 0.2, 5.0), DVec3::NEG_Z);
     }
 }
