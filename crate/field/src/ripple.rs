@@ -174,6 +174,119 @@ fn times(a: f64, b: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{BlobScale, Kernel, Primitive, Shaping};
+    use glam::DVec3;
+
+    /// Random numbers between −1 and 1.
+    fn random() -> impl FnMut() -> f64 {
+        let mut state = 6u64;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
+        }
+    }
+
+    /// The factor along random lines near arcs, segments and triangles, at five places close to each other: its derivatives by
+    /// differences are within the bounds, and come near to them.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn factors_change_no_faster_than_told() {
+        const SMOOTH: [Wave; 5] = [Wave::X, Wave::Sin, Wave::Cos, Wave::Sin2, Wave::Cos2];
+        let mut next = random();
+        // By kind of skeleton and order: how near the bounds are come to.
+        let mut nearest = [[0.0f64; 4]; 3];
+        for case in 0..6000 {
+            let mut place = || DVec3::new(next(), next(), next());
+            let (a, b, c) = (place(), place(), place());
+            let skeleton = match case % 3 {
+                0 => Skeleton::Arc {
+                    center: a,
+                    u: DVec3::X,
+                    v: DVec3::Y,
+                    radius: 0.2 + b.x.abs(),
+                    angle: 1.0 + 5.0 * b.y.abs(),
+                },
+                1 => Skeleton::Segment { base: a, apex: b },
+                _ => Skeleton::Triangle { corners: [a, b, c] },
+            };
+            let profile = Profile {
+                waves: [SMOOTH[case / 3 % 5], SMOOTH[case / 15 % 5]],
+                scale: [1.0 + 6.0 * next().abs(), 1.0 + 3.0 * next().abs()],
+                bounds: [0.3 * next(), 1.0],
+                times: 1.0,
+                restriction: if case % 2 == 0 { 0.0 } else { next().abs() },
+            };
+            let shaping = Shaping {
+                kernel: Kernel::Cauchy,
+                radius: 0.2,
+                blobbiness: -1.0,
+                blob_scale: BlobScale::Relative,
+                strength: 1.0,
+                influence: 1e-3,
+                taper: None,
+            };
+            let Some(ripple) = Ripple::of(&profile, &skeleton) else {
+                continue;
+            };
+            let Some(primitive) = Primitive::new(skeleton.clone(), &shaping, Some(profile)) else {
+                continue;
+            };
+            let term = &primitive.prepared.double;
+            let waves = term.waves.as_ref().expect("a profile");
+            // Near the skeleton, where parameters are between 0 and 1.
+            let [s, t] = [0.5 + 0.4 * next(), 0.5 * (0.5 + 0.4 * next())];
+            let (origin, size) = match &skeleton {
+                Skeleton::Arc { radius, angle, .. } => {
+                    let (y, x) = (libm::sin(s * angle), libm::cos(s * angle));
+                    (a + DVec3::new(x, y, 0.0) * (radius * (0.4 + t)), *radius)
+                }
+                Skeleton::Segment { .. } => (a.lerp(b, s), a.distance(b)),
+                _ => {
+                    let sides = (b - a).cross(c - a).length();
+                    (
+                        a + (b - a) * (0.6 * s) + (c - a) * (0.6 * t),
+                        sides.min(1.0),
+                    )
+                }
+            };
+            let direction = DVec3::new(next(), next(), next()).normalize();
+            let step = 2e-3 * size / (1.0 + profile.scale[0]);
+            let kinks = crate::kinks::of(&primitive);
+            if kinks.iter().any(|kink| kink.cuts(origin, 3.0 * step)) {
+                continue;
+            }
+            let point = |i: i32| origin + direction * (step * f64::from(i));
+            let [m2, m1, o, p1, p2] = [-2, -1, 0, 1, 2]
+                .map(|i| waves.jet(term.frame.local_point(point(i)).to_array()).value);
+            let found = [
+                (p1 - m1) / (2.0 * step),
+                (p1 - 2.0 * o + m1) / (step * step),
+                (p2 - 2.0 * p1 + 2.0 * m1 - m2) / (2.0 * step.powi(3)),
+                (p2 - 4.0 * p1 + 6.0 * o - 4.0 * m1 + m2) / step.powi(4),
+            ];
+            let hub = [-2, 2].map(|i| {
+                let away = point(i) - a;
+                libm::sqrt(away.x * away.x + away.y * away.y)
+            });
+            let bounds = ripple.derivatives(hub[0].min(hub[1]));
+            for (order, (found, bound)) in found.into_iter().zip(bounds).enumerate() {
+                // Differences lose digits.
+                let lost = 1e-14 / step.powi(order as i32 + 1);
+                let most = bound * profile.largest();
+                let found = found.abs() - lost;
+                assert!(
+                    found <= most * 1.01,
+                    "{case}, order {}: {found} > {most} at {hub:?} of {skeleton:?} {profile:?}",
+                    order + 1
+                );
+                let near = &mut nearest[case % 3][order];
+                *near = near.max(found / most.max(1e-300));
+            }
+        }
+        for near in nearest.iter().flatten() {
+            assert!(*near > 0.15, "{nearest:?}");
+        }
+    }
 
     /// At 0 the derivatives of `e^t·e^(2t)` are the powers of 3.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
