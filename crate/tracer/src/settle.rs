@@ -5,6 +5,9 @@
 //! proves where the ray crosses, or the pieces are too short to matter. A primitive whose own error on a piece is next to
 //! nothing is *calm* there: its cubic stays, and the halves do not evaluate it any more. Where a profile has a kink
 //! or a jump the ray is cut.
+//!
+//! Where very many primitives count, most of them are far, and are interpolated together already. What that is off by mostly leaves
+//! no doubt, so that rays are first asked with these interpolants in place of the far ones ([`Given`]).
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::slabs::LARGE_TERM;
@@ -38,12 +41,33 @@ const ROUNDING: f64 = 1e-12;
 /// differences of the cubic's. So the field is monotone where those are larger than the bound times this.
 pub const STEEP: f64 = 1.34;
 
+/// What is known of a part of the field along a stretch of a ray, in place of its primitives.
+pub struct Given<'a> {
+    /// Its value and slope.
+    pub node: &'a dyn Fn(f64) -> Node<f64>,
+    /// The cubics between are off by no more than this, …
+    pub off: f64,
+    /// … as are interpolants on a stretch of this length: so their slope is off by no more than four times that over the length.
+    pub length: f64,
+}
+
+/// What [`Given`] is off by: nothing, if there is none.
+#[derive(Clone, Copy, Debug, Default)]
+struct Off {
+    value: f64,
+    /// Over the length of a piece.
+    steep: f64,
+}
+
 /// Settles what happens to rays of one packet.
 #[derive(Debug)]
 pub struct Settler {
     /// The primitives that count on the stretch.
     pub list: Vec<u32>,
     pieces: u32,
+    off: Off,
+    /// Whether what is given is off by too much to tell.
+    unsure: bool,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
 }
@@ -53,6 +77,8 @@ impl Default for Settler {
         Self {
             list: Vec::new(),
             pieces: MOST_PIECES,
+            off: Off::default(),
+            unsure: false,
             evaluations: 0,
         }
     }
@@ -103,7 +129,39 @@ impl Settler {
     pub fn crossings(
         &mut self,
         along: &Along<'_>,
+        stretch: [f64; 2],
+        tell: impl FnMut(f64, bool) -> bool,
+    ) {
+        self.off = Off::default();
+        self.follow(along, stretch, &|_| Node::zero(), tell);
+    }
+
+    /// The same, of what is given and the listed primitives together. `None` if that is too far off to tell; the crossings of
+    /// the field are within what it is off by.
+    pub fn crossings_with(
+        &mut self,
+        along: &Along<'_>,
+        stretch: [f64; 2],
+        given: &Given<'_>,
+    ) -> Option<Vec<(f64, bool)>> {
+        self.off = Off {
+            value: given.off,
+            steep: given.off / given.length,
+        };
+        self.unsure = false;
+        let mut told = Vec::new();
+        self.follow(along, stretch, given.node, |t, inside| {
+            told.push((t, inside));
+            true
+        });
+        (!self.unsure).then_some(told)
+    }
+
+    fn follow(
+        &mut self,
+        along: &Along<'_>,
         [from, to]: [f64; 2],
+        given: &dyn Fn(f64) -> Node<f64>,
         mut tell: impl FnMut(f64, bool) -> bool,
     ) {
         // What every primitive may be off by where it is calm.
@@ -133,16 +191,18 @@ impl Settler {
             let before = self.pieces;
             let rest = 0..self.list.len();
             let ends = [first, last].map(|t| self.sum(along, &rest, t));
+            let given = Span::hermite(given(first), given(last), last - first);
+            let calm = Span([-THRESHOLD; 4]).plus(given);
             let piece = Piece {
                 from: first,
                 to: last,
                 depth: 0,
                 most,
-                calm: Span([-THRESHOLD; 4]),
+                calm,
                 rest,
                 ends,
             };
-            if !tell(first, ends[0].value >= THRESHOLD)
+            if !tell(first, calm.0[0] + ends[0].value >= 0.0)
                 || !self.between(along, share, piece, &mut tell)
             {
                 return;
@@ -189,7 +249,7 @@ impl Settler {
     ) -> bool {
         let cost = 1 + piece.rest.len() as u32 / LONG;
         if piece.most < cost {
-            return self.refine(along, &piece, tell);
+            return self.give_up(along, &piece, tell);
         }
         piece.most -= cost;
         self.pieces = self.pieces.saturating_sub(cost);
@@ -246,6 +306,10 @@ impl Settler {
         tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
         let length = piece.to - piece.from;
+        let steep = STEEP * (error + self.off.steep * length);
+        // So near to T what is given tells nothing.
+        let vague = self.off.value - error;
+        let error = error + self.off.value;
         if piece.calm.max() + above < -error {
             return true;
         }
@@ -255,11 +319,14 @@ impl Settler {
         if span.max() < -error || span.min() > error {
             return true;
         }
-        let steep = STEEP * error;
         let turns = [b - a, c - b, d - c];
         let monotone = turns.iter().all(|x| *x > steep) || turns.iter().all(|x| *x < -steep);
-        if monotone || length <= along.resolution || piece.depth >= DEEPEST {
+        if monotone {
             return self.refine(along, piece, tell);
+        }
+        let hopeless = span.max() <= vague && span.min() >= -vague;
+        if hopeless || length <= along.resolution || piece.depth >= DEEPEST {
+            return self.give_up(along, piece, tell);
         }
         let t = 0.5 * (piece.from + piece.to);
         let middle = self.sum(along, &piece.rest, t);
@@ -286,6 +353,20 @@ impl Settler {
             ..piece.clone()
         };
         self.between(along, share, far, tell)
+    }
+
+    /// The same where no shorter piece would tell more: the signs at its ends decide, unless it is what is given that leaves it in doubt.
+    fn give_up(
+        &mut self,
+        along: &Along<'_>,
+        piece: &Piece,
+        tell: &mut impl FnMut(f64, bool) -> bool,
+    ) -> bool {
+        if self.off.value > 0.0 {
+            self.unsure = true;
+            return false;
+        }
+        self.refine(along, piece, tell)
     }
 
     /// The crossing on a piece if its ends are on different sides.
@@ -325,5 +406,92 @@ impl Along<'_> {
             value: jet.value,
             slope: gx * dx + gy * dy + gz * dz,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use field::{BlobScale, Kernel, Shaping, Skeleton};
+    use glam::DVec3;
+
+    /// Crossings that are told with something given are those of the field, whatever that really is, within what it is off by; where
+    /// that decides nothing is told.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn what_is_given_hides_no_crossing() {
+        const OFF: f64 = 1e-2;
+        const LENGTH: f64 = 2.0;
+        let shaping = Shaping {
+            kernel: Kernel::Gauss,
+            radius: 0.25,
+            blobbiness: -2.0,
+            blob_scale: BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: None,
+        };
+        let ball = |center: DVec3| {
+            Primitive::new(Skeleton::Point { center }, &shaping, None).expect("flesh")
+        };
+        let primitives = [ball(DVec3::Z * 0.7), ball(DVec3::new(0.1, 0.0, 1.2))];
+        let bounds = primitives.each_ref().map(Bound::new);
+        let sight = Sight {
+            primitives: &primitives,
+            bounds: &bounds,
+            kinks: &Kinks::default(),
+        };
+        let (mut told_of, mut unsure) = (0, 0);
+        for i in 0..600 {
+            let along = Along {
+                sight,
+                ray: Ray {
+                    origin: DVec3::X * (f64::from(i) * 1e-3 - 0.1),
+                    direction: DVec3::Z,
+                },
+                resolution: 1e-7,
+            };
+            // A third of T is given.
+            let given = Given {
+                node: &|_| Node {
+                    value: 0.3,
+                    slope: 0.0,
+                },
+                off: OFF,
+                length: LENGTH,
+            };
+            let mut settler = Settler::default();
+            settler.list.extend([0, 1]);
+            let Some(told) = settler.crossings_with(&along, [0.0, LENGTH], &given) else {
+                unsure += 1;
+                continue;
+            };
+            told_of += told.len() - 1;
+            for phase in 0..8 {
+                // Its slope is off by no more than four times that over the length, too.
+                let really = |t: f64| {
+                    let wave = libm::cos(f64::from(phase) + 4.0 * t / LENGTH);
+                    let point = along.ray.at(t).to_array();
+                    let field: f64 = primitives.iter().map(|p| p.value(point)).sum();
+                    field + 0.3 + 0.99 * OFF * wave - THRESHOLD
+                };
+                let places = (0..=4000).map(|k| f64::from(k) * LENGTH / 4000.0);
+                let places: Vec<f64> = places.collect();
+                let crossed = places
+                    .windows(2)
+                    .filter(|w| (really(w[0]) >= 0.0) != (really(w[1]) >= 0.0));
+                let crossed: Vec<f64> = crossed.map(|w| w[0]).collect();
+                assert_eq!(crossed.len() + 1, told.len(), "{i} {phase}: {told:?}");
+                for (t, (found, _)) in crossed.iter().zip(&told[1..]) {
+                    let slope = (really(found + 1e-4) - really(found - 1e-4)).abs() / 2e-4;
+                    let apart = (t - found).abs();
+                    assert!(apart < 1e-3 + 3.0 * OFF / slope, "{i} {phase}: {t} {found}");
+                }
+            }
+        }
+        assert!(
+            told_of > 600 && (2..60).contains(&unsure),
+            "{told_of} {unsure}"
+        );
     }
 }

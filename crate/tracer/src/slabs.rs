@@ -200,6 +200,8 @@ pub struct Slab {
     pub error: f64,
     /// What that consists of.
     pub spent: Spent,
+    /// How far rounding may put the interpolant of its shared primitives off.
+    noise_of_shared: f64,
     /// What the errors may add up to.
     budget: f64,
     parent: u32,
@@ -229,6 +231,27 @@ pub struct Spent {
     pub shared: f64,
     /// Rounding takes nothing from the budget.
     pub noise: f64,
+    rounding: Rounding,
+}
+
+/// What rounding of a slab's terms and of those above it comes to, but for those that are pending.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rounding {
+    /// That of each term by itself, added up.
+    sum: f64,
+    /// No term is rounded by more than this part of it …
+    part: f64,
+    /// … but for what formulas lose that are differences of larger numbers.
+    cancelled: f64,
+    /// What terms below zero come to at most.
+    carved: f64,
+}
+
+impl Rounding {
+    /// All together, where the field is T: what adds is no more than that and what carves.
+    fn most(&self) -> f64 {
+        self.cancelled + self.sum.at_most((LARGE_TERM + self.carved) * self.part)
+    }
 }
 
 /// What a new slab takes from the one that it is made for.
@@ -272,6 +295,9 @@ pub const LARGE_TERM: f64 = 4.0 * THRESHOLD;
 
 /// Where rounding tells nothing rays are settled at once in slabs that no more primitives than this count in.
 const MOST_BLURRED: usize = 32;
+
+/// An interpolant that rounding puts off by no more than this stands for its primitives also where rays are settled.
+const SHARP: f64 = 2e-5;
 
 /// Slabs and list entries above which a tree is thrown away between two packets.
 const LARGE: (usize, usize) = (1 << 16, 1 << 21);
@@ -648,6 +674,51 @@ impl<'a> Slabs<'a> {
         });
     }
 
+    /// How many primitives count in a slab, small ones and those that blocks stand for included.
+    #[must_use]
+    pub fn count(&self, index: u32) -> usize {
+        let mut count = 0;
+        let mut all = |range: &Range<u32>| {
+            for &id in self.locals(range) {
+                count += match self.terms.clusters {
+                    Some(clusters) if id & GROUP != 0 => clusters.all(id & !GROUP).len(),
+                    _ => 1,
+                };
+            }
+        };
+        all(&self.slab(index).pending);
+        self.up(index, |s, whole| {
+            if whole {
+                all(&s.joined);
+                all(&s.resolved);
+            }
+            all(&s.shared);
+            all(&s.dropped);
+        });
+        count
+    }
+
+    /// Lists the primitives that count in a slab, but for those that are next to nothing and those that interpolants stand for which
+    /// rounding hardly puts off; gives these, and how far off they are, together with what is left out.
+    pub fn near(&self, index: u32, list: &mut Vec<u32>) -> (Vec<(Cell, Shared)>, f64) {
+        self.each(index, false, |p| list.push(p));
+        let mut blocks = Vec::new();
+        let mut off = self.slab(index).spent.shared;
+        self.up(index, |s, _| {
+            if let Some(block) = self.blocks.get(s.blocks[Which::Shared as usize] as usize)
+                && s.noise_of_shared <= SHARP
+            {
+                blocks.push((block.cell, block.total));
+                off += s.noise_of_shared;
+            } else {
+                for &id in self.locals(&s.shared) {
+                    self.each_of(id, |p| list.push(p));
+                }
+            }
+        });
+        (blocks, off)
+    }
+
     /// Calls `f` with each primitive that an entry of a list stands for.
     fn each_of(&self, id: u32, mut f: impl FnMut(u32)) {
         match self.terms.clusters {
@@ -827,7 +898,11 @@ impl<'a> Slabs<'a> {
                 && c.shared <= for_spans(c.magnitude)
         };
         let joins = joins && self.scratch.iter().filter(|c| coarse(c)).count() >= FEWEST as usize;
-        let (mut noise, mut steepest) = (0.0, 0.0f64);
+        let mut of_shared = Rounding {
+            carved: below,
+            ..Rounding::default()
+        };
+        spent.rounding.carved = spent.rounding.carved.at_least(below);
         let mut lists = core::mem::take(&mut self.lists);
         lists.iter_mut().for_each(Vec::clear);
         let (mut pending_above, mut pending_below) = (0.0, 0.0);
@@ -880,17 +955,23 @@ impl<'a> Slabs<'a> {
                     continue;
                 }
             }
-            let steepness = self.relative_slope(id, candidate.distance);
+            let part = rounded(1.0, self.relative_slope(id, candidate.distance));
+            let mut cancelled = 0.0;
             if id & GROUP == 0 {
                 let bound = &self.terms.bounds[self.list[id as usize] as usize];
-                spent.noise += 2.0 * rounding * bound.cancels();
+                cancelled = 2.0 * rounding * bound.cancels();
             }
-            noise += rounded(magnitude, steepness);
-            steepest = steepest.at_least(steepness);
+            let count = |all: &mut Rounding| {
+                all.sum += magnitude.at_most(LARGE_TERM) * part;
+                all.part = all.part.at_least(part);
+                all.cancelled += cancelled;
+            };
+            count(&mut spent.rounding);
+            if fate == Fate::Shared {
+                count(&mut of_shared);
+            }
         }
-        // Where the field is T, what adds is together no more than that and what carves.
-        let most = (LARGE_TERM + below) * (4.0 * rounding + misplaced * steepest);
-        spent.noise += noise.at_most(most);
+        spent.noise = spent.rounding.most();
         let mut ends = [self.ids.len() as u32; 6];
         for (list, which) in lists.iter().zip(1..) {
             match self.terms.clusters {
@@ -925,6 +1006,7 @@ impl<'a> Slabs<'a> {
             pending_below,
             error: spent.spans + spent.shared + spent.noise,
             spent,
+            noise_of_shared: of_shared.most(),
             budget,
             parent,
             anew,

@@ -6,11 +6,16 @@ use crate::picture::{Picture, Stats};
 use crate::slabs::Precision;
 use crate::tile::{Pass, Tile};
 use field::{Profile, Wave};
-use scene::Scene;
+use glam::DVec3;
+use scene::{Scene, Shape};
 
 const SIZE: u32 = 72;
 
 fn trace(picture: &Picture) -> Vec<u8> {
+    trace_counting(picture).0
+}
+
+fn trace_counting(picture: &Picture) -> (Vec<u8>, Stats) {
     let whole = Tile {
         x: 0,
         y: 0,
@@ -18,9 +23,8 @@ fn trace(picture: &Picture) -> Vec<u8> {
         height: SIZE,
     };
     let mut stats = Stats::default();
-    picture
-        .trace(whole, Pass::Full, &|| false, &mut stats)
-        .expect("nobody asked to stop")
+    let pixels = picture.trace(whole, Pass::Full, &|| false, &mut stats);
+    (pixels.expect("nobody asked to stop"), stats)
 }
 
 /// Shares of channels that differ by more than 1/255 and by more than 8/255.
@@ -80,4 +84,45 @@ fn pictures_with_profiles_show_the_exact_surface() {
     }
     // A profile with jumps has no certified spans, so this bar is lower.
     assert!(worst[0] < 0.03 && worst[1] < 0.02, "{worst:?}");
+}
+
+/// Where rounding leaves rays among very many primitives in doubt they are settled with the interpolants of what is far: that
+/// shows the same, and takes far fewer evaluations than with all primitives for each of them.
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn doubts_in_a_cloud_are_settled_with_what_is_near() {
+    let mut numbers = common::Numbers(9);
+    let mut scene = common::empty();
+    scene.camera.eye = DVec3::Z * 4.0;
+    scene.camera.target = DVec3::ZERO;
+    scene.camera.fov = 1.0;
+    scene.materials = vec![common::soft(-4.0, 1.0)];
+    let mut ball = |center: DVec3, radius: f64| {
+        let shape = Shape::Sphere { center, radius };
+        scene.elements.push(common::element(shape, 0));
+    };
+    for _ in 0..1000 {
+        let place = numbers.vector();
+        ball(place * DVec3::new(0.3, 0.3, 1.0), 0.003);
+    }
+    // Far from all rays, but a third of T together.
+    for i in 0..60 {
+        let (y, x) = libm::sincos(f64::from(i));
+        ball(DVec3::new(2.0 * x, 2.0 * y, 0.0), 0.5);
+    }
+    let mut picture = Picture::new(&scene, [SIZE; 2]);
+    let (shown, plain) = trace_counting(&picture);
+    // Some see balls.
+    assert!((100..4000).contains(&plain.shadow_rays), "{plain:?}");
+    // Rays are doubted sooner than they need be.
+    picture.soft.precision.rounding *= 4.0;
+    let (settled, doubted) = trace_counting(&picture);
+    let off = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 1;
+    assert_eq!(shown.iter().zip(&settled).filter(|&x| off(x)).count(), 0);
+    // With all primitives at once it would be 7 times as many.
+    let [plain, doubted] = [plain, doubted].map(|stats| stats.field_evaluations);
+    assert!(
+        plain < doubted && 2 * doubted < 3 * plain,
+        "{plain} {doubted}"
+    );
 }

@@ -8,7 +8,7 @@
 //! hit is ever interpolated.
 use crate::lanes::Lanes;
 use crate::ray::Ray;
-use crate::settle::{Along, STEEP, Settler, Sight};
+use crate::settle::{Along, Given, STEEP, Settler, Sight};
 use crate::slabs::{Parts, Slabs, Which};
 use crate::spans::{Node, Span};
 use field::{Primitive, THRESHOLD};
@@ -125,6 +125,11 @@ impl<L: Lanes> Memories<L> {
 
 /// Slabs deeper than this are not halved further: 2⁻⁴⁰ of the beam's length.
 const DEEPEST: u32 = 40;
+
+/// Where no more primitives than this count rays are settled with all of them at once …
+const FEW: usize = 64;
+/// … as they are where what is near is more than one over this of all.
+const WORTH: usize = 4;
 
 /// How many times a slab's cubics are halved to tell their crossings apart.
 const CUTS: u32 = 4;
@@ -344,6 +349,12 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
         let s = self.slabs.slab(index);
         let (from, to) = (s.from, s.to);
+        if !s.kinked {
+            lanes &= !self.settle_near(index, lanes);
+            if lanes == 0 {
+                return;
+            }
+        }
         let (slabs, list) = (&*self.slabs, &mut self.settler.list);
         list.clear();
         slabs.each(index, true, |p| list.push(p));
@@ -367,6 +378,60 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             self.evaluations += core::mem::take(&mut settler.evaluations);
             self.settler = settler;
         }
+    }
+
+    /// The same with the interpolants of what is far, where that tells enough and saves most of the work; gives the rays that are settled.
+    fn settle_near(&mut self, index: u32, lanes: u32) -> u32 {
+        let all = self.slabs.count(index);
+        if all <= FEW {
+            return 0;
+        }
+        self.settler.list.clear();
+        let (blocks, off) = self.slabs.near(index, &mut self.settler.list);
+        if self.settler.list.len() * WORTH > all {
+            return 0;
+        }
+        let s = self.slabs.slab(index);
+        let stretch = [s.from, s.to];
+        let mut settled = 0;
+        for lane in (0..L::LANES).filter(|lane| lanes >> lane & 1 != 0) {
+            let along = Along {
+                sight: self.sight,
+                ray: self.rays[lane.min(self.rays.len() - 1)],
+                resolution: self.slabs.resolution(),
+            };
+            let node = |t: f64| {
+                let place = along.ray.at(t).to_array();
+                blocks.iter().fold(Node::zero(), |sum, (cell, shared)| {
+                    let (value, [x, y, z]) = shared.jet::<f64>(cell.local(place));
+                    let [dx, dy, dz] = cell.steps(along.ray.direction.to_array());
+                    sum.plus(Node {
+                        value,
+                        slope: x * dx + y * dy + z * dz,
+                    })
+                })
+            };
+            let given = Given {
+                node: &node,
+                off,
+                length: stretch[1] - stretch[0],
+            };
+            let told = self.settler.crossings_with(&along, stretch, &given);
+            let spent = core::mem::take(&mut self.settler.evaluations);
+            self.work += spent as usize;
+            self.evaluations += spent;
+            let Some(told) = told else { continue };
+            let bit = 1u32 << lane;
+            settled |= bit;
+            for (t, inside) in told {
+                let side = |yes: bool| if yes { bit } else { 0 };
+                self.arrive(index, t, side(!inside), side(inside), false);
+                if self.alive & bit == 0 {
+                    break;
+                }
+            }
+        }
+        settled
     }
 
     /// The crossings of some rays in a slab whose cubics are final.
