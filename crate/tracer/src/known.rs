@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 
 /// Bytes of a sample.
 const BYTES: usize = 24;
+/// What is told is a tile or a part of one: no more pixels a side than this.
+const LARGEST: u32 = 64;
 
 /// The first samples of all pixels of a rectangle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,21 +75,28 @@ impl Known {
         })
     }
 
-    /// Whether there is one sample or as many as pixels: another program may have written them.
+    /// Whether these can be samples of a picture of this size, no more than a tile: another program may have written them.
+    #[must_use]
+    pub fn is_of(&self, size: [u32; 2]) -> bool {
+        let area = Area::from(self.tile);
+        let small = self.tile.width <= LARGEST && self.tile.height <= LARGEST;
+        let inside = area.right <= size[0] && area.bottom <= size[1];
+        small && inside && !area.is_empty() && self.is_whole()
+    }
+
+    /// Whether there is one sample or as many as pixels.
     fn is_whole(&self) -> bool {
         let pixels = u64::from(self.tile.width) * u64::from(self.tile.height);
         let (one, all) = (BYTES as u64, pixels.checked_mul(BYTES as u64));
         [Some(one), all].contains(&Some(self.bytes.len() as u64))
     }
 
-    /// The samples; `None` if they are neither one nor as many as the rectangle has pixels, or if it reaches beyond a picture of
-    /// this size.
+    /// The samples, if they can be those of a picture of this size ([`Known::is_of`]).
     pub(crate) fn samples(&self, size: [u32; 2]) -> Option<Samples> {
-        let area = Area::from(self.tile);
-        let inside = !area.is_empty() && area.right <= size[0] && area.bottom <= size[1];
-        if !inside || !self.is_whole() {
+        if !self.is_of(size) {
             return None;
         }
+        let area = Area::from(self.tile);
         let (read, _) = self.bytes.as_chunks::<BYTES>();
         let mut read = read.iter().map(sample).cycle();
         let mut samples = Samples::new(area);

@@ -73,7 +73,7 @@ impl SampleCache {
         self.size
     }
 
-    /// The samples of a tile, if all are known.
+    /// The samples of a tile of at most 64×64 pixels, if all are known.
     #[must_use]
     pub fn tell(&self, tile: Tile) -> Option<Known> {
         let area = Area::from(tile);

@@ -43,7 +43,7 @@ const PATCH: f64 = 3.0;
 
 impl Picture {
     /// What the rays of some packets see. Their hits may share beams to the lights: they must be the same packets
-    /// whatever the tiles. `across` is how wide they are together, per unit of distance. The samples are left in the
+    /// whatever the tiles. `across` is how wide they are together, per unit of distance, or less, if only nearer hits are to share. The samples are left in the
     /// working space.
     pub(crate) fn shine(
         &self,

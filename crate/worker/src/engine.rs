@@ -14,6 +14,8 @@ const ROWS: u32 = 32;
 /// (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some samples twice. In pictures of more squares
 /// workers do not hear of each other's, as the page would have to keep them all.
 pub const KEPT: usize = 320;
+/// Side of those squares, pixels.
+const SQUARE: u32 = 64;
 
 /// The picture a worker is busy with, and the tiles it still has to trace.
 #[derive(Default)]
@@ -102,8 +104,9 @@ impl Engine {
                 shared,
             } => {
                 self.forget(generation);
+                let across = size.map(|side| u64::from(side.div_ceil(SQUARE)));
+                self.shared = shared && across[0] * across[1] <= KEPT as u64;
                 self.wanted = Some((scene, size, kind));
-                self.shared = shared;
             }
             Request::Learn { generation, known } => {
                 let wanted = self.shared && generation == self.generation;
@@ -112,8 +115,10 @@ impl Engine {
                         known.iter().for_each(|known| cache.learn(known));
                     }
                     None if wanted => {
+                        let size = self.wanted.as_ref().map_or([0; 2], |wanted| wanted.1);
                         let room = KEPT.saturating_sub(self.learnt.len());
-                        self.learnt.extend(known.into_iter().take(room));
+                        let sound = known.into_iter().filter(|known| known.is_of(size));
+                        self.learnt.extend(sound.take(room));
                     }
                     _ => {}
                 }
@@ -471,11 +476,78 @@ mod tests {
             height: 0,
             ..tiles[0]
         };
-        let bad = [tiles[0], far, huge, flat].map(|tile| nonsense(tile, vec![7; 25]));
-        assert!(bad.iter().all(|known| known.part(known.tile()).is_none()));
+        let beyond = Tile { x: 140, ..tiles[0] };
+        let large = Tile {
+            width: 65,
+            height: 1,
+            ..tiles[0]
+        };
+        // Some have as many bytes as there should be, or those of one sample for all.
+        let bad = [25, 24, 24 * 64 * 64].map(|bytes| {
+            let places = [far, huge, flat, beyond, large];
+            places.map(|tile| nonsense(tile, vec![7; bytes]))
+        });
+        let bad = [&bad.concat()[..], &[nonsense(tiles[0], vec![7; 25])]].concat();
+        assert!(bad.iter().all(|known| !known.is_of(size)));
         fifth.accept(learn(1, &bad));
+        assert!(fifth.learnt.is_empty());
         let (_, same, again) = work(&mut fifth, Pass::Smooth);
         assert!(same == smooth && again == alone);
+    }
+
+    #[test]
+    fn samples_of_an_older_picture_are_forgotten_and_no_more_kept_than_a_picture_has() {
+        let size = [150, 100];
+        let tiles = tracer::tile::tiles(size[0], size[1], 64);
+        let work = |engine: &mut Engine, generation, pass| {
+            let order = |&tile| Order {
+                generation,
+                tile,
+                pass,
+            };
+            engine.accept(Request::Trace(tiles.iter().map(order).collect()));
+            let (mut seen, mut told) = (Vec::new(), Vec::new());
+            while !engine.is_idle() {
+                if let Step::Answer(Answer::Traced { pixels, known, .. }) = step(engine) {
+                    seen.push(pixels);
+                    told.extend(known);
+                }
+            }
+            (seen, told)
+        };
+        let begin = |generation, scene: &Scene, size| Request::Begin {
+            generation,
+            scene: Box::new(scene.clone()),
+            size,
+            kind: Kind::Colours,
+            shared: true,
+        };
+        let mut other = ball();
+        other.elements.clear();
+        let mut engine = Engine::default();
+        engine.accept(begin(1, &ball(), size));
+        let (_, told) = work(&mut engine, 1, Pass::Full);
+        let mut alone = Engine::default();
+        alone.accept(begin(2, &other, size));
+        let (truth, _) = work(&mut alone, 2, Pass::Smooth);
+        let learn = |generation, times| Request::Learn {
+            generation,
+            known: vec![told[0].clone(); times],
+        };
+        // Learnt before the scene was prepared, which then another one took the place of.
+        let mut engine = Engine::default();
+        engine.accept(begin(1, &ball(), size));
+        engine.accept(learn(1, KEPT + 9));
+        assert_eq!(engine.learnt.len(), KEPT);
+        engine.accept(begin(2, &other, size));
+        assert!(work(&mut engine, 2, Pass::Smooth).0 == truth);
+        // Where no picture is wanted, or one of more squares, nothing is.
+        engine.accept(Request::Stop { generation: 3 });
+        engine.accept(learn(3, 1));
+        assert!(engine.learnt.is_empty());
+        engine.accept(begin(4, &other, [150, 64 * KEPT as u32]));
+        engine.accept(learn(4, 1));
+        assert!(engine.learnt.is_empty());
     }
 
     #[test]

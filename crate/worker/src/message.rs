@@ -87,7 +87,7 @@ pub enum Answer {
         stats: Stats,
         /// Time it took.
         seconds: f64,
-        /// The first samples, if others want to hear of them and there is something to see.
+        /// The first samples, if others want to hear of them.
         known: Option<Known>,
     },
     /// The worker cannot go on, for this reason. The page replaces it.

@@ -27,7 +27,7 @@ pub struct Core<W> {
     /// The packed request that begins the present picture.
     begin: Vec<u8>,
     done: Vec<TileDone>,
-    hearsay: Hearsay,
+    pub(super) hearsay: Hearsay,
 }
 
 impl<W: Workers> Core<W> {
@@ -44,7 +44,6 @@ impl<W: Workers> Core<W> {
 
     pub fn start(&mut self, job: Job<'_>, now: f64) {
         self.done.clear();
-        self.hearsay.begin(job.size);
         let tiles: usize = job
             .size
             .map(|side| side.div_ceil(TILE) as usize)
@@ -53,6 +52,7 @@ impl<W: Workers> Core<W> {
         // Of more the page would have to keep too much.
         let kept = tiles <= KEPT && job.kind == Kind::Colours;
         let shared = kept && !job.small && job.scene.settings.samples > 1 && self.count > 1;
+        self.hearsay.begin(job.size, shared);
         let plan = Plan {
             generation: job.generation,
             size: job.size,
@@ -77,7 +77,6 @@ impl<W: Workers> Core<W> {
 
     pub fn cancel(&mut self, now: f64) {
         self.scheduler.cancel(now);
-        self.hearsay = Hearsay::default();
         self.carry_out(now);
     }
 
@@ -96,9 +95,6 @@ impl<W: Workers> Core<W> {
         let mut news = false;
         for answer in answers {
             news |= self.answer(index, answer, now);
-        }
-        if self.scheduler.is_over() {
-            self.hearsay = Hearsay::default();
         }
         self.carry_out(now);
         news
@@ -122,7 +118,7 @@ impl<W: Workers> Core<W> {
                     self.hearsay.smoothed(index, order.tile);
                 }
                 if let (true, Some(known)) = (wanted, known) {
-                    for (other, known) in self.hearsay.hear(index, known) {
+                    for (other, known) in self.hearsay.hear(index, &order, known) {
                         self.teach(other, vec![known]);
                     }
                 }
@@ -159,7 +155,7 @@ impl<W: Workers> Core<W> {
         loop {
             let commands = self.scheduler.commands();
             if commands.is_empty() {
-                return;
+                break;
             }
             for command in commands {
                 match command {
@@ -188,6 +184,9 @@ impl<W: Workers> Core<W> {
                     }
                 }
             }
+        }
+        if self.scheduler.is_over() {
+            self.hearsay = Hearsay::default();
         }
     }
 

@@ -1,13 +1,16 @@
 //! The first samples that workers have told, and who knows which.
 //!
 //! A worker that makes a tile smooth needs the first samples of all of it and of its neighbours' edges. Those that it has
-//! not taken itself are sent with the order, or as soon as they are told, so that none is taken twice.
+//! not taken itself are sent with the order, or as soon as they are told, so that few are taken twice.
 
-use tracer::{Known, Tile, around};
+use tracer::{Known, Pass, Tile, around};
+use worker::Order;
 
 /// What was told of the present picture.
 #[derive(Debug, Default)]
 pub struct Hearsay {
+    /// Whether workers are to hear of each other's samples at all.
+    shared: bool,
     /// The picture's width and height, pixels.
     size: [u32; 2],
     told: Vec<Told>,
@@ -25,27 +28,33 @@ struct Told {
 
 impl Hearsay {
     /// Of a new picture nothing is known.
-    pub fn begin(&mut self, size: [u32; 2]) {
+    pub fn begin(&mut self, size: [u32; 2], shared: bool) {
         *self = Self {
+            shared,
             size,
             ..Self::default()
         };
     }
 
-    /// A worker tells the samples of a tile. Gives what of it others wait for.
-    pub fn hear(&mut self, worker: usize, known: Known) -> Vec<(usize, Known)> {
+    /// A worker tells the samples of a tile that it had to trace. Gives what of it others wait for. What a worker that is well
+    /// would not tell is not listened to.
+    pub fn hear(&mut self, worker: usize, order: &Order, known: Known) -> Vec<(usize, Known)> {
         let tile = known.tile();
+        let sound = order.pass == Pass::Full && order.tile == tile && known.is_of(self.size);
+        if !self.shared || !sound {
+            return Vec::new();
+        }
         let mut to = vec![worker];
-        let mut news = Vec::new();
         for &(other, ordered) in &self.orders {
-            if other == worker {
-                continue;
+            if ordered == tile && !to.contains(&other) {
+                to.push(other);
             }
-            if let Some(part) = known.part(around(ordered, self.size)) {
-                news.push((other, part));
-                if ordered == tile {
-                    to.push(other);
-                }
+        }
+        let mut news: Vec<_> = to[1..].iter().map(|&to| (to, known.clone())).collect();
+        for &(other, ordered) in &self.orders {
+            if !to.contains(&other) {
+                let part = known.part(around(ordered, self.size));
+                news.extend(part.map(|part| (other, part)));
             }
         }
         match self.told.iter_mut().find(|told| told.known.tile() == tile) {
@@ -65,6 +74,9 @@ impl Hearsay {
 
     /// A worker is given a tile to make smooth: what it does not know but should.
     pub fn order(&mut self, worker: usize, tile: Tile) -> Vec<Known> {
+        if !self.shared {
+            return Vec::new();
+        }
         self.orders.push((worker, tile));
         let wanted = around(tile, self.size);
         let mut unknown = Vec::new();
@@ -78,6 +90,18 @@ impl Hearsay {
             }
         }
         unknown
+    }
+
+    /// Whether nothing is known, and nobody waits.
+    #[cfg(test)]
+    pub fn is_empty(&self) -> bool {
+        self.told.is_empty() && self.orders.is_empty()
+    }
+
+    /// How many tiles are being made smooth.
+    #[cfg(test)]
+    pub fn waiting(&self) -> usize {
+        self.orders.len()
     }
 
     /// A worker has made a tile smooth.
@@ -110,6 +134,14 @@ mod tests {
         tiles.into_iter().map(known).collect()
     }
 
+    fn full(tile: Tile) -> Order {
+        Order {
+            generation: 1,
+            tile,
+            pass: Pass::Full,
+        }
+    }
+
     fn places(known: &[Known]) -> Vec<[u32; 4]> {
         let place = |tile: Tile| [tile.x, tile.y, tile.width, tile.height];
         let mut places: Vec<_> = known.iter().map(|known| place(known.tile())).collect();
@@ -121,10 +153,10 @@ mod tests {
     fn a_worker_hears_of_its_tile_and_the_edges_beside_it_that_it_does_not_know() {
         let known = known();
         let mut hearsay = Hearsay::default();
-        hearsay.begin(SIZE);
+        hearsay.begin(SIZE, true);
         // The left column is one worker's, the others another's.
         for (tile, known) in &known {
-            let news = hearsay.hear(usize::from(tile.x > 0), known.clone());
+            let news = hearsay.hear(usize::from(tile.x > 0), &full(*tile), known.clone());
             assert!(news.is_empty(), "nobody waits");
         }
         let [upper, lower, middle, below, ..] = [0, 1, 2, 3, 4, 5].map(|i| known[i].0);
@@ -154,20 +186,49 @@ mod tests {
         hearsay.forget(0);
         assert_eq!(hearsay.order(1, below), before);
         assert_eq!(places(&hearsay.order(0, middle)).len(), 6);
-        hearsay.begin(SIZE);
+        hearsay.begin(SIZE, true);
         assert!(hearsay.order(0, middle).is_empty());
     }
+
+    #[test]
+    fn what_no_well_worker_would_tell_is_not_listened_to() {
+        let known = known();
+        let (tile, told) = &known[0];
+        let hears = |shared: bool, size, order: Order| {
+            let mut hearsay = Hearsay::default();
+            hearsay.begin(size, shared);
+            hearsay.hear(0, &order, told.clone());
+            assert_eq!(hearsay.orders, []);
+            !hearsay.is_empty()
+        };
+        assert!(hears(true, SIZE, full(*tile)));
+        assert!(!hears(false, SIZE, full(*tile)));
+        // Of a picture in which there is no such tile, of another tile, of another pass.
+        assert!(!hears(true, [32, 32], full(*tile)));
+        assert!(!hears(true, SIZE, full(known[1].0)));
+        let coarse = Order {
+            pass: Pass::Coarse,
+            ..full(*tile)
+        };
+        assert!(!hears(true, SIZE, coarse));
+        let mut hearsay = Hearsay::default();
+        hearsay.begin(SIZE, false);
+        assert!(hearsay.order(0, *tile).is_empty() && hearsay.is_empty());
+    }
+
     #[test]
     fn a_worker_hears_of_what_is_told_after_its_order() {
         let known = known();
         let [upper, lower, middle] = [0, 1, 2].map(|i| known[i].0);
         let tell = |hearsay: &mut Hearsay, worker, tile: usize| {
-            let news = hearsay.hear(worker, known[tile].1.clone()).into_iter();
+            let (tile, known) = &known[tile];
+            let news = hearsay.hear(worker, &full(*tile), known.clone());
+            let news = news.into_iter();
             let (to, news): (Vec<_>, Vec<_>) = news.unzip();
             (to, places(&news))
         };
         let mut hearsay = Hearsay::default();
-        hearsay.begin(SIZE);
+        hearsay.begin(SIZE, true);
         assert!(hearsay.order(0, upper).is_empty());
         assert_eq!(tell(&mut hearsay, 0, 1), (vec![], vec![]));
         assert_eq!(tell(&mut hearsay, 1, 2), (vec![0], vec![[64, 0, 4, 64]]));
@@ -177,7 +238,13 @@ mod tests {
         assert_eq!(places(&hearsay.order(0, lower)), [[64, 62, 4, 2]]);
         assert_eq!(places(&hearsay.order(0, upper)), strips);
         // A tile done again by another one.
-        assert_eq!(tell(&mut hearsay, 2, 2).0, [0, 0, 0]);
+        assert_eq!(
+            tell(&mut hearsay, 2, 2),
+            (
+                vec![0; 3],
+                vec![[64, 0, 4, 64], [64, 0, 4, 64], [64, 62, 4, 2]]
+            )
+        );
         assert!(!places(&hearsay.order(2, middle)).contains(&[64, 0, 64, 64]));
         hearsay.smoothed(0, upper);
         hearsay.forget(2);

@@ -1,7 +1,7 @@
 //! Which tiles of a picture each worker should trace.
 //!
-//! Each gets one part, nearly always a connected one: what lies on a border between two parts is sampled by both when the
-//! picture is made smooth. The parts are not equally large but take equally long, as far as the coarse pass tells.
+//! Each gets one part, nearly always a connected one: what lies on a border between two parts both need when the
+//! picture is made smooth, so that it has to be sampled twice or sent. The parts are not equally large but take equally long, as far as the coarse pass tells.
 
 use tracer::Tile;
 

@@ -197,6 +197,182 @@ fn several_workers_hardly_take_more_samples_than_one() {
     }
 }
 
+/// A scene of two balls.
+fn balls(at: [&str; 2]) -> Scene {
+    let [a, b] = at;
+    let text = format!(
+        "surface flesh diffuse Coral, blobbiness -2\nsphere flesh 0.5 {a}\nsphere flesh 0.4 {b}"
+    );
+    let file = rats::File {
+        name: "main.rat".into(),
+        text,
+    };
+    let compiled = rats::compile(&rats::Project { files: vec![file] });
+    assert_eq!(compiled.diagnostics, []);
+    let mut scene = compiled.scene;
+    scene.settings.samples = 3;
+    scene
+}
+
+/// Pictures of two scenes follow each other while answers of the one before are on their way: each shows its own, and of none
+/// anything is known when it is over, however it ends.
+#[test]
+fn a_picture_shows_nothing_of_the_one_before() {
+    let size = [260, 200];
+    // One is full of edges, also where squares meet.
+    let mut scenes = [
+        ["<-0.9 0.3 0>", "<-0.8 -0.6 0>"],
+        ["<0.5 0.3 0>", "<0.2 -0.6 0>"],
+    ]
+    .map(balls);
+    for i in 0..24 {
+        let mut ball = scenes[1].elements[0].clone();
+        let place = [f64::from(i % 6) - 2.5, f64::from(i / 6) - 1.5];
+        ball.shape = scene::Shape::Sphere {
+            center: [0.7 * place[0], 0.7 * place[1], 0.0].into(),
+            radius: 0.2,
+        };
+        scenes[1].elements.push(ball);
+    }
+    let truth = scenes.each_ref().map(|scene| {
+        let picture = tracer::Picture::new(scene, size);
+        let mut stats = tracer::Stats::default();
+        let mut smooth = |tile| picture.trace(tile, Pass::Smooth, &|| false, &mut stats);
+        let tiles = tracer::tiles(size[0], size[1], TILE).into_iter();
+        let all: HashMap<_, _> = tiles.map(|tile| (tile, smooth(tile).unwrap())).collect();
+        all
+    });
+    // Answers that were lost, pictures of which something was known when they were broken off, tiles that were waited for.
+    let (mut lost, mut told, mut waiting) = (0, 0, 0);
+    for workers in [2, 3, 5] {
+        let engines = (0..workers).map(|_| Engine::default()).collect();
+        let mut core = Core::new(workers, Desks(engines));
+        core.launch(0.0);
+        let mut late: Vec<Vec<Answer>> = vec![Vec::new(); workers];
+        let mut now = 0.0;
+        for picture in 0..60 {
+            // Every other one is broken off, each later than the one before, and the first one cancelled.
+            let breaks = (picture % 2 == 0).then_some(2 * picture);
+            let which = picture % 2;
+            let job = Job {
+                scene: &scenes[which],
+                size,
+                generation: picture as u64,
+                kind: Kind::Colours,
+                small: false,
+            };
+            core.start(job, now);
+            if picture == 0 {
+                for index in 0..workers {
+                    core.answers(index, vec![Answer::Started], now);
+                }
+                core.cancel(now);
+                assert!(core.hearsay.is_empty());
+            }
+            let mut steps = 0;
+            while !core.progress(now).finished && breaks.is_none_or(|breaks| steps < breaks) {
+                steps += 1;
+                for (index, late) in late.iter_mut().enumerate() {
+                    now += 1e-4;
+                    // What it said before arrives now.
+                    for answer in late.drain(..) {
+                        let present = core.scheduler.number();
+                        let stale = matches!(&answer, Answer::Traced { order, known, .. }
+                            if order.generation != present && known.is_some());
+                        let nothing = core.hearsay.is_empty();
+                        core.answers(index, vec![answer], now);
+                        if stale && nothing {
+                            lost += 1;
+                            assert!(core.hearsay.is_empty(), "what is stale was heard");
+                        }
+                    }
+                    let time = std::cell::Cell::new(0.0);
+                    let clock = || time.replace(time.get() + 1e-3);
+                    if let Step::Answer(answer) = core.workers.0[index].step(&|| false, &clock) {
+                        late.push(answer);
+                    }
+                }
+                waiting = waiting.max(core.hearsay.waiting());
+                assert!(now < 100.0, "endless");
+            }
+            told += usize::from(!core.hearsay.is_empty());
+            let done = core.take().into_iter();
+            let mine = |done: &TileDone| done.generation == picture as u64;
+            let smooth = done.filter(|done| mine(done) && done.pass == Pass::Smooth);
+            let seen: HashMap<_, _> = smooth.map(|done| (done.tile, done.pixels)).collect();
+            if breaks.is_none() {
+                assert!(seen == truth[which], "{workers} workers, picture {picture}");
+                assert!(core.hearsay.is_empty());
+            }
+        }
+    }
+    assert!(lost > 5 && told > 5, "{lost} {told}");
+    // Of 20 tiles.
+    assert!((2..18).contains(&waiting), "{waiting}");
+}
+
+/// Workers that are started by and by, none of which ever makes a certain tile smooth.
+struct Stuck(Desks, Vec<usize>, Tile);
+
+impl Workers for Stuck {
+    fn restart(&mut self, index: usize) -> Result<(), String> {
+        self.1.push(index);
+        self.0.restart(index)
+    }
+
+    fn end(&mut self, index: usize) {
+        self.0.end(index);
+    }
+
+    fn send(&mut self, index: usize, request: &[u8]) {
+        let mut request = unpack(request).unwrap();
+        if let Request::Trace(orders) = &mut request {
+            orders.retain(|order| order.pass != Pass::Smooth || order.tile != self.2);
+        }
+        self.0.0[index].accept(request);
+    }
+}
+
+/// What is left of a picture that ends while nobody answers is forgotten, too.
+#[test]
+fn a_picture_that_is_given_up_leaves_nothing() {
+    let scene = balls(["<-0.9 0.3 0>", "<-0.8 -0.6 0>"]);
+    let desks = Desks((0..2).map(|_| Engine::default()).collect());
+    let tile = tracer::tiles(260, 200, TILE)[0];
+    let mut core = Core::new(2, Stuck(desks, Vec::new(), tile));
+    core.launch(0.0);
+    let job = Job {
+        scene: &scene,
+        size: [260, 200],
+        generation: 1,
+        kind: Kind::Colours,
+        small: false,
+    };
+    core.start(job, 0.0);
+    let (mut now, mut heard) = (0.0, false);
+    while !core.progress(now).finished {
+        now += 1e-3;
+        for index in std::mem::take(&mut core.workers.1) {
+            core.answers(index, vec![Answer::Started], now);
+        }
+        for index in 0..2 {
+            let time = std::cell::Cell::new(0.0);
+            let clock = || time.replace(time.get() + 1e-3);
+            let engine = &mut core.workers.0.0[index];
+            if let Step::Answer(answer) = engine.step(&|| false, &clock) {
+                core.answers(index, vec![answer], now);
+            }
+        }
+        heard |= !core.hearsay.is_empty();
+        if core.workers.0.0.iter().all(Engine::is_idle) {
+            now += 30.0;
+            core.tick(now);
+        }
+        assert!(now < 1e5, "endless");
+    }
+    assert!(heard && core.hearsay.is_empty());
+}
+
 #[test]
 fn workers_tell_only_what_others_can_use() {
     let mut scene = scene();
