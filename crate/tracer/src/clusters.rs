@@ -34,6 +34,8 @@ struct Facts {
     steep: f32,
     /// … or, of kernels that fall as a power of the distance, than so much over the distance.
     power: f32,
+    /// What the members' formulas may lose, added up.
+    cancels: f32,
     adds: bool,
     carves: bool,
 }
@@ -121,6 +123,12 @@ impl Clusters {
         f64::from(facts.steep).at_most(f64::from(facts.power) / distance)
     }
 
+    /// What the members' formulas may lose, in units of rounding ([`Bound::cancels`]).
+    #[must_use]
+    pub fn cancels(&self, cluster: u32) -> f64 {
+        f64::from(self.facts[cluster as usize].cancels)
+    }
+
     /// What a group consists of.
     #[must_use]
     pub fn members(&self, cluster: u32) -> Members<'_> {
@@ -162,6 +170,7 @@ impl Facts {
         table: [[0.0; 2]; ENTRIES],
         steep: 0.0,
         power: 0.0,
+        cancels: 0.0,
         adds: false,
         carves: false,
     };
@@ -172,6 +181,7 @@ impl Facts {
             let mut own = Self {
                 steep: bound.relative_slope(Nearness::at(0.0)) as f32,
                 power: bound.power() as f32,
+                cancels: bound.cancels() as f32 * (1.0 + 1e-6),
                 adds: bound.adds(),
                 carves: bound.carves(),
                 ..Self::NONE
@@ -195,6 +205,7 @@ impl Facts {
             }),
             steep: self.steep.max(other.steep),
             power: self.power.max(other.power),
+            cancels: sum(self.cancels, other.cancels),
             adds: self.adds || other.adds,
             carves: self.carves || other.carves,
         }

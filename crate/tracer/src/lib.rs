@@ -45,7 +45,8 @@
 //!   rounding may move them by more than that and no more than 2¹⁶ primitives are near.
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
-//! - Where spans leave a ray in doubt it is settled alone (`settle`); stretches shorter than 5·10⁻⁷ of the scene are
+//! - Where spans leave a ray in doubt it is settled alone (`settle`), among very many primitives within what is shared, if that
+//!   tells enough, and else exactly; stretches shorter than 5·10⁻⁷ of the scene are
 //!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left (all but an eighth for its next part),
 //!   and what comes after its share is used up is decided by the signs at its ends.
 //! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be

@@ -47,7 +47,8 @@ pub struct Given<'a> {
     pub node: &'a dyn Fn(f64) -> Node<f64>,
     /// The cubics between are off by no more than this, …
     pub off: f64,
-    /// … as are interpolants on a stretch of this length: so their slope is off by no more than four times that over the length.
+    /// … as are interpolants on a stretch of this length: so their slope is off by no more than about four times that over the length.
+    /// That of what is left out may be off by more: where the field is within `off` of T, it may cross T three times instead of once.
     pub length: f64,
 }
 
@@ -149,12 +150,18 @@ impl Settler {
             steep: given.off / given.length,
         };
         self.unsure = false;
+        let pieces = self.pieces;
         let mut told = Vec::new();
         self.follow(along, stretch, given.node, |t, inside| {
             told.push((t, inside));
             true
         });
-        (!self.unsure).then_some(told)
+        if self.unsure {
+            // Those that all primitives need.
+            self.pieces = pieces;
+            return None;
+        }
+        Some(told)
     }
 
     fn follow(

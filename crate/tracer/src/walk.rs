@@ -349,11 +349,9 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
         let s = self.slabs.slab(index);
         let (from, to) = (s.from, s.to);
-        if !s.kinked {
-            lanes &= !self.settle_near(index, lanes);
-            if lanes == 0 {
-                return;
-            }
+        lanes &= !self.settle_near(index, lanes);
+        if lanes == 0 {
+            return;
         }
         let (slabs, list) = (&*self.slabs, &mut self.settler.list);
         list.clear();
@@ -386,6 +384,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         if all <= FEW {
             return 0;
         }
+        // Listing is work, too.
+        self.work += all / 16;
         self.settler.list.clear();
         let (blocks, off) = self.slabs.near(index, &mut self.settler.list);
         if self.settler.list.len() * WORTH > all {

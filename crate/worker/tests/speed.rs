@@ -17,12 +17,12 @@ const SECONDS: f64 = 0.6;
 /// Enough, also where clocks are coarse.
 const MOST: usize = 1000;
 
-/// Scenes that tell something about speed.
+/// Scenes that tell something about speed and do not take long.
 fn scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let small = ["flake-1", "flake-91"];
+    let others = ["flake-1", "flake-91", "flake-7381-cauchy"];
     BENCH
         .into_iter()
-        .filter(move |(name, _)| !small.contains(name))
+        .filter(move |(name, _)| !others.contains(name))
 }
 
 /// Traces a picture as the page has it traced, and gives the seconds that it took and how many

@@ -16,13 +16,14 @@ macro_rules! bench {
 }
 
 /// Names and texts.
-pub const BENCH: [(&str, &str); 9] = [
+pub const BENCH: [(&str, &str); 10] = [
     bench!("flake-1"),
     bench!("flake-10"),
     bench!("flake-91"),
     bench!("flake-820"),
     bench!("flake-7381"),
     bench!("flake-820-cauchy"),
+    bench!("flake-7381-cauchy"),
     bench!("coral"),
     bench!("seahorse"),
     bench!("tee"),
