@@ -1121,10 +1121,8 @@ mod tests {
                         }
                     }
                 }
-                if depth < 8 {
-                    if let Parts::Halves(left, right) = slabs.parts(index, 0) {
-                        stack.extend([left, right]);
-                    }
+                if let (true, Parts::Halves(left, right)) = (depth < 8, slabs.parts(index, 0)) {
+                    stack.extend([left, right]);
                 }
             }
         }
