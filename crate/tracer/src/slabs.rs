@@ -15,8 +15,10 @@
 //! only show what is empty.
 use crate::beams::Beams;
 use crate::clusters::{Clusters, Members};
+use crate::ray::Ray;
 use crate::shared::{CORNERS, Cell, Shared, Sums};
 use crate::soft::Kinks;
+use crate::spans::Node;
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
 use field::{Cut, Primitive, THRESHOLD};
@@ -107,6 +109,30 @@ pub struct Terms<'a> {
     pub clusters: Option<&'a Clusters>,
     /// Where each is at most this, it is left out.
     pub left_out: f64,
+}
+
+/// What is far from a slab, as interpolants.
+pub struct Afar {
+    blocks: Vec<(Cell, Shared)>,
+    /// How far off these are, together with what is left out.
+    pub off: f64,
+}
+
+impl Afar {
+    /// Value and slope along a ray.
+    #[must_use]
+    pub fn node(&self, ray: &Ray, t: f64) -> Node<f64> {
+        let place = ray.at(t).to_array();
+        let direction = ray.direction.to_array();
+        self.blocks
+            .iter()
+            .fold(Node::zero(), |sum, (cell, shared)| {
+                let (value, [x, y, z]) = shared.jet::<f64>(cell.local(place));
+                let [dx, dy, dz] = cell.steps(direction);
+                let slope = x * dx + y * dy + z * dz;
+                sum.plus(Node { value, slope })
+            })
+    }
 }
 
 /// What in a list says that a number is a group's.
@@ -704,8 +730,8 @@ impl<'a> Slabs<'a> {
     }
 
     /// Lists the primitives that count in a slab, but for those that are next to nothing and those that interpolants stand for which
-    /// rounding hardly puts off; gives these, and how far off they are, together with what is left out.
-    pub fn near(&self, index: u32, list: &mut Vec<u32>) -> (Vec<(Cell, Shared)>, f64) {
+    /// rounding hardly puts off; gives these.
+    pub fn near(&self, index: u32, list: &mut Vec<u32>) -> Afar {
         self.each(index, false, |p| list.push(p));
         let mut blocks = Vec::new();
         let mut off = self.slab(index).spent.shared;
@@ -721,7 +747,7 @@ impl<'a> Slabs<'a> {
                 }
             }
         });
-        (blocks, off)
+        Afar { blocks, off }
     }
 
     /// Calls `f` with each primitive that an entry of a list stands for.
@@ -1033,9 +1059,8 @@ impl<'a> Slabs<'a> {
 mod tests {
     use super::*;
     use crate::beam::Beam;
-    use crate::ray::Ray;
     use crate::soft::Soft;
-    use crate::spans::{Node, Span};
+    use crate::spans::Span;
     use crate::tests::common::{Numbers, element, empty, soft};
     use glam::DVec3;
     use scene::Shape;
@@ -1086,24 +1111,16 @@ mod tests {
                     (slab.from, slab.to, slab.depth)
                 };
                 let mut list = Vec::new();
-                let (blocks, off) = slabs.near(index, &mut list);
+                let afar = slabs.near(index, &mut list);
                 seen += 1;
-                shared += usize::from(!blocks.is_empty());
+                shared += usize::from(!afar.blocks.is_empty());
                 for lean in [[0.0, 0.0], [0.9, 0.0], [-0.6, 0.6]] {
                     let aside = DVec3::new(lean[0], lean[1], 0.0) * beam.spread;
                     let direction = (beam.axis.direction + aside).normalize();
                     let origin = beam.axis.at(base) + aside * base;
                     let ray = Ray { origin, direction };
-                    let node = |t: f64| {
-                        let place = ray.at(t).to_array();
-                        blocks.iter().fold(Node::zero(), |sum, (cell, shared)| {
-                            let (value, [x, y, z]) = shared.jet::<f64>(cell.local(place));
-                            let [dx, dy, dz] = cell.steps(direction.to_array());
-                            let slope = x * dx + y * dy + z * dz;
-                            sum.plus(Node { value, slope })
-                        })
-                    };
-                    let span = Span::hermite(node(from), node(to), to - from);
+                    let [left, right] = [from, to].map(|t| afar.node(&ray, t));
+                    let span = Span::hermite(left, right, to - from);
                     for i in 0..=8 {
                         let x = f64::from(i) / 8.0;
                         let place = ray.at(from + x * (to - from)).to_array();
@@ -1116,8 +1133,9 @@ mod tests {
                         // Rounding is bounded where the field is about T.
                         if (all - THRESHOLD).abs() < 1.0 {
                             let apart = (told - all).abs();
-                            assert!(apart <= off + 1e-8, "{index}: {apart} > {off}");
-                            largest = largest.max(apart / (off + 1e-8));
+                            let most = afar.off + 1e-8;
+                            assert!(apart <= most, "{index}: {apart} > {most}");
+                            largest = largest.max(apart / most);
                         }
                     }
                 }

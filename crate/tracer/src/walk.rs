@@ -387,7 +387,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         // Listing is work, too.
         self.work += all / 16;
         self.settler.list.clear();
-        let (blocks, off) = self.slabs.near(index, &mut self.settler.list);
+        let afar = self.slabs.near(index, &mut self.settler.list);
         if self.settler.list.len() * WORTH > all {
             return 0;
         }
@@ -400,20 +400,9 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 ray: self.rays[lane.min(self.rays.len() - 1)],
                 resolution: self.slabs.resolution(),
             };
-            let node = |t: f64| {
-                let place = along.ray.at(t).to_array();
-                blocks.iter().fold(Node::zero(), |sum, (cell, shared)| {
-                    let (value, [x, y, z]) = shared.jet::<f64>(cell.local(place));
-                    let [dx, dy, dz] = cell.steps(along.ray.direction.to_array());
-                    sum.plus(Node {
-                        value,
-                        slope: x * dx + y * dy + z * dz,
-                    })
-                })
-            };
             let given = Given {
-                node: &node,
-                off,
+                node: &|t| afar.node(&along.ray, t),
+                off: afar.off,
                 length: stretch[1] - stretch[0],
             };
             let told = self.settler.crossings_with(&along, stretch, &given);

@@ -81,14 +81,20 @@ pub fn draw() -> Result<()> {
     Ok(())
 }
 
-/// Writes a picture anew with a palette, which takes less than half the bytes.
-fn reduce(path: &Path) -> Result<()> {
+/// A picture's size and kind, and its bytes.
+pub fn read_picture(path: &Path) -> Result<(png::OutputInfo, Vec<u8>)> {
     let mut decoder = png::Decoder::new(BufReader::new(File::open(path)?));
     decoder.set_transformations(png::Transformations::ALPHA);
     let mut reader = decoder.read_info()?;
     let mut pixels = vec![0; reader.output_buffer_size().context("too large")?];
     let info = reader.next_frame(&mut pixels)?;
     pixels.truncate(info.buffer_size());
+    Ok((info, pixels))
+}
+
+/// Writes a picture anew with a palette, which takes less than half the bytes.
+fn reduce(path: &Path) -> Result<()> {
+    let (info, pixels) = read_picture(path)?;
     if (info.color_type, info.bit_depth) != (png::ColorType::Rgba, png::BitDepth::Eight) {
         bail!("not a picture of 8 bits a channel");
     }

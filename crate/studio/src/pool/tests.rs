@@ -170,16 +170,7 @@ fn taking_turns(
 #[test]
 fn several_workers_hardly_take_more_samples_than_one() {
     // Most of the edges are on one side.
-    let text = "surface flesh diffuse Coral, blobbiness -2\n\
-        sphere flesh 0.5 <-0.9 0.3 0>\nsphere flesh 0.4 <-0.8 -0.6 0>";
-    let file = rats::File {
-        name: "main.rat".into(),
-        text: text.into(),
-    };
-    let compiled = rats::compile(&rats::Project { files: vec![file] });
-    assert_eq!(compiled.diagnostics, []);
-    let mut scene = compiled.scene;
-    scene.settings.samples = 3;
+    let scene = balls(["<-0.9 0.3 0>", "<-0.8 -0.6 0>"]);
     let (pixels, rays) = taking_turns(&scene, 1, true, false);
     for workers in [2, 3, 7] {
         let more = |tells| {

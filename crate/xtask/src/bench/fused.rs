@@ -10,8 +10,6 @@ use crate::examples;
 use crate::shell::{FUSED, command, run};
 use anyhow::{Context, Result, bail};
 use std::fmt::Write;
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
 /// The scenes that are drawn both ways.
@@ -49,7 +47,9 @@ pub fn measure() -> Result<String> {
         let pictures = [("ours", &*scenes.sinew), ("fused", &*fused)].map(|(name, program)| {
             let picture = scenes.path(&format!("{scene}-{name}.png"));
             draw(program, &dataset, &picture)?;
-            bytes(&picture).with_context(|| picture.display().to_string())
+            let (_, bytes) =
+                examples::read_picture(&picture).with_context(|| picture.display().to_string())?;
+            anyhow::Ok(bytes)
         });
         let [a, b] = pictures;
         let (pixels, most) = difference(&a?, &b?)?;
@@ -76,17 +76,6 @@ fn draw(program: &Path, dataset: &str, picture: &Path) -> Result<()> {
         program,
         &["render", dataset, "-o", &picture, "-r", "512", "512"],
     ))
-}
-
-/// A picture's bytes.
-fn bytes(picture: &Path) -> Result<Vec<u8>> {
-    let mut decoder = png::Decoder::new(BufReader::new(File::open(picture)?));
-    decoder.set_transformations(png::Transformations::ALPHA);
-    let mut reader = decoder.read_info()?;
-    let mut bytes = vec![0; reader.output_buffer_size().context("too large")?];
-    let info = reader.next_frame(&mut bytes)?;
-    bytes.truncate(info.buffer_size());
-    Ok(bytes)
 }
 
 /// How many pixels of four bytes differ, and by how much at most.
