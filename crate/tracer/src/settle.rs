@@ -45,11 +45,10 @@ pub const STEEP: f64 = 1.34;
 pub struct Given<'a> {
     /// Its value and slope.
     pub node: &'a dyn Fn(f64) -> Node<f64>,
-    /// The cubics between are off by no more than this, …
+    /// The cubic between the stretch's ends is off by no more than this: so its slope is off by no more than about four times that over
+    /// the length. That of what is left out may be off by more: where the field is within `off` of T, it may cross T three times
+    /// instead of once.
     pub off: f64,
-    /// … as are interpolants on a stretch of this length: so their slope is off by no more than about four times that over the length.
-    /// That of what is left out may be off by more: where the field is within `off` of T, it may cross T three times instead of once.
-    pub length: f64,
 }
 
 /// What [`Given`] is off by: nothing, if there is none.
@@ -147,7 +146,7 @@ impl Settler {
     ) -> Option<Vec<(f64, bool)>> {
         self.off = Off {
             value: given.off,
-            steep: given.off / given.length,
+            steep: given.off / (stretch[1] - stretch[0]),
         };
         self.unsure = false;
         let pieces = self.pieces;
@@ -465,7 +464,6 @@ mod tests {
                     slope: 0.0,
                 },
                 off: OFF,
-                length: LENGTH,
             };
             let mut settler = Settler::default();
             settler.list.extend([0, 1]);
@@ -500,5 +498,39 @@ mod tests {
             told_of > 600 && (2..60).contains(&unsure),
             "{told_of} {unsure}"
         );
+    }
+
+    /// Where what is given may be off so that a slope is turned round, one crossing may be three.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn a_slope_that_may_be_turned_is_not_told() {
+        let sight = Sight {
+            primitives: &[],
+            bounds: &[],
+            kinks: &Kinks::default(),
+        };
+        let along = Along {
+            sight,
+            ray: Ray {
+                origin: DVec3::ZERO,
+                direction: DVec3::Z,
+            },
+            resolution: 1e-7,
+        };
+        // `slope·u − off·sin 2u`, u = t − 1, crosses T three times where the slope is less than 2·off.
+        for (slope, told) in [(0.015, None), (0.03, Some(2)), (1.0, Some(2))] {
+            let given = Given {
+                node: &|t| Node {
+                    value: THRESHOLD + slope * (t - 1.0),
+                    slope,
+                },
+                off: 0.01,
+            };
+            let mut settler = Settler::default();
+            let crossings = settler.crossings_with(&along, [0.0, 2.0], &given);
+            assert_eq!(crossings.map(|told| told.len()), told, "{slope}");
+            // What told nothing takes no pieces from what does.
+            assert_eq!(settler.pieces == MOST_PIECES, told.is_none(), "{slope}");
+        }
     }
 }

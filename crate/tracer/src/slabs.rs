@@ -274,6 +274,13 @@ struct Rounding {
 }
 
 impl Rounding {
+    /// Adds a term that is no more than a magnitude, of which no more than a part is rounded away.
+    fn add(&mut self, magnitude: f64, part: f64, cancelled: f64) {
+        self.sum += magnitude.at_most(self.largest()) * part;
+        self.part = self.part.at_least(part);
+        self.cancelled += cancelled;
+    }
+
     /// All together, where the field is T: what adds is no more than that and what carves, and both are rounded.
     fn most(&self) -> f64 {
         self.cancelled + self.sum.at_most(self.largest() * self.part)
@@ -995,14 +1002,9 @@ impl<'a> Slabs<'a> {
             }
             let part = rounded(1.0, self.relative_slope(id, candidate.distance));
             let cancelled = 2.0 * rounding * self.cancels(id);
-            let count = |all: &mut Rounding| {
-                all.sum += magnitude.at_most(all.largest()) * part;
-                all.part = all.part.at_least(part);
-                all.cancelled += cancelled;
-            };
-            count(&mut spent.rounding);
+            spent.rounding.add(magnitude, part, cancelled);
             if fate == Fate::Shared {
-                count(&mut of_shared);
+                of_shared.add(magnitude, part, cancelled);
             }
         }
         spent.noise = spent.rounding.most();
@@ -1077,6 +1079,33 @@ mod tests {
             scene.elements.push(element(shape, usize::from(carves)));
         }
         Soft::new(scene)
+    }
+
+    /// Terms that add up to T are rounded by no more than is said, however much of them is carved away.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn what_adds_and_what_carves_are_both_rounded() {
+        const PART: f64 = 1e-3;
+        for carved in [0.0, 1.0, 99.0, 1e4] {
+            for terms in [1, 7, 100] {
+                let mut rounding = Rounding {
+                    carved,
+                    ..Rounding::default()
+                };
+                let share = 1.0 / f64::from(terms);
+                for _ in 0..terms {
+                    rounding.add((THRESHOLD + carved) * share, PART, 0.0);
+                    rounding.add(carved * share, PART, 0.0);
+                }
+                let rounded = PART * (THRESHOLD + 2.0 * carved);
+                let most = rounding.most();
+                assert!(most >= rounded * (1.0 - 1e-9), "{carved} {terms}: {most}");
+                // Bounds on terms may be far larger, and what formulas lose comes on top.
+                rounding.add(1e9, PART, 0.5);
+                let most = rounding.most();
+                assert!((0.5..0.5 + 5.0 * rounded).contains(&most), "{most}");
+            }
+        }
     }
 
     /// What is near and the interpolants of the rest are together as near to the field as is said, on all rays of the beam; and

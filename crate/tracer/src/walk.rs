@@ -403,7 +403,6 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             let given = Given {
                 node: &|t| afar.node(&along.ray, t),
                 off: afar.off,
-                length: stretch[1] - stretch[0],
             };
             let told = self.settler.crossings_with(&along, stretch, &given);
             let spent = core::mem::take(&mut self.settler.evaluations);
