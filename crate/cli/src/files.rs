@@ -81,7 +81,7 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
         }
     }
     let start = std::time::Instant::now();
-    let compiled = rats::compile_at(&project, &assets, 0);
+    let compiled = rats::compile_at(&project, &assets, 0.0);
     Ok(Loaded {
         project,
         assets,

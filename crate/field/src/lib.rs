@@ -9,6 +9,8 @@
 //! - the formula of a Cauchy arc is in `cauchy/arc.rs`, and so on; `form.rs` is the chart that says which
 //!   formula serves which kernel on which bone; [`quadrature`] is what they are tested against;
 //! - [`Shaping`] turns a radius, a blobbiness and a strength into a kernel's width and height;
+//! - [`Implicit`] is any function with a surface, with value, gradient and proven bounds; [`Sum`] is the convolution
+//!   surface's;
 //! - [`Primitive`] is a term of the field: its value and gradient, its depth of influence, where a
 //!   ray meets that, how far a cubic may stand in for it;
 //! - [`Lump`] is a primitive so simple that its largest value on any piece of a ray has a closed form;
@@ -39,6 +41,7 @@ mod error_function;
 mod far;
 mod form;
 mod gauss;
+mod implicit;
 mod inverse;
 pub mod kernel;
 pub mod kinks;
@@ -58,7 +61,7 @@ mod ripple;
 pub mod shaping;
 pub mod skeleton;
 mod squared;
-pub mod sum;
+mod sum;
 mod term;
 mod waves;
 
@@ -66,6 +69,7 @@ pub use beads::Bead;
 pub use bound::Bound;
 pub use course::{Ceiling, Course, Limits, Lump};
 pub use cut::Cut;
+pub use implicit::{Ball, Enclosure, Implicit};
 pub use kernel::{Derivatives, Kernel};
 pub use kinks::Kink;
 pub use primitive::{Jet, Primitive};
@@ -75,7 +79,7 @@ pub use ray::AlongRay;
 pub use real::Real;
 pub use shaping::{BlobScale, Shaping, Taper};
 pub use skeleton::Skeleton;
-pub use sum::Field;
+pub use sum::{Sum, sum};
 
 /// The iso-value T: the surface is where the field equals it.
 pub const THRESHOLD: f64 = 1.0;

@@ -2,7 +2,7 @@
 //!
 //! [`value`] integrates the kernel over the skeleton adaptively, and shares nothing with the closed
 //! forms but the definition of the field. It is slow (10² to 10⁵ kernel evaluations).
-use crate::{Field, Kernel, Primitive, Profile, Shaping, Skeleton, Wave};
+use crate::{Kernel, Primitive, Profile, Shaping, Skeleton, Sum, Wave};
 use glam::DVec3;
 
 /// Nodes in [0, 1) and weights of Kronrod's 15-point rule, and weights of the 7-point Gauss rule
@@ -405,7 +405,7 @@ fn passes(f: &dyn Fn(f64) -> f64, level: f64, mut a: f64, mut b: f64) -> Option<
 
 /// The whole field at a point, by integration.
 #[must_use]
-pub fn sum(field: &Field, point: DVec3) -> f64 {
+pub fn sum(field: &Sum, point: DVec3) -> f64 {
     field.primitives.iter().map(|p| value(p, point)).sum()
 }
 

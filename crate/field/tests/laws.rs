@@ -4,7 +4,7 @@ mod common;
 
 use common::{KINDS, Kind, Random, jet, primitive, sensitivity, shaping, single};
 use core::f64::consts::TAU;
-use field::{BlobScale, Field, Primitive, Profile, Shaping, Skeleton, THRESHOLD, Wave, quadrature};
+use field::{BlobScale, Primitive, Profile, Shaping, Skeleton, Sum, THRESHOLD, Wave, quadrature};
 use glam::{DQuat, DVec3};
 use wide::f32x8;
 
@@ -110,9 +110,7 @@ tests! {
                 let at = random.unit();
                 let Some(parts) = halves(&skeleton, at) else { continue };
                 let whole = primitive(skeleton.clone(), &shaping, None);
-                let sum = Field {
-                    primitives: parts.map(|part| primitive(part, &shaping, None)).to_vec(),
-                };
+                let sum: Sum = parts.into_iter().map(|part| primitive(part, &shaping, None)).collect();
                 let point = random.near(&skeleton, -3.0, 1.0);
                 let (value, gradient) = jet::<f64>(&whole, point);
                 let cut = sum.jet(point);
@@ -120,7 +118,7 @@ tests! {
                 assert!((cut.value - value).abs() <= 1e-14 * scale, "{skeleton:?} at {point:?}");
                 let error = (DVec3::from_array(cut.gradient) - gradient).length();
                 assert!(error <= 1e-13 * whole.width * (1.0 + size) * scale, "{error:e} {skeleton:?} at {point:?}");
-                let cut = f64::from(sum.jet32(point.to_array().map(|x| x as f32)).value);
+                let cut = f64::from(sum.sum(point.to_array().map(|x| x as f32)).value);
                 assert!((cut - value).abs() <= 5e-6 * scale, "{skeleton:?} at {point:?}");
                 let weights: f64 = sum.weights(point).iter().sum();
                 assert_eq!(weights, sum.jet(point).value);

@@ -105,13 +105,14 @@ pub enum HotValue {
 /// [`crate::limits`].
 #[must_use]
 pub fn compile(project: &Project) -> Compiled {
-    compile_at(project, &[], 0)
+    compile_at(project, &[], 0.0)
 }
 
-/// As [`compile`], with images and meshes that the texts may use, at a frame of the animation.
-/// Variables that change with every frame have changed `frame` times.
+/// As [`compile`], with images and meshes that the texts may use, at a moment of the animation in frames: between two frames
+/// for an exposure that lasts. A variable `+= step` has changed by `step·moment`, one `*= factor` by `factor^moment`.
+/// A moment that is negative or not finite is taken for 0.
 #[must_use]
-pub fn compile_at(project: &Project, assets: &[Asset], frame: u32) -> Compiled {
+pub fn compile_at(project: &Project, assets: &[Asset], moment: f64) -> Compiled {
     if let Some(diagnostic) = too_large(project) {
         return Compiled {
             diagnostics: vec![diagnostic],
@@ -120,7 +121,8 @@ pub fn compile_at(project: &Project, assets: &[Asset], frame: u32) -> Compiled {
     }
     let mut symbols = Symbols::default();
     let sources = Sources::of(project, &mut symbols);
-    Evaluator::new(&sources, assets, frame, Scope::new(symbols)).run(project)
+    let moment = if moment.is_finite() { moment.max(0.0) } else { 0.0 };
+    Evaluator::new(&sources, assets, moment, Scope::new(symbols)).run(project)
 }
 
 fn too_large(project: &Project) -> Option<Diagnostic> {

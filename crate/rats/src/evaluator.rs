@@ -59,8 +59,8 @@ pub enum Flow {
 pub struct Evaluator<'a> {
     sources: &'a Sources<'a>,
     assets: &'a [Asset],
-    /// The frame of the animation.
-    frame: u32,
+    /// The moment of the animation, in frames.
+    moment: f64,
     /// Variables, random numbers, steps.
     pub(crate) scope: Scope<'a>,
     report: Report,
@@ -109,13 +109,13 @@ impl<'a> Evaluator<'a> {
     pub fn new(
         sources: &'a Sources<'a>,
         assets: &'a [Asset],
-        frame: u32,
+        moment: f64,
         scope: Scope<'a>,
     ) -> Self {
         Self {
             sources,
             assets,
-            frame,
+            moment,
             scope,
             report: Report::default(),
             model: Model::default(),

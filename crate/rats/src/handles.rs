@@ -18,7 +18,7 @@ use crate::symbol::Symbols;
 use crate::syntax::{Block, Node};
 use crate::{Asset, Project};
 use glam::{DAffine3, DMat3, DVec3};
-use scene::{Element, Origin, Scene, Shape};
+use scene::{Element, Flesh, Origin, Scene, Shape};
 use std::ops::Range;
 
 /// What a handle moves.
@@ -436,13 +436,17 @@ impl Maker<'_> {
         Some(handle(kind, label, operand.numbers.clone(), moves))
     }
 
+    /// The element's flesh, if it is soft.
+    fn flesh(&self) -> Option<&Flesh> {
+        self.scene.flesh.get(self.element.flesh? as usize)
+    }
+
     /// Whether the radius that counts is the material's.
     fn material_decides(&self) -> bool {
-        let material = &self.scene.materials[self.element.material];
-        if !material.is_soft()
-            || !self.element.shape.has_skeleton()
-            || self.seen.radius.value == 0.0 && material.depth == 0.0
-        {
+        let Some(flesh) = self.flesh() else {
+            return false;
+        };
+        if !self.element.shape.has_skeleton() || self.seen.radius.value == 0.0 && flesh.depth == 0.0 {
             return false;
         }
         let mut wider = self.element.clone();
@@ -475,9 +479,7 @@ impl Maker<'_> {
     fn radius(&self, end: f64) -> Moves {
         let view = self.view;
         let (right, towards) = (view.x_axis, view.z_axis);
-        let tapers = self.scene.materials[self.element.material]
-            .end_radius
-            .is_some()
+        let tapers = self.flesh().is_some_and(|flesh| flesh.end_radius.is_some())
             || matches!(self.element.shape, Shape::Cone { .. });
         let share = if tapers { end } else { 0.5 };
         let across = |axis: DVec3| {

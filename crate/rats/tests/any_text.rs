@@ -33,9 +33,12 @@ fn check(project: &Project) {
         }
     }
     let scene = &compiled.scene;
-    assert!(!scene.materials.is_empty());
+    assert!(!scene.finishes.is_empty());
     for element in &scene.elements {
-        assert!(element.material < scene.materials.len());
+        assert!((element.finish as usize) < scene.finishes.len());
+        assert!(element.flesh.is_none_or(|flesh| (flesh as usize) < scene.flesh.len()));
+        assert!((element.body as usize) < scene.bodies.len());
+        assert!((element.frame as usize) < scene.frames.len());
         let origin = element.origin;
         let text = &project.files[origin.file as usize].text;
         assert!(
@@ -50,7 +53,7 @@ fn check(project: &Project) {
 
 /// How many optional things a scene leaves out.
 fn absent(scene: &scene::Scene) -> usize {
-    let of = |m: &scene::Material| {
+    let of = |m: &scene::Flesh| {
         [
             m.profile.is_none(),
             m.kernel.is_none(),
@@ -58,9 +61,10 @@ fn absent(scene: &scene::Scene) -> usize {
             m.end_blobbiness.is_none(),
         ]
     };
-    let materials = scene.materials.iter().flat_map(of);
+    let flesh = scene.flesh.iter().flat_map(of);
+    let hard = scene.elements.iter().map(|element| element.flesh.is_none());
     let map = scene.settings.map.is_none();
-    materials.chain([map]).filter(|&is| is).count()
+    flesh.chain(hard).chain([map]).filter(|&is| is).count()
 }
 
 fn one_file(text: String) -> Project {

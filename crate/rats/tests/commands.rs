@@ -145,7 +145,7 @@ fn variables() {
     assert_eq!(sphere("sphere s a V"), (v(1.0, 2.0, 3.0), 2.0));
     assert_eq!(sphere("sphere s A V.z a V.x"), (v(3.0, 2.0, 1.0), 3.0));
     assert_eq!(
-        scene_of("sphere s 1 C").materials[0].diffuse,
+        scene_of("sphere s 1 C").finishes[0].diffuse,
         [1.0, 0.0, 0.0]
     );
 }
@@ -240,24 +240,28 @@ fn surfaces() {
          surface u ambient Red\n\
          sphere s 1 0 0 0\nsphere t 1 0 0 0\nsphere u 1 0 0 0",
     );
-    let [s, t, u] = &scene.materials[..] else {
+    let [s, t, u] = &scene.finishes[..] else {
+        panic!("three materials");
+    };
+    let [soft, hard, _] = &scene.flesh[..] else {
         panic!("three materials");
     };
     assert_eq!(s.name, "s");
     assert_eq!(s.diffuse, [0.5, 0.25, 1.0]);
     assert_eq!(
         s.ambient,
-        [0.5, 0.25, 1.0].map(|c| c * scene::Material::AMBIENT_SHARE)
+        [0.5, 0.25, 1.0].map(|c| c * scene::Finish::AMBIENT_SHARE)
     );
     assert_eq!((s.specular, s.shine), ([1.0; 3], 40.0));
-    assert_eq!((s.radius, s.blobbiness, s.strength), (0.3, -8.0, 2.0));
-    assert_eq!(s.kernel, None);
+    assert_eq!((soft.radius, soft.blobbiness, soft.strength), (0.3, -8.0, 2.0));
+    assert_eq!(soft.kernel, None);
     assert_eq!(scene.elements[0].kernel, Kernel::Cauchy);
-    assert!(s.is_soft());
+    assert!(soft.is_soft());
+    assert_eq!(scene.elements.iter().map(|e| e.flesh).collect::<Vec<_>>(), [Some(0), None, None]);
     assert_eq!(t.diffuse, [0.8, 0.4, 0.0]);
     assert_eq!(t.ambient, [0.1, 0.05, 0.0]);
     assert_eq!(t.specular, [0.5; 3]);
-    assert!(!t.is_soft());
+    assert!(!hard.is_soft());
     assert_eq!(u.ambient, [1.0, 0.0, 0.0]);
 }
 
@@ -267,9 +271,9 @@ fn a_material_that_was_passed_on_is_copied() {
     let text = "surface Clay diff Red\ndefine ball(surface s) {\n\
                 surface own = s, rad 2\nsphere own 1, 0 0 0\n}\nball Clay\n";
     let scene = scene(text);
-    let material = &scene.materials[scene.elements[0].material];
-    assert_eq!(material.diffuse, [1.0, 0.0, 0.0]);
-    assert_eq!(material.radius, 2.0);
+    let index = scene.elements[0].finish as usize;
+    assert_eq!(scene.finishes[index].diffuse, [1.0, 0.0, 0.0]);
+    assert_eq!(scene.flesh[index].radius, 2.0);
 }
 
 #[test]
@@ -278,7 +282,7 @@ fn a_material_made_anew_leaves_older_shapes_alone() {
         "surface s diff Red\nsphere s 1 0 0 0\nsurface s diff Blue\nsphere s 1 0 0 0\n\
          surface s = s, shine 5\nsphere s 1 0 0 0",
     );
-    let material = |i: usize| &scene.materials[scene.elements[i].material];
+    let material = |i: usize| &scene.finishes[scene.elements[i].finish as usize];
     assert_eq!(material(0).diffuse, [1.0, 0.0, 0.0]);
     assert_eq!(material(1).diffuse, [0.0, 0.0, 1.0]);
     assert_eq!(
@@ -295,7 +299,7 @@ fn profiles() {
          texture UU = TT\ntexture VV texture UU\n\
          surface s diff Red, blob -1, rad 1, text VV\nsphere s 1 0 0 0",
     );
-    let profile = scene.materials[0].profile.expect("a profile");
+    let profile = scene.flesh[0].profile.expect("a profile");
     assert_eq!(profile.waves, [Wave::Sin2, Wave::One]);
     assert_eq!(profile.scale, [22.0, 11.0]);
     assert_eq!(profile.bounds, [0.5, 0.7]);
@@ -367,7 +371,7 @@ fn soft_shapes_without_a_radius_of_their_own_take_the_material_s() {
     for element in &scene.elements {
         assert_eq!(scene.radius(element), 0.25);
     }
-    assert_eq!(scene.soft_surface().field.primitives.len(), 3);
+    assert_eq!(scene.soft_surfaces()[0].sum.primitives.len(), 3);
 }
 
 #[test]
@@ -443,12 +447,12 @@ fn scaled_flesh_scales_with_its_bones() {
             "blobscale {mode}\nfragile all\nsurface s diff Red, blob -8, rad .25\nobject A\n\
              cylinder s 1 <0 0 0> <1 0 0>\narc s 1 1 <1 2 3> <0 0 1> 0 90\nclose\n"
         );
-        let small = scene(&text).soft_surface();
-        let large = scene(&format!("{text}scale 3 3 3 A")).soft_surface();
+        let small = scene(&text).soft_surfaces();
+        let large = scene(&format!("{text}scale 3 3 3 A")).soft_surfaces();
         for point in [v(0.5, 0.2, 0.1), v(0.0, 0.0, 0.0), v(1.7, 2.8, 3.1)] {
             let (a, b) = (
-                small.field.jet(point).value,
-                large.field.jet(point * 3.0).value,
+                small[0].sum.jet(point).value,
+                large[0].sum.jet(point * 3.0).value,
             );
             assert!((a - b).abs() < 1e-9 * a, "{mode}: {a} and {b}");
         }
@@ -576,7 +580,7 @@ fn a_failed_command_changes_nothing() {
          fragile all\nfragile sphere wibble\nbackground Red\nbackground 1 2",
     );
     assert_eq!(compiled.scene.camera.eye, v(1.0, 2.0, 3.0));
-    assert_eq!(compiled.scene.materials[0].diffuse, [1.0, 0.0, 0.0]);
+    assert_eq!(compiled.scene.finishes[0].diffuse, [1.0, 0.0, 0.0]);
     assert_eq!(compiled.scene.settings.fragile, Fragile::ALL);
     assert_eq!(compiled.scene.background, [1.0, 0.0, 0.0]);
     assert_eq!(compiled.diagnostics.len(), 4);
@@ -682,7 +686,44 @@ fn variables_change_with_every_frame() {
             ref other => panic!("{other:?}"),
         }
     };
-    assert_eq!(at(0), (v(1.0, 0.0, 0.0), 2.0));
-    assert_eq!(at(4), (v(3.0, 0.0, 4.0), 0.125));
+    assert_eq!(at(0.0), (v(1.0, 0.0, 0.0), 2.0));
+    assert_eq!(at(4.0), (v(3.0, 0.0, 4.0), 0.125));
+    // Between frames, too; before the first there is none.
+    assert_eq!(at(0.5), (v(1.25, 0.0, 0.5), 2.0 * libm::sqrt(0.5)));
+    assert_eq!(at(-1.0), at(0.0));
+    assert_eq!(at(f64::NAN), at(0.0));
     assert!(!run("var x = 1").animated);
+}
+
+/// The body of each element, and the bodies' names.
+fn bodies(text: &str) -> (Vec<u32>, Vec<String>) {
+    let scene = scene(&format!("surface s diff Red, blob -1\n{text}"));
+    let of_each = scene.elements.iter().map(|element| element.body);
+    let names = scene.bodies.iter().map(|body| body.name.clone());
+    (of_each.collect(), names.collect())
+}
+
+#[test]
+fn bodies_hold_what_stands_in_them() {
+    let (of_each, names) = bodies(
+        "sphere s 1 0 0 0\nbody A\nsphere s 1 1 0 0\nobject ARM\nsphere s 1 2 0 0\nclose ARM\nclose A\n\
+         sphere s 1 3 0 0\nobject O\nbody B\nsphere s 1 4 0 0\nclose\nsphere s 1 5 0 0\nclose O",
+    );
+    assert_eq!(of_each, [0, 1, 1, 0, 2, 0]);
+    assert_eq!(names, ["", "A", "B"]);
+    // Each turn of a loop makes one.
+    let (of_each, names) =
+        bodies("for i = 1 to 3 { body LEG\nsphere s 1 i 0 0\nclose }\nrotate 0 0 1 90 LEG");
+    assert_eq!(of_each, [1, 2, 3]);
+    assert_eq!(names, ["", "LEG", "LEG", "LEG"]);
+}
+
+#[test]
+fn an_instance_of_a_body_is_a_new_body() {
+    let (of_each, names) = bodies(
+        "body A\nsphere s 1 1 0 0\nclose\ninstance A C\nobject O\ninstance A B\nsphere s 1 2 0 0\nclose\n\
+         instance O P\nobject Q\nsphere s 1 3 0 0\nclose\nbody D\ninstance Q\nclose\ninstance Q R",
+    );
+    assert_eq!(of_each, [1, 2, 3, 0, 4, 0, 0, 5, 0]);
+    assert_eq!(names, ["", "A", "C", "B", "B", "D"]);
 }

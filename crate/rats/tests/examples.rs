@@ -69,7 +69,7 @@ fn cowrie() {
     let scene = compiled.scene;
     assert_eq!(count(&scene, |s| matches!(s, Shape::Arc { .. })), 3);
     assert_eq!(count(&scene, |s| matches!(s, Shape::Cylinder { .. })), 100);
-    assert_eq!(scene.materials.len(), 4);
+    assert_eq!(scene.finishes.len(), 4);
     assert!(scene.elements.iter().all(|e| scene.is_soft(e)));
     assert_eq!(scene.settings.frame, [640, 480]);
     // Every spike begins on the circle of the body, which the rotation has taken along.
@@ -96,7 +96,7 @@ fn seahorse() {
     let profiles = scene
         .elements
         .iter()
-        .filter(|e| scene.materials[e.material].profile.is_some())
+        .filter_map(|e| scene.flesh[e.flesh? as usize].profile)
         .count();
     assert_eq!(profiles, 5);
 }
@@ -109,7 +109,7 @@ fn icicle() {
     for element in &scene.elements {
         assert!(scene.is_soft(element));
         assert_eq!(scene.radius(element), 0.25);
-        assert_eq!(scene.materials[element.material].blobbiness, -0.3);
+        assert_eq!(scene.flesh[element.flesh.expect("soft") as usize].blobbiness, -0.3);
     }
 }
 

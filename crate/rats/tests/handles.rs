@@ -216,7 +216,7 @@ fn a_mesh_has_no_numbers() {
         name: String::from("corner.obj"),
         bytes: b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".as_slice().into(),
     }];
-    let compiled = rats::compile_at(&project, &assets, 0);
+    let compiled = rats::compile_at(&project, &assets, 0.0);
     let handles = handles::handles(&project, &assets, 0, &compiled, 0, &DMat3::IDENTITY);
     assert_eq!(
         why(labelled(&handles, "a corner")),

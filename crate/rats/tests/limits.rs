@@ -269,7 +269,7 @@ fn magnitudes() {
              sphere s 1 0 0 0\nclose\nfor i = 1 to 30 {{ scale {factor} {factor} {factor} }}"
         ));
         assert!(compiled.scene.elements.is_empty());
-        assert!(compiled.scene.materials.iter().all(|m| m.radius == 1.0));
+        assert!(compiled.scene.flesh.iter().all(|m| m.radius == 1.0));
     }
 }
 
@@ -362,7 +362,7 @@ fn a_large_image_in_a_loop() {
         bytes: cut_image(4096).into(),
     };
     let begin = Instant::now();
-    let compiled = rats::compile_at(&project, &[asset], 0);
+    let compiled = rats::compile_at(&project, &[asset], 0.0);
     assert!(
         begin.elapsed() < Duration::from_secs(20),
         "{:?}",

@@ -1,7 +1,6 @@
 //! A text means the same scene, to the last bit, on every platform: run natively and as WebAssembly.
 
 use rats::{File, Project, compile, link};
-use scene::wire;
 
 const TEXT: &str = "\
 seed 7
@@ -41,7 +40,7 @@ fn a_scene_is_the_same_everywhere() {
         .filter(|d| d.severity == rats::Severity::Error);
     assert_eq!(errors.count(), 0, "{:?}", compiled.diagnostics);
     assert_eq!(compiled.scene.elements.len(), 82);
-    let bytes = wire::pack(&compiled.scene).expect("packs");
+    let bytes = postcard::to_allocvec(&compiled.scene).expect("packs");
     let hash = bytes.iter().fold(0xCBF2_9CE4_8422_2325_u64, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3)
     });

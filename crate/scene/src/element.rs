@@ -7,17 +7,39 @@ use field::Kernel;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// One shape made of one material.
+/// One shape with its softness and its look. The indices point into the lists of the [`Scene`](crate::Scene).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Element {
-    /// The geometry.
+    /// The geometry, in the world's coordinates.
     pub shape: Shape,
-    /// Index into [`crate::Scene::materials`].
-    pub material: usize,
-    /// The kernel of its flesh, unless the material names one.
+    /// Index into [`Scene::flesh`](crate::Scene::flesh); `None` for a hard element.
+    pub flesh: Option<u32>,
+    /// Index into [`Scene::finishes`](crate::Scene::finishes).
+    pub finish: u32,
+    /// Index into [`Scene::bodies`](crate::Scene::bodies).
+    pub body: u32,
+    /// Index into [`Scene::frames`](crate::Scene::frames).
+    pub frame: u32,
+    /// The kernel, unless the flesh names one.
     pub kernel: Kernel,
     /// Where in the text this element was written.
     pub origin: Origin,
+}
+
+impl Element {
+    /// A hard element with the first finish, in the body without a name and the world's frame.
+    #[must_use]
+    pub fn new(shape: Shape) -> Self {
+        Self {
+            shape,
+            flesh: None,
+            finish: 0,
+            body: 0,
+            frame: 0,
+            kernel: Kernel::Cauchy,
+            origin: Origin::default(),
+        }
+    }
 }
 
 /// Where an element comes from: a byte range of one of the project's files.

@@ -1,26 +1,44 @@
 //! What a picture is, as plain data.
 //!
-//! A [`Scene`] is a list of [`Element`]s (shapes made of a [`Material`]), lights, a camera and
-//! settings. The language (`rats`) writes it; the tracer, the draft and the mesher read it. It
+//! A [`Scene`] is a list of [`Element`]s, lights, a camera and settings. An element is a [`Shape`] with a [`Finish`]
+//! (its colours) and, if it is soft, a [`Flesh`] (its kernel). Soft elements blend within their [`Body`] and never
+//! across bodies. The language (`rats`) writes scenes; the tracer, the draft and the mesher read them. This room
 //! knows nothing of text, pixels or GPUs. Two things are computed here because every reader needs
-//! them and must agree on them: the projection ([`Camera`]), and which elements are *soft*, that
-//! is, parts of the convolution surface, with which kernel constants ([`soft`]).
+//! them and must agree on them: the projection ([`Camera`]), and the field of each body ([`soft`]).
+//!
+//! ```
+//! use glam::DVec3;
+//! use scene::{Element, Flesh, Scene, Shape};
+//!
+//! let mut scene = Scene::default();
+//! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
+//! let center = DVec3::ZERO;
+//! scene.elements.push(Element {
+//!     flesh: Some(0),
+//!     ..Element::new(Shape::Sphere { center, radius: 1.0 })
+//! });
+//! let surfaces = scene.soft_surfaces();
+//! assert!(surfaces[0].sum.jet(center).value > field::THRESHOLD);
+//! ```
 
+pub mod body;
 pub mod camera;
 pub mod element;
+pub mod finish;
+pub mod flesh;
 pub mod light;
 pub mod limbs;
-pub mod material;
 pub mod parts;
 pub mod quadric;
 pub mod settings;
 pub mod soft;
-pub mod wire;
 
+pub use body::{Body, Frame};
 pub use camera::{Camera, Projection};
 pub use element::{Element, Origin, Shape};
+pub use finish::Finish;
+pub use flesh::Flesh;
 pub use light::{Light, LightKind};
-pub use material::Material;
 pub use quadric::Quadric;
 pub use settings::{Digger, Fragile, Settings};
 pub use soft::SoftSurface;
@@ -35,8 +53,14 @@ pub type Rgb = [f32; 3];
 pub struct Scene {
     /// The shapes, in the order of the text.
     pub elements: Vec<Element>,
-    /// Materials; [`Element::material`] indexes this list.
-    pub materials: Vec<Material>,
+    /// Bodies; [`Element::body`] indexes this list. The first is the body without a name.
+    pub bodies: Vec<Body>,
+    /// Softness; [`Element::flesh`] indexes this list.
+    pub flesh: Vec<Flesh>,
+    /// Looks; [`Element::finish`] indexes this list.
+    pub finishes: Vec<Finish>,
+    /// Frames of objects; [`Element::frame`] indexes this list. The first is the world's.
+    pub frames: Vec<Frame>,
     /// Light sources. A scene without any is lit by ambient light only.
     pub lights: Vec<Light>,
     /// Colour of a ray that meets nothing.
@@ -51,7 +75,10 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             elements: Vec::new(),
-            materials: vec![Material::default()],
+            bodies: vec![Body::default()],
+            flesh: Vec::new(),
+            finishes: vec![Finish::default()],
+            frames: vec![Frame::WORLD],
             lights: Vec::new(),
             background: DEFAULT_BACKGROUND,
             camera: Camera::default(),

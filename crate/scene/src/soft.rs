@@ -1,53 +1,65 @@
-//! Which elements are soft, and the convolution field they make together.
+//! The convolution surfaces of a scene: which elements are soft, and the field that those of each body make together.
 
 use crate::limbs;
-use crate::{Element, Fragile, Material, Scene, Shape};
+use crate::{Element, Flesh, Fragile, Frame, Scene, Shape};
 use field::shaping::SLIMMEST;
-use field::{Field, Primitive, Skeleton};
+use field::{Primitive, Skeleton, Sum};
 
-/// The convolution surface of a scene: the field, and which element each primitive came from.
-#[derive(Clone, Debug)]
+/// The convolution surface of a body, and which element each of its primitives came from.
+#[derive(Clone, Debug, Default)]
 pub struct SoftSurface {
-    /// The sum of all soft elements' fields; the surface is where it equals [`field::THRESHOLD`].
-    pub field: Field,
-    /// For each primitive of `field`, the index of its element in [`Scene::elements`].
-    pub element: Vec<usize>,
+    /// Index of the body in [`Scene::bodies`].
+    pub body: u32,
+    /// The sum of the soft elements' fields; the surface is where it equals [`field::THRESHOLD`].
+    pub sum: Sum,
+    /// For each primitive of the sum, the index of its element in [`Scene::elements`].
+    pub element: Vec<u32>,
 }
 
 impl Scene {
     /// Whether an element belongs to the convolution surface under the present settings.
     #[must_use]
     pub fn is_soft(&self, element: &Element) -> bool {
-        self.settings.soft && self.material_is_soft(element)
+        self.settings.soft && self.flesh_of(element).is_some()
     }
 
-    fn material_is_soft(&self, element: &Element) -> bool {
-        element.shape.has_skeleton()
-            && self
-                .materials
-                .get(element.material)
-                .is_some_and(crate::Material::is_soft)
+    /// The flesh of an element that has a skeleton, whether or not soft elements are drawn soft.
+    fn flesh_of(&self, element: &Element) -> Option<&Flesh> {
+        let flesh = self.flesh.get(element.flesh? as usize)?;
+        (element.shape.has_skeleton() && flesh.is_soft()).then_some(flesh)
     }
 
-    /// The radius that counts for an element: for soft materials the material's own where
+    /// The same in lengths of the world.
+    fn flesh_in_world(&self, element: &Element) -> Option<Flesh> {
+        let flesh = self.flesh_of(element)?;
+        Some(flesh.scaled(self.frame(element).growth, self.settings.blob_scale))
+    }
+
+    /// The frame of an element.
+    #[must_use]
+    pub fn frame(&self, element: &Element) -> Frame {
+        let frame = self.frames.get(element.frame as usize);
+        frame.copied().unwrap_or_default()
+    }
+
+    /// The radius that counts for an element: for soft elements that of the flesh where
     /// `fragile` says so and it is given, else the shape's. With `soft off` the offset surface of
     /// such an element is drawn at the same radius. A cone keeps its own two radii; this is the
     /// larger one.
     #[must_use]
     pub fn radius(&self, element: &Element) -> f64 {
         let own = element.shape.radius();
-        if !self.material_is_soft(element) {
+        let Some(flesh) = self.flesh_in_world(element) else {
             return own;
-        }
+        };
         let Fragile {
             arc,
             pipe,
             cylinder,
             sphere,
         } = self.settings.fragile;
-        let material = &self.materials[element.material];
-        let given = if material.depth > 0.0 {
-            let shaping = self.shaping(element, material, 1.0);
+        let given = if flesh.depth > 0.0 {
+            let shaping = self.shaping(element, &flesh, 1.0);
             let dimension = match element.shape {
                 Shape::Sphere { .. } => 0,
                 Shape::Cylinder { .. }
@@ -60,12 +72,12 @@ impl Scene {
                 | Shape::Plane { .. } => 2,
                 Shape::Cone { .. } | Shape::Box { .. } | Shape::Quadric(_) => return own,
             };
-            let radius = shaping.radius_of_depth(material.depth, dimension);
+            let radius = shaping.radius_of_depth(flesh.depth, dimension);
             radius.unwrap_or(0.0)
         } else {
             // A tip may be at the start.
-            let end = material.end_radius.unwrap_or(0.0);
-            material.radius.max(SLIMMEST * end)
+            let end = flesh.end_radius.unwrap_or(0.0);
+            flesh.radius.max(SLIMMEST * end)
         };
         let overruled = match element.shape {
             Shape::Arc { .. } | Shape::Curve { .. } => arc,
@@ -87,11 +99,13 @@ impl Scene {
         }
     }
 
-    /// Whether an element's bone is one that is integrated numerically, and too long for that.
+    /// Whether a soft element's skeleton is integrated numerically, and too long for that.
     #[must_use]
     pub fn is_too_long(&self, element: &Element) -> bool {
-        let material = &self.materials[element.material];
-        let shaping = self.shaping(element, material, self.radius(element));
+        let Some(flesh) = self.flesh_in_world(element) else {
+            return false;
+        };
+        let shaping = self.shaping(element, &flesh, self.radius(element));
         let tapers = shaping.taper.is_some();
         // From above: an arc's circle, a curve's control polygon.
         let length = match &element.shape {
@@ -109,9 +123,9 @@ impl Scene {
         shaping.widths_along(length) > field::primitive::LONGEST
     }
 
-    /// What the field is told of an element with this radius.
-    fn shaping(&self, element: &Element, material: &Material, radius: f64) -> field::Shaping {
-        // A cone brings its own radii, whatever its material's.
+    /// The kernel's parameters for an element with this radius and this flesh, in lengths of the world.
+    fn shaping(&self, element: &Element, flesh: &Flesh, radius: f64) -> field::Shaping {
+        // A cone brings its own radii, whatever its flesh's.
         let (radius, end_radius) = match element.shape {
             Shape::Cone {
                 base_radius,
@@ -122,87 +136,113 @@ impl Scene {
                 let start = base_radius.max(SLIMMEST * apex_radius);
                 (start, (apex_radius != start).then_some(apex_radius))
             }
-            _ => (radius, material.end_radius),
+            _ => (radius, flesh.end_radius),
         };
-        let tapers = end_radius.is_some() || material.end_blobbiness.is_some();
+        let tapers = end_radius.is_some() || flesh.end_blobbiness.is_some();
         field::Shaping {
-            kernel: material.kernel.unwrap_or(element.kernel),
+            kernel: flesh.kernel.unwrap_or(element.kernel),
             radius,
-            blobbiness: material.blobbiness,
+            blobbiness: flesh.blobbiness,
             blob_scale: self.settings.blob_scale,
-            strength: material.strength,
+            strength: flesh.strength,
             influence: self.settings.influence,
             taper: tapers.then(|| field::Taper {
                 radius: end_radius.unwrap_or(radius),
-                blobbiness: material.end_blobbiness.unwrap_or(material.blobbiness),
+                blobbiness: flesh.end_blobbiness.unwrap_or(flesh.blobbiness),
             }),
         }
     }
 
-    /// The field of all soft elements.
+    /// The convolution surfaces of all bodies that have soft elements, in the order of [`Scene::bodies`].
     #[must_use]
-    pub fn soft_surface(&self) -> SoftSurface {
-        // As many as there are, unless limbs are cut: growing lists would take up to twice the room.
-        let count = self.elements.iter().filter(|e| self.is_soft(e)).count();
-        let mut field = Field {
-            primitives: Vec::with_capacity(count),
-        };
-        let mut indices = Vec::with_capacity(count);
-        for (index, element) in self.elements.iter().enumerate() {
-            if !self.is_soft(element) {
-                continue;
-            }
-            let material = &self.materials[element.material];
-            let skeleton = match element.shape.clone() {
-                Shape::Sphere { center, .. } => Skeleton::Point { center },
-                Shape::Cylinder { base, apex, .. }
-                | Shape::Pipe { base, apex, .. }
-                | Shape::Cone { base, apex, .. } => Skeleton::Segment { base, apex },
-                Shape::Arc {
-                    center,
-                    u,
-                    v,
-                    sweep,
-                    angle,
-                    ..
-                } => Skeleton::Arc {
-                    center,
-                    u,
-                    v,
-                    radius: sweep,
-                    angle,
-                },
-                Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
-                    Skeleton::Triangle { corners }
-                }
-                Shape::Polygon { rings, .. } => Skeleton::Polygon { rings },
-                Shape::Curve { control, .. } => Skeleton::Curve { control },
-                Shape::Plane { point, normal, .. } => Skeleton::Plane { point, normal },
-                Shape::Box { .. } | Shape::Quadric(_) => continue,
-            };
-            let shaping = self.shaping(element, material, self.radius(element));
-            let profile = match skeleton {
-                Skeleton::Triangle { .. } => material.whole_profile(),
-                // They have no parameters that a profile could follow.
-                Skeleton::Polygon { .. } | Skeleton::Curve { .. } => None,
-                _ => material.profile,
-            };
-            // A profile runs along the whole bone.
-            let pieces = match profile {
-                None => limbs::cut(skeleton, shaping),
-                Some(_) => vec![(skeleton, shaping)],
-            };
-            for (bone, shaping) in pieces {
-                // An element without a positive radius has no flesh; the language has said so.
-                if let Some(primitive) = Primitive::new(bone, &shaping, profile) {
-                    field.primitives.push(primitive);
-                    indices.push(index);
-                }
+    pub fn soft_surfaces(&self) -> Vec<SoftSurface> {
+        let mut surfaces: Vec<SoftSurface> = Vec::new();
+        let mut of_body = vec![None; self.bodies.len()];
+        // As many primitives as there are elements, unless limbs are cut: growing lists would take up to twice the room.
+        let mut counts = vec![0; self.bodies.len()];
+        for element in self.elements.iter().filter(|e| self.is_soft(e)) {
+            if let Some(count) = counts.get_mut(element.body as usize) {
+                *count += 1;
             }
         }
-        SoftSurface {
-            field,
-            element: indices,
+        for (body, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            of_body[body] = Some(surfaces.len());
+            surfaces.push(SoftSurface {
+                body: body as u32,
+                sum: Sum::new(Vec::with_capacity(count)),
+                element: Vec::with_capacity(count),
+            });
+        }
+        for (index, element) in self.elements.iter().enumerate() {
+            let surface = of_body.get(element.body as usize).copied().flatten();
+            if let (Some(surface), true) = (surface, self.is_soft(element)) {
+                let SoftSurface { sum, element: of, .. } = &mut surfaces[surface];
+                self.primitives_of(element, |primitive| {
+                    sum.primitives.push(primitive);
+                    of.push(index as u32);
+                });
+            }
+        }
+        surfaces.retain(|surface| !surface.sum.primitives.is_empty());
+        surfaces
+    }
+
+    /// Calls `f` with each primitive of a soft element: one, or several where a long limb is cut.
+    fn primitives_of(&self, element: &Element, mut f: impl FnMut(Primitive)) {
+        let Some(flesh) = self.flesh_in_world(element) else {
+            return;
+        };
+        let Some(skeleton) = skeleton(&element.shape) else {
+            return;
+        };
+        let shaping = self.shaping(element, &flesh, self.radius(element));
+        let profile = match skeleton {
+            Skeleton::Triangle { .. } => flesh.whole_profile(),
+            // They have no parameters that a profile could follow.
+            Skeleton::Polygon { .. } | Skeleton::Curve { .. } => None,
+            _ => flesh.profile,
+        };
+        // A profile runs along the whole skeleton.
+        let pieces = match profile {
+            None => limbs::cut(skeleton, shaping),
+            Some(_) => vec![(skeleton, shaping)],
+        };
+        // An element without a positive radius has no flesh; the language has said so.
+        for (skeleton, shaping) in pieces {
+            Primitive::new(skeleton, &shaping, profile)
+                .into_iter()
+                .for_each(&mut f);
         }
     }
+}
+
+/// The skeleton of a shape; `None` if it has none.
+fn skeleton(shape: &Shape) -> Option<Skeleton> {
+    Some(match shape.clone() {
+        Shape::Sphere { center, .. } => Skeleton::Point { center },
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Pipe { base, apex, .. }
+        | Shape::Cone { base, apex, .. } => Skeleton::Segment { base, apex },
+        Shape::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+            ..
+        } => Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius: sweep,
+            angle,
+        },
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
+            Skeleton::Triangle { corners }
+        }
+        Shape::Polygon { rings, .. } => Skeleton::Polygon { rings },
+        Shape::Curve { control, .. } => Skeleton::Curve { control },
+        Shape::Plane { point, normal, .. } => Skeleton::Plane { point, normal },
+        Shape::Box { .. } | Shape::Quadric(_) => return None,
+    })
 }

@@ -1,27 +1,31 @@
-//! The scene's own rules: the projection, whose radius counts, and the message form.
+//! The scene's own rules: the projection, whose radius counts, which elements blend, and the message form.
 
 use field::Skeleton;
 use glam::DVec3;
 use scene::{
-    Camera, Element, Fragile, Light, LightKind, Material, Origin, Quadric, Scene, Shape, wire,
+    Body, Camera, Element, Flesh, Fragile, Frame, Light, LightKind, Origin, Quadric, Scene, Shape, SoftSurface,
 };
 
-fn soft(name: &str, radius: f64) -> Material {
-    Material {
-        name: name.into(),
+fn soft(radius: f64) -> Flesh {
+    Flesh {
         blobbiness: -2.0,
         radius,
-        ..Material::default()
+        ..Flesh::default()
     }
 }
 
-fn element(shape: Shape, material: usize) -> Element {
+fn element(shape: Shape, flesh: u32) -> Element {
     Element {
-        shape,
-        material,
-        kernel: field::Kernel::Cauchy,
-        origin: Origin::default(),
+        flesh: Some(flesh),
+        ..Element::new(shape)
     }
+}
+
+/// The convolution surface of the body without a name.
+fn surface(scene: &Scene) -> SoftSurface {
+    let mut surfaces = scene.soft_surfaces();
+    assert!(surfaces.len() <= 1, "there is one body");
+    surfaces.pop().unwrap_or_default()
 }
 
 fn ball(radius: f64) -> Shape {
@@ -109,14 +113,14 @@ fn degenerate_cameras_still_project() {
 #[test]
 fn fragile_lets_the_material_overrule_a_soft_primitives_radius() {
     let mut scene = Scene {
-        materials: vec![
-            soft("flesh", 0.5),
-            Material::default(),
-            soft("no radius", 0.0),
+        flesh: vec![
+            soft(0.5),
+            Flesh::default(),
+            soft(0.0),
         ],
         ..Scene::default()
     };
-    let [flesh, bone, bare] = [0, 1, 2].map(|material| element(ball(0.2), material));
+    let [flesh, bone, bare] = [0, 1, 2].map(|flesh| element(ball(0.2), flesh));
     assert_eq!(scene.radius(&flesh), 0.2);
     scene.settings.fragile = Fragile {
         sphere: true,
@@ -146,35 +150,35 @@ fn fragile_lets_the_material_overrule_a_soft_primitives_radius() {
 #[test]
 fn soft_off_leaves_no_flesh() {
     let mut scene = Scene {
-        materials: vec![soft("flesh", 0.5), Material::default()],
+        flesh: vec![soft(0.5), Flesh::default()],
         ..Scene::default()
     };
     scene.elements = vec![element(ball(0.2), 1), element(ball(0.3), 0)];
-    let surface = scene.soft_surface();
-    assert_eq!(surface.element, [1], "only the soft material's element");
+    let whole = surface(&scene);
+    assert_eq!(whole.element, [1], "only the soft element");
     assert!(matches!(
-        surface.field.primitives[0].skeleton,
+        whole.sum.primitives[0].skeleton,
         Skeleton::Point { .. }
     ));
     scene.settings.soft = false;
-    assert!(scene.soft_surface().field.primitives.is_empty());
+    assert!(surface(&scene).sum.primitives.is_empty());
 }
 
 #[test]
 fn an_isolated_ball_has_its_radius() {
     let mut scene = Scene {
-        materials: vec![soft("flesh", 0.5)],
+        flesh: vec![soft(0.5)],
         ..Scene::default()
     };
     scene.elements = vec![element(ball(0.3), 0)];
-    let field = scene.soft_surface().field;
+    let field = surface(&scene).sum;
     assert!((field.jet(DVec3::new(0.0, 0.3, 0.0)).value - field::THRESHOLD).abs() < 1e-12);
 }
 
 #[test]
 fn a_scene_survives_the_journey_to_a_worker() {
     let mut scene = Scene {
-        materials: vec![soft("flesh", 0.5)],
+        flesh: vec![soft(0.5)],
         ..Scene::default()
     };
     scene.elements = vec![element(
@@ -190,11 +194,11 @@ fn a_scene_survives_the_journey_to_a_worker() {
         colour: [1.0, 0.5, 0.25],
         shadow: true,
     }];
-    let bytes = wire::pack(&scene).expect("packs");
-    assert_eq!(wire::unpack(&bytes).expect("unpacks"), scene);
+    let bytes = postcard::to_allocvec(&scene).expect("packs");
+    assert_eq!(postcard::from_bytes::<Scene>(&bytes).expect("unpacks"), scene);
     for cut in 0..bytes.len() {
         assert!(
-            wire::unpack(&bytes[..cut]).is_err(),
+            postcard::from_bytes::<Scene>(&bytes[..cut]).is_err(),
             "a message cut at {cut} is refused"
         );
     }
@@ -203,7 +207,7 @@ fn a_scene_survives_the_journey_to_a_worker() {
 /// Cutting long and tapered bones into pieces leaves the field as it is.
 #[test]
 fn limbs_are_cut_without_a_trace() {
-    use field::{BlobScale, Field, Kernel, Primitive, Shaping, Taper};
+    use field::{BlobScale, Kernel, Primitive, Shaping, Sum, Taper};
     let bones = [
         Skeleton::Segment {
             base: DVec3::ZERO,
@@ -240,9 +244,7 @@ fn limbs_are_cut_without_a_trace() {
                     Primitive::new(bone.clone(), shaping, None).expect("flesh")
                 };
                 let whole = one(&(bone.clone(), shaping));
-                let cut = Field {
-                    primitives: pieces.iter().map(one).collect(),
-                };
+                let cut: Sum = pieces.iter().map(one).collect();
                 for i in 0..40 {
                     let t = f64::from(i);
                     let p = DVec3::new(libm::sin(t), libm::cos(1.7 * t), 0.3 * libm::sin(2.3 * t));
@@ -258,9 +260,9 @@ fn limbs_are_cut_without_a_trace() {
 }
 
 /// The field of one element of a material, at some places.
-fn values(shape: Shape, material: Material) -> Vec<f64> {
+fn values(shape: Shape, flesh: Flesh) -> Vec<f64> {
     let mut scene = Scene {
-        materials: vec![material],
+        flesh: vec![flesh],
         ..Scene::default()
     };
     scene.settings.fragile = Fragile {
@@ -269,7 +271,7 @@ fn values(shape: Shape, material: Material) -> Vec<f64> {
         ..Fragile::default()
     };
     scene.elements = vec![element(shape, 0)];
-    let field = scene.soft_surface().field;
+    let field = surface(&scene).sum;
     let at = |i: u32| {
         let t = f64::from(i);
         let p = DVec3::new(libm::sin(t), libm::cos(1.7 * t), 0.3 * libm::sin(2.3 * t));
@@ -289,10 +291,10 @@ fn a_soft_cone_is_a_limb_that_tapers() {
             apex_radius: to,
         };
         // What the material says of radii does not count.
-        let of_cone = values(cone, soft("flesh", 7.0));
-        let limb = Material {
+        let of_cone = values(cone, soft(7.0));
+        let limb = Flesh {
             end_radius: Some(to),
-            ..soft("flesh", from)
+            ..soft(from)
         };
         let radius = 1.0;
         let of_limb = values(Shape::Cylinder { base, apex, radius }, limb);
@@ -302,7 +304,7 @@ fn a_soft_cone_is_a_limb_that_tapers() {
         }
     }
     let mut scene = Scene {
-        materials: vec![soft("flesh", 7.0)],
+        flesh: vec![soft(7.0)],
         ..Scene::default()
     };
     scene.settings.fragile = Fragile::ALL;
@@ -328,7 +330,7 @@ fn pipes_and_patches_have_the_skeletons_of_their_kin() {
     for given in [0.0, 0.5] {
         let cylinder = Shape::Cylinder { base, apex, radius };
         let pipe = Shape::Pipe { base, apex, radius };
-        let flesh = soft("flesh", given);
+        let flesh = soft(given);
         assert_eq!(values(pipe, flesh.clone()), values(cylinder, flesh));
     }
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
@@ -338,7 +340,7 @@ fn pipes_and_patches_have_the_skeletons_of_their_kin() {
         radius: 0.0,
     };
     let patch = Shape::Patch { corners, normals };
-    let flesh = soft("flesh", 0.2);
+    let flesh = soft(0.2);
     assert_eq!(values(patch.clone(), flesh.clone()), values(flat, flesh));
     // As an offset surface it is a prism; without flesh, itself.
     assert!(matches!(patch.parts(0.2)[..], [Shape::Triangle { radius, .. }] if radius == 0.2));
@@ -356,7 +358,7 @@ fn what_has_no_skeleton_stays_hard() {
         axes,
     };
     let mut scene = Scene {
-        materials: vec![soft("flesh", 0.5)],
+        flesh: vec![soft(0.5)],
         ..Scene::default()
     };
     let center = DVec3::ZERO;
@@ -367,7 +369,78 @@ fn what_has_no_skeleton_stays_hard() {
     for element in &scene.elements {
         assert!(!scene.is_soft(element) && scene.radius(element) == 0.0);
     }
-    assert!(scene.soft_surface().field.primitives.is_empty());
-    let bytes = wire::pack(&scene).expect("packs");
-    assert_eq!(wire::unpack(&bytes).expect("unpacks"), scene);
+    assert!(surface(&scene).sum.primitives.is_empty());
+    let bytes = postcard::to_allocvec(&scene).expect("packs");
+    assert_eq!(postcard::from_bytes::<Scene>(&bytes).expect("unpacks"), scene);
+}
+
+/// Two balls in each of two bodies, one after the other, and one in none.
+#[test]
+fn elements_blend_within_their_body_only() {
+    let mut scene = Scene {
+        flesh: vec![soft(0.5)],
+        ..Scene::default()
+    };
+    for name in ["A", "EMPTY", "B"] {
+        scene.bodies.push(Body {
+            name: name.into(),
+            origin: Origin::default(),
+        });
+    }
+    let in_body = |body| Element {
+        body,
+        ..element(ball(0.3), 0)
+    };
+    scene.elements = [1, 3, 1, 0, 3].map(in_body).to_vec();
+    let surfaces = scene.soft_surfaces();
+    let found: Vec<(u32, &[u32])> = surfaces.iter().map(|s| (s.body, &s.element[..])).collect();
+    assert_eq!(found, [(0, &[3][..]), (1, &[0, 2]), (3, &[1, 4])]);
+    let values = [0, 1, 2].map(|i| surfaces[i].sum.jet(DVec3::ZERO).value);
+    assert_eq!([values[1], values[2]], [2.0 * values[0]; 2]);
+    // A body that is not there has no surface.
+    scene.elements = vec![in_body(4)];
+    assert!(scene.soft_surfaces().is_empty());
+}
+
+/// Scaling an object is the same as writing everything larger.
+#[test]
+fn flesh_grows_with_the_frame() {
+    use field::BlobScale;
+    for blob_scale in [BlobScale::Relative, BlobScale::Absolute] {
+        for depth in [0.0, 1.5] {
+            let small = Flesh {
+                end_radius: Some(0.25),
+                depth,
+                ..soft(0.5)
+            };
+            let mut scene = Scene {
+                flesh: vec![small.clone(), small.scaled(4.0, blob_scale)],
+                frames: vec![
+                    Frame::WORLD,
+                    Frame {
+                        growth: 4.0,
+                        ..Frame::WORLD
+                    },
+                ],
+                ..Scene::default()
+            };
+            scene.settings.blob_scale = blob_scale;
+            scene.settings.fragile = Fragile::ALL;
+            let (base, apex, radius) = (DVec3::NEG_X, DVec3::Y, 0.3);
+            let tube = Shape::Cylinder { base, apex, radius };
+            let grown = Element {
+                frame: 1,
+                ..element(tube.clone(), 0)
+            };
+            let written = element(tube, 1);
+            assert_eq!(scene.radius(&grown), scene.radius(&written));
+            let mut values = [grown, written].map(|element| {
+                scene.elements = vec![element];
+                surface(&scene).sum.jet(DVec3::new(0.3, 0.2, 0.9)).value
+            });
+            assert!(values[0] > 0.0, "{values:?}");
+            values.sort_by(f64::total_cmp);
+            assert_eq!(values[0], values[1]);
+        }
+    }
 }

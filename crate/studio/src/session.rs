@@ -549,7 +549,7 @@ impl Session {
             return;
         }
         let start = crate::platform::stopwatch();
-        self.compiled = rats::compile_at(&self.project, &self.assets, self.film_frame);
+        self.compiled = rats::compile_at(&self.project, &self.assets, f64::from(self.film_frame));
         self.compile_seconds = crate::platform::stopwatch() - start;
         if self.errors() == 0 || self.good.is_none() {
             let scene = &self.compiled.scene;

@@ -49,7 +49,7 @@ pub fn compiled(project: &Project, compiled: &Compiled) -> Result<(), String> {
         }
     }
     let scene = &compiled.scene;
-    if scene.materials.is_empty() {
+    if scene.finishes.is_empty() {
         return Err(String::from("a scene without a material"));
     }
     if scene.elements.len() > rats::limits::MAX_ELEMENTS {
@@ -58,7 +58,7 @@ pub fn compiled(project: &Project, compiled: &Compiled) -> Result<(), String> {
     let lost = scene
         .elements
         .iter()
-        .find(|element| element.material >= scene.materials.len());
+        .find(|element| element.finish as usize >= scene.finishes.len());
     if let Some(element) = lost {
         return Err(format!("an element of no material: {element:?}"));
     }
@@ -210,7 +210,7 @@ pub fn helped(project: &Project, first: &Compiled, byte: usize) -> Result<(), St
     let shapes = |compiled: &Compiled| -> Vec<_> {
         let elements = compiled.scene.elements.iter();
         elements
-            .map(|element| (element.shape.clone(), element.material))
+            .map(|element| (element.shape.clone(), element.finish, element.body))
             .collect()
     };
     if has_errors(&again) {

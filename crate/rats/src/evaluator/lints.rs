@@ -8,7 +8,7 @@ use super::Evaluator;
 use crate::Severity;
 use field::{Primitive, THRESHOLD};
 use glam::DVec3;
-use scene::{Element, Scene, Shape};
+use scene::{Element, Scene, Shape, SoftSurface};
 
 /// Weight of the scene up to which the field is evaluated (see [`crate::limits::CURVE_WEIGHT`]): limbs
 /// that taper take a millisecond each to prepare.
@@ -66,12 +66,8 @@ impl Evaluator<'_> {
 
     /// Warns of an eye inside the surface and of flesh that never reaches the threshold.
     fn lint_field(&mut self, scene: &Scene) {
-        let surface = scene.soft_surface();
-        let terms = &surface.field.primitives;
-        if terms.is_empty() {
-            return;
-        }
-        if sum(terms, scene.camera.eye) >= THRESHOLD {
+        let surfaces = scene.soft_surfaces();
+        if surfaces.iter().any(|s| s.sum.jet(scene.camera.eye).value >= THRESHOLD) {
             let (file, span) = self.aimed_at.clone();
             self.say_at(file, Severity::Warning, span, || {
                 (
@@ -81,26 +77,40 @@ impl Evaluator<'_> {
             });
         }
         let mut left = MOST_EVALUATIONS;
+        for surface in &surfaces {
+            if !self.lint_body(scene, surface, &mut left) {
+                return;
+            }
+        }
+    }
+
+    /// Warns of flesh of one body that never reaches the threshold. Gives `false` when `left`, the evaluations that may still be made,
+    /// is used up.
+    fn lint_body(&mut self, scene: &Scene, surface: &SoftSurface, left: &mut usize) -> bool {
+        let terms = &surface.sum.primitives;
         let mut term = 0;
-        for (index, element) in scene.elements.iter().enumerate() {
+        while term < terms.len() {
+            let index = surface.element[term];
+            let element = &scene.elements[index as usize];
             let first = term;
             while surface.element.get(term) == Some(&index) {
                 term += 1;
             }
             let own = &terms[first..term];
-            if own.is_empty() || scene.materials[element.material].strength <= 0.0 {
+            let flesh = element.flesh.map(|flesh| &scene.flesh[flesh as usize]);
+            if flesh.is_none_or(|flesh| flesh.strength <= 0.0) {
                 continue;
             }
             // Most are strong enough by themselves, which is soon seen.
             let points = bone(&element.shape);
-            if points.iter().rev().any(|p| sum(own, *p) >= THRESHOLD) {
+            if points.iter().rev().any(|p| value(own, *p) >= THRESHOLD) {
                 continue;
             }
             let Some(rest) = left.checked_sub(points.len() * terms.len()) else {
-                return;
+                return false;
             };
-            left = rest;
-            if points.iter().all(|p| sum(terms, *p) < THRESHOLD) {
+            *left = rest;
+            if points.iter().all(|p| value(terms, *p) < THRESHOLD) {
                 let origin = element.origin;
                 let span = origin.start as usize..origin.end as usize;
                 self.say_at(origin.file as usize, Severity::Warning, span, || {
@@ -115,12 +125,12 @@ impl Evaluator<'_> {
                 });
             }
         }
+        true
     }
 }
 
-fn sum(terms: &[Primitive], p: DVec3) -> f64 {
-    let point = [p.x, p.y, p.z];
-    terms.iter().map(|term| term.value::<f64>(point)).sum()
+fn value(terms: &[Primitive], p: DVec3) -> f64 {
+    field::sum(terms, p.to_array()).value
 }
 
 /// Points on a shape's skeleton, where its own field is strongest.

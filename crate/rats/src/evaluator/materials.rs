@@ -9,7 +9,7 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
 use field::Kernel;
-use scene::{Material, Rgb};
+use scene::{Finish, Flesh, Rgb};
 use std::ops::Range;
 
 /// `surface { alias option … }`, `surface new = old`
@@ -42,7 +42,8 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
             old.clone()
         }
         None => Surface {
-            material: Material::default(),
+            finish: Finish::default(),
+            flesh: Flesh::default(),
             colours: Colours::default(),
             origin: (0, 0..0),
             used: false,
@@ -55,11 +56,11 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     for chosen in given.options {
         field(chosen, &mut surface, &mut fields)?;
     }
-    settle_colours(&mut surface.material, &surface.colours);
-    surface.material.name = name.text.to_owned();
+    settle_colours(&mut surface.finish, &surface.colours);
+    surface.finish.name = name.text.to_owned();
     if !fields.textures.is_empty() {
         let layers = run.palette.layers(&fields.textures)?;
-        surface.material.profile = layers.profile;
+        surface.flesh.profile = layers.profile;
     }
     for (what, span) in fields.not_drawn {
         run.say(Severity::Warning, span, || {
@@ -79,7 +80,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
 
 fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>) -> Outcome<()> {
     let Chosen { name, span, given } = chosen;
-    let material = &mut surface.material;
+    let flesh = &mut surface.flesh;
     match name {
         "body" => surface.colours.body = Some(given.colour("RGB")),
         "ambient" => surface.colours.ambient = Some(given.share()),
@@ -95,16 +96,16 @@ fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>)
         }
         // These say how light bends that is let through: without `transparent`, which warns, none is.
         "index" | "dispersion" => {}
-        "shine" => material.shine = given.number("p") as f32,
+        "shine" => surface.finish.shine = given.number("p") as f32,
         "radius" => {
-            material.radius = given.number("r");
-            material.end_radius = given.maybe_number("end");
+            flesh.radius = given.number("r");
+            flesh.end_radius = given.maybe_number("end");
         }
         "blobbiness" => {
-            material.blobbiness = given.number("b");
-            material.end_blobbiness = given.maybe_number("end");
-            if material.end_blobbiness == Some(0.0)
-                || material.end_blobbiness.is_some() && material.blobbiness == 0.0
+            flesh.blobbiness = given.number("b");
+            flesh.end_blobbiness = given.maybe_number("end");
+            if flesh.end_blobbiness == Some(0.0)
+                || flesh.end_blobbiness.is_some() && flesh.blobbiness == 0.0
             {
                 return Err(Problem::new(
                     given.span("end").unwrap_or(span),
@@ -113,35 +114,35 @@ fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>)
                 .hint("0 makes a material hard; near 0 is blobby, far from 0 crisp"));
             }
         }
-        "restriction" => material.restriction = given.number("f"),
-        "depth" => material.depth = given.number("d"),
-        "strength" => material.strength = given.number("s"),
+        "restriction" => flesh.restriction = given.number("f"),
+        "depth" => flesh.depth = given.number("d"),
+        "strength" => flesh.strength = given.number("s"),
         "skip" => fields.not_drawn.push((name, span)),
         "texture" => fields.textures.extend(given.names("t1 +")),
-        _ => material.kernel = given.word("name").and_then(Kernel::named),
+        _ => flesh.kernel = given.word("name").and_then(Kernel::named),
     }
     Ok(())
 }
 
 /// The colours that follow from those the text gives.
-fn settle_colours(material: &mut Material, colours: &Colours) {
+fn settle_colours(finish: &mut Finish, colours: &Colours) {
     let scaled = |colour: Rgb, share: f32| colour.map(|c| c * share);
-    let own = Material::default();
+    let own = Finish::default();
     let body = colours.body.unwrap_or(match colours.diffuse {
         Some(Share::Colour(colour)) => colour,
         _ => own.diffuse,
     });
-    material.diffuse = match colours.diffuse {
+    finish.diffuse = match colours.diffuse {
         Some(Share::Colour(colour)) => colour,
         Some(Share::Percent(share)) => scaled(body, share),
         None => body,
     };
-    material.ambient = match colours.ambient {
+    finish.ambient = match colours.ambient {
         Some(Share::Colour(colour)) => colour,
         Some(Share::Percent(share)) => scaled(body, share),
-        None => scaled(material.diffuse, Material::AMBIENT_SHARE),
+        None => scaled(finish.diffuse, Finish::AMBIENT_SHARE),
     };
-    material.specular = match colours.specular {
+    finish.specular = match colours.specular {
         Some(Share::Colour(colour)) => colour,
         Some(Share::Percent(share)) => [share; 3],
         None => own.specular,
@@ -157,7 +158,7 @@ impl Evaluator<'_> {
         let unused: Vec<_> = self
             .palette
             .unused()
-            .map(|surface| (surface.origin.clone(), surface.material.name.clone()))
+            .map(|surface| (surface.origin.clone(), surface.finish.name.clone()))
             .collect();
         for ((file, span), name) in unused {
             self.file = file;

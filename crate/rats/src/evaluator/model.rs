@@ -1,7 +1,8 @@
 //! The shapes and objects that a running text has made.
 //!
 //! An object is a range of shapes. Transforms are applied at once to the shapes of their object, which
-//! comes to the same as applying them later: an inner object's before an outer one's.
+//! comes to the same as applying them later: an inner object's before an outer one's. A body is an object whose shapes
+//! blend with no others.
 
 use crate::geometry::Transform;
 use crate::limits::{CURVE_WEIGHT, MAX_ELEMENTS, MAX_NESTED_OBJECTS, MAX_OBJECTS};
@@ -9,9 +10,9 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
 use glam::DAffine3;
-use scene::{Element, Shape};
+use scene::{Body, Element, Origin, Shape};
 use std::cell::Cell;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 
 /// A shape and what the language must remember of it.
@@ -44,6 +45,17 @@ impl Part {
     }
 }
 
+/// The kind of an object, by the command that begins it.
+#[derive(Clone, Debug)]
+pub enum Group<'a> {
+    /// `object`
+    Object,
+    /// `chain`, with the name of its material.
+    Chain(Name<'a>),
+    /// `body`, with the command's place.
+    Body(Origin),
+}
+
 /// An object that has been begun.
 #[derive(Debug)]
 struct Object<'a> {
@@ -51,7 +63,7 @@ struct Object<'a> {
     /// The file and place of its name.
     place: (usize, Range<usize>),
     start: usize,
-    is_chain: bool,
+    group: Group<'a>,
 }
 
 /// An object that has been closed.
@@ -81,6 +93,10 @@ pub struct Model<'a> {
     last: Option<Range<usize>>,
     /// The material of the chain that is open.
     pub chain: Option<Name<'a>>,
+    /// All bodies but the one without a name, which is body 0.
+    pub bodies: Vec<Body>,
+    /// The body that is open; 0 for none.
+    open_body: u32,
 }
 
 impl<'a> Model<'a> {
@@ -117,11 +133,26 @@ impl<'a> Model<'a> {
         self.last = Some(first..self.parts.len());
     }
 
-    /// Begins an object, or a chain of shapes of one material.
+    /// The body that shapes made now belong to.
+    #[must_use]
+    pub fn body(&self) -> u32 {
+        self.open_body
+    }
+
+    /// A new body of this name.
+    fn new_body(&mut self, name: &str, origin: Origin) -> u32 {
+        self.bodies.push(Body {
+            name: name.to_owned(),
+            origin,
+        });
+        self.bodies.len() as u32
+    }
+
+    /// Begins an object, a chain of shapes of one material, or a body.
     ///
     /// # Errors
-    /// If there are too many.
-    pub fn open(&mut self, file: usize, name: &Name<'a>, chain: Option<Name<'a>>) -> Outcome<()> {
+    /// If there are too many, or a body stands in a body.
+    pub fn open(&mut self, file: usize, name: &Name<'a>, group: Group<'a>) -> Outcome<()> {
         if self.open.len() >= MAX_NESTED_OBJECTS {
             return Err(Problem::new(
                 name.span.clone(),
@@ -143,22 +174,46 @@ impl<'a> Model<'a> {
                 format!("there are more than {MAX_OBJECTS} objects"),
             ));
         }
+        match &group {
+            Group::Object => {}
+            Group::Chain(material) => self.chain = Some(material.clone()),
+            Group::Body(origin) => {
+                self.refuse_body_in_body(&name.span)?;
+                self.open_body = self.new_body(name.text, *origin);
+            }
+        }
         self.count += 1;
         self.open.push(Object {
             name: name.text,
             place: (file, name.span.clone()),
             start: self.parts.len(),
-            is_chain: chain.is_some(),
+            group,
         });
-        self.chain = chain;
         Ok(())
+    }
+
+    /// An error if a body is open.
+    fn refuse_body_in_body(&self, span: &Range<usize>) -> Outcome<()> {
+        let is_body = |object: &&Object<'_>| matches!(object.group, Group::Body(_));
+        let Some(outer) = self.open.iter().find(is_body) else {
+            return Ok(());
+        };
+        let (file, place) = outer.place.clone();
+        Err(Problem::new(
+            span.clone(),
+            format!("a body cannot stand in another; `{}` is open", outer.name),
+        )
+        .hint(format!("`close {}` first, or use `object`", outer.name))
+        .related(Some(file), place, "it begins here"))
     }
 
     /// Ends the innermost object; gives the name it was begun with, or `None` if there is none.
     pub fn close(&mut self) -> Option<&'a str> {
         let object = self.open.pop()?;
-        if object.is_chain {
-            self.chain = None;
+        match object.group {
+            Group::Object => {}
+            Group::Chain(_) => self.chain = None,
+            Group::Body(_) => self.open_body = 0,
         }
         let range = object.start..self.parts.len();
         self.last = Some(range.clone());
@@ -240,15 +295,21 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Copies shapes as a new object, which becomes the last.
+    /// Copies shapes as a new object, which becomes the last. Inside a body the copies join it; elsewhere each body among
+    /// them becomes a new one, which has the copy's name if all copies are of one body and else keeps its own.
     ///
     /// # Errors
-    /// Fatally, if there are too many shapes.
-    pub fn copy(&mut self, range: Range<usize>, name: &Name<'a>) -> Outcome<()> {
+    /// If bodies would stand in a body; fatally, if there are too many shapes.
+    pub fn copy(&mut self, range: Range<usize>, name: &Name<'a>, origin: Origin) -> Outcome<()> {
         let start = self.parts.len();
+        let bodies = self.bodies_of(range.clone(), name, origin)?;
         for index in range {
             self.parts[index].repeated = true;
-            let part = self.parts[index].clone();
+            let mut part = self.parts[index].clone();
+            part.element.body = match self.open_body {
+                0 => bodies.get(&part.element.body).copied().unwrap_or(0),
+                open => open,
+            };
             self.push(part, &name.span)?;
         }
         let range = start..self.parts.len();
@@ -260,6 +321,34 @@ impl<'a> Model<'a> {
         };
         self.closed.insert(name.text, closed);
         Ok(())
+    }
+
+    /// New bodies for copies of some shapes, by the bodies that these are of.
+    fn bodies_of(
+        &mut self,
+        range: Range<usize>,
+        name: &Name<'a>,
+        origin: Origin,
+    ) -> Outcome<BTreeMap<u32, u32>> {
+        let parts = self.parts[range].iter();
+        let old: BTreeSet<u32> = parts.map(|part| part.element.body).collect();
+        let named: Vec<u32> = old.iter().copied().filter(|&body| body != 0).collect();
+        if self.open_body != 0 {
+            // Pieces of the open body and of no body may be copied into it, another body may not.
+            if named.iter().any(|&body| body != self.open_body) {
+                self.refuse_body_in_body(&name.span)?;
+            }
+            return Ok(BTreeMap::new());
+        }
+        let mut new = BTreeMap::new();
+        for body in named {
+            let own = match old.len() {
+                1 => name.text.to_owned(),
+                _ => self.bodies[body as usize - 1].name.clone(),
+            };
+            new.insert(body, self.new_body(&own, origin));
+        }
+        Ok(new)
     }
 
     /// As how many shapes they count.
@@ -284,7 +373,7 @@ impl<'a> Model<'a> {
         })
     }
 
-    /// Forgets all shapes and objects; objects that are open stay open.
+    /// Forgets all shapes and objects; objects that are open stay open. Bodies stay: what is open belongs to one.
     pub fn clear(&mut self) {
         self.parts.clear();
         self.weight = 0;

@@ -1,5 +1,6 @@
 //! OBJECTS: groups of shapes and their transforms.
 
+use super::model::Group;
 use super::{Evaluator, Flow};
 use crate::Severity;
 use crate::geometry::Transform;
@@ -17,7 +18,7 @@ pub fn chain<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         run.material(material)?;
         let file = run.file;
         run.model
-            .open(file, given.name("name"), Some(material.clone()))
+            .open(file, given.name("name"), Group::Chain(material.clone()))
     });
     opened.inspect_err(|_| run.model.refused += 1)?;
     Ok(Flow::Next)
@@ -25,6 +26,16 @@ pub fn chain<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 
 /// `object name`
 pub fn object<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    begin(run, command, Group::Object)
+}
+
+/// `body name`: an object whose shapes blend with one another and with no others.
+pub fn body<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let origin = run.origin(command);
+    begin(run, command, Group::Body(origin))
+}
+
+fn begin<'a>(run: &mut Evaluator<'a>, command: &'a Command, group: Group<'a>) -> Outcome<Flow> {
     let opened = run.given(command).and_then(|given| {
         let name = given.name("name");
         if let Some(earlier) = run.model.unnamed(name.text).cloned() {
@@ -35,7 +46,7 @@ pub fn object<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
                 )
             });
         }
-        run.model.open(run.file, name, None)
+        run.model.open(run.file, name, group)
     });
     // Its `close` will come all the same.
     opened.inspect_err(|_| run.model.refused += 1)?;
@@ -76,7 +87,8 @@ pub fn instance<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
     let new = given.maybe_name("copy").unwrap_or(old);
     let range = run.model.find(old)?;
     charge(run, command, &range)?;
-    run.model.copy(range, new)?;
+    let origin = run.origin(command);
+    run.model.copy(range, new, origin)?;
     Ok(Flow::Next)
 }
 

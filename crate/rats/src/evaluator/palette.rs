@@ -9,15 +9,17 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
 use field::Profile;
-use scene::{Material, Rgb};
+use scene::{Finish, Flesh, Rgb};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// A material and what the language must remember of it.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// The material.
-    pub material: Material,
+    /// Its colours.
+    pub finish: Finish,
+    /// Its softness; hard with a blobbiness of 0.
+    pub flesh: Flesh,
     /// The colours it was made with, which a copy goes on from.
     pub colours: Colours,
     /// The file and place of its name.

@@ -7,35 +7,38 @@ use crate::Severity;
 use crate::compile::Placement;
 use crate::limits::MAX_MAGNITUDE;
 use glam::DVec3;
-use scene::{Element, Material, Scene, Shape};
+use scene::{Body, Element, Finish, Frame, Scene, Shape};
 use std::collections::HashMap;
 
 impl Evaluator<'_> {
     /// The scene of these shapes as all else is now, and how its elements came there.
     pub(super) fn picture(&mut self, parts: Vec<Part>) -> (Scene, Vec<Placement>) {
+        let surfaces = self.palette.surfaces.iter();
+        let finishes = surfaces.clone().map(|surface| surface.finish.clone());
         let mut scene = Scene {
             elements: Vec::with_capacity(parts.len()),
-            materials: self
-                .palette
-                .surfaces
-                .iter()
-                .map(|surface| surface.material.clone())
+            bodies: [Body::default()]
+                .into_iter()
+                .chain(self.model.bodies.iter().cloned())
                 .collect(),
+            flesh: surfaces.map(|surface| surface.flesh.clone()).collect(),
+            finishes: finishes.collect(),
+            frames: vec![Frame::WORLD],
             lights: self.lights.clone(),
             background: self.background,
             camera: self.settled_camera(),
             settings: self.settings,
         };
         let mut placements = Vec::with_capacity(parts.len());
-        if scene.materials.is_empty() {
-            scene.materials.push(Material::default());
+        if scene.finishes.is_empty() {
+            scene.finishes.push(Finish::default());
         }
         scene.elements.reserve_exact(parts.len());
-        let mut grown = HashMap::new();
+        let mut frames = HashMap::new();
         let mut warned = false;
         for mut part in parts.into_iter().filter(|part| !part.removed) {
             let fault = if is_in_bounds(&part) {
-                settle(&mut part, &mut scene, &mut grown);
+                part.element.frame = frame_of(&part, &mut scene.frames, &mut frames);
                 fault(&scene, &part.element)
             } else {
                 Some((too_far as fn() -> String, None))
@@ -84,28 +87,34 @@ impl Evaluator<'_> {
     }
 }
 
-/// Gives a part's element the material that it needs in the scene.
-fn settle(part: &mut Part, scene: &mut Scene, grown: &mut HashMap<(usize, u64), usize>) {
-    let element = &mut part.element;
-    // What is scaled has flesh scaled alike: the material's radius grows, an absolute width shrinks.
-    if part.growth != 1.0 && scene.materials[element.material].is_soft() {
-        let key = (element.material, part.growth.to_bits());
-        let blob_scale = scene.settings.blob_scale;
-        let materials = &mut scene.materials;
-        element.material = *grown.entry(key).or_insert_with(|| {
-            let mut material = materials[key.0].clone();
-            material.scale(part.growth, blob_scale);
-            materials.push(material);
-            materials.len() - 1
-        });
-    }
+/// The index of a part's frame: shapes that were moved alike share one.
+fn frame_of(
+    part: &Part,
+    frames: &mut Vec<Frame>,
+    known: &mut HashMap<([u64; 12], u64), u32>,
+) -> u32 {
+    let Some(moved) = &part.moved else {
+        return 0;
+    };
+    let bits = moved.to_cols_array().map(f64::to_bits);
+    *known
+        .entry((bits, part.growth.to_bits()))
+        .or_insert_with(|| {
+            frames.push(Frame {
+                to_world: **moved,
+                growth: part.growth,
+            });
+            frames.len() as u32 - 1
+        })
 }
 
-/// Whether an element's material has a profile that its shape has no parameters for.
+/// Whether an element's flesh has a profile that its shape has no parameters for.
 fn ignores_profile(scene: &Scene, element: &Element) -> bool {
     matches!(element.shape, Shape::Polygon { .. } | Shape::Curve { .. })
-        && scene.materials[element.material].profile.is_some()
         && scene.is_soft(element)
+        && element
+            .flesh
+            .is_some_and(|flesh| scene.flesh[flesh as usize].profile.is_some())
 }
 
 type Fault = (fn() -> String, Option<String>);
@@ -114,11 +123,7 @@ type Fault = (fn() -> String, Option<String>);
 fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
     let hint = |text: &str| Some(text.to_owned());
     let radius = scene.radius(element);
-    let is_soft = scene
-        .materials
-        .get(element.material)
-        .is_some_and(Material::is_soft)
-        && element.shape.has_skeleton();
+    let is_soft = element.flesh.is_some() && element.shape.has_skeleton();
     let needs_radius = is_soft
         || matches!(
             element.shape,

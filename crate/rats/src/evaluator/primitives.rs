@@ -39,7 +39,7 @@ impl<'a> Evaluator<'a> {
         shape: Shape,
         kernel: Kernel,
     ) -> Outcome<Flow> {
-        let flesh = &self.palette.surfaces[material].material;
+        let flesh = &self.palette.surfaces[material].flesh;
         let part = Part {
             tapers: match shape {
                 Shape::Cylinder { .. } | Shape::Pipe { .. } | Shape::Arc { .. } => {
@@ -49,10 +49,12 @@ impl<'a> Evaluator<'a> {
                 _ => false,
             },
             element: Element {
-                shape,
-                material,
+                flesh: flesh.is_soft().then_some(material as u32),
+                finish: material as u32,
+                body: self.model.body(),
                 kernel,
                 origin: self.origin(command),
+                ..Element::new(shape)
             },
             growth: 1.0,
             moved: None,
@@ -264,11 +266,11 @@ fn of_kernel<'a>(
     let (name, given) = operands(run, command)?;
     let mut shape = shape(&given);
     let material = run.material(&name)?;
-    let surface = &run.palette.surfaces[material].material;
-    if !surface.is_soft() {
+    let flesh = &run.palette.surfaces[material].flesh;
+    if !flesh.is_soft() {
         // Drawn as an offset surface, which has a radius.
         if let Shape::Sphere { radius, .. } | Shape::Cylinder { radius, .. } = &mut shape {
-            *radius = surface.radius;
+            *radius = flesh.radius;
         }
     }
     run.add_of(command, material, shape, kernel)
@@ -325,7 +327,7 @@ fn add_hard<'a>(
     shape: Shape,
 ) -> Outcome<Flow> {
     let material = run.material(name)?;
-    if run.palette.surfaces[material].material.is_soft() {
+    if run.palette.surfaces[material].flesh.is_soft() {
         let word = run.scope.symbols.word(command.word);
         run.say(Severity::Warning, command.word_span.clone(), || {
             (

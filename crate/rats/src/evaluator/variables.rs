@@ -102,11 +102,11 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
                 format!("`{word}` is a number, so its change with every frame must be one"),
             ));
         }
-        let value = moved(now, change, run.frame);
+        let value = moved(now, change, run.moment);
         if !value.all(|x| x.abs() <= MAX_MAGNITUDE) {
             return Err(Problem::new(
                 span,
-                format!("in frame {} the value is too large", run.frame),
+                format!("in frame {} the value is too large", run.moment),
             ));
         }
         run.scope.set(name, value);
@@ -131,9 +131,8 @@ enum Change {
     Multiply(f64),
 }
 
-/// A value after some frames.
-fn moved(value: Value, change: Change, frames: u32) -> Value {
-    let frames = f64::from(frames);
+/// A value after some frames, which need not be a whole number.
+fn moved(value: Value, change: Change, frames: f64) -> Value {
     match change {
         Change::Add(step) => match (value, step) {
             (Value::Scalar(_), Value::Scalar(_)) => value.zip(step, |x, s| x + s * frames),
@@ -142,6 +141,8 @@ fn moved(value: Value, change: Change, frames: u32) -> Value {
         }
         .unwrap_or(value),
         Change::Multiply(factor) => {
+            // A factor that changes the sign does so from frame to frame, with nothing between.
+            let frames = if factor < 0.0 { frames.floor() } else { frames };
             let factor = libm::pow(factor, frames);
             value.map(|x| x * factor)
         }

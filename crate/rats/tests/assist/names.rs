@@ -306,8 +306,11 @@ fn without_names(compiled: &Compiled) -> scene::Scene {
         element.origin.start = 0;
         element.origin.end = 0;
     }
-    for material in &mut scene.materials {
-        material.name = String::new();
+    for finish in &mut scene.finishes {
+        finish.name = String::new();
+    }
+    for body in &mut scene.bodies {
+        *body = scene::Body::default();
     }
     scene
 }

@@ -6,7 +6,7 @@ use crate::commands::options as o;
 use crate::commands::parameter::{
     Arity, Kind, Names, Parameter, length, number, parameter, vector, word,
 };
-use crate::evaluator::{materials, options, primitives, variables};
+use crate::evaluator::{materials, objects, options, primitives, variables};
 
 const BLOCK: Parameter = parameter("block", Kind::Block, "commands in `{ … }`");
 
@@ -30,6 +30,12 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         .default("0.001")
         .details("Counts for the draft and for every digger but hermite: traced pictures ignore nothing that could be seen.")
         .example(flesh!("influence 1e-4\nsphere Flesh 0.6, 0 0 0")),
+    row("body", "begin a body, whose shapes blend with no others", run(objects::body))
+        .takes(&[parameter("name", Kind::New(Names::Object), "the body's name")])
+        .details("Soft shapes of a body flow together; those of two bodies do not, however near they are: legs that touch stay legs. \
+            Shapes that stand in no body make one together. A body is an object: it is moved, turned and copied by its name, and a copy is \
+            a new body. Objects can stand in bodies and bodies in objects, but no body in a body.")
+        .example(flesh!("body LEFT\n  sphere Flesh 1, -0.9 0 0\nclose\nbody RIGHT\n  sphere Flesh 1, 0.9 0 0\nclose")),
     row("curve", "cubic Bézier curve", run(primitives::curve))
         .takes(&[
             parameter("sn", Kind::Known(Names::Material), "the material's name"),

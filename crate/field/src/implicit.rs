@@ -1,0 +1,93 @@
+//! Implicit functions: the one notion of a surface that tracer, mesher, picker and slices share.
+use crate::Jet;
+use glam::DVec3;
+use wide::f32x8;
+
+/// A ball of space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// Its centre.
+    pub center: DVec3,
+    /// Its radius, ≥ 0.
+    pub radius: f64,
+}
+
+/// Proven bounds on a function in a ball.
+///
+/// Where the function is not smooth in the ball the bounds that do not exist are infinite: `curvature` where its
+/// gradient jumps, `slope`, too, where its value does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enclosure {
+    /// The least and the largest value.
+    pub value: [f64; 2],
+    /// The largest length of the gradient.
+    pub slope: f64,
+    /// The largest size of the second derivative along any line.
+    pub curvature: f64,
+}
+
+impl Enclosure {
+    /// Enclosure of the function 0.
+    pub const ZERO: Self = Self {
+        value: [0.0; 2],
+        slope: 0.0,
+        curvature: 0.0,
+    };
+
+    /// Enclosure of the sum of two functions.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            value: [0, 1].map(|i| self.value[i] + other.value[i]),
+            slope: self.slope + other.slope,
+            curvature: self.curvature + other.curvature,
+        }
+    }
+
+    /// The enclosure with its range of values narrowed by Taylor's theorem about the centre of the ball, where the function has
+    /// this value and gradient: `|f(c+x) − f(c)| ≤ min(S·r, |∇f(c)|·r + C·r²/2)` for `|x| ≤ r`.
+    #[must_use]
+    pub fn about(self, at_center: &Jet<f64>, radius: f64) -> Self {
+        let steep = DVec3::from_array(at_center.gradient).length();
+        let change = |bound: f64| if bound.is_nan() { f64::INFINITY } else { bound };
+        let first = change(self.slope * radius);
+        let second = change(steep * radius + 0.5 * self.curvature * radius * radius);
+        // Rounding of the value itself, which sums of many terms have.
+        let reach = first.min(second) + 1e-12 * (1.0 + at_center.value.abs());
+        let [low, high] = self.value;
+        Self {
+            value: [
+                low.max(at_center.value - reach),
+                high.min(at_center.value + reach),
+            ],
+            ..self
+        }
+    }
+}
+
+/// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
+/// outward normal is `−∇f/|∇f|`.
+///
+/// [`Sum`](crate::Sum) is the convolution surface. Other implementations may compose functions; whoever follows
+/// surfaces needs nothing but this trait.
+pub trait Implicit: core::fmt::Debug + Send + Sync {
+    /// Value and gradient in double precision.
+    fn jet(&self, point: DVec3) -> Jet<f64>;
+
+    /// Value and gradient in single precision.
+    fn jet32(&self, point: [f32; 3]) -> Jet<f32>;
+
+    /// Value and gradient at eight points in single precision.
+    fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8>;
+
+    /// Proven bounds on the function in a ball.
+    fn enclose(&self, ball: Ball) -> Enclosure;
+
+    /// Appends each element's share of the value at a point, as pairs of an element's number and its positive part of the
+    /// value, in the order of the elements: the weights by which their colours are mixed. An element whose part is 0 or
+    /// negative may be left out.
+    fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>);
+
+    /// A ball outside of which the function is below the threshold; `None` if there is none or none is known.
+    fn support(&self) -> Option<Ball>;
+}
