@@ -1,5 +1,5 @@
 //! Rectangles of pixels, and the samples taken in them.
-use crate::picture::PACKET_SIZE;
+use crate::layout::PACKET_SIZE;
 use crate::sample::Sample;
 use crate::tile::Tile;
 use std::ops::Range;

@@ -8,7 +8,9 @@ use crate::lanes::Lanes;
 use crate::quick::FINEST;
 use crate::ray::Ray;
 use crate::slabs::{Slabs, Spent};
-use crate::soft::{PACKET, Scratch, Soft};
+use crate::layout::PACKET;
+use crate::scratch::Scratch;
+use crate::soft::Soft;
 use crate::walk::Found;
 use field::{Jet, Real, THRESHOLD};
 use glam::DVec3;
@@ -263,7 +265,7 @@ impl Soft {
             let mut value = f32x8::splat(0.0);
             gradient = [f32x8::splat(0.0); 3];
             weights.clear();
-            let mut add = |jet: Jet<f32x8>, lanes: u32, material: u32| {
+            let mut add = |jet: Jet<f32x8>, lanes: u32, finish: u32| {
                 let mask = mask(lanes);
                 let own = jet.value & mask;
                 value += own;
@@ -272,21 +274,21 @@ impl Soft {
                 }
                 let positive = Real::max(own, f32x8::splat(0.0));
                 match weights.last_mut() {
-                    Some((m, w)) if *m == material => *w += positive,
-                    _ => weights.push((material, positive)),
+                    Some((m, w)) if *m == finish => *w += positive,
+                    _ => weights.push((finish, positive)),
                 }
             };
             for &(p, lanes) in &active.list {
                 let jet = self.primitives[p as usize].jet(point);
-                add(jet, lanes, self.material[p as usize]);
+                add(jet, lanes, self.finish[p as usize]);
             }
             for &(slab, lanes) in hits.places.iter().filter(|_| shared) {
                 hits.slabs.each_block(slab, |block| {
                     let local = block.cell.local(point);
-                    for (material, shared) in &block.of_each {
+                    for (finish, shared) in &block.of_each {
                         let (value, gradient) = shared.jet(local);
                         let gradient = block.cell.world(gradient);
-                        add(Jet { value, gradient }, lanes, *material);
+                        add(Jet { value, gradient }, lanes, *finish);
                     }
                 });
             }

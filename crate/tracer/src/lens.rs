@@ -8,10 +8,10 @@ use crate::area::Area;
 use crate::beam::Beam;
 use crate::lanes::least;
 use crate::nearby::Nearby;
-use crate::picture::Picture;
+use crate::view::View;
 use crate::quick::Rays;
 use crate::ray::Ray;
-use crate::soft::PACKET;
+use crate::layout::PACKET;
 use field::Real;
 use glam::DVec3;
 use wide::f32x8;
@@ -38,16 +38,16 @@ pub(crate) struct Fan {
 
 impl Lens {
     /// Of the pixels of an area, whose beam is given. `None` if it is too wide.
-    pub fn new(picture: &Picture, area: Area, beam: &Beam) -> Option<Self> {
+    pub fn new(camera: &View, area: Area, beam: &Beam) -> Option<Self> {
         if beam.spread.is_nan() || beam.spread > WIDEST {
             return None;
         }
         let [l, t, r, b] = [area.left, area.top, area.right, area.bottom].map(f64::from);
-        let [width, height] = picture.size.map(f64::from);
+        let [width, height] = camera.size.map(f64::from);
         let (x, y) = (0.5 * (l + r) / width, 0.5 * (t + b) / height);
-        let view = picture.projection.view(x, y);
+        let view = camera.projection.view(x, y);
         let length = view.length();
-        let [right, down] = picture.projection.across();
+        let [right, down] = camera.projection.across();
         Some(Self {
             axis: beam.axis,
             steps: [right / (width * length), down / (height * length)],
@@ -142,7 +142,10 @@ mod tests {
                 },
                 ..Scene::default()
             };
-            let picture = Picture::new(&scene, [512, 384]);
+            let view = View {
+                size: [512, 384],
+                projection: scene.camera.projection(512, 384),
+            };
             for (left, top) in [(0, 0), (256, 128), (448, 320)] {
                 let area = Area {
                     left,
@@ -150,8 +153,8 @@ mod tests {
                     right: left + 64,
                     bottom: top + 64,
                 };
-                let beam = picture.beam(area);
-                let lens = Lens::new(&picture, area, &beam).expect("a narrow square");
+                let beam = view.beam(area);
+                let lens = Lens::new(&view, area, &beam).expect("a narrow square");
                 let mut near = Nearby::default();
                 near.begin(beam.axis.at(distance), distance);
                 let x = |i: usize| -31.75 + 17.0 * (i % 4) as f64;
@@ -164,7 +167,7 @@ mod tests {
                 let digits = 3e-7 * beam.spread;
                 for (i, ray) in wide.iter().enumerate() {
                     let want =
-                        picture.ray(f64::from(left) + 32.0 + x(i), f64::from(top) + 32.0 + y(i));
+                        view.ray(f64::from(left) + 32.0 + x(i), f64::from(top) + 32.0 + y(i));
                     let off = ray.direction.distance(want.direction);
                     assert!(off < digits, "{fov} {left} {i}: {off} of {digits}");
                     let lane = |v: [f32x8; 3]| DVec3::from_array(v.map(|v| v.lane(i)));
@@ -186,13 +189,16 @@ mod tests {
     fn a_square_seen_at_a_wide_angle_has_none() {
         let mut scene = Scene::default();
         scene.camera.fov = 120.0;
-        let picture = Picture::new(&scene, [32, 32]);
+        let view = View {
+            size: [32, 32],
+            projection: scene.camera.projection(32, 32),
+        };
         let area = Area {
             left: 0,
             top: 0,
             right: 64,
             bottom: 64,
         };
-        assert!(Lens::new(&picture, area, &picture.beam(area)).is_none());
+        assert!(Lens::new(&view, area, &view.beam(area)).is_none());
     }
 }

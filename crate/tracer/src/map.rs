@@ -9,23 +9,17 @@
 //! White stands for the dearest pixel. As tiles are traced on their own, each finds out what that is
 //! from the same sample, one packet in every 16×16 pixels; what is dearer still is white as well.
 use crate::area::Area;
-use crate::packet::Workspace;
-use crate::picture::{PACKET_SIZE, Picture, Stats};
+use crate::layout::PACKET_SIZE;
 use crate::sample::Sample;
 use crate::sample_cache::SampleCache;
-use crate::soft::PACKET;
+use crate::sampler::Sampler;
+use crate::stats::Stats;
+use crate::workspace::Workspace;
 use glam::Vec3;
 use std::sync::OnceLock;
 
 /// Packets are sampled this far apart, in pixels.
 const APART: u32 = 16;
-
-/// The costs of so many rays of a packet: the rays themselves, and evaluations, some of which were made for one ray
-/// alone.
-pub(crate) fn costs(rays: usize, evaluations: u64, alone: &[u64; PACKET]) -> [f32; PACKET] {
-    let shared = evaluations - alone.iter().sum::<u64>();
-    alone.map(|own| (1 + own) as f32 + shared as f32 / rays as f32)
-}
 
 /// How costs are shown.
 #[derive(Debug)]
@@ -44,13 +38,13 @@ impl Map {
     }
 
     /// What white stands for. `None` if it was not known yet and `stop` gave up.
-    pub fn dearest(&self, picture: &Picture, stop: &dyn Fn() -> bool) -> Option<f32> {
+    pub fn dearest(&self, sampler: &Sampler, stop: &dyn Fn() -> bool) -> Option<f32> {
         if let Some(dearest) = self.dearest.get() {
             return Some(*dearest);
         }
         let mut dearest = 1.0_f32;
         let (cache, mut work) = (SampleCache::default(), Workspace::default());
-        let [width, height] = picture.size;
+        let [width, height] = sampler.view.size;
         for top in (0..height).step_by(APART as usize) {
             for left in (0..width).step_by(APART as usize) {
                 let area = Area {
@@ -60,7 +54,7 @@ impl Map {
                     bottom: (top + PACKET_SIZE[1]).min(height),
                 };
                 let stats = &mut Stats::default();
-                let samples = picture.sample(area, 1, &cache, stop, &mut work, stats)?;
+                let samples = sampler.sample(area, 1, &cache, stop, &mut work, stats)?;
                 let costs = area.pixels().map(|(x, y)| samples.get(x, y).cost);
                 dearest = costs.fold(dearest, f32::max);
             }

@@ -54,8 +54,10 @@ pub struct Near {
     pub lead: f32,
     /// Where the field is T its own part changes by about this much of T with the place, or less.
     pub steep: f32,
-    /// Its material.
-    pub material: u32,
+    /// Its finish.
+    pub finish: u32,
+    /// Its body, by its number among the soft ones.
+    pub body: u32,
     /// No ray of the list's beam meets it before this parameter.
     pub from: f32,
 }
@@ -379,7 +381,7 @@ mod tests {
                     part: false,
                     lead: 0.0,
                     steep: 0.0,
-                    material: i as u32,
+                    finish: i as u32,
                     from: 0.0,
                 };
                 list.push(near, &Extent::of(&lump, lump.radius(square)));
@@ -395,7 +397,7 @@ mod tests {
             };
             let mut narrow = Nearby::default();
             list.narrow(&beam, LEFT_OUT, &mut narrow);
-            let found: Vec<u32> = (0..narrow.len()).map(|i| narrow.get(i).material).collect();
+            let found: Vec<u32> = (0..narrow.len()).map(|i| narrow.get(i).finish).collect();
             let nowhere = found.is_empty();
             empty += u32::from(nowhere);
             kept += found.len();

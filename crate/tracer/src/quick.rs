@@ -6,9 +6,10 @@ use crate::beam::Beam;
 use crate::climb::{Climbed, Stairs, Step, Turn, Way, climb, extremes};
 use crate::flesh::{Flesh, NEAR_ENOUGH};
 use crate::lanes::least;
-use crate::nearby::{Marks, Nearby, marked};
+use crate::layout::PACKET;
+use crate::nearby::{Marks, Nearby, Other, marked};
 use crate::ray::Ray;
-use crate::soft::{PACKET, Soft};
+use crate::soft::Soft;
 use crate::walk::Quest;
 use field::{Cut, Real};
 use glam::DVec3;
@@ -32,8 +33,10 @@ pub struct Quick {
     plain: bool,
     /// Working space of the climb.
     tops: Vec<f32x8>,
-    list: Nearby,
+    pub(crate) list: Nearby,
     marks: Marks,
+    /// The lumps near a packet of all bodies but some: body and index, in this order.
+    members: Vec<(u32, u32)>,
     /// What the surface is like at the hits of the last packet that was looked at; parameters are counted from its list's
     /// base.
     pub flesh: Flesh,
@@ -49,9 +52,11 @@ impl Quick {
     }
 }
 
-/// What a packet's rays met.
+/// What a packet's rays met of one body.
 #[derive(Clone, Copy, Default)]
 pub struct Looked {
+    /// The body.
+    pub body: u32,
     /// Those that met the surface, a bit each.
     pub met: u32,
     /// Evaluations of lumps, for one ray each.
@@ -155,10 +160,11 @@ fn around(places: [f32x8; 3]) -> (DVec3, f64) {
 }
 
 impl Soft {
-    /// Finds the first crossing of rays that make a packet of their own, up to their limits; for [`Quest::Entry`] only whether
-    /// there is one. `None` if this is not the way to find it.
+    /// Finds the first crossings of rays that make a packet of their own with the surface of a body, up to their limits; for
+    /// [`Quest::Entry`] only whether there is one. `None` if this is not the way to find it.
     pub fn quick_alone(
         &self,
+        body: u32,
         rays: &[Ray; PACKET],
         limits: &[f64; PACKET],
         alive: u32,
@@ -171,8 +177,10 @@ impl Soft {
         let furthest = furthest.fold(0.0, f64::max);
         let beam = Beam::around(&followed)?;
         let mut list = core::mem::take(&mut work.list);
-        let looked = if self.list_lumps(&beam, furthest, &mut list)
-            && !self.meets_any(&list.others, &beam, furthest)
+        let own = |other: &&Other| self.body_of(other.primitive) == body;
+        let looked = if !self.is_everywhere(body)
+            && self.list_lumps(&beam, furthest, &mut list)
+            && !self.meets_any(list.others.iter().filter(own), &beam, furthest)
         {
             let lanes = Rays::new(rays, &list);
             let asked = Asked {
@@ -180,7 +188,11 @@ impl Soft {
                 alive,
                 quest,
             };
-            self.quick(&list, &lanes, &|| *rays, asked, work)
+            if self.bodies.len() == 1 {
+                self.quick(&list, &lanes, &|| *rays, asked, work)
+            } else {
+                self.quick_of(&list, body, &lanes, &|| *rays, asked, work)
+            }
         } else {
             None
         };
@@ -189,11 +201,105 @@ impl Soft {
         looked.map(|looked| (looked, base))
     }
 
-    /// Finds the first crossing, from outside to inside, of the rays of a packet; for [`Quest::Entry`] only whether there
+    /// Finds the first crossing, from outside to inside, of the rays of a packet with the surface of the only body; for
+    /// [`Quest::Entry`] only whether there
     /// is one. Nothing else may count near the rays ([`Soft::meets_any`]). `exact` gives the rays in double precision. `None` if this is not the way to find it.
     pub fn quick(
         &self,
         near: &Nearby,
+        rays: &Rays,
+        exact: &dyn Fn() -> [Ray; PACKET],
+        asked: Asked<'_>,
+        work: &mut Quick,
+    ) -> Option<Looked> {
+        if near.len() == 0 || !near.mark(&rays.beam, LEFT_OUT_OF_PACKETS, &mut work.marks) {
+            return Some(Looked::default());
+        }
+        let marks = core::mem::take(&mut work.marks);
+        let looked = self.follow(near, 0, marked(&marks), rays, exact, asked, work);
+        work.marks = marks;
+        looked
+    }
+
+    /// [`Soft::quick`] for one body of several.
+    fn quick_of(
+        &self,
+        near: &Nearby,
+        body: u32,
+        rays: &Rays,
+        exact: &dyn Fn() -> [Ray; PACKET],
+        asked: Asked<'_>,
+        work: &mut Quick,
+    ) -> Option<Looked> {
+        if near.len() == 0 || !near.mark(&rays.beam, LEFT_OUT_OF_PACKETS, &mut work.marks) {
+            return Some(Looked::default());
+        }
+        let marks = core::mem::take(&mut work.marks);
+        let own = marked(&marks).filter(|&index| near.get(index).body == body);
+        let looked = self.follow(near, body, own, rays, exact, asked, work);
+        work.marks = marks;
+        looked
+    }
+
+    /// [`Soft::quick`] for several bodies: tells what is found of each, nearest first as far as the list says, but for those to be
+    /// passed over. `tell` gives how far the rays go from then on, and which go on. Gives the bodies for which this is not the
+    /// way.
+    pub fn quick_each(
+        &self,
+        near: &Nearby,
+        pass_over: &[u32],
+        rays: &Rays,
+        exact: &dyn Fn() -> [Ray; PACKET],
+        asked: Asked<'_>,
+        work: &mut Quick,
+        mut tell: impl FnMut(Looked, &Flesh) -> ([f64; PACKET], u32),
+    ) -> Vec<u32> {
+        let mut left = Vec::new();
+        if near.len() == 0 || !near.mark(&rays.beam, LEFT_OUT_OF_PACKETS, &mut work.marks) {
+            return left;
+        }
+        let mut members = core::mem::take(&mut work.members);
+        members.clear();
+        let own = |index: usize| (near.get(index).body, index as u32);
+        members.extend(
+            marked(&work.marks)
+                .map(own)
+                .filter(|(body, _)| !pass_over.contains(body)),
+        );
+        // Lists are in the order of the parameters at which a lump can be met.
+        members.sort_unstable();
+        let mut groups: Vec<&[(u32, u32)]> = members.chunk_by(|a, b| a.0 == b.0).collect();
+        groups.sort_unstable_by_key(|group| group[0].1);
+        let (mut limits, mut alive) = (*asked.limits, asked.alive);
+        for group in groups {
+            let from = f64::from(near.get(group[0].1 as usize).from) + near.base;
+            let reached = |lane: usize| alive >> lane & 1 != 0 && limits[lane] > from;
+            if !(0..PACKET).any(reached) {
+                continue;
+            }
+            let asked = Asked {
+                limits: &limits,
+                alive,
+                quest: asked.quest,
+            };
+            let indices = group.iter().map(|&(_, index)| index as usize);
+            match self.follow(near, group[0].0, indices, rays, exact, asked, work) {
+                Some(looked) => (limits, alive) = tell(looked, &work.flesh),
+                None => left.push(group[0].0),
+            }
+        }
+        work.members = members;
+        left
+    }
+
+    /// Follows rays among some lumps of a list, all of one body, given in the list's order.
+    #[expect(clippy::too_many_arguments, reason = "each is something else")]
+    #[inline(always)]
+    fn follow(
+        &self,
+        near: &Nearby,
+        body: u32,
+        indices: impl Iterator<Item = usize>,
         rays: &Rays,
         exact: &dyn Fn() -> [Ray; PACKET],
         asked: Asked<'_>,
@@ -204,12 +310,6 @@ impl Soft {
             alive,
             quest,
         } = asked;
-        if near.len() == 0 {
-            return Some(Looked::default());
-        }
-        if !near.mark(&rays.beam, LEFT_OUT_OF_PACKETS, &mut work.marks) {
-            return Some(Looked::default());
-        }
         let far = f32x8::splat(f32::INFINITY);
         let (mut from, mut to, mut guess, mut first) = (far, -far, far, far);
         let mut evaluations = 0;
@@ -221,7 +321,7 @@ impl Soft {
         let (mut sure, mut hidden) = (far, f32::INFINITY);
         // The same in all lanes: a choice between two single numbers is a jump in wasm.
         let mut steepest = f32x8::splat(0.0);
-        for index in marked(&work.marks) {
+        for index in indices {
             let near = near.get(index);
             // What rays meet only where they are inside of another.
             if near.from > hidden {
@@ -311,22 +411,30 @@ impl Soft {
         };
         let mut climbed = climb(lumps, &way, &mut work.tops)?;
         if climbed.doubtful != 0 && quest == Quest::First {
-            self.settle_doubts(near, &exact(), &mut climbed);
+            self.settle_doubts(near, body, &exact(), &mut climbed);
         }
         if climbed.met == 0 || quest == Quest::Entry {
             return Some(Looked {
+                body,
                 met: climbed.met,
                 evaluations: evaluations + climbed.evaluations,
             });
         }
-        Some(self.look(near, rays, &climbed, evaluations, work))
+        let looked = self.look(near, rays, &climbed, evaluations, work);
+        Some(Looked { body, ..looked })
     }
 
     /// Rays that went past the surface so near to it that rounding may have hidden it are asked once more where that was, in
     /// double precision and with nothing left out.
     #[cold]
     #[inline(never)]
-    fn settle_doubts(&self, near: &Nearby, rays: &[Ray; PACKET], climbed: &mut Climbed) {
+    fn settle_doubts(
+        &self,
+        near: &Nearby,
+        body: u32,
+        rays: &[Ray; PACKET],
+        climbed: &mut Climbed,
+    ) {
         let [first, last] = climbed.doubt.map(f32x8::to_array);
         let mut t = climbed.t.to_array();
         let mut between = climbed.between.map(f32x8::to_array);
@@ -342,7 +450,7 @@ impl Soft {
             let parts = ((end - start) / PART).ceil().clamp(1.0, MOST_PARTS);
             let place = |part: u32| start + (end - start) * f64::from(part) / parts;
             for part in 0..parts as u32 {
-                let (found, evaluations) = self.entry(based, [place(part), place(part + 1)]);
+                let (found, evaluations) = self.entry(body, based, [place(part), place(part + 1)]);
                 climbed.evaluations += evaluations;
                 if let Some(found) = found {
                     t[i] = found as f32;
@@ -396,9 +504,9 @@ impl Soft {
                 for (sum, part) in gradient.iter_mut().zip(jet.gradient) {
                     *sum += part;
                 }
-                match weights.iter_mut().find(|(m, _)| *m == near.material) {
+                match weights.iter_mut().find(|(m, _)| *m == near.finish) {
                     Some((_, weight)) => *weight += jet.value,
-                    None => weights.push((near.material, jet.value)),
+                    None => weights.push((near.finish, jet.value)),
                 }
             }
             let [x, y, z]: [f32x8; 3] = core::array::from_fn(|i| gradient[i] * rays.direction[i]);
@@ -422,11 +530,15 @@ impl Soft {
                 break;
             }
         }
-        weights.sort_unstable_by_key(|(material, _)| *material);
+        weights.sort_unstable_by_key(|(finish, _)| *finish);
         flesh.gradient = gradient;
         flesh.t = at.to_array().map(f64::from);
         work.flesh = flesh;
-        Looked { met, evaluations }
+        Looked {
+            body: 0,
+            met,
+            evaluations,
+        }
     }
 }
 
@@ -472,7 +584,7 @@ mod tests {
     /// A ball of radius ¼ around (0, 0, 2), in the scene's own places.
     fn ball() -> Soft {
         let mut scene = empty();
-        scene.materials = vec![soft(-2.0, 1.0)];
+        scene.finishes = vec![soft(-2.0, 1.0)];
         let center = DVec3::Z * 2.0;
         let radius = 0.25;
         scene.elements = vec![Element {

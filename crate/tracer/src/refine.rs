@@ -4,11 +4,14 @@
 //! grid of n×n, whose mean replaces the single sample. Which pixels those are depends on the first
 //! samples only, so it does not matter in which order, or in which tile, pixels are treated.
 use crate::area::{Area, Samples};
-use crate::packet::{Near, Seen, Workspace};
-use crate::picture::{PACKET_SIZE, Picture, SQUARE, Stats};
+use crate::layout::{PACKET, PACKET_SIZE, SQUARE};
+use crate::lens::Lens;
+use crate::meet::{PacketRays, Seen};
 use crate::sample::{Sample, differ};
-use crate::soft::PACKET;
+use crate::sampler::Sampler;
 use crate::square::Square;
+use crate::stats::Stats;
+use crate::workspace::Workspace;
 use field::{Cut, Real};
 use glam::Vec3;
 use wide::f32x8;
@@ -25,10 +28,10 @@ struct Closer {
     owners: Vec<(usize, usize)>,
 }
 
-impl Picture {
+impl Sampler {
     /// Replaces the samples of an area's pixels that differ from a neighbour by the mean of n×n. The area consists of
     /// whole packets, and `samples` must hold the pixels around it too. `None` when asked to stop.
-    pub(crate) fn refine(
+    pub fn refine(
         &self,
         area: Area,
         samples: &mut Samples,
@@ -49,7 +52,7 @@ impl Picture {
                     .filter(|&(x, y)| self.needs_more(samples, x, y));
                 for (x, y) in wanted {
                     // The pixels' rays run in the same beams as the packets that they belong to.
-                    let square = square.get_or_insert_with(|| self.square(block, PACKETS, work));
+                    let square = square.get_or_insert_with(|| self.square(block, PACKETS));
                     let owner = means.len();
                     let (colour, cost) =
                         self.look_closer(block, square, [x, y], (owner, &mut closer), work, stats);
@@ -59,10 +62,10 @@ impl Picture {
                 if owners.is_empty() {
                     continue;
                 }
-                let corner = |x, y| self.ray(f64::from(x), f64::from(y)).direction;
+                let corner = |x, y| self.view.ray(f64::from(x), f64::from(y)).direction;
                 let across =
                     corner(packet.left, packet.top).distance(corner(packet.right, packet.bottom));
-                self.shine(&seen[..owners.len()], across, work, stats);
+                self.world.shine(&seen[..owners.len()], across, work, stats);
                 for (found, &(owner, count)) in work.samples.iter().zip(&*owners) {
                     let (_, _, sum, cost) = &mut means[owner];
                     *sum += found[..count].iter().map(|s| s.colour).sum::<Vec3>();
@@ -74,7 +77,7 @@ impl Picture {
                 }
             }
             if let Some(square) = square {
-                square.leave(work, stats);
+                square.leave(&mut work.scratch, stats);
             }
         }
         let all = (self.samples * self.samples) as f32;
@@ -114,26 +117,26 @@ impl Picture {
                 seen.push(Seen::default());
             }
             let seen = &mut seen[owners.len()];
-            let near = square.near([column, row], PACKETS, work);
-            let quick = match near {
-                Near::Lumps(near, Some(lens)) if self.solids.is_empty() => {
-                    let half = 0.5 * f64::from(SQUARE);
-                    let at = [x - block.left, y - block.top].map(|c| f64::from(c) - half);
-                    let place = |k: usize| f32x8::from_lanes(|lane| at[k] + part(lane)[k]);
-                    let middle = |k: usize| at[k] + 0.5 * (part(0)[k] + part(PACKET - 1)[k]);
-                    let places = [place(0), place(1)];
-                    let fan = lens.fan(places, [middle(0), middle(1)]);
-                    self.lump_packet(lens, &fan, near, seen, work, stats)
-                }
-                _ => None,
+            let fan = |lens: &Lens| {
+                let half = 0.5 * f64::from(SQUARE);
+                let at = [x - block.left, y - block.top].map(|c| f64::from(c) - half);
+                let place = |k: usize| f32x8::from_lanes(|lane| at[k] + part(lane)[k]);
+                let middle = |k: usize| at[k] + 0.5 * (part(0)[k] + part(PACKET - 1)[k]);
+                lens.fan([place(0), place(1)], [middle(0), middle(1)])
             };
-            if quick.is_none() {
-                seen.rays = core::array::from_fn(|i| {
+            let exact = || {
+                core::array::from_fn(|i| {
                     let [across, down] = part(i);
-                    self.ray(f64::from(x) + across, f64::from(y) + down)
-                });
-                self.packet(near, seen, work, stats);
-            }
+                    self.view
+                        .ray(f64::from(x) + across, f64::from(y) + down)
+                })
+            };
+            let rays = PacketRays {
+                fan: &fan,
+                exact: &exact,
+            };
+            self.world
+                .meet(square, [column, row], &rays, seen, work, stats);
             let count = count as usize;
             if seen.something() {
                 // The last ones are repeated.
@@ -148,7 +151,7 @@ impl Picture {
     }
 
     fn needs_more(&self, samples: &Samples, x: u32, y: u32) -> bool {
-        if x >= self.size[0] || y >= self.size[1] {
+        if x >= self.view.size[0] || y >= self.view.size[1] {
             return false;
         }
         let here = samples.get(x, y);
@@ -166,7 +169,7 @@ impl Picture {
             let (Some(nx), Some(ny)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else {
                 continue;
             };
-            if nx >= self.size[0] || ny >= self.size[1] {
+            if nx >= self.view.size[0] || ny >= self.view.size[1] {
                 continue;
             }
             let other = samples.get(nx, ny);
@@ -178,8 +181,8 @@ impl Picture {
     }
 
     /// How many pixels of an area differ from the next one on the right or below: about half of those that
-    /// [`Picture::refine`] will take more rays for, at a quarter of the cost of asking for each.
-    pub(crate) fn edges(&self, samples: &Samples) -> u64 {
+    /// [`Sampler::refine`] will take more rays for, at a quarter of the cost of asking for each.
+    pub fn edges(&self, samples: &Samples) -> u64 {
         let area = samples.area();
         let slope = self.slope();
         let mut count = 0;
@@ -198,8 +201,7 @@ impl Picture {
     /// The slope, difference of distance by distance, that neighbours on one surface stay below: on a plane seen at 80° from
     /// its normal, neighbouring pixels' distances differ by tan 80° times the pixel's size.
     fn slope(&self) -> f32 {
-        let pixel = 2.0 * self.projection.half_width / f64::from(self.size[0]);
-        5.7 * pixel as f32
+        5.7 * self.view.pixel() as f32
     }
 
     fn differ(&self, here: &Sample, other: &Sample, slope: f32) -> bool {

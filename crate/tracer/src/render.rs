@@ -1,10 +1,11 @@
 //! A whole picture at once, on several threads.
 use crate::area::Area;
-use crate::packet::Workspace;
-use crate::picture::SQUARE;
+use crate::layout::SQUARE;
 use crate::sample_cache::SampleCache;
 use crate::tile::{Pass, Tile, tiles};
-use crate::{Picture, Stats};
+use crate::picture::Picture;
+use crate::stats::Stats;
+use crate::workspace::Workspace;
 use scene::Scene;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -34,7 +35,8 @@ pub fn render_picture(
     pass: Pass,
     progress: &(dyn Fn(f64) + Sync),
 ) -> (Vec<u8>, Stats) {
-    let [width, height] = picture.size;
+    let sampler = &picture.sampler;
+    let [width, height] = sampler.view.size;
     let row = 4 * width as usize;
     let mut rgba = vec![0; row * height as usize];
     let mut show = |tile: Tile, pixels: Vec<u8>| {
@@ -44,7 +46,7 @@ pub fn render_picture(
             rgba[at..at + line.len()].copy_from_slice(line);
         }
     };
-    let smooth = pass == Pass::Smooth && picture.samples > 1;
+    let smooth = pass == Pass::Smooth && sampler.samples > 1;
     let steps = tiles(width, height, SQUARE).len() * if smooth { 2 } else { 1 };
     let done = AtomicUsize::new(0);
     let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / steps as f64);
@@ -64,14 +66,14 @@ pub fn render_picture(
         let mut cache = picture.cache(tiles.len());
         let none = SampleCache::default();
         let sample = |tile, work: &mut Workspace, stats: &mut Stats| {
-            picture.sample(Area::from(tile), 1, &none, &|| false, work, stats)
+            sampler.sample(Area::from(tile), 1, &none, &|| false, work, stats)
         };
         let keep = |tile, samples| cache.keep(&samples, Area::from(tile));
         stats += shared_out(&tiles, threads, sample, keep, &step);
         let refine = |tile, work: &mut Workspace, stats: &mut Stats| {
             let area = Area::from(tile);
-            let around = area.around(picture.size);
-            let samples = picture.sample(around, 1, &cache, &|| false, work, stats)?;
+            let around = area.around(sampler.view.size);
+            let samples = sampler.sample(around, 1, &cache, &|| false, work, stats)?;
             picture.smooth(area, samples, &|| false, work, stats)
         };
         stats += shared_out(&tiles, threads, refine, &mut show, &step);

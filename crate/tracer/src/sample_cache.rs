@@ -7,7 +7,7 @@
 use crate::Tile;
 use crate::area::{Area, Samples};
 use crate::known::Known;
-use crate::picture::{PACKET_SIZE, SQUARE};
+use crate::layout::{PACKET_SIZE, SQUARE};
 use crate::sample::Sample;
 use std::ops::Range;
 

@@ -11,7 +11,7 @@
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::slabs::LARGE_TERM;
-use crate::soft::Kinks;
+use crate::kinks::Kinks;
 use crate::spans::{Node, Span};
 use core::ops::Range;
 use field::bound::SpanLength;

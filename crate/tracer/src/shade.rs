@@ -3,7 +3,7 @@
 //! `ambient + Σ light·(diffuse·(N·L) + specular·(R·V)^shine)`, where N is the normal, L points to
 //! the light, R is L mirrored at N and V points to the eye.
 use glam::{DVec3, Vec3};
-use scene::{Light, LightKind, Material};
+use scene::{Light, LightKind};
 use wide::f32x4;
 
 /// A surface's colours for Phong's model; those of several materials can be mixed.
@@ -16,14 +16,14 @@ pub struct Finish {
 }
 
 impl Finish {
-    /// A material's colours.
+    /// A finish of the scene, made ready.
     #[must_use]
-    pub fn of(material: &Material) -> Self {
+    pub fn of(finish: &scene::Finish) -> Self {
         Self {
-            ambient: Vec3::from(material.ambient),
-            diffuse: Vec3::from(material.diffuse),
-            specular: Vec3::from(material.specular),
-            shine: material.shine.max(0.0),
+            ambient: Vec3::from(finish.ambient),
+            diffuse: Vec3::from(finish.diffuse),
+            specular: Vec3::from(finish.specular),
+            shine: finish.shine.max(0.0),
         }
     }
 

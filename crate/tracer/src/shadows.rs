@@ -4,48 +4,31 @@
 //! way: the rays from one patch of the surface have one list of lumps, or the slabs of one beam.
 use crate::beam::Beam;
 use crate::beams::Beams;
-use crate::packet::{Seen, Workspace};
-use crate::picture::{Picture, Stats};
-use crate::quick::{Asked, Rays};
+use crate::flesh::Flesh;
+use crate::layout::PACKET;
+use crate::meet::Seen;
+use crate::nearby::Nearby;
+use crate::quick::{Asked, Looked, Rays};
 use crate::ray::Ray;
 use crate::sample::Sample;
+use crate::scratch::Scratch;
 use crate::shade::{clamped, towards};
-use crate::soft::PACKET;
+use crate::slabs::{Slabs, Space};
+use crate::stats::Stats;
 use crate::walk::{Bundle, Quest};
+use crate::workspace::{Shadow, State, Workspace};
+use crate::world::World;
 use glam::{DVec3, Vec3};
 use scene::LightKind;
-
-/// A ray from a hit to a light.
-pub(crate) struct Shadow {
-    /// The hit: its packet and its lane.
-    hit: (usize, usize),
-    ray: Ray,
-    /// How far it is to the light.
-    limit: f64,
-    /// How far from the eye the hit is.
-    depth: f64,
-    state: State,
-    /// What finding out cost.
-    cost: f32,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum State {
-    Unknown,
-    /// Being looked at.
-    Asked,
-    Lit,
-    Dark,
-}
 
 /// Hits further apart than this times the width of what is seen together are on different patches.
 const PATCH: f64 = 3.0;
 
-impl Picture {
+impl World {
     /// What the rays of some packets see. Their hits may share beams to the lights: they must be the same packets
     /// whatever the tiles. `across` is how wide they are together, per unit of distance, or less, if only nearer hits are to share. The samples are left in the
     /// working space.
-    pub(crate) fn shine(
+    pub fn shine(
         &self,
         seen: &[Seen],
         across: f64,
@@ -59,7 +42,7 @@ impl Picture {
                 let hit = seen.hits[i].as_ref();
                 Sample {
                     colour: hit.map_or(self.background, |hit| hit.finish.glow()),
-                    key: hit.map_or(0, |hit| hit.thing << 8),
+                    key: hit.map_or(0, |hit| hit.surface << 8),
                     depth: hit.map_or(f32::INFINITY, |hit| hit.t as f32),
                     cost: seen.costs[i],
                 }
@@ -79,11 +62,12 @@ impl Picture {
                     } else {
                         towards(light, hit.position)
                     };
-                    if hit.normal.dot(direction) > 0.0 {
+                    let normal = hit.facing(seen.rays[i].direction);
+                    if normal.dot(direction) > 0.0 {
                         shadows.push(Shadow {
                             hit: (k, i),
                             ray: Ray {
-                                origin: hit.position + hit.normal * hit.lift,
+                                origin: hit.position + normal * hit.lift,
                                 direction,
                             },
                             limit,
@@ -105,11 +89,12 @@ impl Picture {
                 let (Some(hit), true) = (&seen[k].hits[i], shadow.state != State::Dark) else {
                     continue;
                 };
+                let view = seen[k].rays[i].direction;
                 sample.colour += hit.finish.lit(
                     Vec3::from(light.colour),
-                    hit.normal.as_vec3(),
+                    hit.facing(view).as_vec3(),
                     shadow.ray.direction.as_vec3(),
-                    seen[k].rays[i].direction.as_vec3(),
+                    view.as_vec3(),
                 );
                 sample.key ^= 1 << (which % 8);
             }
@@ -132,7 +117,8 @@ impl Picture {
         for shadow in &mut *shadows {
             shadow.cost = 1.0;
             let (ray, limit) = (&shadow.ray, shadow.limit);
-            if self.solids.first(ray, limit, &mut work.crossings).is_some() {
+            let solid = self.solids.first(ray, limit, false, &mut work.crossings);
+            if solid.is_some() || self.function_darkens(shadow, stats) {
                 shadow.state = State::Dark;
             }
         }
@@ -164,7 +150,18 @@ impl Picture {
         }
     }
 
-    /// Darkens those rays of a patch that enter the soft surface before their ends.
+    /// Whether a ray to a light enters the surface of a function before its end.
+    fn function_darkens(&self, shadow: &mut Shadow, stats: &mut Stats) -> bool {
+        self.functions.iter().any(|body| {
+            let (ray, limit) = (&shadow.ray, shadow.limit);
+            let (found, cost) = self.function_crossing(body, ray, limit, Quest::Entry);
+            stats.field_evaluations += cost;
+            shadow.cost += cost as f32;
+            found.is_some()
+        })
+    }
+
+    /// Darkens those rays of a patch that enter a convolution surface before their ends.
     fn look_from_a_patch(
         &self,
         patch: &mut [&mut Shadow],
@@ -187,69 +184,151 @@ impl Picture {
         };
         let furthest = patch.iter().map(|shadow| shadow.limit).fold(0.0, f64::max);
         let mut near = core::mem::take(&mut work.around);
-        let quick = self.soft.list_lumps(&beam, furthest, &mut near)
-            && !self.soft.meets_any(&near.others, &beam, furthest);
-        let mut slabs = None;
+        let mut general = core::mem::take(&mut work.general);
+        let lumps = self.general_from_a_patch(&beam, furthest, &mut near, &mut general);
+        let mut slabs: Vec<(u32, Option<(Slabs<'_>, f64)>)> = Vec::new();
         for (number, packet) in patch.chunks_mut(PACKET).enumerate() {
             work.begin();
-            let alive = (1u32 << packet.len()) - 1;
+            let mut alive = (1u32 << packet.len()) - 1;
             // Lanes not in use repeat the first ray.
             let lane = |i: usize| if i < packet.len() { i } else { 0 };
             let rays: [Ray; PACKET] = core::array::from_fn(|i| packet[lane(i)].ray);
             let limits: [f64; PACKET] = core::array::from_fn(|i| packet[lane(i)].limit);
             let scratch = &mut work.scratch;
-            if quick {
-                let lanes = Rays::new(&rays, &near);
-                let quick = &mut scratch.quick;
+            let mut bodies: Vec<u32> = general.iter().map(|&(_, body)| body).collect();
+            let mut dark = 0;
+            if lumps {
                 let asked = Asked {
                     limits: &limits,
                     alive,
                     quest: Quest::Entry,
                 };
-                let looked = self.soft.quick(&near, &lanes, &|| rays, asked, quick);
-                if let Some(looked) = looked {
-                    scratch.evaluations += looked.evaluations;
-                    darken(packet, looked.met, work, stats);
-                    continue;
-                }
+                let left;
+                (dark, left) = self.darkened_by_lumps(&near, &bodies, &rays, asked, scratch);
+                bodies.extend(left);
+                alive &= !dark;
             }
-            let slabs = slabs.get_or_insert_with(|| {
-                let levels = starts.len().div_ceil(PACKET).next_power_of_two().ilog2();
-                let divided = |base: f64| {
-                    Beams::divided(levels, move |number| {
-                        let path = number + 1;
-                        let count = PACKET << (levels - path.ilog2());
-                        let first = count * (path - (1 << path.ilog2()));
-                        let part = first..starts.len().min(first + count);
-                        let part = starts.get(part).and_then(Beam::around);
-                        part.unwrap_or(beam).from(base)
-                    })
+            for body in bodies {
+                if alive == 0 {
+                    break;
+                }
+                let at = match slabs.iter().position(|(own, _)| *own == body) {
+                    Some(at) => at,
+                    None => {
+                        let spaces = &mut scratch.spaces;
+                        let made = self.slabs_from_a_patch(body, starts, beam, furthest, spaces);
+                        slabs.push((body, made));
+                        slabs.len() - 1
+                    }
                 };
-                self.soft
-                    .slabs(beam, divided, furthest, &mut scratch.spaces)
-            });
-            let Some((slabs, base)) = slabs else {
-                darken(packet, 0, work, stats);
-                continue;
-            };
-            let bundle = Bundle {
-                rays: &rays.map(|ray| Ray {
-                    origin: ray.at(*base),
-                    direction: ray.direction,
-                }),
-                limits: &limits.map(|limit| limit - *base),
-                alive,
-                number,
-            };
-            let found = self.soft.walk(slabs, bundle, Quest::Entry, scratch);
-            let met = found.iter().fold(0, |met, hit| met | 1 << hit.lane);
-            darken(packet, met, work, stats);
+                let Some((slabs, base)) = &mut slabs[at].1 else {
+                    continue;
+                };
+                let bundle = Bundle {
+                    rays: &rays.map(|ray| Ray {
+                        origin: ray.at(*base),
+                        direction: ray.direction,
+                    }),
+                    limits: &limits.map(|limit| limit - *base),
+                    alive,
+                    number,
+                };
+                let found = self.soft.walk(body, slabs, bundle, Quest::Entry, scratch);
+                let met = found.iter().fold(0, |met, hit| met | 1 << hit.lane);
+                dark |= met;
+                alive &= !met;
+            }
+            darken(packet, dark, work, stats);
         }
-        if let Some(Some((slabs, _))) = slabs {
+        for (slabs, _) in slabs.into_iter().filter_map(|(_, slabs)| slabs) {
             stats.field_evaluations += slabs.evaluations();
             work.scratch.spaces.push(slabs.into_space());
         }
         work.around = near;
+        work.general = general;
+    }
+
+    /// Lists the lumps near the rays of a patch, and the bodies that take the general way; whether any body is left to the lumps.
+    fn general_from_a_patch(
+        &self,
+        beam: &Beam,
+        furthest: f64,
+        near: &mut Nearby,
+        general: &mut Vec<(f64, u32)>,
+    ) -> bool {
+        general.clear();
+        let one = self.soft.bodies.len() == 1;
+        if !self.soft.list_lumps(beam, furthest, near) {
+            if one {
+                general.push((0.0, 0));
+            } else {
+                self.soft.bodies_along(beam, furthest, general);
+            }
+            return false;
+        }
+        let bodies = 0..self.soft.bodies.len() as u32;
+        let mut met: Vec<u32> = bodies.filter(|&b| self.soft.is_everywhere(b)).collect();
+        self.soft.bodies_met(&near.others, beam, furthest, &mut met);
+        general.extend(met.into_iter().map(|body| (0.0, body)));
+        !one || general.is_empty()
+    }
+
+    /// The slabs of a body along the rays of a patch.
+    fn slabs_from_a_patch<'a>(
+        &'a self,
+        body: u32,
+        starts: &'a [Ray],
+        beam: Beam,
+        furthest: f64,
+        spaces: &mut Vec<Space>,
+    ) -> Option<(Slabs<'a>, f64)> {
+        let levels = starts.len().div_ceil(PACKET).next_power_of_two().ilog2();
+        let divided = |base: f64| {
+            Beams::divided(levels, move |number| {
+                let path = number + 1;
+                let count = PACKET << (levels - path.ilog2());
+                let first = count * (path - (1 << path.ilog2()));
+                let part = first..starts.len().min(first + count);
+                let part = starts.get(part).and_then(Beam::around);
+                part.unwrap_or(beam).from(base)
+            })
+        };
+        self.soft.slabs(body, beam, divided, furthest, spaces)
+    }
+
+    /// The rays of a packet that enter the surface of a body near which they meet nothing but lumps, a bit each, and the bodies for
+    /// which this is not the way to tell.
+    fn darkened_by_lumps(
+        &self,
+        near: &Nearby,
+        general: &[u32],
+        rays: &[Ray; PACKET],
+        asked: Asked<'_>,
+        scratch: &mut Scratch,
+    ) -> (u32, Vec<u32>) {
+        let Scratch {
+            quick, evaluations, ..
+        } = scratch;
+        let lanes = Rays::new(rays, near);
+        if self.soft.bodies.len() == 1 {
+            return match self.soft.quick(near, &lanes, &|| *rays, asked, quick) {
+                Some(looked) => {
+                    *evaluations += looked.evaluations;
+                    (looked.met, Vec::new())
+                }
+                None => (0, vec![0]),
+            };
+        }
+        let (limits, mut dark) = (*asked.limits, 0);
+        let tell = |looked: Looked, _: &Flesh| {
+            *evaluations += looked.evaluations;
+            dark |= looked.met;
+            (limits, asked.alive & !dark)
+        };
+        let left = self
+            .soft
+            .quick_each(near, general, &lanes, &|| *rays, asked, quick, tell);
+        (dark, left)
     }
 }
 

@@ -155,7 +155,7 @@ const GROUP: usize = 32;
 pub struct Sums<'c> {
     cell: &'c Cell,
     corners: [f32x8; 3],
-    /// Of each material: the sum so far, that of the present group, and its number of terms.
+    /// Of each finish: the sum so far, that of the present group, and its number of terms.
     sums: Vec<(u32, Corners, Corners, usize)>,
     last: usize,
 }
@@ -172,16 +172,16 @@ impl<'c> Sums<'c> {
         }
     }
 
-    /// Adds a primitive of some material.
+    /// Adds a primitive of some finish.
     #[inline(always)]
-    pub fn add(&mut self, primitive: &Primitive, material: u32) {
+    pub fn add(&mut self, primitive: &Primitive, finish: u32) {
         let jet = primitive.jet(self.corners);
         let [x, y, z] = jet.gradient;
         let sums = &mut self.sums;
-        if sums.get(self.last).is_none_or(|sum| sum.0 != material) {
-            let known = sums.iter().position(|sum| sum.0 == material);
+        if sums.get(self.last).is_none_or(|sum| sum.0 != finish) {
+            let known = sums.iter().position(|sum| sum.0 == finish);
             self.last = known.unwrap_or_else(|| {
-                sums.push((material, Corners::NONE, Corners::NONE, 0));
+                sums.push((finish, Corners::NONE, Corners::NONE, 0));
                 sums.len() - 1
             });
         }
@@ -194,7 +194,7 @@ impl<'c> Sums<'c> {
         }
     }
 
-    /// The interpolant of all, and those of each material.
+    /// The interpolant of all, and those of each finish.
     #[must_use]
     pub fn finish(self) -> (Shared, Vec<(u32, Shared)>) {
         let sums = || {

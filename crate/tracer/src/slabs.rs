@@ -17,7 +17,7 @@ use crate::beams::Beams;
 use crate::clusters::{Clusters, Members};
 use crate::ray::Ray;
 use crate::shared::{CORNERS, Cell, Shared, Sums};
-use crate::soft::Kinks;
+use crate::kinks::Kinks;
 use crate::spans::Node;
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
@@ -101,8 +101,8 @@ pub struct Terms<'a> {
     pub primitives: &'a [Primitive],
     /// What is known of each.
     pub bounds: &'a [Bound],
-    /// Each one's material.
-    pub materials: &'a [u32],
+    /// Each one's finish.
+    pub finishes: &'a [u32],
     /// Where they are not smooth.
     pub kinks: &'a Kinks,
     /// Those that have a place, in groups, if a beam's list consists of these.
@@ -144,7 +144,7 @@ pub struct Block {
     pub cell: Cell,
     /// All of them.
     pub total: Shared,
-    /// Those of each material.
+    /// Those of each finish.
     pub of_each: Vec<(u32, Shared)>,
     /// They add up to no more than this.
     pub top: f64,
@@ -531,7 +531,7 @@ impl<'a> Slabs<'a> {
                 self.each_of(id, |p| {
                     count += 1;
                     let p = p as usize;
-                    sums.add(&self.terms.primitives[p], self.terms.materials[p]);
+                    sums.add(&self.terms.primitives[p], self.terms.finishes[p]);
                 });
             }
             let (total, of_each) = sums.finish();
@@ -1071,7 +1071,7 @@ mod tests {
     fn cloud(radius: f64, strength: f64, carving: f64) -> Soft {
         let mut numbers = Numbers(3);
         let mut scene = empty();
-        scene.materials = vec![soft(-2.0, strength), soft(-0.5, carving)];
+        scene.finishes = vec![soft(-2.0, strength), soft(-0.5, carving)];
         for i in 0..400 {
             let center = numbers.vector();
             let carves = carving != 0.0 && i % 20 == 0;

@@ -1,43 +1,45 @@
-//! The soft surface, made ready: which primitives a beam can meet, where its rays hit, and what
-//! the surface is like there.
+//! The convolution surfaces of all bodies, made ready: which primitives a beam can meet, and where its rays cross the surface of a
+//! body.
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::clusters::Clusters;
-use crate::flesh::{Active, Flesh};
 use crate::hierarchy::Hierarchy;
+use crate::kinks::Kinks;
 use crate::nearby::{Nearby, Other};
-use crate::quick::Quick;
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::settle::{Along, Settler, Sight};
+use crate::scratch::Scratch;
 use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::stock::Stock;
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
-use field::{Bound, Cut, Kink, Primitive, THRESHOLD};
+use field::{Bound, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::Scene;
-use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::OnceLock;
 use wide::f32x8;
 
-/// Rays of one packet.
-pub const PACKET: usize = 8;
-
-/// The soft surface of a scene.
+/// The convolution surfaces of a scene's bodies.
+///
+/// The primitives of all bodies stand in one list, body by body, so that the lumps near a beam are found in one search
+/// however many bodies there are.
 pub struct Soft {
     pub(crate) primitives: Vec<Primitive>,
-    /// Material of each primitive.
-    pub(crate) material: Vec<u32>,
+    /// Finish of each primitive.
+    pub(crate) finish: Vec<u32>,
+    /// The scene's element that each primitive came from.
+    pub(crate) element: Vec<u32>,
+    /// The bodies that have a surface.
+    pub(crate) bodies: Vec<SoftBody>,
+    /// Balls around bodies, in the order of `bodies`; those without a ball are not in it.
+    body_tree: Hierarchy,
     /// See [`Soft::bounds`].
     bounds: OnceLock<Vec<Bound>>,
     /// Balls within which each counts.
     tree: Hierarchy,
     /// Balls beyond which each is next to nothing.
     all: OnceLock<Hierarchy>,
-    /// What slabs need beyond that.
-    groups: OnceLock<Groups>,
-    /// Primitives without a bounding ball.
-    everywhere: Vec<u32>,
     stock: Stock,
     /// Where each other primitive is at most this, it is left out.
     left_out: f64,
@@ -47,44 +49,26 @@ pub struct Soft {
     pub pixel: f64,
 }
 
-/// What is only made for what is not all lumps.
+/// The convolution surface of one body.
+pub(crate) struct SoftBody {
+    /// Its number in the scene.
+    pub number: u32,
+    /// Its primitives.
+    range: Range<u32>,
+    /// Those of them without a bounding ball.
+    everywhere: Vec<u32>,
+    /// A ball beyond which none of them counts, unless some count everywhere.
+    pub ball: Option<(DVec3, f64)>,
+    /// What slabs need beyond that.
+    groups: OnceLock<Groups>,
+}
+
+/// What is only made for a body that is not all lumps.
 struct Groups {
     /// Balls outside which the field is below T.
     strong: Hierarchy,
     clusters: Clusters,
     kinks: Kinks,
-}
-
-/// Where the primitives that have profiles are not smooth; nothing is known of it in scenes of very many.
-#[derive(Debug, Default)]
-pub struct Kinks(BTreeMap<u32, Vec<Kink>>);
-
-/// In larger scenes kinks are not looked for: a ray that meets one is settled alone, by all primitives.
-const FEW: usize = 16;
-
-impl Kinks {
-    fn new(primitives: &[Primitive]) -> Self {
-        if primitives.len() > FEW {
-            return Self::default();
-        }
-        let own = |(i, p): (usize, &Primitive)| {
-            p.profile.as_ref()?;
-            Some((i as u32, field::kinks::of(p)))
-        };
-        Self(primitives.iter().enumerate().filter_map(own).collect())
-    }
-
-    /// Those of a primitive.
-    #[must_use]
-    pub fn of(&self, primitive: u32) -> &[Kink] {
-        self.0.get(&primitive).map_or(&[], Vec::as_slice)
-    }
-
-    /// Whether there are none at all.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
 }
 
 /// What is left out of all primitives but lumps, together, in T.
@@ -102,63 +86,108 @@ const MOST_STRIDES: usize = 32;
 /// … as it is where it comes so near, in units of how far that counts.
 const CLOSE: f64 = 0.05;
 
-/// Scratch space that is worth keeping between packets.
-#[derive(Default)]
-pub struct Scratch {
-    memory: Memories<f32x8>,
-    /// That of slabs that are not needed any more.
-    pub(crate) spaces: Vec<Space>,
-    pub(crate) active: Active,
-    pub(crate) flesh: Flesh,
-    pub(crate) quick: Quick,
-    /// Evaluations of one primitive's field at one point, so far.
-    pub evaluations: u64,
-    /// Those of them that were made for one ray alone.
-    pub alone: [u64; PACKET],
-}
-
 impl Soft {
     /// Collects a scene's soft elements. What is left of the scene is dropped before their bounds are made, so that
     /// there is room for many.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
-        let surface = scene.soft_surface();
-        let material: Vec<u32> = surface
-            .element
-            .iter()
-            .map(|&e| scene.elements[e].material as u32)
+        let surfaces = scene.soft_surfaces();
+        let count: usize = surfaces.iter().map(|s| s.element.len()).sum();
+        let finishes = surfaces.iter().flat_map(|s| &s.element);
+        let finish: Vec<u32> = finishes
+            .map(|&e| scene.elements[e as usize].finish)
             .collect();
         drop(scene);
-        drop(surface.element);
-        let primitives = surface.field.primitives;
-        let stock = Stock::new(&primitives, &material);
+        let mut element = Vec::new();
+        let mut primitives: Vec<Primitive> = Vec::new();
+        let mut bodies = Vec::with_capacity(surfaces.len());
+        for surface in surfaces {
+            let first = primitives.len() as u32;
+            if primitives.is_empty() {
+                // The first and mostly only body's lists are taken as they are.
+                (primitives, element) = (surface.sum.primitives, surface.element);
+                primitives.reserve_exact(count - primitives.len());
+                element.reserve_exact(count - element.len());
+            } else {
+                primitives.extend(surface.sum.primitives);
+                element.extend(surface.element);
+            }
+            bodies.push(SoftBody {
+                number: surface.body,
+                range: first..primitives.len() as u32,
+                everywhere: Vec::new(),
+                ball: None,
+                groups: OnceLock::new(),
+            });
+        }
+        let ranges: Vec<Range<u32>> = bodies.iter().map(|body| body.range.clone()).collect();
+        let stock = Stock::new(&primitives, &finish, &ranges);
         let left_out = LEFT_OUT * THRESHOLD / primitives.len().max(1) as f64;
         let mut balls = Vec::with_capacity(primitives.len());
-        let mut everywhere = Vec::new();
-        for (i, p) in primitives.iter().enumerate() {
-            let ball = stock.ball(i).or_else(|| {
-                let (center, around) = p.bounding_sphere()?;
-                let skeleton = around - p.influence;
-                Some((center, skeleton + Bound::new(p).distance_of(left_out)))
-            });
-            match ball {
-                Some((center, radius)) => balls.push((i as u32, center, radius)),
-                None => everywhere.push(i as u32),
+        let mut body_balls = Vec::new();
+        for (number, body) in (0..).zip(&mut bodies) {
+            let first = balls.len();
+            for i in body.range.clone() {
+                let p = &primitives[i as usize];
+                let ball = stock.ball(i as usize).or_else(|| {
+                    let (center, around) = p.bounding_sphere()?;
+                    let skeleton = around - p.influence;
+                    Some((center, skeleton + Bound::new(p).distance_of(left_out)))
+                });
+                match ball {
+                    Some((center, radius)) => balls.push((i, center, radius)),
+                    None => body.everywhere.push(i),
+                }
+            }
+            if body.everywhere.is_empty() {
+                let (center, radius) = around(&balls[first..]);
+                body.ball = Some((center, radius));
+                body_balls.push((number, center, radius));
             }
         }
         Self {
             primitives,
-            material,
+            finish,
+            element,
+            bodies,
+            body_tree: Hierarchy::new(body_balls),
             bounds: OnceLock::new(),
             tree: Hierarchy::new(balls),
             all: OnceLock::new(),
-            groups: OnceLock::new(),
-            everywhere,
             stock,
             left_out,
             precision: Precision::PICTURE,
             pixel: 1.0,
         }
+    }
+
+    /// The body, by its number among those with a surface, that a primitive belongs to.
+    pub fn body_of(&self, primitive: u32) -> u32 {
+        let after = self.bodies.partition_point(|body| body.range.start <= primitive);
+        after as u32 - 1
+    }
+
+    /// Lists the bodies that a ray of a beam may meet before a parameter, each with the least parameter at which it may, in the
+    /// order of these.
+    pub fn bodies_along(&self, beam: &Beam, limit: f64, list: &mut Vec<(f64, u32)>) {
+        list.clear();
+        for (number, body) in (0..).zip(&self.bodies) {
+            if !body.everywhere.is_empty() {
+                list.push((0.0, number));
+            }
+        }
+        self.body_tree.search(beam, |number, center, radius| {
+            let near = beam.reach(center, radius)[0];
+            if near < limit {
+                list.push((near, number));
+            }
+        });
+        list.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    }
+
+    /// Whether some primitive of a body counts everywhere.
+    pub fn is_everywhere(&self, body: u32) -> bool {
+        !self.bodies[body as usize].everywhere.is_empty()
     }
 
     /// The primitives' bounds. The quick way does without, so they are made when first asked for.
@@ -173,23 +202,34 @@ impl Soft {
         self.primitives.is_empty()
     }
 
-    /// Calls `f` with each primitive that counts where a ray may come, the
-    /// primitive's bounds and its material, in no order.
-    pub fn along<'a>(&'a self, ray: &Ray, mut f: impl FnMut(&'a Primitive, &'a Bound, u32)) {
-        let mut give = |i: u32| {
-            let i = i as usize;
-            f(&self.primitives[i], &self.bounds()[i], self.material[i]);
+    /// Calls `f` with each primitive of a body that counts where a ray may come, the
+    /// primitive's bounds and its number, in no order.
+    pub fn along<'a>(
+        &'a self,
+        body: u32,
+        ray: &Ray,
+        mut f: impl FnMut(&'a Primitive, &'a Bound, u32),
+    ) {
+        let body = &self.bodies[body as usize];
+        let mut give = |number: u32| {
+            let i = number as usize;
+            f(&self.primitives[i], &self.bounds()[i], number);
         };
-        self.everywhere.iter().for_each(|&i| give(i));
-        self.tree.search(&Beam::of_ray(*ray), |i, _, _| give(i));
+        body.everywhere.iter().for_each(|&i| give(i));
+        self.tree.search(&Beam::of_ray(*ray), |i, _, _| {
+            if body.range.contains(&i) {
+                give(i);
+            }
+        });
     }
 
-    /// The slabs of a beam, up to a parameter; with them the parameter at which the first starts
+    /// The slabs of a body along a beam, up to a parameter; with them the parameter at which the first starts
     /// to count. `None` if no primitive reaches the beam, or all together never reach T.
     ///
     /// `beams` divides the beam, given the parameter at which to start; `spaces` is what there is of used space.
     pub fn slabs<'a>(
         &'a self,
+        body: u32,
         beam: Beam,
         beams: impl FnOnce(f64) -> Beams<'a>,
         limit: f64,
@@ -198,13 +238,14 @@ impl Soft {
         if !(beam.axis.origin.is_finite() && beam.axis.direction.is_finite()) {
             return None;
         }
-        let mut list = self.everywhere.clone();
+        let body = &self.bodies[body as usize];
+        let mut list = body.everywhere.clone();
         let mut range = if list.is_empty() {
             [f64::INFINITY, 0.0]
         } else {
             [0.0, FAR]
         };
-        let groups = self.groups();
+        let groups = self.groups(body);
         groups.strong.search(&beam, |_, center, radius| {
             let [near, far] = beam.reach(center, radius);
             range = [range[0].at_most(near), range[1].at_least(far)];
@@ -219,9 +260,14 @@ impl Soft {
         let mut clusters = Some(&groups.clusters);
         if self.precision.shared == 0.0 {
             clusters = None;
-            self.tree.search(&beam, |i, _, _| list.push(i));
+            self.tree.search(&beam, |i, _, _| {
+                if body.range.contains(&i) {
+                    list.push(i);
+                }
+            });
         }
-        let terms = self.terms(NEXT_TO_NOTHING / LEFT_OUT * self.left_out, clusters);
+        let left_out = NEXT_TO_NOTHING / LEFT_OUT * self.left_out;
+        let terms = self.terms(&groups.kinks, left_out, clusters);
         let space = spaces.pop().unwrap_or_default();
         let slabs = Slabs::new(terms, &list, beams(from), range, self.precision, space);
         if slabs.slab(slabs.root()).above >= THRESHOLD {
@@ -231,53 +277,62 @@ impl Soft {
         None
     }
 
-    fn groups(&self) -> &Groups {
-        self.groups.get_or_init(|| self.group())
+    fn groups<'a>(&self, body: &'a SoftBody) -> &'a Groups {
+        body.groups.get_or_init(|| self.group(body))
     }
 
-    fn group(&self) -> Groups {
-        let share = THRESHOLD / self.primitives.len().max(1) as f64;
+    fn group(&self, body: &SoftBody) -> Groups {
+        let share = THRESHOLD / body.range.len().max(1) as f64;
         let (mut strong, mut skeletons) = (Vec::new(), Vec::new());
-        for (i, (p, bound)) in self.primitives.iter().zip(self.bounds()).enumerate() {
+        for i in body.range.clone() {
+            let (p, bound) = (&self.primitives[i as usize], &self.bounds()[i as usize]);
             let Some((center, around)) = p.bounding_sphere() else {
                 continue;
             };
             let skeleton = around - bound.influence;
-            skeletons.push((i as u32, center, skeleton));
+            skeletons.push((i, center, skeleton));
             if bound.adds() {
-                strong.push((i as u32, center, skeleton + bound.distance_of(share)));
+                strong.push((i, center, skeleton + bound.distance_of(share)));
             }
         }
+        let own = |i: u32| (i, &self.primitives[i as usize]);
         Groups {
             strong: Hierarchy::new(strong),
             clusters: Clusters::new(skeletons, self.bounds()),
-            kinks: Kinks::new(&self.primitives),
+            kinks: Kinks::new(body.range.clone().map(own)),
         }
     }
 
-    fn sight(&self) -> Sight<'_> {
+    fn sight<'a>(&'a self, body: &'a SoftBody) -> Sight<'a> {
         Sight {
             primitives: &self.primitives,
             bounds: self.bounds(),
-            kinks: &self.groups().kinks,
+            kinks: &self.groups(body).kinks,
         }
     }
 
-    fn terms<'a>(&'a self, left_out: f64, clusters: Option<&'a Clusters>) -> Terms<'a> {
+    fn terms<'a>(
+        &'a self,
+        kinks: &'a Kinks,
+        left_out: f64,
+        clusters: Option<&'a Clusters>,
+    ) -> Terms<'a> {
         Terms {
             primitives: &self.primitives,
             bounds: self.bounds(),
-            materials: &self.material,
+            finishes: &self.finish,
             clusters,
-            kinks: &self.groups().kinks,
+            kinks,
             left_out,
         }
     }
 
-    /// Lists the lumps near a beam, up to a parameter, and the few other primitives there. False if those are more than a few.
+    /// Lists the lumps near a beam, up to a parameter, and the few other primitives there. False if those are more than a few,
+    /// or the only body counts everywhere.
     pub fn list_lumps(&self, beam: &Beam, limit: f64, list: &mut Nearby) -> bool {
         let finite = beam.axis.origin.is_finite() && beam.axis.direction.is_finite();
-        if !self.everywhere.is_empty() || !finite {
+        let everywhere = self.bodies.len() == 1 && self.is_everywhere(0);
+        if everywhere || !finite {
             return false;
         }
         // The tree's balls reach as far beyond those of the skeletons.
@@ -290,8 +345,17 @@ impl Soft {
     }
 
     /// Whether a ray of a beam may come so near to one of some primitives, up to a parameter, that it counts.
-    pub fn meets_any(&self, others: &[Other], beam: &Beam, limit: f64) -> bool {
-        others.iter().any(|other| {
+    pub fn meets_any<'o>(
+        &self,
+        others: impl IntoIterator<Item = &'o Other>,
+        beam: &Beam,
+        limit: f64,
+    ) -> bool {
+        others.into_iter().any(|other| self.meets(other, beam, limit))
+    }
+
+    /// The same of one primitive.
+    fn meets(&self, other: &Other, beam: &Beam, limit: f64) -> bool {
             let [mut t, far] = beam.reach(other.center, other.radius);
             let far = far.at_most(limit);
             let bound = &self.bounds()[other.primitive as usize];
@@ -308,33 +372,45 @@ impl Soft {
                 t += away / (1.0 + beam.spread);
             }
             true
-        })
     }
 
-    /// Walks a bundle through the slabs of its beam.
+    /// Adds the bodies of some primitives that a ray of a beam may come near enough to, up to a parameter.
+    pub fn bodies_met(&self, others: &[Other], beam: &Beam, limit: f64, bodies: &mut Vec<u32>) {
+        for other in others {
+            let body = self.body_of(other.primitive);
+            if !bodies.contains(&body) && self.meets(other, beam, limit) {
+                bodies.push(body);
+            }
+        }
+    }
+
+    /// Walks a bundle through the slabs of a body along its beam.
     pub fn walk(
         &self,
+        body: u32,
         slabs: &mut Slabs<'_>,
         bundle: Bundle<'_>,
         quest: Quest,
         scratch: &mut Scratch,
     ) -> Vec<Found> {
         slabs.tidy();
+        let sight = self.sight(&self.bodies[body as usize]);
         let (found, evaluations) =
-            Walk::<f32x8>::new(self.sight(), slabs, bundle, quest, &mut scratch.memory).run();
+            Walk::<f32x8>::new(sight, slabs, bundle, quest, &mut scratch.memory).run();
         scratch.evaluations += evaluations;
         found
     }
 
-    /// Where a ray first enters the surface on a short stretch, in double precision, with the number of evaluations; its
+    /// Where a ray first enters the surface of a body on a short stretch, in double precision, with the number of evaluations; its
     /// start, if it is inside there. What is no lump, or sum of lumps, is taken to count as far as it is followed.
-    pub fn entry(&self, ray: Ray, [from, to]: [f64; 2]) -> (Option<f64>, u64) {
+    pub fn entry(&self, body: u32, ray: Ray, [from, to]: [f64; 2]) -> (Option<f64>, u64) {
         let (center, radius) = (ray.at(0.5 * (from + to)), 0.5 * (to - from));
+        let body = &self.bodies[body as usize];
         let least = NEXT_TO_NOTHING * THRESHOLD / self.primitives.len() as f64;
         let mut near = Vec::new();
         let all = self.all.get_or_init(|| self.stock.reaches(&self.tree));
         all.around(center, radius, |i, _, _| {
-            if self.stock.counts(i as usize, center, radius, least) {
+            if body.range.contains(&i) && self.stock.counts(i as usize, center, radius, least) {
                 near.push(i);
             }
         });
@@ -347,7 +423,7 @@ impl Soft {
             sight: Sight {
                 primitives: &primitives,
                 bounds: &bounds,
-                kinks: &Kinks::new(&primitives),
+                kinks: &Kinks::new(numbered(&primitives)),
             },
             ray,
             resolution: self.precision.resolution,
@@ -362,19 +438,18 @@ impl Soft {
         (found, settler.evaluations)
     }
 
-    /// All crossings of a ray, exactly: where the whole field, with nothing cut off, equals T.
+    /// All crossings of a ray with the surface of a body, exactly: where the whole field, with nothing cut off, equals T.
     /// Pairs (t, gradient), in order of t > 0.
     #[must_use]
-    pub fn crossings(&self, ray: &Ray) -> Vec<(f64, DVec3)> {
-        let count = self.primitives.len();
-        if count == 0 {
-            return Vec::new();
-        }
+    pub fn crossings(&self, body: u32, ray: &Ray) -> Vec<(f64, DVec3)> {
+        let body = &self.bodies[body as usize];
+        let own = body.range.start as usize..body.range.end as usize;
+        let count = own.len();
         // Beyond the distance where each primitive is below T/n the sum is below T.
         let beam = Beam::of_ray(*ray);
         let share = THRESHOLD / count as f64;
         let mut range = [f64::INFINITY, 0.0f64];
-        for (p, bound) in self.primitives.iter().zip(self.bounds()) {
+        for (p, bound) in self.primitives[own.clone()].iter().zip(&self.bounds()[own.clone()]) {
             let [near, far] = match p.bounding_sphere() {
                 Some((center, radius)) => {
                     let skeleton = radius - bound.influence;
@@ -393,15 +468,15 @@ impl Soft {
             direction: ray.direction,
         };
         let mut slabs = Slabs::new(
-            self.terms(0.0, None),
-            &(0..count as u32).collect::<Vec<u32>>(),
+            self.terms(&self.groups(body).kinks, 0.0, None),
+            &body.range.clone().collect::<Vec<u32>>(),
             Beams::one(Beam::of_ray(based)),
             [0.0, to - from],
             Precision::EXACT,
             Space::default(),
         );
         let (found, _) = Walk::<f64>::new(
-            self.sight(),
+            self.sight(body),
             &mut slabs,
             Bundle {
                 rays: &[based],
@@ -416,8 +491,8 @@ impl Soft {
         // Between neighbouring crossings the exact field has its sign; where it changes from one
         // such place to the next, there is the exact crossing.
         let excess = |t: f64| {
-            let (value, gradient) = self.field(based.at(t));
-            (value - THRESHOLD, gradient)
+            let jet = field::sum(&self.primitives[own.clone()], based.at(t).to_array());
+            (jet.value - THRESHOLD, DVec3::from_array(jet.gradient))
         };
         let mut places = vec![0.0];
         places.extend(found.windows(2).map(|w| 0.5 * (w[0].t + w[1].t)));
@@ -444,16 +519,20 @@ impl Soft {
         }
         crossings
     }
+}
 
-    /// The whole field and its gradient.
-    fn field(&self, point: DVec3) -> (f64, DVec3) {
-        let mut value = 0.0;
-        let mut gradient = DVec3::ZERO;
-        for p in &self.primitives {
-            let jet = p.jet(point.to_array());
-            value += jet.value;
-            gradient += DVec3::from_array(jet.gradient);
-        }
-        (value, gradient)
+/// Primitives with their numbers.
+fn numbered(primitives: &[Primitive]) -> impl ExactSizeIterator<Item = (u32, &Primitive)> {
+    primitives.iter().enumerate().map(|(i, p)| (i as u32, p))
+}
+
+/// A ball around some balls, given with numbers.
+fn around(balls: &[(u32, DVec3, f64)]) -> (DVec3, f64) {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for (_, center, radius) in balls {
+        (low, high) = (low.min(center - *radius), high.max(center + *radius));
     }
+    let middle = 0.5 * (low + high);
+    let reach = balls.iter().map(|(_, center, radius)| center.distance(middle) + radius);
+    (middle, reach.fold(0.0, f64::max))
 }

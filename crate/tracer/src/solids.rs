@@ -8,7 +8,8 @@ use scene::Scene;
 /// The hard elements, in a hierarchy.
 pub struct Solids {
     solids: Vec<Solid>,
-    material: Vec<u32>,
+    /// Of each solid: its finish, and the scene's element that it came from.
+    of: Vec<[u32; 2]>,
     tree: Hierarchy,
     /// Those without a bounding ball.
     everywhere: Vec<u32>,
@@ -19,16 +20,16 @@ impl Solids {
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let mut solids = Vec::new();
-        let mut material = Vec::new();
-        for element in &scene.elements {
-            if scene.is_soft(element) || element.material >= scene.materials.len() {
+        let mut of = Vec::new();
+        for (number, element) in (0..).zip(&scene.elements) {
+            if scene.is_soft(element) || element.finish as usize >= scene.finishes.len() {
                 continue;
             }
             let radius = scene.radius(element);
             for part in element.shape.parts(radius) {
                 if let Some(solid) = Solid::new(&part, radius) {
                     solids.push(solid);
-                    material.push(element.material as u32);
+                    of.push([element.finish, number]);
                 }
             }
         }
@@ -42,7 +43,7 @@ impl Solids {
         }
         Self {
             solids,
-            material,
+            of,
             tree: Hierarchy::new(balls),
             everywhere,
         }
@@ -54,17 +55,24 @@ impl Solids {
         self.solids.is_empty()
     }
 
-    /// The material of a solid.
+    /// The finish of a solid.
     #[must_use]
-    pub fn material(&self, number: u32) -> usize {
-        self.material[number as usize] as usize
+    pub fn finish(&self, number: u32) -> usize {
+        self.of[number as usize][0] as usize
     }
 
-    /// The nearest crossing with 0 < t < limit, and whose it is.
+    /// The scene's element that a solid came from.
+    #[must_use]
+    pub fn element(&self, number: u32) -> u32 {
+        self.of[number as usize][1]
+    }
+
+    /// The nearest crossing with 0 < t < limit, and its solid; of faces that the ray sees from the front only, if so asked.
     pub fn first(
         &self,
         ray: &Ray,
         limit: f64,
+        front_only: bool,
         scratch: &mut Vec<Crossing>,
     ) -> Option<(u32, Crossing)> {
         let mut nearest: Option<(u32, Crossing)> = None;
@@ -72,6 +80,9 @@ impl Solids {
             scratch.clear();
             solid.crossings(ray, scratch);
             for &crossing in scratch.iter() {
+                if front_only && crossing.normal.dot(ray.direction) > 0.0 {
+                    continue;
+                }
                 // Equal distances go to the first element, whatever the order of the search.
                 let bar = nearest.map_or((limit, u32::MAX), |(n, c)| (c.t, n));
                 if crossing.t > 0.0 && (crossing.t, number) < bar && crossing.t < limit {
@@ -82,10 +93,17 @@ impl Solids {
         nearest
     }
 
-    /// Adds all crossings with t > 0, in no order.
-    pub fn all(&self, ray: &Ray, out: &mut Vec<Crossing>) {
-        self.each(ray, |_, solid| solid.crossings(ray, out));
-        out.retain(|c| c.t > 0.0);
+    /// All crossings with t > 0, each with its solid, in no order.
+    #[must_use]
+    pub fn all(&self, ray: &Ray) -> Vec<(u32, Crossing)> {
+        let (mut all, mut own) = (Vec::new(), Vec::new());
+        self.each(ray, |number, solid| {
+            own.clear();
+            solid.crossings(ray, &mut own);
+            let ahead = own.iter().filter(|c| c.t > 0.0);
+            all.extend(ahead.map(|c| (number, *c)));
+        });
+        all
     }
 
     fn each(&self, ray: &Ray, mut f: impl FnMut(u32, &Solid)) {

@@ -1,75 +1,17 @@
-//! What the packets of a square of pixels share.
+//! The part of the convolution surfaces near a square of pixels, which its packets share.
 use crate::area::Area;
 use crate::beam::Beam;
+use crate::beams::Beams;
+use crate::layout::packet_number;
 use crate::lens::Lens;
 use crate::nearby::{Nearby, Other};
-use crate::packet::{Near, Workspace};
-use crate::picture::{Picture, Stats, packet_number};
 use crate::quick::LEFT_OUT_OF_PARTS;
+use crate::scratch::Scratch;
 use crate::slabs::Slabs;
-
-/// What is known of the soft surface in a square of pixels.
-#[expect(clippy::large_enum_variant, reason = "a thread has one at a time")]
-pub(crate) enum Square<'a> {
-    /// There is none.
-    Empty,
-    /// Lumps, and few other primitives if any.
-    Lumps(Lumps<'a>),
-    /// Slabs, and the parameter at which they start.
-    Slabs((Slabs<'a>, f64)),
-}
-
-impl<'a> Square<'a> {
-    /// What of it a packet needs, given by its column and row among so many.
-    pub fn near(
-        &mut self,
-        place: [u32; 2],
-        packets: [u32; 2],
-        work: &mut Workspace,
-    ) -> Near<'_, 'a> {
-        let slabs = match self {
-            Self::Empty => return Near::Nothing,
-            Self::Slabs(slabs) => slabs,
-            Self::Lumps(lumps) => {
-                if !lumps.meets_others(place) {
-                    return match lumps.near(place) {
-                        (near, _) if near.len() == 0 => Near::Nothing,
-                        (near, lens) => Near::Lumps(near, lens),
-                    };
-                }
-                let (picture, area) = (lumps.picture, lumps.area);
-                let slabs = lumps
-                    .slabs
-                    .get_or_insert_with(|| picture.slabs(area, packets, work));
-                match slabs {
-                    Some(slabs) => slabs,
-                    None => return Near::Nothing,
-                }
-            }
-        };
-        let number = packet_number(place, packets);
-        if slabs.0.is_empty_for(number) {
-            Near::Nothing
-        } else {
-            Near::Slabs(slabs, number)
-        }
-    }
-}
-
-impl Square<'_> {
-    /// Leaves the space that it took to others, and counts what was done for all of its packets.
-    pub fn leave(self, work: &mut Workspace, stats: &mut Stats) {
-        let slabs = match self {
-            Self::Slabs(slabs) => Some(slabs),
-            Self::Lumps(lumps) => lumps.slabs.flatten(),
-            Self::Empty => None,
-        };
-        if let Some((slabs, _)) = slabs {
-            stats.field_evaluations += slabs.evaluations();
-            work.scratch.spaces.push(slabs.into_space());
-        }
-    }
-}
+use crate::soft::Soft;
+use crate::stats::Stats;
+use crate::view::{View, division};
+use crate::world::World;
 
 /// Parts of a square in each direction.
 const PARTS: u32 = 4;
@@ -77,75 +19,156 @@ const PARTS: u32 = 4;
 /// Longer lists have none for parts, which would need much space where lumps are large.
 const MANY: usize = 1 << 15;
 
-/// The lumps in a square, and in each of its parts; and its slabs, for packets near anything else.
-pub(crate) struct Lumps<'a> {
-    picture: &'a Picture,
+/// The convolution surfaces near a square of pixels, divided into columns and rows of packets.
+pub(crate) struct Square<'a> {
+    soft: &'a Soft,
+    view: &'a View,
     area: Area,
     packets: [u32; 2],
+    /// Lumps near the square; `None` if all bodies take the general way.
+    lumps: Option<Lumps>,
+    /// Bodies that take the general way in every packet, each with the parameter before which no ray meets it.
+    general: Vec<(f64, u32)>,
+    /// Slabs, each with its body and the parameter at which they start, made when first asked for.
+    slabs: Vec<(u32, Option<(Slabs<'a>, f64)>)>,
+}
+
+/// The lumps in a square, and in each of its parts.
+struct Lumps {
     all: Nearby,
     lens: Option<Lens>,
     parts: Vec<Option<Nearby>>,
-    slabs: Option<Option<(Slabs<'a>, f64)>>,
 }
 
-impl<'a> Lumps<'a> {
-    /// `all` are those near the beam of the area.
-    pub fn new(
-        picture: &'a Picture,
-        area: Area,
-        packets: [u32; 2],
-        beam: &Beam,
-        all: Nearby,
-    ) -> Self {
-        Self {
-            lens: Lens::new(picture, area, beam),
-            picture,
+impl<'a> Square<'a> {
+    /// The surroundings of an area. `packets` are powers of two.
+    pub fn new(world: &'a World, view: &'a View, area: Area, packets: [u32; 2]) -> Self {
+        let soft = &world.soft;
+        let mut square = Self {
+            soft,
+            view,
             area,
             packets,
-            all,
-            parts: vec![None; (PARTS * PARTS) as usize],
-            slabs: None,
+            lumps: None,
+            general: Vec::new(),
+            slabs: Vec::new(),
+        };
+        if soft.is_empty() || world.digger.is_some() {
+            return square;
         }
+        let mut all = Nearby::default();
+        let beam = view.beam(area);
+        if soft.list_lumps(&beam, f64::INFINITY, &mut all) {
+            square.lumps = Some(Lumps {
+                lens: Lens::new(view, area, &beam),
+                all,
+                parts: vec![None; (PARTS * PARTS) as usize],
+            });
+            let bodies = 0..soft.bodies.len() as u32;
+            let everywhere = bodies.filter(|&body| soft.is_everywhere(body));
+            square.general = everywhere.map(|body| (0.0, body)).collect();
+        } else if soft.bodies.len() == 1 {
+            square.general.push((0.0, 0));
+        } else {
+            soft.bodies_along(&beam, f64::INFINITY, &mut square.general);
+        }
+        square
     }
 
-    /// Whether the packet in a column and row comes near anything that is no lump.
-    fn meets_others(&mut self, [column, row]: [u32; 2]) -> bool {
-        if self.all.others.is_empty() {
-            return false;
+    /// Lists the bodies that take the general way in a packet, given by its column and row: those near it that are not all lumps,
+    /// each with the parameter before which no ray meets it.
+    pub fn general(&mut self, place: [u32; 2], bodies: &mut Vec<(f64, u32)>) {
+        bodies.clear();
+        let several = self.soft.bodies.len() > 1;
+        let beam = |square: &Self| square.view.beam(square.area.cell(place, square.packets));
+        if several && !self.general.is_empty() {
+            let beam = beam(self);
+            let meets = |&&(_, body): &&(f64, u32)| {
+                let ball = self.soft.bodies[body as usize].ball;
+                ball.is_none_or(|(center, radius)| beam.meets(center, radius))
+            };
+            bodies.extend(self.general.iter().filter(meets));
+        } else {
+            bodies.extend(&self.general);
         }
-        let (picture, area, packets) = (self.picture, self.area, self.packets);
-        let (near, _) = self.near([column, row]);
+        if self.lumps.as_ref().is_none_or(|lumps| lumps.all.others.is_empty()) {
+            return;
+        }
+        let Some((near, _)) = self.lumps(place) else {
+            return;
+        };
         if near.others.is_empty() {
-            return false;
+            return;
         }
+        let others = near.others.clone();
         // Others may be nearer than the first lump, from which lists are counted.
-        let beam = picture.beam(area.cell([column, row], packets));
-        picture.soft.meets_any(&near.others, &beam, f64::INFINITY)
+        let mut met = Vec::new();
+        self.soft.bodies_met(&others, &beam(self), f64::INFINITY, &mut met);
+        bodies.extend(met.into_iter().map(|body| (0.0, body)));
     }
 
-    /// Those in the part that holds the packet in a column and row.
-    fn near(&mut self, [column, row]: [u32; 2]) -> (&Nearby, Option<&Lens>) {
+    /// The lumps in the part that holds the packet in a column and row, and the lens that makes rays for them, if rays can be made so.
+    pub fn lumps(&mut self, [column, row]: [u32; 2]) -> Option<(&Nearby, Option<&Lens>)> {
         let [columns, rows] = self.packets;
-        if self.all.len() == 0 || self.all.len() > MANY || columns < 2 * PARTS {
-            return (&self.all, self.lens.as_ref());
+        let (view, area) = (self.view, self.area);
+        let Lumps { all, lens, parts } = self.lumps.as_mut()?;
+        if all.len() == 0 && all.others.is_empty() {
+            return None;
+        }
+        if all.len() == 0 || all.len() > MANY || columns < 2 * PARTS {
+            return Some((all, lens.as_ref()));
         }
         let (i, j) = (column * PARTS / columns, row * PARTS / rows);
-        let Self {
-            picture,
-            area,
-            all,
-            lens,
-            parts,
-            ..
-        } = self;
         let part = parts[(j * PARTS + i) as usize].get_or_insert_with(|| {
             let mut near = Nearby::default();
-            let beam = picture.beam(area.cell([i, j], [PARTS; 2]));
+            let beam = view.beam(area.cell([i, j], [PARTS; 2]));
             all.narrow(&beam.from(all.base), LEFT_OUT_OF_PARTS, &mut near);
             let met = |other: &&Other| beam.meets(other.center, other.radius);
             near.others.extend(all.others.iter().filter(met));
             near
         });
-        (part, lens.as_ref())
+        Some((part, lens.as_ref()))
+    }
+
+    /// The slabs of a body, the parameter at which they start, and the number of the packet in a column and row among the divisions
+    /// of their beam; `None` if no ray of the packet can meet the body.
+    pub fn slabs(
+        &mut self,
+        body: u32,
+        place: [u32; 2],
+        scratch: &mut Scratch,
+    ) -> Option<(&mut Slabs<'a>, f64, usize)> {
+        let at = match self.slabs.iter().position(|(own, _)| *own == body) {
+            Some(at) => at,
+            None => {
+                let slabs = self.make_slabs(body, scratch);
+                self.slabs.push((body, slabs));
+                self.slabs.len() - 1
+            }
+        };
+        let number = packet_number(place, self.packets);
+        let (slabs, base) = self.slabs[at].1.as_mut()?;
+        (!slabs.is_empty_for(number)).then_some((slabs, *base, number))
+    }
+
+    fn make_slabs(&self, body: u32, scratch: &mut Scratch) -> Option<(Slabs<'a>, f64)> {
+        let (view, area, packets) = (self.view, self.area, self.packets);
+        let levels = packets[0].ilog2() + packets[1].ilog2();
+        let beams = move |base: f64| {
+            Beams::divided(levels, move |number| {
+                view.beam(division(area, packets, number)).from(base)
+            })
+        };
+        let beam: Beam = view.beam(area);
+        let spaces = &mut scratch.spaces;
+        self.soft.slabs(body, beam, beams, f64::INFINITY, spaces)
+    }
+
+    /// Leaves the space that the square took to others, and counts what was done for all of its packets.
+    pub fn leave(self, scratch: &mut Scratch, stats: &mut Stats) {
+        for (slabs, _) in self.slabs.into_iter().filter_map(|(_, slabs)| slabs) {
+            stats.field_evaluations += slabs.evaluations();
+            scratch.spaces.push(slabs.into_space());
+        }
     }
 }

@@ -6,6 +6,7 @@ use crate::soft::NEXT_TO_NOTHING;
 use field::{Bead, Cut, Lump, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Each lump is followed until its field is below this much of T, divided by the scene's number of primitives.
 const LEFT_OUT: f64 = 2e-6;
@@ -37,9 +38,9 @@ const MOST_OTHERS: usize = 16;
 const MOST_BEADS: usize = 1 << 17;
 
 impl Stock {
-    /// Looks at a scene's primitives, given with their materials.
+    /// The lumps among a scene's primitives, given with their finishes and the bodies' ranges of primitives.
     #[must_use]
-    pub fn new(primitives: &[Primitive], material: &[u32]) -> Self {
+    pub fn new(primitives: &[Primitive], finish: &[u32], bodies: &[Range<u32>]) -> Self {
         let mut beads = 0;
         let strings: BTreeMap<usize, Vec<Bead>> = primitives
             .iter()
@@ -56,7 +57,11 @@ impl Stock {
             ends: Vec::with_capacity(primitives.len()),
             least: NEXT_TO_NOTHING / LEFT_OUT * left_out,
         };
+        let mut body = 0;
         for (i, p) in primitives.iter().enumerate() {
+            while bodies[body as usize].end as usize <= i {
+                body += 1;
+            }
             let item = |lump: Lump<f32>, middle: DVec3, square: f64, core: f64, part: bool| Item {
                 middle,
                 near: Near {
@@ -68,7 +73,8 @@ impl Stock {
                     part,
                     lead: (LEAD / lump.ceiling().scale) as f32,
                     steep: lump.steepness(core) as f32,
-                    material: material[i],
+                    finish: finish[i],
+                    body,
                     from: 0.0,
                 },
                 extent: Extent::of(&lump, lump.radius(square)),

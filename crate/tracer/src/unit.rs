@@ -4,8 +4,26 @@
 //! large or very small would lose digits. Before tracing it is moved to the origin and scaled by a
 //! power of two (which costs no digits) to about unit size. Nothing else changes: fields, angles
 //! and colours are the same.
-use glam::DVec3;
-use scene::{LightKind, Scene, Shape};
+use glam::{DAffine3, DQuat, DVec3};
+use scene::{Element, LightKind, Origin, Scene, Shape};
+
+/// An element without a surface, in place of one that no ray can meet.
+const NOTHING: Element = Element {
+    shape: Shape::Sphere {
+        center: DVec3::ZERO,
+        radius: 0.0,
+    },
+    flesh: None,
+    finish: 0,
+    body: 0,
+    frame: 0,
+    kernel: field::Kernel::Cauchy,
+    origin: Origin {
+        file: 0,
+        start: 0,
+        end: 0,
+    },
+};
 
 /// The map from the world to the unit scene: `scale·(p − center)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,17 +34,19 @@ pub struct Unit {
 
 impl Unit {
     /// The map that fits a scene, and the scene mapped. Elements with coordinates that are not
-    /// finite, which no ray can meet, are left out.
+    /// finite, which no ray can meet, are made hard balls of radius 0, which have no surface: so all keep their numbers.
     #[must_use]
     pub fn fit(scene: &Scene) -> (Self, Scene) {
         let mut mapped = scene.clone();
-        mapped.elements.retain(|e| {
-            let (low, high) = corners(&e.shape);
-            low.is_finite() && high.is_finite()
-        });
+        for element in &mut mapped.elements {
+            let (low, high) = corners(&element.shape);
+            if !low.is_finite() || !high.is_finite() {
+                *element = NOTHING;
+            }
+        }
         let mut low = DVec3::INFINITY;
         let mut high = DVec3::NEG_INFINITY;
-        for element in &mapped.elements {
+        for element in mapped.elements.iter().filter(|e| **e != NOTHING) {
             let (a, b) = corners(&element.shape);
             let radius = DVec3::splat(scene.radius(element).abs().min(f64::MAX));
             low = low.min(a - radius);
@@ -114,8 +134,14 @@ impl Unit {
                 }
             }
         }
-        for material in &mut scene.materials {
-            material.scale(k, scene.settings.blob_scale);
+        for frame in &mut scene.frames {
+            frame.growth *= k;
+            let to_unit = DAffine3::from_scale_rotation_translation(
+                DVec3::splat(k),
+                DQuat::IDENTITY,
+                -k * self.center,
+            );
+            frame.to_world = to_unit * frame.to_world;
         }
         for light in &mut scene.lights {
             if let LightKind::Point { position } = &mut light.kind {
@@ -130,6 +156,12 @@ impl Unit {
     #[must_use]
     pub fn map(&self, point: DVec3) -> DVec3 {
         (point - self.center) * self.scale
+    }
+
+    /// A point of the unit scene in the world.
+    #[must_use]
+    pub fn world(&self, point: DVec3) -> DVec3 {
+        point / self.scale + self.center
     }
 
     /// A length in the unit scene, in the world.

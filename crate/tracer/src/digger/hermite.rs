@@ -6,7 +6,9 @@ use super::{Crossings, Digger, Packet};
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::ray::Ray;
-use crate::soft::{PACKET, Scratch, Soft};
+use crate::layout::PACKET;
+use crate::scratch::Scratch;
+use crate::soft::Soft;
 use crate::walk::{Bundle, Quest};
 
 pub(crate) struct Hermite;
@@ -15,11 +17,13 @@ impl Digger for Hermite {
     fn dig(
         &self,
         soft: &Soft,
+        body: u32,
         packet: &Packet<'_>,
         quest: Quest,
         scratch: &mut Scratch,
     ) -> Crossings {
         if let Some((looked, base)) = soft.quick_alone(
+            body,
             packet.rays,
             packet.limits,
             packet.alive,
@@ -40,7 +44,7 @@ impl Digger for Hermite {
         let furthest = furthest.fold(0.0, f64::max);
         let slabs = Beam::around(&rays).and_then(|beam| {
             let whole = |base: f64| Beams::one(beam.from(base));
-            soft.slabs(beam, whole, furthest, &mut scratch.spaces)
+            soft.slabs(body, beam, whole, furthest, &mut scratch.spaces)
         });
         let mut crossings = [None; PACKET];
         let Some((mut slabs, base)) = slabs else {
@@ -61,7 +65,7 @@ impl Digger for Hermite {
             alive: packet.alive,
             number: 0,
         };
-        let found = soft.walk(&mut slabs, bundle, quest, scratch);
+        let found = soft.walk(body, &mut slabs, bundle, quest, scratch);
         if found.is_empty() {
             return crossings;
         }

@@ -24,14 +24,15 @@ mod hermite2;
 mod lagrange;
 mod lg;
 mod march;
-mod picture;
 mod regula_falsi;
 mod ridder;
 mod sight;
 mod sphere;
 
 use crate::ray::Ray;
-use crate::soft::{PACKET, Scratch, Soft};
+use crate::layout::PACKET;
+use crate::scratch::Scratch;
+use crate::soft::Soft;
 use crate::walk::Quest;
 pub(crate) use hermite::Hermite;
 pub(crate) use sight::Sight;
@@ -52,10 +53,11 @@ pub(crate) type Crossings = [Option<f64>; PACKET];
 
 /// A way of finding where rays cross the soft surface.
 pub(crate) trait Digger: Send + Sync {
-    /// The first crossing that the quest asks for (`First` or `Entry`) on each ray, 0 < t < limit.
+    /// The first crossing with the surface of a body that the quest asks for (`First` or `Entry`) on each ray, 0 < t < limit.
     fn dig(
         &self,
         soft: &Soft,
+        body: u32,
         packet: &Packet<'_>,
         quest: Quest,
         scratch: &mut Scratch,
@@ -72,6 +74,7 @@ impl<D: Single> Digger for D {
     fn dig(
         &self,
         soft: &Soft,
+        body: u32,
         packet: &Packet<'_>,
         quest: Quest,
         scratch: &mut Scratch,
@@ -80,7 +83,7 @@ impl<D: Single> Digger for D {
             if packet.alive >> lane & 1 == 0 {
                 return None;
             }
-            let mut sight = Sight::new(soft, &packet.rays[lane], packet.limits[lane])?;
+            let mut sight = Sight::new(soft, body, &packet.rays[lane], packet.limits[lane])?;
             let found = Single::dig(self, &mut sight, quest);
             scratch.evaluations += sight.evaluations;
             scratch.alone[lane] += sight.evaluations;

@@ -35,10 +35,10 @@ pub(crate) struct Sight<'a> {
 
 impl<'a> Sight<'a> {
     /// `None` if the ray meets nothing.
-    pub fn new(soft: &'a Soft, ray: &Ray, limit: f64) -> Option<Self> {
+    pub fn new(soft: &'a Soft, body: u32, ray: &Ray, limit: f64) -> Option<Self> {
         let mut terms = Vec::new();
         let mut range = [f64::INFINITY, 0.0_f64];
-        soft.along(ray, |primitive, bound, _| {
+        soft.along(body, ray, |primitive, bound, _| {
             let interval = primitive.ray_interval(ray.origin, ray.direction);
             let Some(interval) = interval.map(|ends| ends.map(|t| t.clamp(-FAR, FAR))) else {
                 return;

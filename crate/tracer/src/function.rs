@@ -1,0 +1,121 @@
+//! Bodies whose surface is that of any implicit function: certified root isolation along single rays.
+//!
+//! On a piece of a ray with the middle m and the half-length h Taylor's theorem says
+//! `|f(m+x) − f(m) − f′(m)·x| ≤ C·x²/2`, where C bounds the curvature in the ball around the piece. So a piece has no crossing
+//! if the function's range in that ball leaves the threshold out, or if `|f(m) − T| > |f′(m)|·h + C·h²/2`; and at most one if
+//! `|f′(m)| > C·h`, which the signs at its ends then tell. Any other piece is halved, down to a resolution.
+use crate::ray::Ray;
+use crate::roots::bracketed;
+use field::{Ball, Implicit, THRESHOLD};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Pieces of one ray that may be halved; what is left is decided by the signs at its ends.
+const MOST_HALVED: u32 = 1 << 16;
+/// Rounding of a function's value in double precision, in T.
+const ROUNDING: f64 = 1e-12;
+
+/// The surface of an implicit function as a body of a picture.
+#[derive(Clone, Debug)]
+pub(crate) struct FunctionBody {
+    /// The body's number in the scene.
+    pub number: u32,
+    /// The function, in coordinates of the world.
+    pub function: Arc<dyn Implicit>,
+    /// Finish of each of the function's elements.
+    pub finish: Vec<u32>,
+}
+
+/// Crossings to look for along one ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Along {
+    pub ray: Ray,
+    /// Parameters between which the ray is followed.
+    pub range: [f64; 2],
+    /// Pieces shorter than this are not halved.
+    pub resolution: f64,
+}
+
+impl FunctionBody {
+    /// The part of a ray up to a limit on which the surface may be; `None` if the ray misses it. A function without a known
+    /// support is followed as far as `furthest`.
+    pub fn range(&self, ray: &Ray, limit: f64, furthest: f64) -> Option<[f64; 2]> {
+        let [near, far] = match self.function.support() {
+            None => [0.0, furthest],
+            Some(Ball { center, radius }) => {
+                let offset = center - ray.origin;
+                let along = offset.dot(ray.direction);
+                let across = (offset - ray.direction * along).length_squared();
+                let square = radius * radius * (1.0 + 1e-9) - across;
+                if square < 0.0 {
+                    return None;
+                }
+                let half = square.sqrt();
+                [(along - half).max(0.0), along + half]
+            }
+        };
+        let far = far.min(limit);
+        (near < far).then_some([near, far])
+    }
+
+    /// The outward normal at a point of the surface; `None` where the gradient vanishes.
+    pub fn normal(&self, point: DVec3) -> Option<DVec3> {
+        let gradient = DVec3::from_array(self.function.jet(point).gradient);
+        (-gradient).try_normalize()
+    }
+}
+
+/// Calls `tell` with each crossing of a ray with the surface of a function, and whether the ray enters there, in order,
+/// until it says `false`. Gives the number of evaluations.
+pub(crate) fn crossings(
+    function: &dyn Implicit,
+    along: &Along,
+    mut tell: impl FnMut(f64, bool) -> bool,
+) -> u64 {
+    let ray = &along.ray;
+    let mut stack = vec![along.range];
+    let mut left = MOST_HALVED;
+    let mut evaluations = 0;
+    while let Some([a, b]) = stack.pop() {
+        let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+        let center = ray.at(middle);
+        let radius = half * (1.0 + 1e-9) + 4e-16 * (center.abs().max_element() + middle);
+        let enclosure = function.enclose(Ball { center, radius });
+        evaluations += 1;
+        let [least, most] = enclosure.value;
+        if least > THRESHOLD || most < THRESHOLD {
+            continue;
+        }
+        let jet = function.jet(center);
+        let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
+        let bend = enclosure.curvature * radius;
+        let change = (slope.abs() + 0.5 * bend) * radius + ROUNDING * (1.0 + jet.value.abs());
+        if (jet.value - THRESHOLD).abs() > change {
+            continue;
+        }
+        // Of a bound that is not known the comparison is false.
+        let monotone = slope.abs() > bend;
+        if !monotone && b - a > along.resolution && left > 0 {
+            left -= 1;
+            stack.push([middle, b]);
+            stack.push([a, middle]);
+            continue;
+        }
+        let inside = [a, b].map(|t| function.jet(ray.at(t)).value >= THRESHOLD);
+        evaluations += 2;
+        if inside[0] == inside[1] {
+            continue;
+        }
+        let excess = |t: f64| {
+            evaluations += 1;
+            let jet = function.jet(ray.at(t));
+            let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
+            (jet.value - THRESHOLD, slope)
+        };
+        let t = bracketed(excess, a, b, 1e-14 * (1.0 + b));
+        if !tell(t, inside[1]) {
+            break;
+        }
+    }
+    evaluations
+}

@@ -1,0 +1,407 @@
+//! From rays to the surface points that they meet first.
+//!
+//! The nearest crossing wins, whatever it belongs to: hard elements, the convolution surface of each body, and the surfaces of
+//! other functions are asked one after the other, each only as far as the rays still go.
+use crate::beam::Beam;
+use crate::beams::Beams;
+use crate::flesh::Flesh;
+use crate::function::{Along, FunctionBody, crossings};
+use crate::hard::Crossing;
+use crate::layout::PACKET;
+use crate::lens::{Fan, Lens};
+use crate::nearby::Nearby;
+use crate::quick::{Asked, Looked, Rays};
+use crate::ray::Ray;
+use crate::scratch::Scratch;
+use crate::shade::Finish;
+use crate::slabs::Slabs;
+use crate::square::Square;
+use crate::stats::Stats;
+use crate::walk::{Bundle, Quest};
+use crate::workspace::Workspace;
+use crate::world::{SurfacePoint, World};
+use field::Cut;
+use glam::DVec3;
+
+/// Rays of a packet, and what they meet.
+pub(crate) struct Seen {
+    pub rays: [Ray; PACKET],
+    pub hits: [Option<SurfacePoint>; PACKET],
+    /// What finding them cost.
+    pub costs: [f32; PACKET],
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        let ray = Ray {
+            origin: DVec3::ZERO,
+            direction: DVec3::X,
+        };
+        Self {
+            rays: [ray; PACKET],
+            hits: [None; PACKET],
+            costs: [0.0; PACKET],
+        }
+    }
+}
+
+impl Seen {
+    /// Whether any of the rays hit something.
+    pub fn something(&self) -> bool {
+        self.hits.iter().any(Option::is_some)
+    }
+
+    /// How far each ray goes: to what it is known to meet.
+    pub fn limits(&self) -> [f64; PACKET] {
+        self.hits.map(|hit| hit.map_or(f64::INFINITY, |hit| hit.t))
+    }
+}
+
+/// The two ways to make a packet's rays.
+pub(crate) struct PacketRays<'r> {
+    /// In single precision, for lumps.
+    pub fan: &'r dyn Fn(&Lens) -> Fan,
+    /// In double precision.
+    pub exact: &'r dyn Fn() -> [Ray; PACKET],
+}
+
+/// All lanes of a packet.
+pub(crate) const ALL: u32 = (1 << PACKET) - 1;
+
+/// Stretches of rays shorter than this part of the scene's size are not looked into for other functions.
+const RESOLUTION: f64 = 5e-7;
+/// Surfaces of functions without a support are followed this far, in units of the scene's size.
+const FURTHEST: f64 = 1e4;
+/// How far rays to the lights start above the surfaces of other functions.
+const FUNCTION_LIFT: f64 = 1e-6;
+
+impl World {
+    /// Finds what the rays of the packet in a column and row of a square meet first, and says so in `seen`, with the rays if they
+    /// meet anything.
+    pub fn meet(
+        &self,
+        square: &mut Square<'_>,
+        place: [u32; 2],
+        rays: &PacketRays<'_>,
+        seen: &mut Seen,
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) {
+        work.begin();
+        seen.hits = [None; PACKET];
+        let mut exact = false;
+        if !self.only_soft() {
+            seen.rays = (rays.exact)();
+            exact = true;
+        }
+        if !self.solids.is_empty() {
+            for (hit, ray) in seen.hits.iter_mut().zip(&seen.rays) {
+                *hit = self.hard_point(ray, &mut work.crossings);
+            }
+        }
+        if let Some(digger) = &self.digger {
+            self.dug_points(&**digger, seen, work);
+        } else {
+            self.meet_soft(square, place, rays, seen, &mut exact, work);
+        }
+        if !self.functions.is_empty() {
+            self.meet_functions(seen, &mut work.scratch);
+        }
+        stats.field_evaluations += work.scratch.evaluations;
+        seen.costs = work.costs(PACKET);
+    }
+
+    /// Replaces what rays meet by points on convolution surfaces that are nearer.
+    fn meet_soft(
+        &self,
+        square: &mut Square<'_>,
+        place: [u32; 2],
+        rays: &PacketRays<'_>,
+        seen: &mut Seen,
+        exact: &mut bool,
+        work: &mut Workspace,
+    ) {
+        let mut general = core::mem::take(&mut work.general);
+        square.general(place, &mut general);
+        // One body that is not all lumps takes the general way with all it has.
+        let lumps = self.soft.bodies.len() > 1 || general.is_empty();
+        if let Some((near, lens)) = square.lumps(place).filter(|(near, _)| lumps && near.len() > 0) {
+            self.meet_lumps(near, lens, &general, rays, seen, exact, work);
+        }
+        for &(from, body) in &general {
+            if seen.limits().iter().all(|&limit| limit <= from) {
+                continue;
+            }
+            if let Some((slabs, base, number)) = square.slabs(body, place, &mut work.scratch) {
+                if !*exact {
+                    seen.rays = (rays.exact)();
+                    *exact = true;
+                }
+                self.meet_slabs(body, slabs, base, number, seen, &mut work.scratch);
+            }
+        }
+        work.general = general;
+    }
+
+    /// The points on bodies near which a packet meets nothing but lumps; those bodies that take the general way are passed over.
+    #[expect(clippy::too_many_arguments, reason = "each is something else")]
+    fn meet_lumps(
+        &self,
+        near: &Nearby,
+        lens: Option<&Lens>,
+        general: &[(f64, u32)],
+        rays: &PacketRays<'_>,
+        seen: &mut Seen,
+        exact: &mut bool,
+        work: &mut Workspace,
+    ) {
+        let mut left = match lens {
+            Some(lens) if !*exact => {
+                let fan = (rays.fan)(lens);
+                let lanes = lens.rays(&fan, near);
+                let wide = || lens.wide(&fan);
+                let left = self.meet_lumps_by(near, general, &lanes, &wide, seen, work);
+                if seen.something() {
+                    seen.rays = wide();
+                }
+                left
+            }
+            _ => {
+                self.make_exact(rays, seen, exact);
+                let lanes = Rays::new(&seen.rays, near);
+                let wide = seen.rays;
+                self.meet_lumps_by(near, general, &lanes, &|| wide, seen, work)
+            }
+        };
+        if !left.is_empty() && !*exact {
+            // Rays in double precision may do.
+            self.make_exact(rays, seen, exact);
+            let lanes = Rays::new(&seen.rays, near);
+            let wide = seen.rays;
+            let others = (0..self.soft.bodies.len() as u32).filter(|body| !left.contains(body));
+            let others: Vec<(f64, u32)> = others.map(|body| (0.0, body)).collect();
+            left = self.meet_lumps_by(near, &others, &lanes, &|| wide, seen, work);
+        }
+        for body in left {
+            let scratch = &mut work.scratch;
+            let slabs = Beam::around(&seen.rays).and_then(|beam| {
+                let whole = |base: f64| Beams::one(beam.from(base));
+                let spaces = &mut scratch.spaces;
+                self.soft.slabs(body, beam, whole, f64::INFINITY, spaces)
+            });
+            if let Some((mut slabs, base)) = slabs {
+                self.meet_slabs(body, &mut slabs, base, 0, seen, scratch);
+                scratch.evaluations += slabs.evaluations();
+                scratch.spaces.push(slabs.into_space());
+            }
+        }
+    }
+
+    fn make_exact(&self, rays: &PacketRays<'_>, seen: &mut Seen, exact: &mut bool) {
+        if !*exact {
+            seen.rays = (rays.exact)();
+            *exact = true;
+        }
+    }
+
+    /// The same for rays that are made. Gives the bodies for which this is not the way.
+    fn meet_lumps_by(
+        &self,
+        near: &Nearby,
+        general: &[(f64, u32)],
+        lanes: &Rays,
+        wide: &dyn Fn() -> [Ray; PACKET],
+        seen: &mut Seen,
+        work: &mut Workspace,
+    ) -> Vec<u32> {
+        let limits = seen.limits();
+        let Scratch {
+            quick, evaluations, ..
+        } = &mut work.scratch;
+        let mut tell = |looked: Looked, flesh: &Flesh| {
+            *evaluations += looked.evaluations;
+            if looked.met != 0 {
+                self.soft_points(looked.body, &wide(), flesh, near.base, looked.met, &mut seen.hits);
+            }
+            (seen.limits(), ALL)
+        };
+        if self.soft.bodies.len() == 1 {
+            let looked = self.soft.quick(near, lanes, wide, Asked::first(&limits), quick);
+            return match looked {
+                Some(looked) => {
+                    tell(looked, &quick.flesh);
+                    Vec::new()
+                }
+                None => vec![0],
+            };
+        }
+        let general: Vec<u32> = general.iter().map(|&(_, body)| body).collect();
+        let asked = Asked::first(&limits);
+        self.soft
+            .quick_each(near, &general, lanes, wide, asked, quick, tell)
+    }
+
+    /// The points on the surface of a body, by the slabs of a beam around the rays, which start at parameter `base`.
+    fn meet_slabs(
+        &self,
+        body: u32,
+        slabs: &mut Slabs<'_>,
+        base: f64,
+        number: usize,
+        seen: &mut Seen,
+        scratch: &mut Scratch,
+    ) {
+        let based = seen.rays.map(|r| Ray {
+            origin: r.at(base),
+            direction: r.direction,
+        });
+        let bundle = Bundle {
+            rays: &based,
+            limits: &seen.limits().map(|limit| limit - base),
+            alive: ALL,
+            number,
+        };
+        let found = self.soft.walk(body, slabs, bundle, Quest::First, scratch);
+        if found.is_empty() {
+            return;
+        }
+        self.soft.flesh(slabs, &based, base, &found, scratch);
+        let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
+        self.soft_points(body, &seen.rays, &scratch.flesh, base, met, &mut seen.hits);
+    }
+
+    /// What a ray meets first among the hard elements.
+    fn hard_point(&self, ray: &Ray, crossings: &mut Vec<Crossing>) -> Option<SurfacePoint> {
+        let (number, crossing) = self
+            .solids
+            .first(ray, f64::INFINITY, self.one_sided, crossings)?;
+        Some(SurfacePoint {
+            t: crossing.t,
+            position: ray.at(crossing.t),
+            normal: crossing.normal,
+            lift: 1e-6 * (1.0 + crossing.t),
+            finish: self.finishes[self.solids.finish(number)],
+            surface: self.surface_of_solid(number),
+        })
+    }
+
+    /// Makes surface points of what is known of a convolution surface where rays meet it.
+    fn soft_points(
+        &self,
+        body: u32,
+        rays: &[Ray; PACKET],
+        flesh: &Flesh,
+        base: f64,
+        met: u32,
+        hits: &mut [Option<SurfacePoint>; PACKET],
+    ) {
+        let surface = self.surface_of_body(self.soft.bodies[body as usize].number);
+        let gradients = flesh.gradients();
+        for lane in (0..PACKET).filter(|lane| met >> lane & 1 != 0) {
+            let ray = &rays[lane];
+            let gradient = gradients[lane];
+            let steepness = gradient.length();
+            let Some(normal) = (-gradient).try_normalize() else {
+                continue;
+            };
+            let t = base + flesh.t[lane];
+            let finish = match &flesh.weights[..] {
+                [(only, _)] => self.finishes[*only as usize],
+                several => {
+                    let mut finish = Finish::default();
+                    let total: f32 = several.iter().map(|(_, w)| w.to_array()[lane]).sum();
+                    for (index, weight) in several {
+                        let share = weight.to_array()[lane] / total;
+                        if share > 0.0 {
+                            finish.mix(&self.finishes[*index as usize], share);
+                        }
+                    }
+                    finish
+                }
+            };
+            hits[lane] = Some(SurfacePoint {
+                t,
+                position: ray.at(t),
+                normal,
+                lift: (4.0 * self.soft.precision.last / steepness).at_most(5e-3) + 1e-6,
+                finish,
+                surface,
+            });
+        }
+    }
+
+    /// Replaces what rays meet by points on the surfaces of other functions that are nearer.
+    fn meet_functions(&self, seen: &mut Seen, scratch: &mut Scratch) {
+        for body in &self.functions {
+            for (lane, (ray, hit)) in seen.rays.iter().zip(&mut seen.hits).enumerate() {
+                let limit = hit.map_or(f64::INFINITY, |hit| hit.t);
+                let (found, cost) = self.function_crossing(body, ray, limit, Quest::First);
+                scratch.evaluations += cost;
+                scratch.alone[lane] += cost;
+                let Some(t) = found else { continue };
+                let position = ray.at(t);
+                let point = self.unit.world(position);
+                let Some(normal) = body.normal(point) else {
+                    continue;
+                };
+                let mut shares = Vec::new();
+                body.function.shares(point, &mut shares);
+                let finish = |&(element, share): &(u32, f64)| {
+                    let finish = body.finish.get(element as usize).or(body.finish.first());
+                    Some((*finish?, share))
+                };
+                *hit = Some(SurfacePoint {
+                    t,
+                    position,
+                    normal,
+                    lift: FUNCTION_LIFT * (1.0 + t),
+                    finish: self.mixed(shares.iter().filter_map(finish)),
+                    surface: self.surface_of_body(body.number),
+                });
+            }
+        }
+    }
+
+    /// The first crossing of a ray with the surface of a function that the quest asks for, and its cost.
+    pub fn function_crossing(
+        &self,
+        body: &FunctionBody,
+        ray: &Ray,
+        limit: f64,
+        quest: Quest,
+    ) -> (Option<f64>, u64) {
+        let mut found = None;
+        let cost = self.function_crossings(body, ray, limit, |t, enters| {
+            if enters || quest != Quest::Entry {
+                found = Some(t);
+            }
+            found.is_none()
+        });
+        (found, cost)
+    }
+
+    /// Calls `tell` with each crossing of a ray with the surface of a function, and whether it enters, until it says `false`; gives
+    /// the cost. Functions are written in the world's coordinates, rays in those of the unit scene.
+    pub fn function_crossings(
+        &self,
+        body: &FunctionBody,
+        ray: &Ray,
+        limit: f64,
+        mut tell: impl FnMut(f64, bool) -> bool,
+    ) -> u64 {
+        let scale = self.unit.length(1.0);
+        let ray = Ray {
+            origin: self.unit.world(ray.origin),
+            direction: ray.direction,
+        };
+        let Some(range) = body.range(&ray, limit * scale, FURTHEST * scale) else {
+            return 0;
+        };
+        let along = Along {
+            ray,
+            range,
+            resolution: RESOLUTION * scale,
+        };
+        crossings(&*body.function, &along, |t, enters| tell(t / scale, enters))
+    }
+}

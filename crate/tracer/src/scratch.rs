@@ -1,0 +1,22 @@
+//! Working space of one thread for following packets of rays.
+use crate::flesh::{Active, Flesh};
+use crate::layout::PACKET;
+use crate::quick::Quick;
+use crate::slabs::Space;
+use crate::walk::Memories;
+use wide::f32x8;
+
+/// Working space that is kept between packets.
+#[derive(Default)]
+pub struct Scratch {
+    pub(crate) memory: Memories<f32x8>,
+    /// That of slabs that are not needed any more.
+    pub(crate) spaces: Vec<Space>,
+    pub(crate) active: Active,
+    pub(crate) flesh: Flesh,
+    pub(crate) quick: Quick,
+    /// Evaluations of one primitive's field at one point, so far.
+    pub evaluations: u64,
+    /// Those of them that were made for one ray alone.
+    pub alone: [u64; PACKET],
+}
