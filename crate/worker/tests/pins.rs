@@ -112,7 +112,6 @@ fn pictures_are_as_pinned() {
             let mut scene = compile(text);
             scene.settings.samples = SAMPLES;
             let smaller = SMALLER.iter().find(|(slow, _)| slow == name);
-            let t0 = std::time::Instant::now();
             let size = smaller.map_or(SIZE, |(_, size)| *size);
             for (pass, pixels) in PASSES.iter().zip(pictures(&scene, size)) {
                 let picture = format!("{place}/{name} {pass:?}");
@@ -121,9 +120,6 @@ fn pictures_are_as_pinned() {
                     say(&format!("pin {picture} {pin}"));
                     let file = folder.join(format!("{place}-{name}-{pass:?}.ppm"));
                     std::fs::write(file, ppm(size, &pixels)).expect("the folder takes pictures");
-                }
-                if pass == &Pass::Smooth {
-                    println!("{:?} {picture}", t0.elapsed());
                 }
                 drawn.insert(picture, pin);
             }
