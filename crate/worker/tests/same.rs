@@ -5,64 +5,26 @@
 
 mod common;
 
-use common::{BENCH, compile, say};
+use common::{BENCH, EXAMPLES, TILE, compile, hash, say, traced};
 use scene::{Scene, wire};
 use tracer::{Pass, Stats, Tile, tiles};
-use worker::{Answer, Engine, Kind, Order, Request, Step};
 
-/// Side of the page's tiles.
-const TILE: u32 = 64;
 /// So many tiles of a picture are traced, spread over its middle.
 const TILES: usize = 3;
 /// At most n×n rays a pixel.
 const SAMPLES: u32 = 2;
 
-macro_rules! examples {
-    ($($name:literal)*) => {
-        [$((
-            $name,
-            include_str!(concat!("../../../www/examples/", $name, ".rat")),
-        )),*]
-    };
-}
-
-const EXAMPLES: [(&str, &str); 22] = examples![
-    "coral-crab" "coral-tree" "cowrie" "generators" "hermite-crab" "icicle" "sea-urchin" "seahorse"
-    "seaweed" "shell-1" "shell-2" "shell-3" "sphereflake" "spinal-starecase" "starfish" "starfish-a"
-    "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "tshape"
-];
-
-/// FNV-1a.
-fn hash(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xCBF2_9CE4_8422_2325, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3)
-    })
-}
-
-/// What a worker makes of its tiles: pixels, and counts of the work, of each.
-fn traced(scene: &Scene, size: [u32; 2], pass: Pass, tiles: &[Tile]) -> Vec<(Vec<u8>, Stats)> {
-    let mut engine = Engine::default();
-    engine.accept(Request::Begin {
-        generation: 1,
-        scene: Box::new(scene.clone()),
-        size,
-        kind: Kind::Colours,
-        shared: false,
-    });
-    let order = |&tile| Order {
-        generation: 1,
-        tile,
-        pass,
-    };
-    engine.accept(Request::Trace(tiles.iter().map(order).collect()));
-    let mut done = Vec::new();
-    loop {
-        match engine.step(&|| false, &|| 0.0) {
-            Step::Idle => return done,
-            Step::Answer(Answer::Traced { pixels, stats, .. }) => done.push((pixels, stats)),
-            _ => {}
-        }
-    }
+/// Pixels of each tile, and counts of the work for it, by one worker.
+fn traced_by_one(
+    scene: &Scene,
+    size: [u32; 2],
+    pass: Pass,
+    tiles: &[Tile],
+) -> Vec<(Vec<u8>, Stats)> {
+    traced(scene, size, tiles.iter().map(|&tile| (pass, tile)))
+        .into_iter()
+        .map(|(_, pixels, stats)| (pixels, stats))
+        .collect()
 }
 
 /// The same by two workers that take tiles in turn, natively at the same time.
@@ -76,11 +38,11 @@ fn traced_by_two(
         |first: usize| -> Vec<Tile> { tiles.iter().skip(first).step_by(2).copied().collect() };
     #[cfg(not(target_arch = "wasm32"))]
     let [even, odd] = std::thread::scope(|scope| {
-        let worker = |first| scope.spawn(move || traced(scene, size, pass, &half(first)));
+        let worker = |first| scope.spawn(move || traced_by_one(scene, size, pass, &half(first)));
         [worker(0), worker(1)].map(|thread| thread.join().expect("it does not panic"))
     });
     #[cfg(target_arch = "wasm32")]
-    let [even, odd] = [0, 1].map(|first| traced(scene, size, pass, &half(first)));
+    let [even, odd] = [0, 1].map(|first| traced_by_one(scene, size, pass, &half(first)));
     let mut halves = [even.into_iter(), odd.into_iter()];
     (0..tiles.len())
         .filter_map(|i| halves[i % 2].next())
@@ -107,7 +69,7 @@ fn pictures_are_the_same_whoever_traces_them() {
             assert!(
                 done.iter()
                     .map(|(pixels, _)| pixels)
-                    .eq(traced(&scene, size, pass, &tiles)
+                    .eq(traced_by_one(&scene, size, pass, &tiles)
                         .iter()
                         .map(|(pixels, _)| pixels)),
                 "{name}, {pass:?}: it matters how many workers there are"

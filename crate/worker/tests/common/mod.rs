@@ -1,10 +1,31 @@
-//! The scenes of `tests/bench/`, compiled.
+//! The scenes of `www/examples/` and `tests/bench/`, compiled, and traced as a worker traces them.
 #![allow(dead_code)]
 
 use rats::{File, Project};
 use scene::Scene;
+use tracer::{Pass, Stats, Tile};
+use worker::{Answer, Engine, Kind, Order, Request, Step};
+
+/// Side of the tiles that the page asks for, pixels.
+pub const TILE: u32 = 64;
 
 const FLAKE: &str = include_str!("../../../../tests/bench/flake.rat");
+
+macro_rules! examples {
+    ($($name:literal)*) => {
+        [$((
+            $name,
+            include_str!(concat!("../../../../www/examples/", $name, ".rat")),
+        )),*]
+    };
+}
+
+/// Names and texts of the examples.
+pub const EXAMPLES: [(&str, &str); 22] = examples![
+    "coral-crab" "coral-tree" "cowrie" "generators" "hermite-crab" "icicle" "sea-urchin" "seahorse"
+    "seaweed" "shell-1" "shell-2" "shell-3" "sphereflake" "spinal-starecase" "starfish" "starfish-a"
+    "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "tshape"
+];
 
 macro_rules! bench {
     ($name:literal) => {
@@ -15,7 +36,7 @@ macro_rules! bench {
     };
 }
 
-/// Names and texts.
+/// Names and texts of the scenes that are measured.
 pub const BENCH: [(&str, &str); 10] = [
     bench!("flake-1"),
     bench!("flake-10"),
@@ -41,6 +62,48 @@ pub fn compile(text: &str) -> Scene {
     let compiled = rats::compile(&project);
     assert_eq!(compiled.diagnostics, []);
     compiled.scene
+}
+
+/// FNV-1a.
+pub fn hash(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xCBF2_9CE4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3)
+    })
+}
+
+/// RGBA bytes and counts of the work of each tile, as a worker traces them, in the given order.
+pub fn traced(
+    scene: &Scene,
+    size: [u32; 2],
+    orders: impl Iterator<Item = (Pass, Tile)>,
+) -> Vec<(Tile, Vec<u8>, Stats)> {
+    let mut engine = Engine::default();
+    engine.accept(Request::Begin {
+        generation: 1,
+        scene: Box::new(scene.clone()),
+        size,
+        kind: Kind::Colours,
+        shared: false,
+    });
+    let order = |(pass, tile)| Order {
+        generation: 1,
+        tile,
+        pass,
+    };
+    engine.accept(Request::Trace(orders.map(order).collect()));
+    let mut done = Vec::new();
+    loop {
+        match engine.step(&|| false, &|| 0.0) {
+            Step::Idle => return done,
+            Step::Answer(Answer::Traced {
+                order,
+                pixels,
+                stats,
+                ..
+            }) => done.push((order.tile, pixels, stats)),
+            _ => {}
+        }
+    }
 }
 
 /// Prints a line, natively and as wasm.
