@@ -73,7 +73,8 @@ impl Animate {
             let mut writer = None;
             for frame in 0..self.frames {
                 if frame > 0 {
-                    loaded.compiled = rats::compile_at(&loaded.project, &loaded.assets, f64::from(frame));
+                    loaded.compiled =
+                        rats::compile_at(&loaded.project, &loaded.assets, f64::from(frame));
                     // What the first frame says, the others would say again.
                     if clean && !report::is_clean(&loaded) {
                         eprintln!("in frame {frame}:");

@@ -36,7 +36,7 @@ impl Check {
             "{}: {} elements ({soft} soft), {} materials, {} lights, {} diagnostics",
             self.file.display(),
             loaded.compiled.scene.elements.len(),
-            loaded.compiled.scene.materials.len(),
+            loaded.compiled.scene.finishes.len(),
             loaded.compiled.scene.lights.len(),
             loaded.compiled.diagnostics.len(),
         );

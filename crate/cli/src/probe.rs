@@ -3,8 +3,9 @@
 use crate::files::Loaded;
 use crate::{Outcome, files, report};
 use clap::{Args, ValueEnum};
-use field::{Field, Jet};
+use field::{Jet, Sum};
 use glam::DVec3;
+use scene::{Scene, SoftSurface};
 use serde_json::{Map, Value, json};
 use std::io::{BufRead, Write};
 use std::path::{Path, PathBuf};
@@ -40,38 +41,63 @@ impl Probe {
         let loaded = files::load(&self.file)?;
         let mut good = report::to_stderr(&loaded);
         if let Some(source) = &self.points {
-            let surface = loaded.compiled.scene.soft_surface();
+            let surfaces = loaded.compiled.scene.soft_surfaces();
             good &= each_line(source, |[x, y, z]: [f64; 3]| {
-                self.point(&loaded, &surface, DVec3::new(x, y, z))
+                Ok(self.point(&loaded, &surfaces, DVec3::new(x, y, z)))
             })?;
         } else if let Some(source) = &self.rays {
             let picture =
                 tracer::Picture::new(&loaded.compiled.scene, loaded.compiled.scene.settings.frame);
             good &= each_line(source, |[ox, oy, oz, dx, dy, dz]: [f64; 6]| {
-                ray(&picture, DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz))
+                let scene = &loaded.compiled.scene;
+                ray(
+                    &picture,
+                    scene,
+                    DVec3::new(ox, oy, oz),
+                    DVec3::new(dx, dy, dz),
+                )
             })?;
         }
         Ok(good)
     }
 
-    fn point(
-        &self,
-        loaded: &Loaded,
-        surface: &scene::SoftSurface,
-        point: DVec3,
-    ) -> Result<Value, String> {
-        let Jet { value, gradient } = jet(&surface.field, point, self.precision);
-        Ok(
-            json!({ "field": value, "gradient": gradient, "weights": weights(loaded, surface, point) }),
-        )
+    /// The field of every body at a point; the keys beside `bodies` tell of the body with the largest.
+    fn point(&self, loaded: &Loaded, surfaces: &[SoftSurface], point: DVec3) -> Value {
+        let scene = &loaded.compiled.scene;
+        let jets: Vec<Jet<f64>> = surfaces
+            .iter()
+            .map(|surface| jet(&surface.sum, point, self.precision))
+            .collect();
+        let bodies: Vec<Value> = surfaces
+            .iter()
+            .zip(&jets)
+            .map(|(surface, Jet { value, gradient })| {
+                let name = &scene.bodies[surface.body as usize].name;
+                json!({ "name": name, "field": value, "gradient": gradient })
+            })
+            .collect();
+        let largest = (0..jets.len()).max_by(|&a, &b| {
+            // The first of equal ones.
+            jets[a].value.total_cmp(&jets[b].value).then(b.cmp(&a))
+        });
+        let (jet, weights) = match largest {
+            Some(i) => (jets[i], weights(loaded, &surfaces[i], point)),
+            None => (Jet::zero(), Map::new()),
+        };
+        json!({
+            "field": jet.value,
+            "gradient": jet.gradient,
+            "weights": weights,
+            "bodies": bodies,
+        })
     }
 }
 
-fn jet(field: &Field, point: DVec3, precision: Precision) -> Jet<f64> {
+fn jet(field: &Sum, point: DVec3, precision: Precision) -> Jet<f64> {
     match precision {
         Precision::F64 => field.jet(point),
         Precision::F32 => {
-            let jet = field.jet32(point.as_vec3().to_array());
+            let jet = field.sum(point.as_vec3().to_array());
             Jet {
                 value: f64::from(jet.value),
                 gradient: jet.gradient.map(f64::from),
@@ -82,18 +108,18 @@ fn jet(field: &Field, point: DVec3, precision: Precision) -> Jet<f64> {
 
 /// The share of each material in the flesh at a point: its primitives' fields over the sum of all,
 /// as colours are blended (thesis, chapter 4). Carving primitives have no share.
-fn weights(loaded: &Loaded, surface: &scene::SoftSurface, point: DVec3) -> Map<String, Value> {
+fn weights(loaded: &Loaded, surface: &SoftSurface, point: DVec3) -> Map<String, Value> {
     let scene = &loaded.compiled.scene;
-    let fields = surface.field.weights(point);
+    let fields = surface.sum.weights(point);
     let total: f64 = fields.iter().filter(|value| **value > 0.0).sum();
-    let mut shares = vec![0.0; scene.materials.len()];
+    let mut shares = vec![0.0; scene.finishes.len()];
     for (value, &element) in fields.iter().zip(&surface.element) {
         if *value > 0.0 && total > 0.0 {
-            shares[scene.elements[element].material] += value / total;
+            shares[scene.elements[element as usize].finish as usize] += value / total;
         }
     }
     let mut map = Map::new();
-    for (material, share) in scene.materials.iter().zip(shares) {
+    for (material, share) in scene.finishes.iter().zip(shares) {
         if share > 0.0 {
             // A name may be given again to a later material; its shares add up.
             let sum = map
@@ -107,11 +133,20 @@ fn weights(loaded: &Loaded, surface: &scene::SoftSurface, point: DVec3) -> Map<S
     map
 }
 
-fn ray(picture: &tracer::Picture, origin: DVec3, direction: DVec3) -> Result<Value, String> {
+fn ray(
+    picture: &tracer::Picture,
+    scene: &Scene,
+    origin: DVec3,
+    direction: DVec3,
+) -> Result<Value, String> {
     let direction = direction
         .try_normalize()
         .ok_or("a ray needs a direction that is not zero")?;
-    Ok(json!({ "hits": picture.hits(origin, direction) }))
+    let hits = picture.hits(origin, direction).into_iter().map(|hit| {
+        let body = hit.body.map(|body| &scene.bodies[body as usize].name);
+        json!({ "t": hit.t, "position": hit.position, "normal": hit.normal, "body": body })
+    });
+    Ok(json!({ "hits": hits.collect::<Vec<_>>() }))
 }
 
 /// Calls `answer` with the numbers of each line that is not empty, and prints what it gives.

@@ -174,7 +174,7 @@ mod tests {
     fn balls_are_as_many_as_asked_for_and_apart() {
         let scene = balls::scene(1000, Kernel::Gauss, 3.0);
         assert_eq!(scene.elements.len(), 1000);
-        let surface = scene.soft_surface();
-        assert_eq!(surface.field.primitives.len(), 1000);
+        let surfaces = scene.soft_surfaces();
+        assert_eq!(surfaces[0].sum.primitives.len(), 1000);
     }
 }

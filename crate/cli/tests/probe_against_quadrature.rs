@@ -125,9 +125,9 @@ fn probe_agrees_with_quadrature_on_random_scenes() {
                 text,
             }],
         };
-        let surface = rats::compile(&project).scene.soft_surface();
+        let surface = rats::compile(&project).scene.soft_surfaces().swap_remove(0);
         assert!(
-            surface.field.primitives.len() >= 12,
+            surface.sum.primitives.len() >= 12,
             "seed {seed}: the text is understood"
         );
 
@@ -145,7 +145,7 @@ fn probe_agrees_with_quadrature_on_random_scenes() {
             assert_eq!(lines.len(), POINTS);
             for (point, line) in points.iter().zip(&lines) {
                 let truth: f64 = surface
-                    .field
+                    .sum
                     .primitives
                     .iter()
                     .map(|primitive| quadrature::value(primitive, *point))
@@ -224,9 +224,9 @@ fn probe_agrees_with_quadrature_in_every_cell() {
                     text,
                 }],
             };
-            let surface = rats::compile(&project).scene.soft_surface();
+            let surface = rats::compile(&project).scene.soft_surfaces().swap_remove(0);
             // One, but for a curve, which is cut.
-            let primitives = &surface.field.primitives;
+            let primitives = &surface.sum.primitives;
             assert!(!primitives.is_empty() && primitives.iter().all(|p| p.kernel.name() == kernel));
             let points: Vec<DVec3> = (0..30).map(|_| random.point(1.6)).collect();
             let input: String = points.iter().map(|&point| words(point) + "\n").collect();
@@ -237,7 +237,7 @@ fn probe_agrees_with_quadrature_in_every_cell() {
                 );
                 for (point, line) in points.iter().zip(printed(&output).lines()) {
                     let line: Value = serde_json::from_str(line).expect("JSON");
-                    let truth = quadrature::sum(&surface.field, *point);
+                    let truth = quadrature::sum(&surface.sum, *point);
                     let value = line["field"].as_f64().expect("a number");
                     let error = (value - truth).abs() / truth.abs().max(least);
                     assert!(

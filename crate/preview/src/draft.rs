@@ -105,7 +105,7 @@ impl Draft {
                 continue;
             }
             drawn.elements += 1;
-            let material = materials.slot(element.material);
+            let material = materials.slot(element.finish as usize);
             for solid in solids {
                 let solid = solid.anchored(self.units.center);
                 lists[solid.kind as usize].push(Instance::new(&solid, material, self.units));

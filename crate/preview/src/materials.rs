@@ -1,7 +1,7 @@
 //! The materials' colours, as a texture that the shaders look them up in. A texture, because a
 //! scene may have thousands of materials and WebGL2 has no storage buffers.
 
-use scene::{Material, Rgb, Scene};
+use scene::{Finish, Rgb, Scene};
 
 /// Materials in a row of the texture; as in `shaders/element.wgsl`. Three texels each: 1536 wide,
 /// less than the 2048 that every device can do.
@@ -12,11 +12,11 @@ const TEXELS: usize = 3;
 /// made of them get the last of [`Table::count`].
 pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) -> Table {
     let rows_limit = device.limits().max_texture_dimension_2d as usize;
-    let kept = scene.materials.len().min(rows_limit * MATERIALS_A_ROW - 1);
-    let fallback = Material::default();
+    let kept = scene.finishes.len().min(rows_limit * MATERIALS_A_ROW - 1);
+    let fallback = Finish::default();
     let rows = (kept + 1).div_ceil(MATERIALS_A_ROW);
     let mut texels = vec![[0.0f32; 4]; rows * MATERIALS_A_ROW * TEXELS];
-    let all = scene.materials[..kept].iter().chain([&fallback]);
+    let all = scene.finishes[..kept].iter().chain([&fallback]);
     for (texel, material) in texels.chunks_exact_mut(TEXELS).zip(all) {
         texel[0] = with(material.ambient, finite(material.shine).max(0.0));
         texel[1] = with(material.diffuse, 0.0);

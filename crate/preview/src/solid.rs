@@ -53,8 +53,10 @@ impl Solid {
     /// see: no radius, no length, numbers that are not finite, or a soft element that adds no
     /// flesh because its strength is not positive. `detail` is that of [`facets::detail`].
     pub(crate) fn of(scene: &Scene, element: &Element, detail: usize) -> Vec<Self> {
-        let strength = scene.materials.get(element.material).map(|m| m.strength);
-        if scene.is_soft(element) && strength.is_none_or(|s| s <= 0.0) {
+        let flesh = element
+            .flesh
+            .and_then(|flesh| scene.flesh.get(flesh as usize));
+        if scene.is_soft(element) && flesh.is_none_or(|flesh| flesh.strength <= 0.0) {
             return Vec::new();
         }
         let radius = scene.radius(element);

@@ -7,10 +7,10 @@ use common::gpu::{gpus, open};
 use common::scenes::{arc, element, look};
 use glam::{DMat3, DQuat, DVec3};
 use preview::{Draft, Drawn, MAX_ELEMENTS, MAX_LIGHTS, Sampling};
-use scene::{Camera, Element, Light, LightKind, Material, Quadric, Scene, Settings, Shape};
+use scene::{Camera, Element, Finish, Flesh, Light, LightKind, Quadric, Scene, Settings, Shape};
 
 /// A ball of radius 1 at the origin, seen from z = 5.
-fn ball(material: Material, lights: Vec<Light>) -> Scene {
+fn ball(finish: Finish, lights: Vec<Light>) -> Scene {
     Scene {
         elements: vec![element(
             Shape::Sphere {
@@ -19,7 +19,7 @@ fn ball(material: Material, lights: Vec<Light>) -> Scene {
             },
             0,
         )],
-        materials: vec![material],
+        finishes: vec![finish],
         lights,
         background: [0.1, 0.2, 0.3],
         camera: look([0.0, 0.0, 5.0], [0.0; 3], 30.0),
@@ -27,13 +27,13 @@ fn ball(material: Material, lights: Vec<Light>) -> Scene {
     }
 }
 
-fn shiny() -> Material {
-    Material {
+fn shiny() -> Finish {
+    Finish {
         ambient: [0.05, 0.02, 0.0],
         diffuse: [0.3, 0.5, 0.2],
         specular: [0.6, 0.5, 0.7],
         shine: 12.0,
-        ..Material::default()
+        ..Finish::default()
     }
 }
 
@@ -137,10 +137,10 @@ fn four_samples_are_averaged_as_light() {
             },
             0,
         )],
-        materials: vec![Material {
+        finishes: vec![Finish {
             ambient: [1.0, 0.5, 0.0],
             diffuse: [0.0; 3],
-            ..Material::default()
+            ..Finish::default()
         }],
         background: [0.0, 0.5, 1.0],
         camera: look([0.0, 0.0, 5.0], [0.0; 3], 60.0),
@@ -193,9 +193,9 @@ fn more_lights_than_fit_leaves_the_weakest() {
     let mut lights = vec![light(0.001); 40];
     lights.push(light(0.5));
     let scene = ball(
-        Material {
+        Finish {
             ambient: [0.0; 3],
-            ..Material::default()
+            ..Finish::default()
         },
         lights,
     );
@@ -210,13 +210,17 @@ fn more_lights_than_fit_leaves_the_weakest() {
 
 #[test]
 fn the_radius_that_counts_is_drawn_and_carving_is_not() {
-    let soft = Material {
+    let bright = Finish {
         ambient: [1.0; 3],
+        ..Finish::default()
+    };
+    let mut scene = ball(bright, Vec::new());
+    scene.flesh.push(Flesh {
         radius: 2.0,
         blobbiness: -1.0,
-        ..Material::default()
-    };
-    let mut scene = ball(soft, Vec::new());
+        ..Flesh::default()
+    });
+    scene.elements[0].flesh = Some(0);
     scene.camera.fov = 60.0;
     let covered = |scene: &Scene| -> Vec<usize> {
         gpus()
@@ -235,7 +239,7 @@ fn the_radius_that_counts_is_drawn_and_carving_is_not() {
         assert!((4.0..5.5).contains(&(*fragile as f64 / *own as f64)));
     }
 
-    scene.materials[0].strength = -1.0;
+    scene.flesh[0].strength = -1.0;
     for gpu in gpus() {
         let mut draft = Draft::new(&gpu.device, &gpu.queue);
         let expected = Drawn {
@@ -327,16 +331,16 @@ fn scenes_without_sense_are_drawn_without_harm() {
                     axes: [DVec3::X * a, DVec3::Y * b, DVec3::Z],
                 })),
             ] {
-                elements.push(element(shape, if a == 1.0 { usize::MAX } else { 0 }));
+                elements.push(element(shape, if a == 1.0 { u32::MAX } else { 0 }));
             }
         }
     }
     let count = elements.len();
-    let strange = Material {
+    let strange = Finish {
         ambient: [f32::NAN, f32::INFINITY, -1.0],
         specular: [1e30; 3],
         shine: f32::NAN,
-        ..Material::default()
+        ..Finish::default()
     };
     let mut scene = ball(
         strange,
@@ -387,10 +391,10 @@ fn hundreds_of_thousands_of_elements_are_limited() {
     let mut scene = Scene {
         elements,
         // As many materials, more than a row of their texture.
-        materials: (0..count)
-            .map(|i| Material {
+        finishes: (0..count)
+            .map(|i| Finish {
                 ambient: [1.0, (i % 2) as f32, 0.0],
-                ..Material::default()
+                ..Finish::default()
             })
             .collect(),
         ..Scene::default()

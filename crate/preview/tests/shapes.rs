@@ -536,7 +536,7 @@ fn a_mesh_of_patches_has_no_gaps() {
             };
             let mut scene = by_index(&shapes, camera);
             for element in &mut scene.elements {
-                element.material = 0;
+                element.finish = 0;
             }
             let picture = gpu.draw(&scene, [120, 90]);
             let missed = (0..90)

@@ -121,7 +121,11 @@ pub fn compile_at(project: &Project, assets: &[Asset], moment: f64) -> Compiled 
     }
     let mut symbols = Symbols::default();
     let sources = Sources::of(project, &mut symbols);
-    let moment = if moment.is_finite() { moment.max(0.0) } else { 0.0 };
+    let moment = if moment.is_finite() {
+        moment.max(0.0)
+    } else {
+        0.0
+    };
     Evaluator::new(&sources, assets, moment, Scope::new(symbols)).run(project)
 }
 

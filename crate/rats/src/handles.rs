@@ -174,7 +174,7 @@ pub fn handles(
 fn watch(project: &Project, assets: &[Asset], frame: u32, origin: Origin) -> Option<Seen> {
     let mut symbols = Symbols::default();
     let sources = Sources::of(project, &mut symbols);
-    Evaluator::new(&sources, assets, frame, Scope::new(symbols)).watch_for(origin)
+    Evaluator::new(&sources, assets, f64::from(frame), Scope::new(symbols)).watch_for(origin)
 }
 
 /// How many elements a command makes.
@@ -446,7 +446,8 @@ impl Maker<'_> {
         let Some(flesh) = self.flesh() else {
             return false;
         };
-        if !self.element.shape.has_skeleton() || self.seen.radius.value == 0.0 && flesh.depth == 0.0 {
+        if !self.element.shape.has_skeleton() || self.seen.radius.value == 0.0 && flesh.depth == 0.0
+        {
             return false;
         }
         let mut wider = self.element.clone();

@@ -36,7 +36,11 @@ fn check(project: &Project) {
     assert!(!scene.finishes.is_empty());
     for element in &scene.elements {
         assert!((element.finish as usize) < scene.finishes.len());
-        assert!(element.flesh.is_none_or(|flesh| (flesh as usize) < scene.flesh.len()));
+        assert!(
+            element
+                .flesh
+                .is_none_or(|flesh| (flesh as usize) < scene.flesh.len())
+        );
         assert!((element.body as usize) < scene.bodies.len());
         assert!((element.frame as usize) < scene.frames.len());
         let origin = element.origin;

@@ -253,11 +253,17 @@ fn surfaces() {
         [0.5, 0.25, 1.0].map(|c| c * scene::Finish::AMBIENT_SHARE)
     );
     assert_eq!((s.specular, s.shine), ([1.0; 3], 40.0));
-    assert_eq!((soft.radius, soft.blobbiness, soft.strength), (0.3, -8.0, 2.0));
+    assert_eq!(
+        (soft.radius, soft.blobbiness, soft.strength),
+        (0.3, -8.0, 2.0)
+    );
     assert_eq!(soft.kernel, None);
     assert_eq!(scene.elements[0].kernel, Kernel::Cauchy);
     assert!(soft.is_soft());
-    assert_eq!(scene.elements.iter().map(|e| e.flesh).collect::<Vec<_>>(), [Some(0), None, None]);
+    assert_eq!(
+        scene.elements.iter().map(|e| e.flesh).collect::<Vec<_>>(),
+        [Some(0), None, None]
+    );
     assert_eq!(t.diffuse, [0.8, 0.4, 0.0]);
     assert_eq!(t.ambient, [0.1, 0.05, 0.0]);
     assert_eq!(t.specular, [0.5; 3]);

@@ -109,7 +109,10 @@ fn icicle() {
     for element in &scene.elements {
         assert!(scene.is_soft(element));
         assert_eq!(scene.radius(element), 0.25);
-        assert_eq!(scene.flesh[element.flesh.expect("soft") as usize].blobbiness, -0.3);
+        assert_eq!(
+            scene.flesh[element.flesh.expect("soft") as usize].blobbiness,
+            -0.3
+        );
     }
 }
 

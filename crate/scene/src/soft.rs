@@ -23,10 +23,11 @@ impl Scene {
         self.settings.soft && self.flesh_of(element).is_some()
     }
 
-    /// The flesh of an element that has a skeleton, whether or not soft elements are drawn soft.
+    /// The flesh of an element that has a skeleton and a finish, whether or not soft elements are drawn soft.
     fn flesh_of(&self, element: &Element) -> Option<&Flesh> {
         let flesh = self.flesh.get(element.flesh? as usize)?;
-        (element.shape.has_skeleton() && flesh.is_soft()).then_some(flesh)
+        let drawn = element.shape.has_skeleton() && (element.finish as usize) < self.finishes.len();
+        (drawn && flesh.is_soft()).then_some(flesh)
     }
 
     /// The same in lengths of the world.
@@ -176,7 +177,9 @@ impl Scene {
         for (index, element) in self.elements.iter().enumerate() {
             let surface = of_body.get(element.body as usize).copied().flatten();
             if let (Some(surface), true) = (surface, self.is_soft(element)) {
-                let SoftSurface { sum, element: of, .. } = &mut surfaces[surface];
+                let SoftSurface {
+                    sum, element: of, ..
+                } = &mut surfaces[surface];
                 self.primitives_of(element, |primitive| {
                     sum.primitives.push(primitive);
                     of.push(index as u32);

@@ -3,7 +3,8 @@
 use field::Skeleton;
 use glam::DVec3;
 use scene::{
-    Body, Camera, Element, Flesh, Fragile, Frame, Light, LightKind, Origin, Quadric, Scene, Shape, SoftSurface,
+    Body, Camera, Element, Flesh, Fragile, Frame, Light, LightKind, Origin, Quadric, Scene, Shape,
+    SoftSurface,
 };
 
 fn soft(radius: f64) -> Flesh {
@@ -113,11 +114,7 @@ fn degenerate_cameras_still_project() {
 #[test]
 fn fragile_lets_the_material_overrule_a_soft_primitives_radius() {
     let mut scene = Scene {
-        flesh: vec![
-            soft(0.5),
-            Flesh::default(),
-            soft(0.0),
-        ],
+        flesh: vec![soft(0.5), Flesh::default(), soft(0.0)],
         ..Scene::default()
     };
     let [flesh, bone, bare] = [0, 1, 2].map(|flesh| element(ball(0.2), flesh));
@@ -195,7 +192,10 @@ fn a_scene_survives_the_journey_to_a_worker() {
         shadow: true,
     }];
     let bytes = postcard::to_allocvec(&scene).expect("packs");
-    assert_eq!(postcard::from_bytes::<Scene>(&bytes).expect("unpacks"), scene);
+    assert_eq!(
+        postcard::from_bytes::<Scene>(&bytes).expect("unpacks"),
+        scene
+    );
     for cut in 0..bytes.len() {
         assert!(
             postcard::from_bytes::<Scene>(&bytes[..cut]).is_err(),
@@ -371,7 +371,10 @@ fn what_has_no_skeleton_stays_hard() {
     }
     assert!(surface(&scene).sum.primitives.is_empty());
     let bytes = postcard::to_allocvec(&scene).expect("packs");
-    assert_eq!(postcard::from_bytes::<Scene>(&bytes).expect("unpacks"), scene);
+    assert_eq!(
+        postcard::from_bytes::<Scene>(&bytes).expect("unpacks"),
+        scene
+    );
 }
 
 /// Two balls in each of two bodies, one after the other, and one in none.

@@ -579,11 +579,16 @@ impl Session {
 /// a remark above them draws no new picture.
 fn same_picture(a: &Scene, b: &Scene) -> bool {
     a.elements.len() == b.elements.len()
-        && a.elements
-            .iter()
-            .zip(&b.elements)
-            .all(|(a, b)| a.shape == b.shape && a.material == b.material && a.kernel == b.kernel)
-        && a.materials == b.materials
+        && a.elements.iter().zip(&b.elements).all(|(a, b)| {
+            a.shape == b.shape
+                && a.flesh == b.flesh
+                && a.finish == b.finish
+                && a.body == b.body
+                && a.kernel == b.kernel
+        })
+        && a.flesh == b.flesh
+        && a.finishes == b.finishes
+        && a.frames == b.frames
         && a.lights == b.lights
         && a.background == b.background
         && a.camera == b.camera

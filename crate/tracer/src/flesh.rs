@@ -5,11 +5,11 @@
 //! precision may be off by more than that, the last steps are made in double.
 use crate::climb::mask;
 use crate::lanes::Lanes;
+use crate::layout::PACKET;
 use crate::quick::FINEST;
 use crate::ray::Ray;
-use crate::slabs::{Slabs, Spent};
-use crate::layout::PACKET;
 use crate::scratch::Scratch;
+use crate::slabs::{Slabs, Spent};
 use crate::soft::Soft;
 use crate::walk::Found;
 use field::{Jet, Real, THRESHOLD};

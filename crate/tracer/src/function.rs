@@ -24,6 +24,8 @@ pub(crate) struct FunctionBody {
     pub function: Arc<dyn Implicit>,
     /// Finish of each of the function's elements.
     pub finish: Vec<u32>,
+    /// A ball outside of which there is no surface, in coordinates of the world.
+    pub support: Option<Ball>,
 }
 
 /// Crossings to look for along one ray.
@@ -37,32 +39,37 @@ pub(crate) struct Along {
 }
 
 impl FunctionBody {
-    /// The part of a ray up to a limit on which the surface may be; `None` if the ray misses it. A function without a known
-    /// support is followed as far as `furthest`.
-    pub fn range(&self, ray: &Ray, limit: f64, furthest: f64) -> Option<[f64; 2]> {
-        let [near, far] = match self.function.support() {
-            None => [0.0, furthest],
-            Some(Ball { center, radius }) => {
-                let offset = center - ray.origin;
-                let along = offset.dot(ray.direction);
-                let across = (offset - ray.direction * along).length_squared();
-                let square = radius * radius * (1.0 + 1e-9) - across;
-                if square < 0.0 {
-                    return None;
-                }
-                let half = square.sqrt();
-                [(along - half).max(0.0), along + half]
-            }
-        };
-        let far = far.min(limit);
-        (near < far).then_some([near, far])
-    }
-
     /// The outward normal at a point of the surface; `None` where the gradient vanishes.
     pub fn normal(&self, point: DVec3) -> Option<DVec3> {
         let gradient = DVec3::from_array(self.function.jet(point).gradient);
         (-gradient).try_normalize()
     }
+}
+
+/// The part of a ray up to a limit on which a surface within a ball may be; `None` if the ray misses the ball. Without a ball the
+/// ray is followed as far as `furthest`.
+pub(crate) fn range(
+    support: Option<Ball>,
+    ray: &Ray,
+    limit: f64,
+    furthest: f64,
+) -> Option<[f64; 2]> {
+    let [near, far] = match support {
+        None => [0.0, furthest],
+        Some(Ball { center, radius }) => {
+            let offset = center - ray.origin;
+            let along = offset.dot(ray.direction);
+            let across = (offset - ray.direction * along).length_squared();
+            let square = radius * radius * (1.0 + 1e-9) - across;
+            if square < 0.0 {
+                return None;
+            }
+            let half = square.sqrt();
+            [(along - half).max(0.0), along + half]
+        }
+    };
+    let far = far.min(limit);
+    (near < far).then_some([near, far])
 }
 
 /// Calls `tell` with each crossing of a ray with the surface of a function, and whether the ray enters there, in order,

@@ -7,11 +7,11 @@
 use crate::area::Area;
 use crate::beam::Beam;
 use crate::lanes::least;
+use crate::layout::PACKET;
 use crate::nearby::Nearby;
-use crate::view::View;
 use crate::quick::Rays;
 use crate::ray::Ray;
-use crate::layout::PACKET;
+use crate::view::View;
 use field::Real;
 use glam::DVec3;
 use wide::f32x8;

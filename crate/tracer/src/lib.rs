@@ -82,6 +82,7 @@ mod lens;
 mod map;
 mod meet;
 mod nearby;
+mod pick;
 pub mod picture;
 mod quick;
 mod ray;
@@ -115,6 +116,7 @@ mod workspace;
 mod world;
 
 pub use known::{Known, around};
+pub use pick::Picker;
 pub use picture::{Hit, Picture};
 pub use ray::Ray;
 pub use reference::Reference;

@@ -5,7 +5,7 @@
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::flesh::Flesh;
-use crate::function::{Along, FunctionBody, crossings};
+use crate::function::{Along, FunctionBody, crossings, range};
 use crate::hard::Crossing;
 use crate::layout::PACKET;
 use crate::lens::{Fan, Lens};
@@ -125,7 +125,10 @@ impl World {
         square.general(place, &mut general);
         // One body that is not all lumps takes the general way with all it has.
         let lumps = self.soft.bodies.len() > 1 || general.is_empty();
-        if let Some((near, lens)) = square.lumps(place).filter(|(near, _)| lumps && near.len() > 0) {
+        if let Some((near, lens)) = square
+            .lumps(place)
+            .filter(|(near, _)| lumps && near.len() > 0)
+        {
             self.meet_lumps(near, lens, &general, rays, seen, exact, work);
         }
         for &(from, body) in &general {
@@ -221,12 +224,21 @@ impl World {
         let mut tell = |looked: Looked, flesh: &Flesh| {
             *evaluations += looked.evaluations;
             if looked.met != 0 {
-                self.soft_points(looked.body, &wide(), flesh, near.base, looked.met, &mut seen.hits);
+                self.soft_points(
+                    looked.body,
+                    &wide(),
+                    flesh,
+                    near.base,
+                    looked.met,
+                    &mut seen.hits,
+                );
             }
             (seen.limits(), ALL)
         };
         if self.soft.bodies.len() == 1 {
-            let looked = self.soft.quick(near, lanes, wide, Asked::first(&limits), quick);
+            let looked = self
+                .soft
+                .quick(near, lanes, wide, Asked::first(&limits), quick);
             return match looked {
                 Some(looked) => {
                     tell(looked, &quick.flesh);
@@ -272,9 +284,9 @@ impl World {
 
     /// What a ray meets first among the hard elements.
     fn hard_point(&self, ray: &Ray, crossings: &mut Vec<Crossing>) -> Option<SurfacePoint> {
-        let (number, crossing) = self
-            .solids
-            .first(ray, f64::INFINITY, self.one_sided, crossings)?;
+        let (number, crossing) =
+            self.solids
+                .first(ray, f64::INFINITY, self.one_sided, crossings)?;
         Some(SurfacePoint {
             t: crossing.t,
             position: ray.at(crossing.t),
@@ -394,7 +406,7 @@ impl World {
             origin: self.unit.world(ray.origin),
             direction: ray.direction,
         };
-        let Some(range) = body.range(&ray, limit * scale, FURTHEST * scale) else {
+        let Some(range) = range(body.support, &ray, limit * scale, FURTHEST * scale) else {
             return 0;
         };
         let along = Along {

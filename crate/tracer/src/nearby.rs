@@ -382,6 +382,7 @@ mod tests {
                     lead: 0.0,
                     steep: 0.0,
                     finish: i as u32,
+                    body: 0,
                     from: 0.0,
                 };
                 list.push(near, &Extent::of(&lump, lump.radius(square)));

@@ -151,7 +151,8 @@ impl Picture {
         let area = Area::from(tile);
         let sampler = &self.sampler;
         if pass == Pass::Smooth && sampler.samples > 1 {
-            let samples = sampler.sample(area.around(sampler.view.size), 1, cache, stop, work, stats)?;
+            let samples =
+                sampler.sample(area.around(sampler.view.size), 1, cache, stop, work, stats)?;
             cache.keep(&samples, area);
             return self.smooth(area, samples, stop, work, stats);
         }

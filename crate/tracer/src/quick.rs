@@ -428,13 +428,7 @@ impl Soft {
     /// double precision and with nothing left out.
     #[cold]
     #[inline(never)]
-    fn settle_doubts(
-        &self,
-        near: &Nearby,
-        body: u32,
-        rays: &[Ray; PACKET],
-        climbed: &mut Climbed,
-    ) {
+    fn settle_doubts(&self, near: &Nearby, body: u32, rays: &[Ray; PACKET], climbed: &mut Climbed) {
         let [first, last] = climbed.doubt.map(f32x8::to_array);
         let mut t = climbed.t.to_array();
         let mut between = climbed.between.map(f32x8::to_array);
@@ -546,7 +540,7 @@ impl Soft {
 mod tests {
     use super::*;
     use crate::hierarchy::Hierarchy;
-    use crate::tests::common::{element, empty, soft};
+    use crate::tests::common::{clothe, element, empty, soft};
     use field::Kernel;
     use scene::{Element, Shape};
 

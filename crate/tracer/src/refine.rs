@@ -127,8 +127,7 @@ impl Sampler {
             let exact = || {
                 core::array::from_fn(|i| {
                     let [across, down] = part(i);
-                    self.view
-                        .ray(f64::from(x) + across, f64::from(y) + down)
+                    self.view.ray(f64::from(x) + across, f64::from(y) + down)
                 })
             };
             let rays = PacketRays {

@@ -1,10 +1,10 @@
 //! A whole picture at once, on several threads.
 use crate::area::Area;
 use crate::layout::SQUARE;
-use crate::sample_cache::SampleCache;
-use crate::tile::{Pass, Tile, tiles};
 use crate::picture::Picture;
+use crate::sample_cache::SampleCache;
 use crate::stats::Stats;
+use crate::tile::{Pass, Tile, tiles};
 use crate::workspace::Workspace;
 use scene::Scene;
 use std::sync::Mutex;

@@ -70,8 +70,8 @@ impl Sampler {
                     continue;
                 }
                 stats.primary_rays += wanted as u64;
-                let square = square
-                    .get_or_insert_with(|| self.square(block.times(scale), [columns, rows]));
+                let square =
+                    square.get_or_insert_with(|| self.square(block.times(scale), [columns, rows]));
                 // Places in pixels from the square's middle.
                 let middle = |c: f64| (c - 0.5 * f64::from(side)) * f64::from(scale);
                 let [left, top] = [i * PACKET_SIZE[0], j * PACKET_SIZE[1]].map(f64::from);

@@ -8,10 +8,10 @@
 //!
 //! Where very many primitives count, most of them are far, and are interpolated together already. What that is off by mostly leaves
 //! no doubt, so that rays are first asked with these interpolants in place of the far ones ([`Given`]).
+use crate::kinks::Kinks;
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::slabs::LARGE_TERM;
-use crate::kinks::Kinks;
 use crate::spans::{Node, Span};
 use core::ops::Range;
 use field::bound::SpanLength;

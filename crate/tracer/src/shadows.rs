@@ -28,13 +28,7 @@ impl World {
     /// What the rays of some packets see. Their hits may share beams to the lights: they must be the same packets
     /// whatever the tiles. `across` is how wide they are together, per unit of distance, or less, if only nearer hits are to share. The samples are left in the
     /// working space.
-    pub fn shine(
-        &self,
-        seen: &[Seen],
-        across: f64,
-        work: &mut Workspace,
-        stats: &mut Stats,
-    ) {
+    pub fn shine(&self, seen: &[Seen], across: f64, work: &mut Workspace, stats: &mut Stats) {
         let mut samples = core::mem::take(&mut work.samples);
         samples.clear();
         samples.extend(seen.iter().map(|seen| {

@@ -15,9 +15,9 @@
 //! only show what is empty.
 use crate::beams::Beams;
 use crate::clusters::{Clusters, Members};
+use crate::kinks::Kinks;
 use crate::ray::Ray;
 use crate::shared::{CORNERS, Cell, Shared, Sums};
-use crate::kinks::Kinks;
 use crate::spans::Node;
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
@@ -1063,7 +1063,7 @@ mod tests {
     use crate::beam::Beam;
     use crate::soft::Soft;
     use crate::spans::Span;
-    use crate::tests::common::{Numbers, element, empty, soft};
+    use crate::tests::common::{Numbers, clothe, element, empty, soft};
     use glam::DVec3;
     use scene::Shape;
 

@@ -8,8 +8,8 @@ use crate::kinks::Kinks;
 use crate::nearby::{Nearby, Other};
 use crate::ray::Ray;
 use crate::roots::bracketed;
-use crate::settle::{Along, Settler, Sight};
 use crate::scratch::Scratch;
+use crate::settle::{Along, Settler, Sight};
 use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::stock::Stock;
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
@@ -163,7 +163,9 @@ impl Soft {
 
     /// The body, by its number among those with a surface, that a primitive belongs to.
     pub fn body_of(&self, primitive: u32) -> u32 {
-        let after = self.bodies.partition_point(|body| body.range.start <= primitive);
+        let after = self
+            .bodies
+            .partition_point(|body| body.range.start <= primitive);
         after as u32 - 1
     }
 
@@ -351,27 +353,29 @@ impl Soft {
         beam: &Beam,
         limit: f64,
     ) -> bool {
-        others.into_iter().any(|other| self.meets(other, beam, limit))
+        others
+            .into_iter()
+            .any(|other| self.meets(other, beam, limit))
     }
 
     /// The same of one primitive.
     fn meets(&self, other: &Other, beam: &Beam, limit: f64) -> bool {
-            let [mut t, far] = beam.reach(other.center, other.radius);
-            let far = far.at_most(limit);
-            let bound = &self.bounds()[other.primitive as usize];
-            for _ in 0..MOST_STRIDES {
-                if t > far {
-                    return false;
-                }
-                // No ray that is at t is further from the axis than its width there.
-                let away = bound.nearness(beam.axis.at(t), beam.width(t)).distance - other.reach;
-                if away <= CLOSE * other.reach {
-                    break;
-                }
-                // As it goes on a ray comes nearer by no more than it goes.
-                t += away / (1.0 + beam.spread);
+        let [mut t, far] = beam.reach(other.center, other.radius);
+        let far = far.at_most(limit);
+        let bound = &self.bounds()[other.primitive as usize];
+        for _ in 0..MOST_STRIDES {
+            if t > far {
+                return false;
             }
-            true
+            // No ray that is at t is further from the axis than its width there.
+            let away = bound.nearness(beam.axis.at(t), beam.width(t)).distance - other.reach;
+            if away <= CLOSE * other.reach {
+                break;
+            }
+            // As it goes on a ray comes nearer by no more than it goes.
+            t += away / (1.0 + beam.spread);
+        }
+        true
     }
 
     /// Adds the bodies of some primitives that a ray of a beam may come near enough to, up to a parameter.
@@ -449,7 +453,10 @@ impl Soft {
         let beam = Beam::of_ray(*ray);
         let share = THRESHOLD / count as f64;
         let mut range = [f64::INFINITY, 0.0f64];
-        for (p, bound) in self.primitives[own.clone()].iter().zip(&self.bounds()[own.clone()]) {
+        for (p, bound) in self.primitives[own.clone()]
+            .iter()
+            .zip(&self.bounds()[own.clone()])
+        {
             let [near, far] = match p.bounding_sphere() {
                 Some((center, radius)) => {
                     let skeleton = radius - bound.influence;
@@ -533,6 +540,8 @@ fn around(balls: &[(u32, DVec3, f64)]) -> (DVec3, f64) {
         (low, high) = (low.min(center - *radius), high.max(center + *radius));
     }
     let middle = 0.5 * (low + high);
-    let reach = balls.iter().map(|(_, center, radius)| center.distance(middle) + radius);
+    let reach = balls
+        .iter()
+        .map(|(_, center, radius)| center.distance(middle) + radius);
     (middle, reach.fold(0.0, f64::max))
 }

@@ -91,7 +91,11 @@ impl<'a> Square<'a> {
         } else {
             bodies.extend(&self.general);
         }
-        if self.lumps.as_ref().is_none_or(|lumps| lumps.all.others.is_empty()) {
+        if self
+            .lumps
+            .as_ref()
+            .is_none_or(|lumps| lumps.all.others.is_empty())
+        {
             return;
         }
         let Some((near, _)) = self.lumps(place) else {
@@ -103,7 +107,8 @@ impl<'a> Square<'a> {
         let others = near.others.clone();
         // Others may be nearer than the first lump, from which lists are counted.
         let mut met = Vec::new();
-        self.soft.bodies_met(&others, &beam(self), f64::INFINITY, &mut met);
+        self.soft
+            .bodies_met(&others, &beam(self), f64::INFINITY, &mut met);
         bodies.extend(met.into_iter().map(|body| (0.0, body)));
     }
 

@@ -70,8 +70,8 @@ fn pictures_with_profiles_show_the_exact_surface() {
         .enumerate()
     {
         let mut scene = common::blend(seed as u64, 5);
-        for material in &mut scene.materials[..2] {
-            material.profile = Some(Profile {
+        for flesh in &mut scene.flesh[..2] {
+            flesh.profile = Some(Profile {
                 waves: [wave, Wave::One],
                 scale: [8.0, 1.0],
                 bounds: [0.6, 1.0],
@@ -96,7 +96,7 @@ fn doubts_in_a_cloud_are_settled_with_what_is_near() {
     scene.camera.eye = DVec3::Z * 4.0;
     scene.camera.target = DVec3::ZERO;
     scene.camera.fov = 1.0;
-    scene.materials = vec![common::soft(-4.0, 1.0)];
+    common::clothe(&mut scene, vec![common::soft(-4.0, 1.0)]);
     let mut ball = |center: DVec3, radius: f64| {
         let shape = Shape::Sphere { center, radius };
         scene.elements.push(common::element(shape, 0));

@@ -92,6 +92,7 @@ impl World {
         self.bodies += 1;
         self.functions.push(FunctionBody {
             number,
+            support: function.support(),
             function,
             finish,
         });

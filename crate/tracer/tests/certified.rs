@@ -6,7 +6,7 @@ mod common;
 #[path = "common/trials.rs"]
 mod trials;
 
-use common::{Numbers, element, empty, soft};
+use common::{Numbers, clothe, element, empty, soft};
 use field::Kernel;
 use glam::DVec3;
 use scene::{Element, Scene, Shape};
@@ -170,8 +170,8 @@ fn what_is_cast_is_what_pictures_show() {
     for seed in 0..16 {
         let mut scene = common::blend(seed, 5);
         scene.background = [0.0, 0.0, 1.0];
-        for material in &mut scene.materials {
-            material.ambient = [0.5, 0.5, 0.0];
+        for finish in &mut scene.finishes {
+            finish.ambient = [0.5, 0.5, 0.0];
         }
         scene.lights.clear();
         let picture = Picture::new(&scene, [SIDE; 2]);
@@ -204,8 +204,8 @@ fn what_is_cast_is_what_pictures_show() {
 /// How many pixels of a picture show the surface, and how many do though its ray meets none, or do not though it does.
 fn shown(mut scene: Scene, side: u32) -> [usize; 2] {
     scene.background = [0.0, 0.0, 1.0];
-    for material in &mut scene.materials {
-        material.ambient = [0.5, 0.5, 0.0];
+    for finish in &mut scene.finishes {
+        finish.ambient = [0.5, 0.5, 0.0];
     }
     scene.lights.clear();
     let picture = Picture::new(&scene, [side; 2]);
@@ -239,7 +239,7 @@ fn pictures_show_what_is_there() {
     for case in 0..8 {
         let mut scene = empty();
         let joined = case % 2 == 1;
-        scene.materials = vec![soft(-3.0, 1.0)];
+        clothe(&mut scene, vec![soft(-3.0, 1.0)]);
         for k in 0..if joined { 40 } else { 5 } {
             let lump = k % 2 == 0;
             let at = n.vector();
@@ -275,7 +275,7 @@ fn pictures_show_what_is_there() {
 #[test]
 fn a_thin_bone_beside_lumps_is_not_stridden_over() {
     let mut scene = empty();
-    scene.materials = vec![soft(-4.0, 1.0)];
+    clothe(&mut scene, vec![soft(-4.0, 1.0)]);
     scene.camera.eye = DVec3::new(0.0, 0.0, 0.02);
     scene.camera.fov = 0.2;
     let lump = Shape::Sphere {

@@ -1,6 +1,6 @@
 //! The diggers that are there for comparison, against exact hits.
 mod common;
-use common::{Numbers, blend, element, empty, soft};
+use common::{Numbers, blend, clothe, element, empty, soft};
 use glam::DVec3;
 use scene::{Digger, Scene, Shape};
 use tracer::{Pass, Picture, Stats, Tile};
@@ -44,7 +44,7 @@ fn meets(picture: &Picture, origin: DVec3, direction: DVec3) -> Option<f64> {
 fn easy() -> Scene {
     let mut scene = empty();
     scene.settings.influence = 1e-6;
-    scene.materials = vec![soft(-2.0, 1.0)];
+    clothe(&mut scene, vec![soft(-2.0, 1.0)]);
     let radius = 0.25;
     for shape in [
         Shape::Cylinder {
@@ -115,7 +115,7 @@ fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
             .elements
             .retain(|e| !matches!(e.shape, Shape::Plane { .. }));
         let exact = Picture::new(&scene, [8, 8]);
-        let field = scene.soft_surface().field;
+        let field = scene.soft_surfaces().swap_remove(0).sum;
         for digger in [Digger::Lg, Digger::Sphere] {
             let picture = dug(&scene, digger);
             for case in 0..25 {
@@ -190,7 +190,7 @@ fn pictures_of_all_diggers_are_much_alike() {
 fn rays_along_the_surface_come_to_an_end() {
     // All along the ray the field of the plane is T, and its slope 0.
     let mut scene = empty();
-    scene.materials = vec![soft(-1.0, 1.0)];
+    clothe(&mut scene, vec![soft(-1.0, 1.0)]);
     scene.elements.push(element(
         Shape::Plane {
             point: DVec3::ZERO,
@@ -266,7 +266,7 @@ fn a_map_shows_costs_and_does_not_depend_on_tiles() {
 fn a_ray_through_very_many_primitives_comes_to_an_end() {
     let mut scene = empty();
     // So weak that all together they never reach T, and all of them are met.
-    scene.materials = vec![soft(-1.0, 2e-5)];
+    clothe(&mut scene, vec![soft(-1.0, 2e-5)]);
     scene.settings.influence = 1e-9;
     let mut n = Numbers(1);
     for _ in 0..5_000 {

@@ -1,6 +1,6 @@
 //! All crossings of rays, against marching along them in small steps.
 mod common;
-use common::{Numbers, blend, element, empty};
+use common::{Numbers, blend, clothe, element, empty};
 use glam::DVec3;
 use scene::{Scene, Shape};
 use tracer::Picture;
@@ -8,7 +8,7 @@ use tracer::Picture;
 /// Marches a ray through the exact field. Crossings closer together than a step may go unseen, so
 /// within each step the number of hits must only be odd where the sign changes.
 fn march(scene: &Scene, picture: &Picture, origin: DVec3, direction: DVec3) -> usize {
-    let field = scene.soft_surface().field;
+    let field = scene.soft_surfaces().swap_remove(0).sum;
     let hits = picture.hits(origin, direction);
     for pair in hits.windows(2) {
         assert!(pair[0].t <= pair[1].t);
@@ -61,7 +61,7 @@ fn rays_through_random_blends_cross_where_marching_says() {
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_ray_grazing_a_ball_finds_both_crossings_or_none() {
     let mut scene = empty();
-    scene.materials = vec![common::soft(-4.0, 1.0)];
+    clothe(&mut scene, vec![common::soft(-4.0, 1.0)]);
     scene.elements.push(element(
         Shape::Sphere {
             center: DVec3::ZERO,
@@ -96,10 +96,10 @@ fn scenes_far_away_and_of_any_size_are_hit_alike() {
         (1e-3, 50.0),
     ] {
         let mut scene = empty();
-        scene.materials = vec![common::soft(-1.0, 1.0)];
+        clothe(&mut scene, vec![common::soft(-1.0, 1.0)]);
         let center = DVec3::splat(shift);
         let radius = 0.25 * scale;
-        scene.materials[0].radius = radius;
+        scene.flesh[0].radius = radius;
         scene
             .elements
             .push(element(Shape::Sphere { center, radius }, 0));
@@ -116,7 +116,10 @@ fn scenes_far_away_and_of_any_size_are_hit_alike() {
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 fn hard_and_soft_crossings_come_in_one_order() {
     let mut scene = empty();
-    scene.materials = vec![common::soft(-1.0, 1.0), scene::Material::default()];
+    clothe(
+        &mut scene,
+        vec![common::soft(-1.0, 1.0), scene::Flesh::default()],
+    );
     for (x, material) in [(-1.0, 0), (0.0, 1), (1.0, 0)] {
         let center = DVec3::X * x;
         let radius = 0.2;

@@ -1,8 +1,8 @@
 //! Pictures: independence of tiles, passes, shadows, limits.
 mod common;
-use common::{blend, element, empty, soft};
+use common::{blend, clothe, element, empty, soft};
 use glam::DVec3;
-use scene::{Material, Scene, Shape};
+use scene::{Finish, Flesh, Scene, Shape};
 use std::cell::Cell;
 use tracer::{Pass, Picture, SampleCache, Stats, Tile, tiles};
 
@@ -25,9 +25,9 @@ fn whole(scene: &Scene, size: [u32; 2], side: u32, pass: Pass) -> (Vec<u8>, Stat
 /// A mixed scene: soft elements of all kinds and hard ones.
 fn mixed(seed: u64) -> Scene {
     let mut scene = blend(seed, 7);
-    scene.materials.push(Material {
+    scene.finishes.push(Finish {
         diffuse: [0.2, 0.9, 0.3],
-        ..Material::default()
+        ..Finish::default()
     });
     let mut n = common::Numbers(seed + 77);
     for kind in 0..4 {
@@ -118,9 +118,9 @@ fn smoothing_touches_edges_only_and_tends_to_the_true_coverage() {
     let mut scene = empty();
     scene.lights.clear();
     scene.background = [0.0; 3];
-    scene.materials = vec![Material {
+    scene.finishes = vec![Finish {
         ambient: [1.0; 3],
-        ..Material::default()
+        ..Finish::default()
     }];
     scene.elements.push(element(
         Shape::Sphere {
@@ -172,8 +172,8 @@ fn where_nothing_differs_each_pixel_has_one_ray() {
 fn a_ball_casts_a_shadow_on_a_slab_and_not_on_itself() {
     for material in [0, 1] {
         let mut scene = empty();
-        scene.materials = vec![soft(-4.0, 1.0), Material::default()];
-        scene.materials[0].specular = [0.0; 3];
+        clothe(&mut scene, vec![soft(-4.0, 1.0), Flesh::default()]);
+        scene.finishes[0].specular = [0.0; 3];
         // Light straight along z, past the eye; eye from the side.
         scene.lights[0].kind = scene::LightKind::Distant { towards: DVec3::Z };
         scene.camera.eye = DVec3::new(0.0, -4.0, 4.0);
@@ -460,7 +460,7 @@ fn a_tile_is_given_up_when_asked_to_stop() {
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 fn seen_from_inside_the_surface_is_lit() {
     let mut scene = empty();
-    scene.materials = vec![soft(-0.5, 1.0)];
+    clothe(&mut scene, vec![soft(-0.5, 1.0)]);
     scene.background = [0.0, 0.0, 1.0];
     scene.camera.eye = DVec3::ZERO;
     scene.camera.target = DVec3::X;
@@ -494,19 +494,21 @@ fn strange_scenes_end() {
         scene.camera.fov = bad;
         scenes.push(scene);
         let mut scene = mixed(5);
-        for material in &mut scene.materials {
-            material.radius = bad;
-            material.shine = bad as f32;
-            material.diffuse = [bad as f32; 3];
+        for flesh in &mut scene.flesh {
+            flesh.radius = bad;
+        }
+        for finish in &mut scene.finishes {
+            finish.shine = bad as f32;
+            finish.diffuse = [bad as f32; 3];
         }
         scene.settings.fragile = scene::Fragile::ALL;
         scene.settings.gamma = bad as f32;
         scene.settings.contrast = [bad as f32; 3];
         scenes.push(scene);
         let mut scene = mixed(6);
-        for material in &mut scene.materials[..3] {
-            material.blobbiness = bad;
-            material.strength = bad;
+        for flesh in &mut scene.flesh {
+            flesh.blobbiness = bad;
+            flesh.strength = bad;
         }
         scenes.push(scene);
         let mut scene = mixed(7);

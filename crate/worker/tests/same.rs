@@ -6,7 +6,7 @@
 mod common;
 
 use common::{BENCH, EXAMPLES, TILE, compile, hash, say, traced};
-use scene::{Scene, wire};
+use scene::Scene;
 use tracer::{Pass, Stats, Tile, tiles};
 
 /// So many tiles of a picture are traced, spread over its middle.
@@ -54,7 +54,7 @@ fn traced_by_two(
 fn pictures_are_the_same_whoever_traces_them() {
     for (name, text) in EXAMPLES.into_iter().chain(BENCH) {
         let mut scene = compile(text);
-        let bytes = wire::pack(&scene).expect("a scene is packed");
+        let bytes = worker::message::pack(&scene).expect("a scene is packed");
         say(&format!("picture {name} scene {:016x}", hash(&bytes)));
         scene.settings.samples = SAMPLES;
         let size = scene.settings.frame;

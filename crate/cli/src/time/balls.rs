@@ -2,7 +2,7 @@
 
 use field::Kernel;
 use glam::DVec3;
-use scene::{Camera, Element, Light, LightKind, Material, Origin, Scene, Shape};
+use scene::{Camera, Element, Flesh, Light, LightKind, Scene, Shape};
 
 /// Balls of a kernel spread evenly through a cube of side 2, by the additive sequence of the three
 /// powers of 1/φ₃, φ₃ ≈ 1.2207 being the root of x⁴ = x + 1. Their mean distance is `apart` radii: at 3
@@ -12,19 +12,18 @@ pub fn scene(count: u32, kernel: Kernel, apart: f64) -> Scene {
     let step = DVec3::new(1.0 / PHI, 1.0 / (PHI * PHI), 1.0 / (PHI * PHI * PHI));
     let radius = 2.0 / libm::cbrt(f64::from(count)) / apart;
     let mut scene = Scene::default();
-    scene.materials[0] = Material {
+    scene.flesh.push(Flesh {
         blobbiness: -4.0,
-        ..Material::default()
-    };
+        ..Flesh::default()
+    });
     scene.elements = (0..count)
         .map(|i| Element {
-            shape: Shape::Sphere {
+            flesh: Some(0),
+            kernel,
+            ..Element::new(Shape::Sphere {
                 center: (step * f64::from(i)).fract() * 2.0 - 1.0,
                 radius,
-            },
-            material: 0,
-            kernel,
-            origin: Origin::default(),
+            })
         })
         .collect();
     scene.camera = Camera {

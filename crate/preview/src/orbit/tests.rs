@@ -1,5 +1,5 @@
 use super::*;
-use scene::{Element, Origin, Shape};
+use scene::{Element, Shape};
 
 fn angle(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
@@ -171,14 +171,11 @@ fn senseless_cameras_and_pointers_give_usable_cameras() {
 
 #[test]
 fn frame_sees_everything_and_no_more_than_needed() {
-    let ball = |x: f64| Element {
-        shape: Shape::Sphere {
+    let ball = |x: f64| {
+        Element::new(Shape::Sphere {
             center: DVec3::new(x, 2.0 * x, 100.0),
             radius: 3.0,
-        },
-        material: 0,
-        kernel: field::Kernel::Cauchy,
-        origin: Origin::default(),
+        })
     };
     let scene = Scene {
         elements: vec![ball(-7.0), ball(4.0), ball(20.0)],

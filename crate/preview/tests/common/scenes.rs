@@ -1,14 +1,12 @@
 //! Small scenes for the tests.
 
 use glam::{DQuat, DVec3};
-use scene::{Camera, Element, Light, LightKind, Material, Origin, Scene, Shape};
+use scene::{Camera, Element, Finish, Light, LightKind, Scene, Shape};
 
-pub fn element(shape: Shape, material: usize) -> Element {
+pub fn element(shape: Shape, finish: u32) -> Element {
     Element {
-        shape,
-        material,
-        kernel: field::Kernel::Cauchy,
-        origin: Origin::default(),
+        finish,
+        ..Element::new(shape)
     }
 }
 
@@ -19,11 +17,11 @@ pub fn by_index(shapes: &[Shape], camera: Camera) -> Scene {
             .zip(shapes)
             .map(|(i, s)| element(s.clone(), i))
             .collect(),
-        materials: (0..shapes.len())
-            .map(|i| Material {
+        finishes: (0..shapes.len())
+            .map(|i| Finish {
                 ambient: colour_of(Some(i)),
                 diffuse: [0.0; 3],
-                ..Material::default()
+                ..Finish::default()
             })
             .collect(),
         background: colour_of(None),
@@ -60,10 +58,10 @@ pub fn by_normal(shapes: &[Shape], camera: Camera, sign: f64) -> Scene {
     };
     Scene {
         elements: shapes.iter().map(|s| element(s.clone(), 0)).collect(),
-        materials: vec![Material {
+        finishes: vec![Finish {
             ambient: [0.0; 3],
             diffuse: [1.0; 3],
-            ..Material::default()
+            ..Finish::default()
         }],
         lights: vec![light(DVec3::X, 0), light(DVec3::Y, 1), light(DVec3::Z, 2)],
         background: [0.0; 3],

@@ -67,7 +67,10 @@ impl Evaluator<'_> {
     /// Warns of an eye inside the surface and of flesh that never reaches the threshold.
     fn lint_field(&mut self, scene: &Scene) {
         let surfaces = scene.soft_surfaces();
-        if surfaces.iter().any(|s| s.sum.jet(scene.camera.eye).value >= THRESHOLD) {
+        if surfaces
+            .iter()
+            .any(|s| s.sum.jet(scene.camera.eye).value >= THRESHOLD)
+        {
             let (file, span) = self.aimed_at.clone();
             self.say_at(file, Severity::Warning, span, || {
                 (

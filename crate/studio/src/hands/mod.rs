@@ -5,11 +5,9 @@
 //! say: each change goes through [`Command::Replace`], and a drag is one undo step.
 
 mod knob;
-mod pick;
 mod sight;
 mod skeleton;
 
-pub use pick::{Met, Picker};
 pub use sight::Sight;
 
 use crate::command::Command;
@@ -19,6 +17,7 @@ use glam::DVec3;
 use rats::handles::{self, Handle};
 use scene::{Camera, Origin, Scene, Shape};
 use std::ops::Range;
+use tracer::Picker;
 
 /// Bones of one command that are lit, at most: a loop may make thousands.
 const MOST_BONES: usize = 400;
@@ -206,15 +205,11 @@ impl Hands {
         let reach = if around.touch { 12.0 } else { 4.0 };
         let nearby =
             (0..8).map(|i| at + reach * egui::Vec2::angled(i as f32 * std::f32::consts::FRAC_PI_4));
-        let found = met(at).or_else(|| {
-            nearby
-                .filter_map(met)
-                .min_by(|a, b| a.distance.total_cmp(&b.distance))
-        });
+        let found = met(at).or_else(|| nearby.filter_map(met).min_by(|a, b| a.t.total_cmp(&b.t)));
         self.let_go();
-        if let Some(met) = found {
-            self.chosen = Some(met.element);
-            let origin = scene.elements[met.element].origin;
+        if let Some(element) = found.and_then(|hit| hit.element) {
+            self.chosen = Some(element as usize);
+            let origin = scene.elements[element as usize].origin;
             commands.push(Command::ShowPlace {
                 file: origin.file as usize,
                 byte: origin.start as usize,

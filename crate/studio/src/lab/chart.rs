@@ -458,7 +458,7 @@ mod tests {
             };
             let compiled = rats::compile(&rats::Project { files: vec![file] });
             assert_eq!(compiled.diagnostics, [], "{bone:?}");
-            let field = compiled.scene.soft_surface().field;
+            let field = compiled.scene.soft_surfaces().swap_remove(0).sum;
             // Curves are cut into pieces where they are drawn.
             let pieces = &field.primitives;
             assert!(pieces.len() == 1 || bone == Bone::Curve && !pieces.is_empty());

@@ -253,9 +253,9 @@ mod tests {
             };
             let compiled = rats::compile(&rats::Project { files: vec![file] });
             assert_eq!(compiled.diagnostics, [], "{wave:?}");
-            let materials = compiled.scene.materials.iter();
-            let profile: Profile = materials
-                .filter_map(|material| material.profile)
+            let flesh = compiled.scene.flesh.iter();
+            let profile: Profile = flesh
+                .filter_map(|flesh| flesh.profile)
                 .next_back()
                 .expect("a profile");
             let given = match wave {

@@ -1,7 +1,7 @@
 //! The field on a plane, eight points at a time, a little in each frame.
 
 use super::contour::Grid;
-use field::{BlobScale, Field, Kernel, Shaping};
+use field::{BlobScale, Kernel, Shaping, Sum};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -38,22 +38,20 @@ impl Window {
     }
 }
 
-/// The field at eight points.
+/// The largest of the fields of some bodies at eight points: inside any of them it is above T. Without bodies it is 0.
 #[must_use]
-pub fn eight(field: &Field, points: [DVec3; 8]) -> [f32; 8] {
+pub fn eight(bodies: &[Sum], points: [DVec3; 8]) -> [f32; 8] {
     let axis = |pick: fn(&DVec3) -> f64| f32x8::from(points.map(|p| pick(&p) as f32));
     let point = [axis(|p| p.x), axis(|p| p.y), axis(|p| p.z)];
-    let mut sum = f32x8::splat(0.0);
-    for primitive in &field.primitives {
-        sum += primitive.jet::<f32x8>(point).value;
-    }
-    sum.to_array()
+    let values = bodies.iter().map(|body| body.sum(point).value);
+    let largest = values.reduce(|a, b| a.fast_max(b));
+    largest.unwrap_or(f32x8::splat(0.0)).to_array()
 }
 
-/// The field at one point.
+/// The same at one point.
 #[must_use]
-pub fn one(field: &Field, point: DVec3) -> f64 {
-    f64::from(eight(field, [point; 8])[0])
+pub fn one(bodies: &[Sum], point: DVec3) -> f64 {
+    f64::from(eight(bodies, [point; 8])[0])
 }
 
 /// A grid that is being filled.
@@ -86,14 +84,15 @@ impl Filling {
     /// whether the grid is full.
     pub fn go_on(
         &mut self,
-        field: &Field,
+        bodies: &[Sum],
         window: &Window,
         mut enough: impl FnMut() -> bool,
     ) -> bool {
         let Grid { width, height, .. } = self.grid;
         let all = width * height;
         // A batch takes some tens of microseconds, whatever the field.
-        let batch = (4000 / field.primitives.len().max(1)).clamp(1, 64);
+        let primitives: usize = bodies.iter().map(|body| body.primitives.len()).sum();
+        let batch = (4000 / primitives.max(1)).clamp(1, 64);
         let mut done = 0;
         while self.grid.values.len() < all {
             let first = self.grid.values.len();
@@ -103,7 +102,7 @@ impl Filling {
                 let y = (index / width) as f64 / (height - 1) as f64;
                 window.at(x, y)
             });
-            let values = eight(field, points);
+            let values = eight(bodies, points);
             let left = (all - first).min(8);
             self.grid.values.extend_from_slice(&values[..left]);
             done += 1;
@@ -117,9 +116,9 @@ impl Filling {
 
 /// The field on a whole grid at once.
 #[must_use]
-pub fn whole(field: &Field, window: &Window, width: usize, height: usize) -> Grid {
+pub fn whole(field: &Sum, window: &Window, width: usize, height: usize) -> Grid {
     let mut filling = Filling::new(width, height);
-    filling.go_on(field, window, || false);
+    filling.go_on(core::slice::from_ref(field), window, || false);
     filling.grid
 }
 
@@ -135,11 +134,9 @@ mod tests {
             base: DVec3::NEG_X,
             apex: DVec3::X,
         };
-        let field = Field {
-            primitives: Primitive::new(skeleton, &shaping, None)
-                .into_iter()
-                .collect(),
-        };
+        let field: Sum = Primitive::new(skeleton, &shaping, None)
+            .into_iter()
+            .collect();
         let window = Window {
             corner: DVec3::new(-2.0, -1.0, 0.0),
             across: DVec3::X * 4.0,
@@ -154,8 +151,9 @@ mod tests {
             assert!((f64::from(*value) - want).abs() < 1e-5 * want.max(1.0));
         }
         let mut filling = Filling::new(61, 41);
-        assert!(!filling.go_on(&field, &window, || true));
-        while !filling.go_on(&field, &window, || true) {}
+        let bodies = core::slice::from_ref(&field);
+        assert!(!filling.go_on(bodies, &window, || true));
+        while !filling.go_on(bodies, &window, || true) {}
         assert_eq!(filling.grid, grid);
     }
 }

@@ -14,7 +14,7 @@ use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions,
     Ui, pos2, vec2,
 };
-use field::{Field, THRESHOLD};
+use field::{Sum, THRESHOLD};
 use glam::DVec3;
 use scene::{Scene, SoftSurface};
 
@@ -45,10 +45,10 @@ struct Cut {
     tall: f64,
 }
 
-/// The field of a scene and where it is.
+/// The fields of a scene's bodies and where they are.
 struct Subject {
     generation: u64,
-    field: Field,
+    bodies: Vec<Sum>,
     center: DVec3,
     reach: f64,
 }
@@ -96,18 +96,19 @@ impl Slice {
         if known == Some(generation) {
             return;
         }
-        let (field, (center, reach)) = session.scene().map_or_else(
-            || (Field::default(), (DVec3::ZERO, 2.0)),
+        let (bodies, (center, reach)) = session.scene().map_or_else(
+            || (Vec::new(), (DVec3::ZERO, 2.0)),
             |scene| {
-                let soft = scene.soft_surface();
+                let soft = scene.soft_surfaces();
                 let place = extent(&scene, &soft);
-                let place = framed(&soft.field, place).unwrap_or(place);
-                (soft.field, place)
+                let bodies: Vec<Sum> = soft.into_iter().map(|surface| surface.sum).collect();
+                let place = framed(&bodies, place).unwrap_or(place);
+                (bodies, place)
             },
         );
         self.subject = Some(Subject {
             generation,
-            field,
+            bodies,
             center,
             reach,
         });
@@ -147,7 +148,7 @@ impl Slice {
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
         while self.level < LEVELS.len() {
             let enough = || platform::stopwatch() - begun > budget;
-            if !self.filling.go_on(&subject.field, &cut.window, enough) {
+            if !self.filling.go_on(&subject.bodies, &cut.window, enough) {
                 break;
             }
             let grid_done = core::mem::take(&mut self.filling).grid;
@@ -325,7 +326,7 @@ impl Slice {
         };
         let x = f64::from((pointer.x - place.left()) / place.width());
         let y = f64::from((place.bottom() - pointer.y) / place.height());
-        let value = sample::one(&subject.field, window.at(x, y));
+        let value = sample::one(&subject.bodies, window.at(x, y));
         bench.readings.insert("value", value);
         let text = format!("F = {}", number(value));
         let font = FontId::proportional(14.0);
@@ -409,17 +410,15 @@ fn grid(level: usize, tall: f64) -> Filling {
     Filling::new(width, (width as f64 * tall).round() as usize)
 }
 
-/// The middle of a field's skeletons and how far flesh may be from it. Planes count for nothing.
-fn extent(scene: &Scene, soft: &SoftSurface) -> (DVec3, f64) {
+/// The middle of all skeletons and how far flesh may be from it. Planes count for nothing.
+fn extent(scene: &Scene, soft: &[SoftSurface]) -> (DVec3, f64) {
     let spheres: Vec<(DVec3, f64)> = soft
-        .field
-        .primitives
         .iter()
-        .zip(&soft.element)
+        .flat_map(|surface| surface.sum.primitives.iter().zip(&surface.element))
         .filter_map(|(primitive, element)| {
             let (center, radius) = primitive.skeleton.bounding_sphere()?;
             // A bone's own flesh, and as much again for what neighbours add and for air.
-            let flesh = 2.2 * scene.radius(&scene.elements[*element]);
+            let flesh = 2.2 * scene.radius(&scene.elements[*element as usize]);
             Some((center, radius + flesh.min(primitive.influence)))
         })
         .collect();
@@ -437,12 +436,13 @@ fn extent(scene: &Scene, soft: &SoftSurface) -> (DVec3, f64) {
 }
 
 /// The same more closely: where the flesh really is, as far as a coarse look in space finds it.
-fn framed(field: &Field, (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
+fn framed(bodies: &[Sum], (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
     /// Samples along each axis.
     const SIDE: usize = 20;
     /// More primitives would take too long for a look.
     const MOST: usize = 1500;
-    if field.primitives.len() > MOST {
+    let primitives: usize = bodies.iter().map(|body| body.primitives.len()).sum();
+    if primitives > MOST {
         return None;
     }
     let step = 2.0 * reach / (SIDE - 1) as f64;
@@ -453,7 +453,7 @@ fn framed(field: &Field, (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)> 
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for first in (0..SIDE * SIDE * SIDE).step_by(8) {
         let points = core::array::from_fn(|lane| at(first + lane));
-        for (value, point) in sample::eight(field, points).into_iter().zip(points) {
+        for (value, point) in sample::eight(bodies, points).into_iter().zip(points) {
             if f64::from(value) > 0.5 * THRESHOLD {
                 low = low.min(point);
                 high = high.max(point);

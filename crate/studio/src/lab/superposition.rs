@@ -9,7 +9,7 @@ use super::tools::{self, Stage, choice, heading, reading, remark, slider};
 use crate::theme;
 use core::f64::consts::PI;
 use egui::{Align2, Color32, CursorIcon, FontId, Mesh, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
-use field::{Field, Kernel, Primitive, Shaping, Skeleton, THRESHOLD};
+use field::{Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 
 /// Samples of the fields, columns and rows.
@@ -138,13 +138,12 @@ impl Key {
     }
 
     /// The field of parts by convolution.
-    fn convolved(&self, parts: &[Skeleton]) -> Field {
+    fn convolved(&self, parts: &[Skeleton]) -> Sum {
         let shaping = self.shaping();
-        let primitives = parts
+        parts
             .iter()
             .filter_map(|part| Primitive::new(part.clone(), &shaping, None))
-            .collect();
-        Field { primitives }
+            .collect()
     }
 
     /// Σ h(distance to each part), scaled so that one part has the radius R.
@@ -206,7 +205,9 @@ impl Key {
         };
         let differences = [difference(&convolution), difference(&distance)];
         let swelling = {
-            let by = |index: usize| self.thickness(|at| sample::one(&fields[index], at));
+            let by = |index: usize| {
+                self.thickness(|at| sample::one(core::slice::from_ref(&fields[index]), at))
+            };
             let far = |parts: &[Skeleton]| self.thickness(|at| self.by_distance(parts, at));
             [by(1) / by(0).max(1e-9), far(&parts) / far(&whole).max(1e-9)]
         };
@@ -487,7 +488,7 @@ mod tests {
                 };
                 let compiled = rats::compile(&rats::Project { files: vec![file] });
                 assert_eq!(compiled.diagnostics, [], "{bone:?} {kernel:?}");
-                let field = compiled.scene.soft_surface().field;
+                let field = compiled.scene.soft_surfaces().swap_remove(0).sum;
                 let [whole, one, other] = [0, 1, 2].map(|i| field.primitives[i].skeleton.measure());
                 assert!((one + other - whole).abs() < 1e-3, "{bone:?} {kernel:?}");
                 assert!(

@@ -5,8 +5,8 @@
 use super::{Crossings, Digger, Packet};
 use crate::beam::Beam;
 use crate::beams::Beams;
-use crate::ray::Ray;
 use crate::layout::PACKET;
+use crate::ray::Ray;
 use crate::scratch::Scratch;
 use crate::soft::Soft;
 use crate::walk::{Bundle, Quest};

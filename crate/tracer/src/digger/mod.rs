@@ -29,8 +29,8 @@ mod ridder;
 mod sight;
 mod sphere;
 
-use crate::ray::Ray;
 use crate::layout::PACKET;
+use crate::ray::Ray;
 use crate::scratch::Scratch;
 use crate::soft::Soft;
 use crate::walk::Quest;

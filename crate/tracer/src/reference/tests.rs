@@ -1,16 +1,15 @@
 //! The reference against steps so small that they need no bounds.
 use super::{Near, Reference};
-use crate::tests::common::{Numbers, element, empty, soft};
+use crate::tests::common::{Numbers, clothe, element, empty, soft};
 use field::{Kernel, Profile, Wave};
 use glam::DVec3;
-use scene::{Scene, Shape};
+use scene::{Element, Scene, Shape};
 
 /// Some elements of one kernel; every other scene carves, tapers or has a profile.
 fn scene(kernel: Kernel, seed: u64) -> Scene {
     let mut n = Numbers((seed * 8 + kernel as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
     n.unit();
     let mut scene = empty();
-    scene.materials.clear();
     for i in 0..1 + seed % 3 {
         let mut material = soft(-libm::exp(n.between(-2.0, 3.0)), 1.0);
         material.kernel = Some(kernel);
@@ -54,14 +53,17 @@ fn scene(kernel: Kernel, seed: u64) -> Scene {
             }
             kind => n.shape(kind),
         };
-        scene.elements.push(element(shape, scene.materials.len()));
-        scene.materials.push(material);
+        scene.elements.push(Element {
+            flesh: Some(scene.flesh.len() as u32),
+            ..Element::new(shape)
+        });
+        scene.flesh.push(material);
     }
     scene
 }
 
 fn reference(scene: &Scene) -> Reference {
-    Reference::new(scene.soft_surface().field.primitives)
+    Reference::new(scene.soft_surfaces().swap_remove(0).sum.primitives)
 }
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
@@ -115,7 +117,7 @@ fn slopes_change_no_faster_than_the_bound() {
     for kernel in Kernel::ALL {
         for seed in 0..24 {
             let mut scene = scene(kernel, seed);
-            for material in &mut scene.materials {
+            for material in &mut scene.flesh {
                 if let Some(profile) = &mut material.profile {
                     profile.waves[0] = Wave::Sin;
                     profile.restriction = 0.0;
@@ -167,7 +169,7 @@ fn slopes_change_no_faster_than_the_bound() {
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_ball_is_found_to_the_last_digits() {
     let mut scene = empty();
-    scene.materials = vec![soft(-4.0, 1.0)];
+    clothe(&mut scene, vec![soft(-4.0, 1.0)]);
     scene.elements.push(element(
         Shape::Sphere {
             center: DVec3::X,

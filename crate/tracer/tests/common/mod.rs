@@ -2,7 +2,7 @@
 #![allow(dead_code)]
 use core::f64::consts::TAU;
 use glam::{DMat3, DVec3};
-use scene::{Camera, Element, Light, LightKind, Material, Origin, Quadric, Scene, Shape};
+use scene::{Camera, Element, Finish, Flesh, Light, LightKind, Quadric, Scene, Shape};
 
 /// A small deterministic generator, enough for test inputs.
 pub struct Numbers(pub u64);
@@ -101,25 +101,36 @@ impl Numbers {
     }
 }
 
-pub fn element(shape: Shape, material: usize) -> Element {
+/// An element with the flesh and the finish of this index; hard, if the scene has no such flesh.
+pub fn element(shape: Shape, index: u32) -> Element {
     Element {
-        shape,
-        material,
-        kernel: field::Kernel::Cauchy,
-        origin: Origin::default(),
+        flesh: Some(index),
+        finish: index,
+        ..Element::new(shape)
     }
 }
 
-/// A soft material of radius 0.25.
-pub fn soft(blobbiness: f64, strength: f64) -> Material {
-    Material {
+/// Flesh of radius 0.25.
+pub fn soft(blobbiness: f64, strength: f64) -> Flesh {
+    Flesh {
         blobbiness,
         strength,
         radius: 0.25,
-        specular: [0.5; 3],
-        shine: 20.0,
-        ..Material::default()
+        ..Flesh::default()
     }
+}
+
+/// Gives a scene these fleshes, each with a finish that shines.
+pub fn clothe(scene: &mut Scene, flesh: Vec<Flesh>) {
+    scene.finishes = flesh
+        .iter()
+        .map(|_| Finish {
+            specular: [0.5; 3],
+            shine: 20.0,
+            ..Finish::default()
+        })
+        .collect();
+    scene.flesh = flesh;
 }
 
 /// A scene looking at the origin from (0, 0, 4), with one light and no elements.
@@ -148,21 +159,14 @@ pub fn empty() -> Scene {
 pub fn blend(seed: u64, count: usize) -> Scene {
     let mut n = Numbers(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
     let mut scene = empty();
-    scene.materials = vec![
-        Material {
-            diffuse: [0.9, 0.3, 0.1],
-            ..soft(-0.5, 1.0)
-        },
-        Material {
-            diffuse: [0.1, 0.5, 0.9],
-            ..soft(-4.0, 1.0)
-        },
-        soft(-1.0, -0.7),
-    ];
+    let flesh = vec![soft(-0.5, 1.0), soft(-4.0, 1.0), soft(-1.0, -0.7)];
+    clothe(&mut scene, flesh);
+    scene.finishes[0].diffuse = [0.9, 0.3, 0.1];
+    scene.finishes[1].diffuse = [0.1, 0.5, 0.9];
     for _ in 0..count {
         let kind = (n.unit() * 5.0) as u64;
         let kind = if kind == 4 && n.unit() < 0.7 { 0 } else { kind };
-        let material = (n.unit() * 2.4) as usize;
+        let material = (n.unit() * 2.4) as u32;
         let shape = n.shape(kind);
         scene.elements.push(element(shape, material));
     }

@@ -3,7 +3,7 @@ use super::common::{Numbers, element, empty};
 use core::f64::consts::TAU;
 use field::{BlobScale, Kernel, Profile, Wave};
 use glam::DVec3;
-use scene::{Fragile, Material, Scene, Shape};
+use scene::{Element, Flesh, Fragile, Scene, Shape};
 use std::fmt::Write;
 use tracer::reference::{Fault, Reference};
 use tracer::{Hit, Picture};
@@ -98,7 +98,7 @@ impl Trial {
             scale,
         };
         let scene = random_scene(kernel, kind, &mut n, world);
-        let mut reference = Reference::new(scene.soft_surface().field.primitives);
+        let mut reference = Reference::new(scene.soft_surfaces().swap_remove(0).sum.primitives);
         reference.patience = 3000;
         let limit = 60.0 * scale;
         let size = 64 << (n.unit() * 7.0) as u32;
@@ -129,7 +129,6 @@ fn random_scene(kernel: Kernel, kind: Kind, n: &mut Numbers, world: World) -> Sc
     if n.unit() < 0.1 {
         scene.settings.blob_scale = BlobScale::Absolute;
     }
-    scene.materials.clear();
     let count = match kind {
         Kind::Cluster => n.between(60.0, 300.0) as usize,
         Kind::Mixed => n.between(4.0, 16.0) as usize,
@@ -160,34 +159,34 @@ fn random_scene(kernel: Kernel, kind: Kind, n: &mut Numbers, world: World) -> Sc
             BlobScale::Relative => 10f64.powf_of(n.between(-1.0, 1.5)),
             BlobScale::Absolute => crisp / (radius * radius * world.scale * world.scale),
         };
-        let mut material = Material {
+        let mut flesh = Flesh {
             radius: radius * world.scale,
             blobbiness: -blobbiness,
             kernel: Some(kernel),
-            ..Material::default()
+            ..Flesh::default()
         };
         if kind == Kind::Mixed && n.unit() < 0.3 {
-            material.kernel = Some(Kernel::ALL[(n.unit() * 8.0) as usize]);
+            flesh.kernel = Some(Kernel::ALL[(n.unit() * 8.0) as usize]);
         }
         if i > 0 && n.unit() < 0.15 {
-            material.strength = -n.between(0.2, 1.5);
+            flesh.strength = -n.between(0.2, 1.5);
         } else if n.unit() < 0.2 {
-            material.strength = n.between(0.5, 2.0);
+            flesh.strength = n.between(0.5, 2.0);
         }
         if kind == Kind::Taper || (kind == Kind::Mixed && n.unit() < 0.2) {
-            material.end_radius = Some(material.radius * n.between(0.02, 1.5));
+            flesh.end_radius = Some(flesh.radius * n.between(0.02, 1.5));
             if n.unit() < 0.3 {
-                material.end_blobbiness = Some(material.blobbiness * n.between(0.3, 3.0));
+                flesh.end_blobbiness = Some(flesh.blobbiness * n.between(0.3, 3.0));
             }
         }
         if kind == Kind::Restricted {
-            material.restriction = n.between(0.2, 1.0);
+            flesh.restriction = n.between(0.2, 1.0);
         }
         if matches!(kind, Kind::Waves | Kind::Kinks) {
             let smooth = [Wave::Sin, Wave::Cos, Wave::Sin2, Wave::Cos2];
             let kinked = [Wave::X, Wave::Saw, Wave::Hat, Wave::Step];
             let waves = if kind == Kind::Waves { smooth } else { kinked };
-            material.profile = Some(Profile {
+            flesh.profile = Some(Profile {
                 waves: [waves[(n.unit() * 4.0) as usize], Wave::One],
                 scale: [n.between(1.0, 20.0), 1.0],
                 bounds: [n.between(0.3, 0.9), 1.0],
@@ -196,8 +195,11 @@ fn random_scene(kernel: Kernel, kind: Kind, n: &mut Numbers, world: World) -> Sc
             });
         }
         let shape = shape(alone, radius, thin, n, world);
-        scene.elements.push(element(shape, scene.materials.len()));
-        scene.materials.push(material);
+        scene.elements.push(Element {
+            flesh: Some(scene.flesh.len() as u32),
+            ..Element::new(shape)
+        });
+        scene.flesh.push(flesh);
     }
     scene
 }

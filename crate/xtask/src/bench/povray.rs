@@ -125,7 +125,7 @@ pub fn blob(scene: &Value, pieces: u32) -> Result<String> {
         }
     }
     let head = head(scene)?;
-    let flesh = flesh(scene)?;
+    let flesh = finish(scene)?;
     Ok(format!(
         "{head}blob {{ threshold 1\n{components}{flesh} }}\n"
     ))
@@ -173,7 +173,7 @@ pub fn cauchy_lines(scene: &Value) -> Result<String> {
         }
     }
     let [low, high] = bounds.map(point);
-    let flesh = flesh(scene)?;
+    let flesh = finish(scene)?;
     write!(
         out,
         "isosurface {{ function {{ {sum} }}\n  contained_by {{ box {{ {low}, {high} }} }} max_gradient 30 \
@@ -191,8 +191,8 @@ struct Soft<'a> {
 }
 
 fn soft<'a>(scene: &'a Value, element: &'a Value) -> Result<Soft<'a>> {
-    let material = element["material"].as_u64().context("no material")? as usize;
-    let material = &scene["materials"][material];
+    let flesh = element["flesh"].as_u64().context("not soft")? as usize;
+    let flesh = &scene["flesh"][flesh];
     let shape = &element["shape"];
     let (kind, body) = shape
         .as_object()
@@ -200,11 +200,11 @@ fn soft<'a>(scene: &'a Value, element: &'a Value) -> Result<Soft<'a>> {
         .context("no shape")?;
     let fragile = scene["settings"]["fragile"][kind.to_lowercase()].as_bool();
     let radius = if fragile == Some(true) {
-        number(&material["radius"])?
+        number(&flesh["radius"])?
     } else {
         number(&body["radius"])?
     };
-    let blobbiness = number(&material["blobbiness"])?.abs();
+    let blobbiness = number(&flesh["blobbiness"])?.abs();
     let a = match scene["settings"]["blob_scale"].as_str() {
         Some("Absolute") => blobbiness,
         _ => blobbiness / (radius * radius),
@@ -233,12 +233,12 @@ fn head(scene: &Value) -> Result<String> {
     ))
 }
 
-/// The colour of the first material.
-fn flesh(scene: &Value) -> Result<String> {
-    let material = &scene["materials"][0];
-    let diffuse = vector(&material["diffuse"])?;
+/// The colour of the first finish.
+fn finish(scene: &Value) -> Result<String> {
+    let finish = &scene["finishes"][0];
+    let diffuse = vector(&finish["diffuse"])?;
     // Its ambient light is this share of the colour.
-    let share = vector(&material["ambient"])?[0] / diffuse[0];
+    let share = vector(&finish["ambient"])?[0] / diffuse[0];
     Ok(format!(
         "pigment {{ rgb {} }} finish {{ ambient {share} diffuse 1 }}",
         point(diffuse)
@@ -283,8 +283,9 @@ mod tests {
 
     fn scene(shape: Value) -> Value {
         json!({
-            "elements": [{ "shape": shape, "material": 0 }],
-            "materials": [{ "blobbiness": -4.0, "radius": 9.0, "ambient": [0.1, 0.1, 0.1], "diffuse": [0.5, 0.5, 0.5] }],
+            "elements": [{ "shape": shape, "flesh": 0, "finish": 0 }],
+            "flesh": [{ "blobbiness": -4.0, "radius": 9.0 }],
+            "finishes": [{ "ambient": [0.1, 0.1, 0.1], "diffuse": [0.5, 0.5, 0.5] }],
             "lights": [{ "kind": { "Point": { "position": [1.0, 2.0, 3.0] } } }],
             "camera": { "eye": [0.0, 0.0, 5.0], "up": [0.0, 1.0, 0.0], "target": [0.0, 0.0, 0.0], "fov": 45.0 },
             "background": [0.0, 0.0, 0.0],

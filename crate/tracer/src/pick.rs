@@ -1,0 +1,119 @@
+//! Picking: which element is seen in a direction.
+use crate::function::{Along, crossings, range};
+use crate::picture::Hit;
+use crate::ray::Ray;
+use crate::solids::Solids;
+use crate::unit::Unit;
+use field::{Ball, Implicit};
+use glam::DVec3;
+use scene::{Scene, SoftSurface};
+use std::collections::BTreeMap;
+
+/// A scene made ready for single rays.
+///
+/// It takes much less time and room to prepare than a [`Picture`](crate::Picture), and more for each ray.
+///
+/// ```
+/// use glam::DVec3;
+/// use scene::{Element, Scene, Shape};
+/// use tracer::Picker;
+///
+/// let mut scene = Scene::default();
+/// let ball = |x, radius| Shape::Sphere { center: DVec3::X * x, radius };
+/// scene.elements = vec![Element::new(ball(0.0, 1.0)), Element::new(ball(9.0, 1.0))];
+/// let hit = Picker::new(&scene).pick(DVec3::new(9.0, 0.0, 5.0), DVec3::NEG_Z);
+/// assert_eq!(hit.map(|hit| (hit.element, hit.t)), Some((Some(1), 4.0)));
+/// ```
+pub struct Picker {
+    unit: Unit,
+    solids: Solids,
+    /// The convolution surfaces, each with a ball outside of which it is not.
+    soft: Vec<(SoftSurface, Option<Ball>)>,
+}
+
+/// Stretches of rays shorter than this part of the scene's size are not looked into.
+const RESOLUTION: f64 = 1e-5;
+/// Surfaces without a support are followed this far, in units of the scene's size.
+const FURTHEST: f64 = 1e4;
+
+impl Picker {
+    /// Prepares a scene.
+    #[must_use]
+    pub fn new(scene: &Scene) -> Self {
+        let (unit, scene) = Unit::fit(scene);
+        let with_support = |surface: SoftSurface| {
+            let support = surface.sum.support();
+            (surface, support)
+        };
+        Self {
+            unit,
+            solids: Solids::new(&scene),
+            soft: scene
+                .soft_surfaces()
+                .into_iter()
+                .map(with_support)
+                .collect(),
+        }
+    }
+
+    /// The first crossing of a ray at t > 0. On a convolution surface the element is the one that adds most to the field there.
+    /// `None` where the ray meets nothing, is not finite or has no direction.
+    #[must_use]
+    pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        let ray = Ray {
+            origin: self.unit.map(origin),
+            direction: direction.try_normalize()?,
+        };
+        if !ray.origin.is_finite() {
+            return None;
+        }
+        let mut nearest = None;
+        let mut limit = f64::INFINITY;
+        if let Some((number, crossing)) = self.solids.first(&ray, limit, false, &mut Vec::new()) {
+            limit = crossing.t;
+            let element = self.solids.element(number);
+            nearest = Some((crossing.t, crossing.normal, None, element));
+        }
+        for (surface, support) in &self.soft {
+            let Some(range) = range(*support, &ray, limit, FURTHEST) else {
+                continue;
+            };
+            let along = Along {
+                ray,
+                range,
+                resolution: RESOLUTION,
+            };
+            let mut found = None;
+            crossings(&surface.sum, &along, |t, _| {
+                found = Some(t);
+                false
+            });
+            if let Some(t) = found {
+                limit = t;
+                let point = ray.at(t);
+                let gradient = DVec3::from_array(surface.sum.jet(point).gradient);
+                let normal = (-gradient).try_normalize().unwrap_or(-ray.direction);
+                nearest = Some((t, normal, Some(surface.body), strongest(surface, point)));
+            }
+        }
+        let (t, normal, body, element) = nearest?;
+        let t = self.unit.length(t);
+        Some(Hit {
+            t,
+            position: origin + ray.direction * t,
+            normal,
+            body,
+            element: Some(element),
+        })
+    }
+}
+
+/// The element that adds most to a field at a point. The pieces of a limb are one element.
+fn strongest(surface: &SoftSurface, point: DVec3) -> u32 {
+    let mut shares = BTreeMap::new();
+    for (value, &element) in surface.sum.weights(point).iter().zip(&surface.element) {
+        *shares.entry(element).or_insert(0.0) += value;
+    }
+    let most = shares.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    most.map_or(0, |(element, _)| element)
+}
