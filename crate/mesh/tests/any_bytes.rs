@@ -2,17 +2,17 @@
 
 mod common;
 
-use arbtest::arbitrary::{Result, Unstructured};
-use arbtest::arbtest;
 use common::{binary_ply, glb, png_of, tetrahedron};
 use glam::DVec3;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use trials::arbitrary::{Result, Unstructured};
+use trials::{WorkClock, trials};
 
 /// Far above what small files may take on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 fn check(name: &str, bytes: &[u8]) {
-    let begin = Instant::now();
+    let begin = WorkClock::start();
     match mesh::read(name, bytes) {
         Ok(mesh) => {
             assert!(!mesh.triangles.is_empty());
@@ -112,19 +112,19 @@ fn mutate(u: &mut Unstructured<'_>, bytes: &mut Vec<u8>) -> Result<()> {
 #[test]
 fn changed_files_do_no_harm() {
     let samples = samples();
-    arbtest(|u| {
+    trials(|u| {
         let (name, bytes) = u.choose(&samples)?;
         let mut bytes = bytes.clone();
         mutate(u, &mut bytes)?;
         check(name, &bytes);
         Ok(())
     })
-    .budget_ms(8_000);
+    .cases(4_000);
 }
 
 #[test]
 fn random_bytes_do_no_harm() {
-    arbtest(|u| {
+    trials(|u| {
         let names = ["x.obj", "x.stl", "x.ply", "x.glb", "x.png", "x"];
         let start: [&[u8]; 6] = [
             b"",
@@ -141,7 +141,7 @@ fn random_bytes_do_no_harm() {
         check(name, &bytes);
         Ok(())
     })
-    .budget_ms(4_000);
+    .cases(1_000);
 }
 
 /// Every file cut off anywhere.

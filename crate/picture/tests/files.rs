@@ -2,11 +2,11 @@
 //!
 //! Run with the feature `formats`; without it only PNG and MTV are tested.
 
-use arbtest::arbtest;
 use picture::animation::{Timing, Writer};
 use picture::file::{decode, decode_at_most, encode, size};
 use picture::{Format, Picture, Problem};
 use std::path::Path;
+use trials::trials;
 
 #[cfg(feature = "formats")]
 const FORMATS: &[Format] = &[
@@ -148,7 +148,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 
 #[test]
 fn any_bytes_give_a_picture_or_a_sentence() {
-    arbtest(|u| {
+    trials(|u| {
         let format = *u.choose(FORMATS)?;
         let mut bytes: Vec<u8> = if u.ratio(1, 4)? {
             u.arbitrary()?
@@ -177,7 +177,7 @@ fn any_bytes_give_a_picture_or_a_sentence() {
         }
         Ok(())
     })
-    .budget_ms(3000);
+    .cases(1_000);
 }
 
 const TIMING: Timing = Timing {

@@ -6,17 +6,17 @@ mod checks;
 #[path = "../examples/fuzz/generate.rs"]
 mod generate;
 
-use arbtest::arbitrary::{Result, Unstructured};
-use arbtest::arbtest;
 use rats::link::{self, Shared};
 use rats::{File, Project, commands, compile, highlight};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use trials::arbitrary::{Result, Unstructured};
+use trials::{WorkClock, trials};
 
 /// Far above what any text may take on the slowest machine that runs the tests, unoptimised.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 fn check(project: &Project) {
-    let begin = Instant::now();
+    let begin = WorkClock::start();
     let compiled = compile(project);
     assert!(begin.elapsed() < PATIENCE, "{:?}", begin.elapsed());
     assert!(compiled.diagnostics.len() <= rats::limits::MAX_DIAGNOSTICS);
@@ -94,14 +94,14 @@ fn check_highlight(text: &str) {
 
 #[test]
 fn any_bytes() {
-    arbtest(|u| {
+    trials(|u| {
         let bytes: Vec<u8> = u.arbitrary()?;
         let text = String::from_utf8_lossy(&bytes).into_owned();
         check_highlight(&text);
         check(&one_file(text));
         Ok(())
     })
-    .budget_ms(1500);
+    .cases(600);
 }
 
 /// A text of words of the language in any order.
@@ -193,7 +193,7 @@ fn soup(u: &mut Unstructured<'_>) -> Result<String> {
 
 #[test]
 fn any_words() {
-    arbtest(|u| {
+    trials(|u| {
         let text = soup(u)?;
         check_highlight(&text);
         let mut project = one_file(text);
@@ -204,7 +204,7 @@ fn any_words() {
         check(&project);
         Ok(())
     })
-    .budget_ms(4000);
+    .cases(1_000);
 }
 
 #[test]
@@ -216,7 +216,7 @@ fn any_slip_in_an_example() {
         .filter(|path| path.extension().is_some_and(|ext| ext == "rat"))
         .map(|path| std::fs::read_to_string(path).expect("a text"))
         .collect();
-    arbtest(|u| {
+    trials(|u| {
         let mut text = u.choose(&texts)?.clone();
         for _ in 0..u.int_in_range(1..=4)? {
             let mut boundaries = text.char_indices().map(|(i, _)| i).chain([text.len()]);
@@ -236,12 +236,12 @@ fn any_slip_in_an_example() {
         check(&one_file(text));
         Ok(())
     })
-    .budget_ms(4000);
+    .cases(1_000);
 }
 
 #[test]
 fn any_link() {
-    arbtest(|u| {
+    trials(|u| {
         let text: String = u.arbitrary()?;
         let _ = link::decode(&text);
         let bytes: Vec<u8> = u.arbitrary()?;
@@ -253,12 +253,12 @@ fn any_link() {
         let _ = link::decode(&coder.encode(framed));
         Ok(())
     })
-    .budget_ms(1000);
+    .cases(600);
 }
 
 #[test]
 fn any_project_comes_back() {
-    arbtest(|u| {
+    trials(|u| {
         let mut files = Vec::new();
         for index in 0..u.int_in_range(1..=4)? {
             files.push(File {
@@ -288,12 +288,12 @@ fn any_project_comes_back() {
         assert_eq!(link::decode(&fragment), Ok(shared));
         Ok(())
     })
-    .budget_ms(1500);
+    .cases(600);
 }
 
 #[test]
 fn any_nearly_right_text() {
-    arbtest(|u| {
+    trials(|u| {
         let text = generate::dataset(u)?;
         let project = checks::project(&text, "sphere m0 1 0 0 0\n");
         let compiled = compile(&project);
@@ -307,17 +307,17 @@ fn any_nearly_right_text() {
         assert_eq!(sound, Ok(()), "{text}");
         Ok(())
     })
-    .budget_ms(4000);
+    .cases(1_000);
 }
 
 #[test]
 fn any_content_of_a_link() {
-    arbtest(|u| {
+    trials(|u| {
         let bytes: Vec<u8> = u.arbitrary()?;
         let sound = checks::link(&String::from_utf8_lossy(&bytes))
             .and_then(|()| checks::link_content(&bytes));
         assert_eq!(sound, Ok(()));
         Ok(())
     })
-    .budget_ms(1000);
+    .cases(600);
 }

@@ -1,10 +1,10 @@
 //! Handles: what is dragged goes where it is dragged to, nothing else changes, and nothing panics.
 
-use arbtest::arbitrary::{Result, Unstructured};
-use arbtest::arbtest;
 use glam::{DMat3, DVec3};
 use rats::handles::{self, Editable, Handle, Kind};
 use rats::{Compiled, File, Project, Severity, compile};
+use trials::arbitrary::{Result, Unstructured};
+use trials::trials;
 
 const MATERIAL: &str = "surface s, diffuse Coral, blobbiness -2\n";
 
@@ -351,7 +351,7 @@ fn without_numbers(text: &str) -> String {
 fn a_handle_goes_where_it_is_dragged() {
     const GRAIN: f64 = 1e-7;
     let moved = std::cell::Cell::new(0);
-    arbtest(|u| {
+    trials(|u| {
         let mut project = project(&scene(u)?);
         let before = compile(&project);
         if before.scene.elements.len() != 1 {
@@ -398,7 +398,7 @@ fn a_handle_goes_where_it_is_dragged() {
         moved.set(moved.get() + 1);
         Ok(())
     })
-    .budget_ms(4000);
+    .cases(1_000);
     assert!(moved.get() > 100, "{}", moved.get());
 }
 
@@ -450,7 +450,7 @@ fn knobs_follow_along_their_own_way() {
 
 #[test]
 fn any_text_has_handles_without_a_panic() {
-    arbtest(|u| {
+    trials(|u| {
         let mut text = scene(u)?;
         // Damage it somewhere.
         for _ in 0..u.int_in_range(0..=4)? {
@@ -503,5 +503,5 @@ fn any_text_has_handles_without_a_panic() {
         handles::apply(&mut project, &[]);
         Ok(())
     })
-    .budget_ms(4000);
+    .cases(1_000);
 }

@@ -92,6 +92,17 @@ pub fn read_picture(path: &Path) -> Result<(png::OutputInfo, Vec<u8>)> {
     Ok((info, pixels))
 }
 
+/// Writes a picture of RGB bytes.
+pub fn write_picture(path: &Path, width: u32, rgb: &[u8]) -> Result<()> {
+    let height = rgb.len() / (3 * width as usize);
+    let file = BufWriter::new(File::create(path)?);
+    let mut encoder = png::Encoder::new(file, width, u32::try_from(height)?);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(rgb)?;
+    Ok(writer.finish()?)
+}
+
 /// Writes a picture anew with a palette, which takes less than half the bytes.
 fn reduce(path: &Path) -> Result<()> {
     let (info, pixels) = read_picture(path)?;

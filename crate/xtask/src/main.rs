@@ -8,7 +8,10 @@ mod bench;
 mod check;
 mod dist;
 mod examples;
+mod fuzz;
+mod packages;
 mod page;
+mod pins;
 mod serve;
 mod shell;
 mod tools;
@@ -40,6 +43,14 @@ enum Command {
     Test {
         /// Only this part.
         part: Option<check::Part>,
+        /// Only this package (a folder in crate/), or tests or files of browser tests with this in their names.
+        filter: Option<String>,
+    },
+    /// Run the random tests with fresh seeds, the fuzzer of the language and the targets of cargo-fuzz, each for some minutes.
+    Fuzz {
+        /// Minutes for each.
+        #[arg(default_value_t = 10)]
+        minutes: u64,
     },
     /// Measure, and write BENCHMARKS.md; or measure one part and print it.
     Bench {
@@ -48,15 +59,20 @@ enum Command {
     },
     /// Draw the thumbnails of the examples, www/examples/*.png, with our own renderer.
     Examples,
+    /// Renew tests/pins.txt, the hashes that pictures are held to, after a change of the pictures that is meant, and show
+    /// the old and the new pictures.
+    Pins,
 }
 
 fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Serve { port, release } => serve::serve(port, release),
         Command::Dist => dist::dist().map(|_| ()),
-        Command::Test { part } => check::test(part),
+        Command::Test { part, filter } => check::test(part, filter),
+        Command::Fuzz { minutes } => fuzz::fuzz(minutes),
         Command::Bench { part } => bench::bench(part),
         Command::Examples => examples::draw(),
+        Command::Pins => pins::renew(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

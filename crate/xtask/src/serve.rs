@@ -1,17 +1,12 @@
 //! A server for this machine.
 
-use crate::dist::compress;
 use crate::page::{self, Build};
 use anyhow::{Result, anyhow};
-use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
-use std::sync::{Arc, Mutex};
 use tiny_http::{Header, Method, Request, Response, Server};
 
 /// The port that is tried first.
 const PORT: u16 = 8080;
-/// Larger files are sent with brotli to browsers that take it.
-const WORTH_COMPRESSING: usize = 4096;
 
 /// Builds the page and serves it until the program is ended. Enter builds it anew.
 pub fn serve(port: Option<u16>, release: bool) -> Result<()> {
@@ -29,15 +24,11 @@ pub fn serve(port: Option<u16>, release: bool) -> Result<()> {
         .map_or(PORT, |address| address.port());
     println!("\nSinew is at http://127.0.0.1:{address}/ (Enter builds it anew, Ctrl+C ends it)");
 
-    let files = Arc::new(Files {
-        folder: folder.clone(),
-        small: Mutex::default(),
-    });
-    let served = files.clone();
+    let served = folder.clone();
     std::thread::spawn(move || {
         for request in server.incoming_requests() {
             // The browser may have gone away; that is no reason to end.
-            let _ = served.answer(request);
+            let _ = answer(&served, request);
         }
     });
     let mut line = String::new();
@@ -45,9 +36,6 @@ pub fn serve(port: Option<u16>, release: bool) -> Result<()> {
         match page::build(build, &folder) {
             Ok(()) => println!("Built. Reload the page."),
             Err(error) => eprintln!("xtask: {error:#}"),
-        }
-        if let Ok(mut small) = files.small.lock() {
-            small.clear();
         }
     }
     // Without a terminal there is no Enter.
@@ -67,63 +55,33 @@ fn open(port: Option<u16>) -> Result<Server> {
     })
 }
 
-struct Files {
-    folder: PathBuf,
-    /// Files after brotli.
-    small: Mutex<HashMap<PathBuf, Vec<u8>>>,
+fn answer(folder: &Path, request: Request) -> std::io::Result<()> {
+    if !matches!(request.method(), Method::Get | Method::Head) {
+        return request.respond(Response::empty(405));
+    }
+    let Some((path, bytes)) = file(folder, request.url()) else {
+        return request.respond(Response::from_string("Not found.").with_status_code(404));
+    };
+    let headers = [
+        header("Content-Type", mime(&path)),
+        header("Cache-Control", "no-store"),
+    ];
+    let mut response = Response::from_data(bytes);
+    for header in headers.into_iter().flatten() {
+        response.add_header(header);
+    }
+    request.respond(response)
 }
 
-impl Files {
-    fn answer(&self, request: Request) -> std::io::Result<()> {
-        if !matches!(request.method(), Method::Get | Method::Head) {
-            return request.respond(Response::empty(405));
-        }
-        let Some((path, bytes)) = self.find(request.url()) else {
-            return request.respond(Response::from_string("Not found.").with_status_code(404));
-        };
-        let takes_brotli = request.headers().iter().any(|header| {
-            header.field.equiv("Accept-Encoding") && header.value.as_str().contains("br")
-        });
-        let mut headers = vec![
-            header("Content-Type", mime(&path)),
-            header("Cache-Control", "no-store"),
-        ];
-        let mut body = bytes;
-        if takes_brotli
-            && body.len() >= WORTH_COMPRESSING
-            && let Some(small) = self.compressed(&path, &body)
-        {
-            headers.push(header("Content-Encoding", "br"));
-            body = small;
-        }
-        let mut response = Response::from_data(body);
-        for header in headers.into_iter().flatten() {
-            response.add_header(header);
-        }
-        request.respond(response)
-    }
-
-    /// The file that an address means, inside the folder.
-    fn find(&self, url: &str) -> Option<(PathBuf, Vec<u8>)> {
-        let path = url.split(['?', '#']).next()?.trim_start_matches('/');
-        let path = Path::new(if path.is_empty() { "index.html" } else { path });
-        let inside = path
-            .components()
-            .all(|part| matches!(part, Component::Normal(_)));
-        let file = self.folder.join(path);
-        inside.then(|| std::fs::read(&file).ok().map(|bytes| (file, bytes)))?
-    }
-
-    fn compressed(&self, path: &Path, bytes: &[u8]) -> Option<Vec<u8>> {
-        if mime(path).starts_with("image/png") {
-            return None;
-        }
-        let mut small = self.small.lock().ok()?;
-        if !small.contains_key(path) {
-            small.insert(path.to_owned(), compress(bytes, 4).ok()?);
-        }
-        small.get(path).cloned()
-    }
+/// The file that an address means, inside the folder.
+fn file(folder: &Path, url: &str) -> Option<(PathBuf, Vec<u8>)> {
+    let path = url.split(['?', '#']).next()?.trim_start_matches('/');
+    let path = Path::new(if path.is_empty() { "index.html" } else { path });
+    let inside = path
+        .components()
+        .all(|part| matches!(part, Component::Normal(_)));
+    let file = folder.join(path);
+    inside.then(|| std::fs::read(&file).ok().map(|bytes| (file, bytes)))?
 }
 
 fn header(name: &str, value: &str) -> Option<Header> {

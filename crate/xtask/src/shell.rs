@@ -1,10 +1,11 @@
 //! Running other programs, and finding them.
 
 use anyhow::{Context, Result, bail};
+use std::cell::Cell;
 use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 
 /// The root of the repository.
 pub fn root() -> PathBuf {
@@ -58,9 +59,15 @@ impl Build {
     }
 }
 
-/// A command that runs in the root of the repository.
+/// A command that runs in the root of the repository, and gives way to others where its lane does.
 pub fn command(program: impl AsRef<OsStr>, arguments: &[&str]) -> Command {
-    let mut command = Command::new(program);
+    let mut command = if LANE.get().first {
+        Command::new(program)
+    } else {
+        let mut nice = Command::new("nice");
+        nice.args(["-n", "10"]).arg(program);
+        nice
+    };
     command.current_dir(root()).args(arguments);
     command
 }
@@ -71,8 +78,51 @@ pub fn cargo(arguments: &[&str]) -> Command {
     command(cargo, arguments)
 }
 
+/// What a thread's lines are marked with, and how its programs run.
+#[derive(Clone, Copy, Debug)]
+struct Lane {
+    /// Stands before each line that the thread and its programs write; empty where nothing else runs at the same time.
+    name: &'static str,
+    /// Whether its programs go before those of others.
+    first: bool,
+}
+
+thread_local! {
+    static LANE: Cell<Lane> = const { Cell::new(Lane { name: "", first: true }) };
+}
+
+/// Does something while other threads do something else: each line is marked with a name, and programs give way to others if they
+/// are not `first`.
+pub fn in_lane<T>(name: &'static str, first: bool, work: impl FnOnce() -> T) -> T {
+    // Only there programs are told to give way with `nice`.
+    let first = first || !cfg!(unix);
+    let before = LANE.replace(Lane { name, first });
+    let done = work();
+    LANE.set(before);
+    done
+}
+
+/// A function that does something in another thread as in this one's lane.
+pub fn in_this_lane<T>(work: impl FnOnce() -> T) -> impl FnOnce() -> T {
+    let Lane { name, first } = LANE.get();
+    move || in_lane(name, first, work)
+}
+
+/// Writes a line.
+pub fn tell(line: &str) {
+    tell_as(LANE.get().name, line);
+}
+
+fn tell_as(mark: &str, line: &str) {
+    if mark.is_empty() {
+        println!("{line}");
+    } else {
+        println!("{mark} | {line}");
+    }
+}
+
 /// Says what is run.
-fn say(command: &Command) {
+pub fn say(command: &Command) {
     let words: Vec<_> = std::iter::once(command.get_program())
         .chain(command.get_args())
         .map(|word| {
@@ -82,43 +132,73 @@ fn say(command: &Command) {
         })
         .collect();
     let program = Path::new(&words[0]).file_name().unwrap_or_default();
-    eprintln!("$ {} {}", program.to_string_lossy(), words[1..].join(" "));
+    tell(&format!(
+        "$ {} {}",
+        program.to_string_lossy(),
+        words[1..].join(" ")
+    ));
 }
 
 /// Runs a command and fails if it fails.
 pub fn run(command: &mut Command) -> Result<()> {
     say(command);
-    let program = command.get_program().to_string_lossy().into_owned();
-    let status = command
-        .status()
-        .with_context(|| format!("{program} could not be run"))?;
+    if !LANE.get().name.is_empty() {
+        return pass_on(command, true).map(|_| ());
+    }
+    let status = command.status();
+    succeeded(command, status)
+}
+
+/// Runs a command, passes on what it writes, line by line as it comes, and gives its standard output.
+pub fn run_and_read(command: &mut Command) -> Result<String> {
+    say(command);
+    pass_on(command, true)
+}
+
+fn succeeded(command: &Command, status: std::io::Result<ExitStatus>) -> Result<()> {
+    let program = command.get_program().to_string_lossy();
+    let status = status.with_context(|| format!("{program} could not be run"))?;
     if !status.success() {
         bail!("{program} failed ({status})");
     }
     Ok(())
 }
 
-/// Runs a command, passes on what it writes, line by line as it comes, and gives it back.
-pub fn run_and_read(command: &mut Command) -> Result<String> {
-    say(command);
+/// Runs a command, passes on what it writes to standard error, and to standard output if that is `shown`, and gives the latter.
+fn pass_on(command: &mut Command, shown: bool) -> Result<String> {
+    let mark = LANE.get().name;
+    command.stdout(Stdio::piped());
+    if !mark.is_empty() {
+        command.stderr(Stdio::piped());
+    }
     let program = command.get_program().to_string_lossy().into_owned();
     let mut child = command
-        .stdout(Stdio::piped())
         .spawn()
         .with_context(|| format!("{program} could not be run"))?;
+    let errors = child.stderr.take().map(|errors| {
+        std::thread::spawn(move || {
+            for line in BufReader::new(errors).split(b'\n').map_while(Result::ok) {
+                tell_as(mark, &String::from_utf8_lossy(&line));
+            }
+        })
+    });
     let mut output = String::new();
     if let Some(stdout) = child.stdout.take() {
-        for line in BufReader::new(stdout).lines() {
+        for line in BufReader::new(stdout).split(b'\n') {
             let line = line?;
-            println!("{line}");
+            let line = String::from_utf8_lossy(&line);
+            if shown {
+                tell(&line);
+            }
             output.push_str(&line);
             output.push('\n');
         }
     }
-    let status = child.wait()?;
-    if !status.success() {
-        bail!("{program} failed ({status})");
+    if let Some(errors) = errors {
+        // It ends with the program.
+        let _ = errors.join();
     }
+    succeeded(command, child.wait())?;
     Ok(output)
 }
 
@@ -133,15 +213,20 @@ pub fn read(command: &mut Command) -> Option<String> {
 
 /// What a cargo command with `--message-format json-render-diagnostics` says that it made.
 pub fn artifacts(command: &mut Command) -> Result<Vec<serde_json::Value>> {
-    let output = command.stderr(Stdio::inherit()).output()?;
-    if !output.status.success() {
-        bail!("this does not compile");
-    }
-    Ok(String::from_utf8_lossy(&output.stdout)
+    say(command);
+    Ok(pass_on(command, false)?
         .lines()
         .filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
         .filter(|message| message["reason"] == "compiler-artifact")
         .collect())
+}
+
+/// The program or test of this name among what cargo has made.
+pub fn executable(made: &[serde_json::Value], name: &str) -> Result<PathBuf> {
+    made.iter()
+        .filter(|made| made["target"]["name"] == name)
+        .find_map(|made| Some(PathBuf::from(made["executable"].as_str()?)))
+        .with_context(|| format!("cargo made no {name}"))
 }
 
 /// The path of a program that can be called by this name.

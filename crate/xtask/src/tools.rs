@@ -1,8 +1,9 @@
 //! Installing what is missing.
 
-use crate::shell::{cargo, command, find, read, root, run};
+use crate::shell::{artifacts, cargo, command, executable, find, read, root, run, tell};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// The target of everything that runs in the page.
 pub const WASM: &str = "wasm32-unknown-unknown";
@@ -23,47 +24,26 @@ pub fn wasm_target() -> Result<()> {
     )
 }
 
-/// The version of wasm-bindgen in Cargo.lock.
-fn wasm_bindgen_version() -> Result<String> {
-    let lock = std::fs::read_to_string(root().join("Cargo.lock"))?;
-    lock.split("[[package]]")
-        .find(|package| package.contains("name = \"wasm-bindgen\"\n"))
-        .and_then(|package| package.split("version = \"").nth(1)?.split('"').next())
-        .map(str::to_owned)
-        .context("Cargo.lock names no wasm-bindgen")
+/// The runner of wasm tests, of the version of wasm-bindgen that the tests are compiled with.
+pub fn wasm_test_runner() -> Result<PathBuf> {
+    let build = [
+        "build",
+        "--package",
+        "runner",
+        "--message-format",
+        "json-render-diagnostics",
+    ];
+    executable(&artifacts(&mut cargo(&build))?, "wasm-bindgen-test-runner")
 }
 
-/// The runner of wasm tests, of the locked version, installed into `.tools/` if it is missing.
-pub fn wasm_test_runner() -> Result<PathBuf> {
-    let version = wasm_bindgen_version()?;
-    let fits = |program: &Path| {
-        read(command(program, &["--version"]).env_remove("RUST_LOG"))
-            .is_some_and(|answer| answer.ends_with(&version))
-    };
-    let name = "wasm-bindgen-test-runner";
-    let local = root()
-        .join(".tools/bin")
-        .join(name)
-        .with_extension(std::env::consts::EXE_EXTENSION);
-    if let Some(found) = find(name)
-        .into_iter()
-        .chain([local.clone()])
-        .find(|p| fits(p))
-    {
-        return Ok(found);
-    }
-    let tools = root().join(".tools");
-    run(&mut cargo(&[
-        "install",
-        "--debug",
-        "--root",
-        &tools.to_string_lossy(),
-        &format!("wasm-bindgen-cli@{version}"),
-    ]))
-    .with_context(|| {
-        format!("The runner of wasm tests is missing. Install it: cargo install wasm-bindgen-cli@{version}")
-    })?;
-    Ok(local)
+/// What says to the runner that tests are to run in a browser's worker: `.cargo/config.toml` does, for `wasm-pack test`.
+pub const IN_WORKER: &str = "WASM_BINDGEN_USE_DEDICATED_WORKER";
+
+/// A command that runs tests as wasm in node.
+pub fn in_node(runner: &Path, wasm: &Path) -> Command {
+    let mut command = command(runner, &[&wasm.to_string_lossy()]);
+    command.env_remove(IN_WORKER);
+    command
 }
 
 /// The node packages of tests/package.json (browser driver, wasm optimiser). Gives their folder.
@@ -90,7 +70,9 @@ pub fn wasm_opt() -> Option<PathBuf> {
     match node_packages() {
         Ok(modules) => Some(modules.join("binaryen/bin/wasm-opt")),
         Err(error) => {
-            eprintln!("The wasm is not made smaller with wasm-opt: {error:#}");
+            tell(&format!(
+                "The wasm is not made smaller with wasm-opt: {error:#}"
+            ));
             None
         }
     }
@@ -130,16 +112,17 @@ pub fn chromium() -> Result<PathBuf> {
             .concat();
             run(command(words[0], &words[1..]).env("DEBIAN_FRONTEND", "noninteractive"))
         };
-        // The second package draws without a graphics card.
+        // The second package is how tests as wasm drive the browser, the third draws without a graphics card.
         let packages = [
             "install",
             "-y",
             "--no-install-recommends",
             "chromium",
+            "chromium-driver",
             "mesa-vulkan-drivers",
         ];
         apt(&["update"]).and_then(|()| apt(&packages)).context(
-            "The browser is missing. Install it: apt-get install chromium mesa-vulkan-drivers",
+            "The browser is missing. Install it: apt-get install chromium chromium-driver mesa-vulkan-drivers",
         )?;
         return present().context("apt-get installed no chromium that runs");
     }

@@ -1,9 +1,9 @@
 //! What can be written at the caret.
 
 use crate::texts::{corpus, examples, file, marked, names_soup, one_file, soup};
-use arbtest::arbtest;
 use rats::assist::complete::MAX_COMPLETIONS;
 use rats::assist::{Completion, complete};
+use trials::trials;
 
 fn offered(text: &str) -> Vec<Completion> {
     let (project, file, byte) = marked(text);
@@ -219,7 +219,7 @@ fn any_place() {
             check(project, 0, byte);
         }
     }
-    arbtest(|u| {
+    trials(|u| {
         let text = if u.ratio(1, 2)? {
             soup(u)?
         } else {
@@ -232,5 +232,5 @@ fn any_place() {
         check(&project, 9, byte);
         Ok(())
     })
-    .budget_ms(2000);
+    .cases(600);
 }

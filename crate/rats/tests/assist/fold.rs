@@ -1,8 +1,8 @@
 //! Folding texts.
 
 use crate::texts::{corpus, examples, soup};
-use arbtest::arbtest;
 use rats::assist::folds;
+use trials::trials;
 
 /// The first line of each and the line after its last.
 fn lines(text: &str) -> Vec<(usize, usize)> {
@@ -76,9 +76,9 @@ fn folds_lie_within_each_other_or_apart() {
             check(&file.text);
         }
     }
-    arbtest(|u| {
+    trials(|u| {
         check(&soup(u)?);
         Ok(())
     })
-    .budget_ms(1000);
+    .cases(600);
 }

@@ -1,9 +1,9 @@
 //! Laying texts out.
 
 use crate::texts::{corpus, examples, file, one_file, soup};
-use arbtest::arbtest;
 use rats::assist::format;
 use rats::{Compiled, HotVariable, Project, compile};
+use trials::trials;
 
 fn check(before: &str, after: &str) {
     assert_eq!(format(before), after, "{before:?}");
@@ -122,23 +122,23 @@ fn meaning_stays_in_examples_and_mistakes() {
 
 #[test]
 fn meaning_stays_in_any_words() {
-    arbtest(|u| {
+    trials(|u| {
         let mut project = one_file(&soup(u)?);
         project.files.push(file("other.rat", &soup(u)?));
         same_meaning(&project);
         Ok(())
     })
-    .budget_ms(3000);
+    .cases(1_000);
 }
 
 #[test]
 fn any_bytes() {
-    arbtest(|u| {
+    trials(|u| {
         let bytes: Vec<u8> = u.arbitrary()?;
         same_meaning(&one_file(&String::from_utf8_lossy(&bytes)));
         Ok(())
     })
-    .budget_ms(1000);
+    .cases(600);
 }
 
 fn same_meaning(project: &Project) {

@@ -1,8 +1,8 @@
 //! What the word under the pointer is.
 
 use crate::texts::{corpus, file, marked, one_file, soup};
-use arbtest::arbtest;
 use rats::assist::{Card, hover};
+use trials::trials;
 
 fn card(text: &str) -> Card {
     let (project, file, byte) = marked(text);
@@ -136,7 +136,7 @@ fn any_place() {
             }
         }
     }
-    arbtest(|u| {
+    trials(|u| {
         let text = soup(u)?;
         let mut project = one_file(&text);
         project.files.push(file("other.rat", "var a = 1\n"));
@@ -146,5 +146,5 @@ fn any_place() {
         }
         Ok(())
     })
-    .budget_ms(1500);
+    .cases(600);
 }

@@ -1,10 +1,10 @@
 //! Where names are made and used, and renaming them.
 
 use crate::texts::{corpus, examples, file, marked, names_soup, one_file, soup};
-use arbtest::arbtest;
 use rats::assist::rename::apply;
 use rats::assist::{Index, SymbolKind, definition, references, rename, rename_file};
 use rats::{Compiled, Project, compile};
+use trials::trials;
 
 /// The place in «…» is where the name at `|` is made.
 fn made(text: &str) {
@@ -331,13 +331,13 @@ fn renaming_keeps_the_meaning_of_examples() {
 #[test]
 fn renaming_keeps_the_meaning_of_any_names() {
     let compared = std::cell::Cell::new(0);
-    arbtest(|u| {
+    trials(|u| {
         let mut project = one_file(&names_soup(u)?);
         project.files.push(file("other.rat", &names_soup(u)?));
         compared.set(compared.get() + usize::from(any_rename(&project)));
         Ok(())
     })
-    .budget_ms(3000);
+    .cases(1_000);
     // How many there are in the time depends on who else uses the processor.
     assert!(compared.get() >= 1, "no text without errors");
 }
@@ -354,7 +354,7 @@ fn any_place_of_any_text() {
             }
         }
     }
-    arbtest(|u| {
+    trials(|u| {
         let mut project = one_file(&soup(u)?);
         project.files.push(file("other.rat", &soup(u)?));
         let byte = u.int_in_range(0..=project.files[0].text.len() + 1)?;
@@ -364,5 +364,5 @@ fn any_place_of_any_text() {
         let _ = rename(&project, 0, byte, "new");
         Ok(())
     })
-    .budget_ms(1500);
+    .cases(600);
 }

@@ -1,8 +1,8 @@
 //! The command that the caret is in.
 
 use crate::texts::{corpus, marked, one_file, soup};
-use arbtest::arbtest;
 use rats::assist::signature;
+use trials::trials;
 
 /// The signature at `|` with the active parameter in brackets.
 fn shows(text: &str, wanted: &str) {
@@ -69,7 +69,7 @@ fn any_place() {
             }
         }
     }
-    arbtest(|u| {
+    trials(|u| {
         let text = soup(u)?;
         let byte = u.int_in_range(0..=text.len() + 1)?;
         if let Some(found) = signature(&one_file(&text), 0, byte) {
@@ -81,5 +81,5 @@ fn any_place() {
         }
         Ok(())
     })
-    .budget_ms(1500);
+    .cases(600);
 }

@@ -1,8 +1,8 @@
 //! Texts to try things on: the examples, the corpus of mistakes, and random ones.
 
-use arbtest::arbitrary::{Result, Unstructured};
 use rats::{File, Project, commands};
 use std::path::Path;
+use trials::arbitrary::{Result, Unstructured};
 
 /// A project of one text.
 pub fn one_file(text: &str) -> Project {

@@ -25,15 +25,14 @@ pub fn measure() -> Result<Piece> {
         let folder = target().join("bench");
         std::fs::create_dir_all(&folder)?;
         let quicker = folder.join("speed.wasm");
-        page::optimise(&wasm_opt, page::WORKER_LEVEL, &wasm, &quicker)?;
+        page::optimise(&wasm_opt, page::LEVEL, &wasm, &quicker)?;
         wasm = quicker;
     }
-    let wasm = wasm.to_string_lossy();
     let mut scenes: Vec<(String, [Runs; 2])> = Vec::new();
     for _ in 0..ROUNDS {
         for (which, figures) in [
             figures(&mut command(&native, &[]))?,
-            figures(&mut command(&runner, &[&wasm]))?,
+            figures(&mut tools::in_node(&runner, &wasm))?,
         ]
         .into_iter()
         .enumerate()

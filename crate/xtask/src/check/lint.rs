@@ -1,26 +1,38 @@
 //! Formatting and lints, for this machine and for wasm.
 
+use super::{Chosen, Watch};
+use crate::packages::MODULES;
 use crate::shell::{cargo, run};
 use crate::tools;
 use anyhow::{Context, Result};
 
+const DENY: [&str; 3] = ["--", "-D", "warnings"];
+
 /// Runs this part.
-pub fn check() -> Result<String> {
-    run(&mut cargo(&["fmt", "--all", "--check"]))
-        .context("The code is not formatted. Run: cargo fmt --all")?;
-    let deny = ["--", "-D", "warnings"];
-    run(cargo(&["clippy", "--workspace", "--all-targets"]).args(deny))?;
+pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
+    format()?;
+    watch.step("native", || clippy(&chosen.packages()))?;
     tools::wasm_target()?;
-    for (package, features) in [("studio", ""), ("worker", "entry")] {
-        let options = [
-            "--package",
-            package,
-            "--features",
-            features,
-            "--target",
-            tools::WASM,
-        ];
-        run(cargo(&["clippy"]).args(options).args(deny))?;
-    }
+    watch.step("wasm", || {
+        MODULES
+            .iter()
+            .filter(|module| chosen.has(module.package))
+            .try_for_each(|module| {
+                let options = ["--package", module.package, "--features", module.features];
+                clippy(&[&options[..], &["--target", tools::WASM]].concat())
+            })
+    })?;
     Ok(String::from("clean"))
+}
+
+/// Checks the format of all code.
+pub fn format() -> Result<()> {
+    run(&mut cargo(&["fmt", "--all", "--check"]))
+        .context("The code is not formatted. Run: cargo fmt --all")
+}
+
+/// Lints packages.
+pub fn clippy(packages: &[&str]) -> Result<()> {
+    let mut clippy = cargo(&["clippy", "--all-targets"]);
+    run(clippy.args(packages).args(DENY))
 }

@@ -1,54 +1,149 @@
 //! All tests: `cargo xtask test`.
 
+mod chosen;
 mod e2e;
 mod lint;
 mod native;
+mod portable;
+mod quick;
 mod wasm;
 
+use crate::shell::{in_lane, tell};
 use anyhow::{Result, bail};
+use chosen::Chosen;
 use clap::ValueEnum;
 use std::time::Instant;
 
 /// A part of the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Part {
+    /// Formatting, lints and tests of the packages that have been changed since the last commit, and the pins of pictures: after
+    /// each edit. Runs only where it is asked for, as the others do all of it.
+    Quick,
     /// Formatting and lints.
     Lint,
     /// Tests on this machine.
     Native,
-    /// The mathematics' tests as wasm, in node.
+    /// The mathematics' tests as wasm, in node and in a browser, and pictures on every kind of processor.
     Wasm,
     /// The page in a real browser.
     E2e,
 }
 
-/// Runs one part, or all. A part that fails does not keep the others from being run.
-pub fn test(part: Option<Part>) -> Result<()> {
-    let parts = part.map_or_else(|| Part::value_variants().to_vec(), |part| vec![part]);
-    let begun = Instant::now();
-    let mut summary = String::new();
-    let mut failed = Vec::new();
-    for part in parts {
-        println!("\n== {} ==", name(part));
+/// What a part takes, step by step.
+#[derive(Default)]
+pub struct Watch {
+    steps: Vec<(&'static str, u64)>,
+}
+
+impl Watch {
+    /// Does something and keeps how long it takes.
+    pub fn step<T>(&mut self, name: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
         let begun = Instant::now();
-        let result = match part {
-            Part::Lint => lint::check(),
-            Part::Native => native::check(),
-            Part::Wasm => wasm::check(),
-            Part::E2e => e2e::check(),
-        };
-        let said = result.unwrap_or_else(|error| {
-            failed.push(name(part));
-            format!("FAILED: {error:#}")
-        });
-        let seconds = begun.elapsed().as_secs();
-        summary += &format!("\n  {}: {said} ({seconds} s)", name(part));
+        let done = work();
+        self.steps.push((name, begun.elapsed().as_secs()));
+        done
     }
+
+    /// `(lint 12, build 34)`, in seconds.
+    fn told(&self) -> String {
+        let steps: Vec<String> = self
+            .steps
+            .iter()
+            .map(|(name, seconds)| format!("{name} {seconds}"))
+            .collect();
+        if steps.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", steps.join(", "))
+        }
+    }
+}
+
+/// Runs one part, or all. A part that fails does not keep the others from being run.
+pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
+    let begun = Instant::now();
+    let done = match part {
+        Some(Part::Quick) => vec![run(Part::Quick, &Chosen::changed(filter)?)],
+        // Crates are not to be seen there.
+        Some(Part::E2e) => vec![run(Part::E2e, &filter.map_or(Chosen::All, Chosen::Test))],
+        Some(part) => vec![run(part, &Chosen::new(filter))],
+        None => all(),
+    };
+    let summary: String = done
+        .iter()
+        .map(|done| format!("\n  {}", done.said))
+        .collect();
     println!("\nTested in {} s:{summary}", begun.elapsed().as_secs());
+    let failed: Vec<String> = done
+        .iter()
+        .filter(|done| done.failed)
+        .map(|done| name(done.part))
+        .collect();
     if !failed.is_empty() {
         bail!("{} failed", failed.join(", "));
     }
     Ok(())
+}
+
+/// All parts, in two lanes: one builds the page, for which one core works alone for minutes, and then looks at it in a
+/// browser, before all else; the other does meanwhile what it can. Their profiles have folders of their own, so that cargo
+/// lets both build at once.
+fn all() -> Vec<Done> {
+    let lane = |name, parts: &'static [Part], first| {
+        move || {
+            in_lane(name, first, || {
+                parts
+                    .iter()
+                    .map(|part| run(*part, &Chosen::All))
+                    .collect::<Vec<Done>>()
+            })
+        }
+    };
+    std::thread::scope(|scope| {
+        let page = scope.spawn(lane("page", &[Part::E2e], true));
+        let code = scope.spawn(lane("code", &[Part::Lint, Part::Native, Part::Wasm], false));
+        [(code, Part::Native), (page, Part::E2e)]
+            .into_iter()
+            .flat_map(|(lane, part)| {
+                lane.join().unwrap_or_else(|_| {
+                    let said = format!("the lane of {} panicked", name(part));
+                    let failed = true;
+                    vec![Done { part, said, failed }]
+                })
+            })
+            .collect()
+    })
+}
+
+/// What a part has come to.
+struct Done {
+    part: Part,
+    said: String,
+    failed: bool,
+}
+
+fn run(part: Part, chosen: &Chosen) -> Done {
+    let begun = Instant::now();
+    let mut watch = Watch::default();
+    tell(&format!("\n== {} ==", name(part)));
+    let result = match part {
+        Part::Quick => quick::check(&mut watch, chosen),
+        Part::Lint => lint::check(&mut watch, chosen),
+        Part::Native => native::check(&mut watch, chosen),
+        Part::Wasm => wasm::check(&mut watch, chosen),
+        Part::E2e => e2e::check(&mut watch, chosen),
+    };
+    let failed = result.is_err();
+    let said = result.unwrap_or_else(|error| format!("FAILED: {error:#}"));
+    let said = format!(
+        "{}: {said}, {} s{}",
+        name(part),
+        begun.elapsed().as_secs(),
+        watch.told()
+    );
+    tell(&said);
+    Done { part, said, failed }
 }
 
 fn name(part: Part) -> String {
@@ -72,5 +167,15 @@ mod tests {
         let output = "test a ... ok\ntest result: ok. 3 passed; 0 failed\n\ntest result: ok. 20 passed; 0 failed";
         assert_eq!(super::passed(output), 23);
         assert_eq!(super::passed("no tests to run!"), 0);
+    }
+
+    #[test]
+    fn steps_are_told_with_their_seconds() {
+        let mut watch = super::Watch::default();
+        assert_eq!(watch.told(), "");
+        assert_eq!(watch.step("build", || Ok(3)).ok(), Some(3));
+        let failed: anyhow::Result<()> = watch.step("run", || anyhow::bail!("no"));
+        assert!(failed.is_err());
+        assert_eq!(watch.told(), " (build 0, run 0)");
     }
 }

@@ -1,67 +1,235 @@
-//! The tests of the mathematics as wasm, in node, and its pictures against those of this machine.
+//! The tests of the mathematics as wasm, in node and in a browser, and its pictures against those of this machine.
 
-use super::passed;
-use crate::shell::{self, cargo, find, run_and_read};
+use super::{Chosen, Watch, passed, portable};
+use crate::packages::{TESTED_AS_WASM, TESTED_IN_BROWSER};
+use crate::page::NO_LINES;
+use crate::shell::{artifacts, cargo, command, find, in_this_lane, root, run_and_read, tell};
 use crate::tools;
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
-/// The crates whose results must be the same in the page as on this machine.
-const CRATES: [&str; 4] = ["field", "rats", "tracer", "worker"];
+/// What a test must mention to be run as wasm.
+const ATTRIBUTE: &str = "wasm_bindgen_test";
+/// A file of tests that is compiled to wasm.
+struct Binary {
+    package: &'static str,
+    /// `same`, or the package's name for those in `src/`.
+    name: String,
+    wasm: PathBuf,
+}
 
 /// Runs this part.
-pub fn check() -> Result<String> {
+pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
     if find("node").is_none() {
         bail!("Node.js is missing. Install Node.js 20 or newer (https://nodejs.org).");
     }
     tools::wasm_target()?;
-    let runner = tools::wasm_test_runner()?;
+    let runner = watch.step("runner", tools::wasm_test_runner)?;
+    let packages: Vec<&'static str> = TESTED_AS_WASM
+        .into_iter()
+        .filter(|package| chosen.has(package))
+        .collect();
+    if packages.is_empty() {
+        bail!("the tests of {chosen:?} do not run as wasm");
+    }
+    let binaries = watch.step("build", || build(&packages))?;
+    let outputs = watch.step("node", || run(&runner, &binaries, chosen.test()))?;
     let mut said = Vec::new();
-    let mut pictures = Vec::new();
-    for package in CRATES {
-        let options = ["test", "--package", package, "--target", tools::WASM];
-        let output = run_and_read(
-            cargo(&options)
-                .args(["--lib", "--tests", "--", "--nocapture"])
-                .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER", &runner),
-        )?;
-        pictures.extend(output.lines().filter_map(picture).map(str::to_owned));
+    for package in &packages {
+        let of_it = binaries.iter().zip(&outputs);
+        let count = of_it
+            .filter(|(binary, _)| binary.package == *package)
+            .map(|(_, output)| passed(output))
+            .sum::<usize>();
         // A test without the attribute of wasm-bindgen-test is silently left out.
-        match passed(&output) {
-            0 => bail!("no test of {package} was run as wasm"),
-            count => said.push(format!("{package} {count}")),
+        if count == 0 && chosen.test().is_none() {
+            bail!("no test of {package} was run as wasm");
         }
+        said.push(format!("{package} {count}"));
     }
-    let same = ["test", "--package", "worker", "--test", "same"];
-    let output = run_and_read(cargo(&same).args(["--", "--nocapture"]))?;
-    let count = compare(&pictures, output.lines().filter_map(picture))?;
-    let mut machines = String::from("those of this machine");
-    // `.cargo/config.toml` asks for all that this processor can do.
-    if cfg!(target_arch = "x86_64") {
-        let mut test = cargo(&same);
-        let output = run_and_read(
-            test.args(["--", "--nocapture"])
-                .envs(shell::PORTABLE.settings()),
-        )?;
-        compare(&pictures, output.lines().filter_map(picture))?;
-        machines += " and of any x86-64";
+    let mut said = format!("tests passed: {}", said.join(", "));
+    if packages.contains(&TESTED_IN_BROWSER) {
+        let count = watch.step("browser", || in_browser(&runner, &binaries, chosen.test()))?;
+        said += &match count {
+            Some(count) => format!(", {TESTED_IN_BROWSER} in a browser {count}"),
+            None => String::from(", none in a browser, as there is no chromedriver"),
+        };
     }
-    Ok(format!(
-        "tests passed: {}; {count} pictures and scenes equal to {machines}",
-        said.join(", ")
-    ))
+    if packages.contains(&"worker") && chosen.test().is_none() {
+        let wasm: Vec<String> = outputs.iter().flat_map(|o| pictures(o)).collect();
+        let count = watch.step("same", || same(&wasm))?;
+        said += &format!(
+            "; {count} pictures and scenes equal to those of this machine and of any of its kind"
+        );
+    }
+    Ok(said)
 }
 
-/// A line `picture …` of `crate/worker/tests/same.rs`. What is run in node is written with spaces before it.
-fn picture(line: &str) -> Option<&str> {
-    let line = line.trim();
-    line.starts_with("picture ").then_some(line)
+/// Compiles what is run as wasm of some packages.
+fn build(packages: &[&'static str]) -> Result<Vec<Binary>> {
+    let mut test = cargo(&[
+        "test",
+        "--no-run",
+        "--target",
+        tools::WASM,
+        "--message-format",
+        "json-render-diagnostics",
+    ]);
+    let mut wanted = 0;
+    for package in packages {
+        test.args(["--package", package]);
+        let folder = root().join("crate").join(package);
+        if mentions(&folder.join("src"))? {
+            test.arg("--lib");
+            wanted += 1;
+        }
+        for file in fs::read_dir(folder.join("tests"))? {
+            let path = file?.path();
+            let main = if path.is_dir() {
+                path.join("main.rs")
+            } else {
+                path.clone()
+            };
+            // Of a folder without `main.rs` others have parts.
+            if main.is_file() && mentions(&path)? {
+                let name = path.file_stem().context("a test has a name")?;
+                test.arg("--test").arg(name);
+                wanted += 1;
+            }
+        }
+    }
+    let made = artifacts(test.env(NO_LINES.0, NO_LINES.1))?;
+    let mut binaries = Vec::new();
+    for made in made.iter().filter(|made| made["profile"]["test"] == true) {
+        let text = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
+        let manifest = text(&made["manifest_path"]);
+        let folder = Path::new(&manifest).parent().and_then(Path::file_name);
+        let package = packages
+            .iter()
+            .find(|package| folder.is_some_and(|folder| folder == **package));
+        if let (Some(package), Some(wasm)) = (package, made["executable"].as_str()) {
+            binaries.push(Binary {
+                package,
+                name: text(&made["target"]["name"]),
+                wasm: wasm.into(),
+            });
+        }
+    }
+    if binaries.len() < wanted {
+        bail!(
+            "{} of {wanted} files of tests were compiled",
+            binaries.len()
+        );
+    }
+    Ok(binaries)
+}
+
+/// Whether a file, or one in a folder, has tests that run as wasm.
+fn mentions(path: &Path) -> Result<bool> {
+    if !path.is_dir() {
+        let text = fs::read(path)?;
+        return Ok(String::from_utf8_lossy(&text).contains(ATTRIBUTE));
+    }
+    for entry in fs::read_dir(path)? {
+        if mentions(&entry?.path())? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Runs them in node, two at a time, as node uses one core, and gives what they write.
+fn run(runner: &Path, binaries: &[Binary], filter: Option<&str>) -> Result<Vec<String>> {
+    let outputs: Mutex<Vec<Result<String>>> =
+        Mutex::new(binaries.iter().map(|_| Err(anyhow!("not run"))).collect());
+    let next = Mutex::new(0..binaries.len());
+    let take = || next.lock().ok()?.next();
+    let work = || {
+        while let Some(i) = take() {
+            let binary = &binaries[i];
+            let output = run_one(runner, binary, filter, &[]);
+            if let Ok(mut outputs) = outputs.lock() {
+                outputs[i] = output;
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(in_this_lane(work));
+        }
+    });
+    let outputs = outputs.into_inner().unwrap_or_else(|e| e.into_inner());
+    outputs.into_iter().collect()
+}
+
+fn run_one(
+    runner: &Path,
+    binary: &Binary,
+    filter: Option<&str>,
+    settings: &[(&str, &str)],
+) -> Result<String> {
+    tell(&format!("{} of {} as wasm", binary.name, binary.package));
+    run_and_read(
+        tools::in_node(runner, &binary.wasm)
+            .arg("--nocapture")
+            .args(filter)
+            .current_dir(root().join("crate").join(binary.package))
+            .envs(settings.iter().copied()),
+    )
+    .with_context(|| format!("{} of {}", binary.name, binary.package))
+}
+
+/// Runs one package's tests in a browser's worker and gives how many there are; none without a chromedriver.
+fn in_browser(runner: &Path, binaries: &[Binary], filter: Option<&str>) -> Result<Option<usize>> {
+    // It is installed with the browser.
+    tools::chromium()?;
+    let Some(driver) = find("chromedriver") else {
+        return Ok(None);
+    };
+    let driver = driver.to_string_lossy();
+    let settings = [(tools::IN_WORKER, "1"), ("CHROMEDRIVER", &driver)];
+    let mut count = 0;
+    for binary in binaries {
+        if binary.package == TESTED_IN_BROWSER {
+            count += passed(&run_one(runner, binary, filter, &settings)?);
+        }
+    }
+    if count == 0 && filter.is_none() {
+        bail!("no test of {TESTED_IN_BROWSER} was run in a browser");
+    }
+    Ok(Some(count))
+}
+
+/// Compares what is told of pictures as wasm with what is told of them on this machine, once built for its processor and once for
+/// any of its kind, and gives how many there are.
+fn same(wasm: &[String]) -> Result<usize> {
+    // The whole workspace, as then nothing is built anew that the tests on this machine have built.
+    let options = ["test", "--workspace", "--test", "same", "--", "--nocapture"];
+    let native = pictures(&run_and_read(&mut cargo(&options))?);
+    let count = compare(wasm, &native)?;
+    let portable = portable::build()?.same;
+    let package = root().join("crate/worker");
+    let output = run_and_read(command(portable, &["--nocapture"]).current_dir(package))?;
+    compare(wasm, &pictures(&output)).context("built for any processor of this kind")?;
+    Ok(count)
+}
+
+/// The lines `picture …` of `crate/worker/tests/same.rs`. What is run in node is written with spaces before it.
+fn pictures(output: &str) -> Vec<String> {
+    output
+        .lines()
+        .map(str::trim)
+        .filter(|line| line.starts_with("picture "))
+        .map(str::to_owned)
+        .collect()
 }
 
 /// Compares what is told of pictures as wasm with what is told of them natively, and gives how many
 /// there are.
-fn compare<'a>(wasm: &[String], native: impl Iterator<Item = &'a str>) -> Result<usize> {
-    let native: Vec<&str> = native.collect();
-    if let Some((wasm, native)) = wasm.iter().zip(&native).find(|(a, b)| a != b) {
+fn compare(wasm: &[String], native: &[String]) -> Result<usize> {
+    if let Some((wasm, native)) = wasm.iter().zip(native).find(|(a, b)| a != b) {
         bail!("pictures differ:\n  as wasm  {wasm}\n  natively {native}");
     }
     if wasm.is_empty() || wasm.len() != native.len() {
@@ -78,11 +246,11 @@ mod tests {
     #[test]
     fn pictures_that_differ_or_are_missing_are_found() {
         let wasm = ["picture a Full 1", "picture b Full 2"].map(str::to_owned);
-        let count = |native: &str| compare(&wasm, native.lines().filter_map(picture)).ok();
+        let count = |native: &str| compare(&wasm, &pictures(native)).ok();
         let same = "running 1 test\n picture a Full 1\n    picture b Full 2\n";
         assert_eq!(count(same), Some(2));
         assert_eq!(count(&same.replace("Full 2", "Full 3")), None);
         assert_eq!(count("picture a Full 1"), None);
-        assert!(compare(&[], [].into_iter()).is_err());
+        assert!(compare(&[], &[]).is_err());
     }
 }

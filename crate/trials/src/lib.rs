@@ -1,0 +1,227 @@
+//! Tests of properties on random inputs.
+//!
+//! [`trials`] runs a property on many inputs, short ones first. They are the same on every machine and in every run, so that
+//! a test that has passed passes again. `SINEW_SEED` (a whole number) asks for other inputs, `SINEW_TRIALS` for so many times as
+//! many; `cargo xtask fuzz` sets both. A failure tells its seed, and `SINEW_CASE` runs that input alone.
+//!
+//! [`WorkClock`] is for tests that something does not take long.
+//!
+//! ```
+//! use trials::trials;
+//!
+//! trials(|u| {
+//!     let number: u32 = u.arbitrary()?;
+//!     assert_eq!(number.to_string().parse(), Ok(number));
+//!     Ok(())
+//! })
+//! .cases(100);
+//! ```
+
+pub use arbitrary;
+use arbitrary::{Result, Unstructured};
+use std::time::Duration;
+
+/// Inputs of a property, if it does not say how many.
+const CASES: u32 = 200;
+/// Bytes of the shortest input. Each step makes inputs a quarter longer, up to about 60,000 bytes.
+const SHORTEST: usize = 32;
+const STEPS: u64 = 35;
+
+/// A property to be tested. It runs when this is dropped.
+pub struct Trials<P: FnMut(&mut Unstructured<'_>) -> Result<()>> {
+    property: P,
+    cases: u32,
+}
+
+/// Tests a property: it panics where it does not hold, and gives an error where an input is too short for it.
+///
+/// # Panics
+/// When the returned value is dropped, if the property panics, or if all inputs are too short.
+pub fn trials<P: FnMut(&mut Unstructured<'_>) -> Result<()>>(property: P) -> Trials<P> {
+    let cases = CASES;
+    Trials { property, cases }
+}
+
+impl<P: FnMut(&mut Unstructured<'_>) -> Result<()>> Trials<P> {
+    /// Sets the number of inputs, > 0.
+    pub fn cases(mut self, cases: u32) {
+        self.cases = cases;
+    }
+
+    /// Runs the property on one input.
+    fn case(&mut self, case: Case) -> Result<()> {
+        let _told = Told(case);
+        let bytes = case.bytes();
+        (self.property)(&mut Unstructured::new(&bytes))
+    }
+}
+
+impl<P: FnMut(&mut Unstructured<'_>) -> Result<()>> Drop for Trials<P> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            return;
+        }
+        if let Some(case) = std::env::var("SINEW_CASE")
+            .ok()
+            .and_then(|text| Case::read(&text))
+        {
+            if let Err(error) = self.case(case) {
+                panic!("the input is too short: {error}");
+            }
+            return;
+        }
+        let (seed, times) = (setting("SINEW_SEED", 0), setting("SINEW_TRIALS", 1));
+        let cases = u64::from(self.cases).saturating_mul(times);
+        let mut held = 0;
+        for index in 0..cases {
+            held += u64::from(self.case(Case::of(seed, index, cases)).is_ok());
+        }
+        assert!(held > 0, "all inputs are too short for the property");
+    }
+}
+
+/// A clock of the work of one thread: what other threads and programs do does not count, so that limits on it hold on a busy machine.
+#[derive(Clone, Copy, Debug)]
+pub struct WorkClock(Option<Duration>);
+
+impl WorkClock {
+    /// Starts a clock of this thread.
+    pub fn start() -> Self {
+        Self(worked())
+    }
+
+    /// The processor time that this thread has taken since. Zero where the system does not tell, which is everywhere but on Linux.
+    pub fn elapsed(self) -> Duration {
+        let now = worked().zip(self.0);
+        now.map_or(Duration::ZERO, |(now, start)| now - start)
+    }
+}
+
+/// Processor time of this thread.
+fn worked() -> Option<Duration> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds = text.split_whitespace().next()?.parse().ok()?;
+    Some(Duration::from_nanos(nanoseconds))
+}
+
+/// A whole number from the environment.
+fn setting(name: &str, otherwise: u64) -> u64 {
+    let set = std::env::var(name).ok();
+    set.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
+}
+
+/// An input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Case {
+    seed: u64,
+    /// Its length in bytes.
+    size: usize,
+}
+
+impl Case {
+    /// One of so many inputs. As many are made for each step of their size.
+    fn of(seed: u64, index: u64, cases: u64) -> Self {
+        let steps = index * STEPS / cases;
+        let size = (0..steps).fold(SHORTEST, |size, _| size * 5 / 4);
+        let seed = mixed(mixed(seed) ^ index);
+        Self { seed, size }
+    }
+
+    /// What [`Told`] writes.
+    fn read(text: &str) -> Option<Self> {
+        let (seed, size) = text.split_once(':')?;
+        Some(Self {
+            seed: seed.parse().ok()?,
+            size: size.parse().ok()?,
+        })
+    }
+
+    fn bytes(self) -> Vec<u8> {
+        (0..self.size.div_ceil(8) as u64)
+            .flat_map(|word| mixed(self.seed.wrapping_add(word)).to_le_bytes())
+            .take(self.size)
+            .collect()
+    }
+}
+
+/// SplitMix64's output function of a state: neighbouring numbers give unrelated ones.
+fn mixed(state: u64) -> u64 {
+    let z = state.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
+/// Tells which input a property panicked with.
+struct Told(Case);
+
+impl Drop for Told {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            let Case { seed, size } = self.0;
+            eprintln!("That was with this random input. To run it alone: SINEW_CASE={seed}:{size}");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    #[test]
+    fn inputs_are_the_same_each_time_and_grow() {
+        let run = || {
+            let mut seen = Vec::new();
+            trials(|u| {
+                seen.push((u.len(), u.arbitrary::<u64>()?));
+                Ok(())
+            })
+            .cases(50);
+            seen
+        };
+        let seen = run();
+        assert_eq!(seen, run());
+        assert_eq!(seen.len(), 50);
+        assert_eq!(seen[0].0, 32);
+        assert!(seen[49].0 > 40_000 && seen.is_sorted_by_key(|(size, _)| *size));
+        let mut numbers: Vec<u64> = seen.iter().map(|(_, number)| *number).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        assert_eq!(numbers.len(), 50);
+        assert_ne!(Case::of(1, 0, 50).seed, Case::of(0, 0, 50).seed);
+    }
+
+    #[test]
+    fn work_is_told_from_waiting() {
+        let clock = WorkClock::start();
+        std::thread::sleep(Duration::from_millis(300));
+        let waited = clock.elapsed();
+        let mut sum = 0_u64;
+        for i in 0..30_000_000 {
+            sum = std::hint::black_box(sum ^ mixed(i));
+        }
+        let worked = clock.elapsed();
+        assert!(waited < Duration::from_millis(200), "{waited:?}");
+        if cfg!(target_os = "linux") {
+            assert!(worked > waited + Duration::from_millis(5), "{worked:?}");
+        }
+    }
+
+    #[test]
+    fn a_property_that_does_not_hold_is_found() {
+        let found = catch_unwind(AssertUnwindSafe(|| {
+            drop(trials(|u| {
+                assert!(u.arbitrary::<u8>()? < 250);
+                Ok(())
+            }));
+        }));
+        assert!(found.is_err());
+        let short = catch_unwind(AssertUnwindSafe(|| {
+            drop(trials(|u| u.bytes(1 << 20).map(|_| ())));
+        }));
+        assert!(short.is_err());
+        assert_eq!(Case::read("7:64"), Some(Case { seed: 7, size: 64 }));
+        assert_eq!(Case::read("7"), None);
+    }
+}

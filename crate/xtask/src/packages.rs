@@ -1,0 +1,47 @@
+//! The packages that commands treat in a way of their own: the place to add one.
+
+/// A wasm file of the page.
+#[derive(Clone, Copy, Debug)]
+pub struct Module {
+    /// The package that it is compiled from.
+    pub package: &'static str,
+    /// Features of that package, separated by commas.
+    pub features: &'static str,
+    /// The profile of a release.
+    pub profile: &'static str,
+    /// The files are `NAME.js` and `NAME_bg.wasm`.
+    pub name: &'static str,
+    /// Most bytes of the wasm after brotli.
+    pub budget: usize,
+    /// About how many seconds a first build for development takes on two slow cores.
+    pub seconds: u32,
+}
+
+/// All wasm files of the page. Each is compiled apart from the others, as features of one must not reach another.
+pub const MODULES: [Module; 2] = [
+    Module {
+        package: "studio",
+        features: "",
+        profile: "page",
+        name: "studio",
+        budget: 2_500_000,
+        seconds: 150,
+    },
+    Module {
+        package: "worker",
+        features: "entry",
+        profile: "release",
+        name: "tracer",
+        budget: 400_000,
+        seconds: 60,
+    },
+];
+
+/// The packages with tests that run as wasm, too, as their results must be the same in the page as on this machine.
+pub const TESTED_AS_WASM: [&str; 4] = ["field", "rats", "tracer", "worker"];
+
+/// The package of which the tests that run as wasm are run in a browser, too.
+pub const TESTED_IN_BROWSER: &str = "field";
+
+/// The packages that pictures depend on: a change in one of them may change the pins.
+pub const PICTURES: [&str; 6] = ["field", "scene", "mesh", "rats", "tracer", "worker"];
