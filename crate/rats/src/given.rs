@@ -314,18 +314,6 @@ impl<'a> Reader<'_, 'a> {
         }
     }
 
-    /// Whether the next word is one of these or the beginning of one.
-    pub(crate) fn is_option_next(&mut self, options: &[OptionSpec]) -> bool {
-        let Some((symbol, word)) = self.peek_word() else {
-            return false;
-        };
-        // A variable is meant where its name is short for an option, but not where it is the option.
-        let is_variable = self.scope.get(symbol).is_some();
-        options
-            .iter()
-            .any(|option| option.begins(word) && !(is_variable && word.len() < option.name.len()))
-    }
-
     /// The problem that none of these words stands here.
     fn no_such_word(&mut self, words: &'static [OptionSpec], what: &str) -> Box<Problem> {
         let problem = self.expected(what);

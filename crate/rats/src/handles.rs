@@ -7,16 +7,13 @@
 //! shapes at once, has a handle that says so and cannot be moved.
 
 use crate::commands::Kind as Takes;
-use crate::compile::{Compiled, Placement};
-use crate::evaluator::Evaluator;
-use crate::evaluator::watch::{Number, Operand, Seen, Source};
+use crate::compiled::{Compiled, Placement};
 use crate::limits::MAX_MAGNITUDE;
 use crate::parser::parse;
-use crate::scope::Scope;
-use crate::sources::Sources;
+use crate::provenance::{Number, Operand, Provenance, Source};
 use crate::symbol::Symbols;
 use crate::syntax::{Block, Node};
-use crate::{Asset, Project};
+use crate::{Asset, Project, provenance};
 use glam::{DAffine3, DMat3, DVec3};
 use scene::{Element, Origin, Scene, Shape};
 use std::ops::Range;
@@ -139,7 +136,7 @@ pub fn handles(
         true => why_repeated(project, shape.origin),
         false => None,
     };
-    let Some(seen) = watch(project, assets, frame, shape.origin) else {
+    let Some(seen) = provenance(project, assets, frame, shape.origin) else {
         let why = why.unwrap_or_else(|| String::from("has no numbers of its own in the text"));
         return plain(&shape.shape, &why);
     };
@@ -170,15 +167,8 @@ pub fn handles(
     handles
 }
 
-/// Runs the project up to a command.
-fn watch(project: &Project, assets: &[Asset], frame: u32, origin: Origin) -> Option<Seen> {
-    let mut symbols = Symbols::default();
-    let sources = Sources::of(project, &mut symbols);
-    Evaluator::new(&sources, assets, frame, Scope::new(symbols)).watch_for(origin)
-}
-
 /// How many elements a command makes.
-fn parts(seen: &Seen) -> usize {
+fn parts(seen: &Provenance) -> usize {
     match seen.spec.name {
         "curve" => {
             let is_point = |operand: &&Operand| operand.numbers.len() == 3;
@@ -309,7 +299,7 @@ struct Maker<'a> {
     element: &'a Element,
     placement: &'a Placement,
     view: &'a DMat3,
-    seen: &'a Seen,
+    seen: &'a Provenance,
 }
 
 impl Maker<'_> {

@@ -1,9 +1,8 @@
 //! The option words of the commands that have them.
 
-use super::OptionSpec;
 use super::parameter::{
-    Kind, Names, Parameter, Unit, colour, degrees, direction, length, number, parameter, vector,
-    word,
+    Kind, Names, OptionSpec, Parameter, Unit, colour, degrees, direction, length, number,
+    parameter, vector, word,
 };
 
 const fn option(

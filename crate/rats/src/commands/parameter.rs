@@ -1,7 +1,6 @@
 //! What a command's operands are: the kinds, units and ranges from which the reader checks them and
 //! the manual, the hints of errors and the editor explain them.
 
-use super::OptionSpec;
 use crate::limits::MAX_MAGNITUDE;
 
 /// What a parameter takes.
@@ -202,6 +201,44 @@ impl Parameter {
     pub(super) const fn at_least(self, low: f64) -> Self {
         self.from(low, MAX_MAGNITUDE)
     }
+}
+
+/// An option word of a command.
+#[derive(Debug)]
+pub struct OptionSpec {
+    /// The whole word.
+    pub name: &'static str,
+    /// What follows it.
+    pub parameters: &'static [Parameter],
+    /// What it means.
+    pub meaning: &'static str,
+    /// Its value if it is left out.
+    pub default: &'static str,
+}
+
+impl OptionSpec {
+    /// Whether its name begins with a word, in any case: options may be shortened.
+    #[must_use]
+    pub fn begins(&self, word: &str) -> bool {
+        let start = self.name.get(..word.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
+    }
+
+    /// The word and what follows it.
+    #[must_use]
+    pub fn synopsis(&self) -> String {
+        join(self.name, self.parameters)
+    }
+}
+
+/// A name followed by the synopses of what it takes.
+pub(super) fn join(name: &str, parameters: &[Parameter]) -> String {
+    let mut text = name.to_owned();
+    for parameter in parameters {
+        text += " ";
+        text += &parameter.synopsis();
+    }
+    text
 }
 
 fn range(low: f64, high: f64) -> String {

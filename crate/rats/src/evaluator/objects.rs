@@ -1,6 +1,6 @@
 //! OBJECTS: groups of shapes and their transforms.
 
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::geometry::Transform;
 use crate::given::Given;

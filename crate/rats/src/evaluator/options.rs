@@ -1,6 +1,6 @@
 //! OPTIONS: settings of the whole picture.
 
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::options::{FORMATS, MESH};
 use crate::problem::Outcome;

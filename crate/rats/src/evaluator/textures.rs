@@ -3,7 +3,7 @@
 //! they are not drawn.
 
 use super::palette::Texture;
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::OptionSpec;
 use crate::commands::options::{SOLIDS, TARGETS, TEXTURE, WAVES};

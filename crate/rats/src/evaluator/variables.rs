@@ -1,8 +1,8 @@
 //! `var` and `seed`.
 
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::compile::{HotValue, HotVariable};
+use crate::compiled::{HotValue, HotVariable};
 use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
 use crate::random::Random;
