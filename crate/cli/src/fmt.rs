@@ -22,7 +22,7 @@ impl Fmt {
         let mut clean = true;
         for file in &self.files {
             let text = files::read(file)?;
-            let tidy = rats::assist::format(&text);
+            let tidy = assist::format(&text);
             if tidy == text {
                 continue;
             }

@@ -381,7 +381,7 @@ fn fmt_lays_out_and_checks() {
     );
     assert_eq!(read(), untidy);
     assert_eq!(sinew(&["fmt", &tidy, &file], "").status.code(), Some(0));
-    assert_eq!(read(), rats::assist::format(untidy));
+    assert_eq!(read(), assist::format(untidy));
     assert_ne!(read(), untidy);
     assert_eq!(sinew(&["fmt", "--check", &file], "").status.code(), Some(0));
     assert_eq!(

@@ -15,6 +15,7 @@ use crate::suggest;
 use crate::symbol::Symbol;
 use crate::syntax::Datum;
 use crate::value::Value;
+use glam::DVec3;
 
 /// Operators that join two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

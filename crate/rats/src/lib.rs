@@ -11,7 +11,6 @@
 //! [`assist`] answers what an editor asks. All bounds are in [`limits`].
 
 mod assets;
-pub mod assist;
 pub mod colours;
 pub mod commands;
 pub mod compile;
@@ -19,11 +18,9 @@ pub mod compiled;
 pub mod diagnostic;
 mod evaluator;
 mod expression;
-mod functions;
+pub mod functions;
 mod geometry;
 mod given;
-pub mod handles;
-pub mod highlight;
 pub mod hot;
 pub mod lexer;
 pub mod library;
@@ -31,7 +28,7 @@ pub mod limits;
 pub mod link;
 pub mod manual;
 mod operands;
-mod parser;
+pub mod parser;
 mod problem;
 pub mod project;
 pub mod provenance;
@@ -41,9 +38,9 @@ pub mod reads;
 mod report;
 mod scope;
 mod sources;
-mod suggest;
-mod symbol;
-mod syntax;
+pub mod suggest;
+pub mod symbol;
+pub mod syntax;
 pub mod tool;
 mod value;
 

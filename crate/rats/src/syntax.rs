@@ -12,8 +12,17 @@ pub struct Syntax {
     pub block: Block,
     /// The operands of all its commands, which commands index by ranges.
     pub items: Vec<Item>,
-    /// What is wrong with its form.
-    pub problems: Vec<Problem>,
+    /// The mistakes of its form, in the order in which they were found.
+    pub(crate) problems: Vec<Problem>,
+}
+
+impl Syntax {
+    /// The first mistake of form: its byte range and message. `None` if the text is well-formed.
+    #[must_use]
+    pub fn mistake(&self) -> Option<(Range<usize>, &str)> {
+        let problem = self.problems.first()?;
+        Some((problem.span.clone(), &problem.message))
+    }
 }
 
 /// Commands that are run one after the other.

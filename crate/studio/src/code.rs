@@ -3,7 +3,7 @@
 use crate::theme::{CODE_SIZE, Palette};
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Color32, FontId};
-use rats::highlight::{TokenKind, highlight};
+use assist::highlight::{TokenKind, highlight};
 
 /// Lays out a text with coloured words, wrapped at `width`. The last result is kept, because the
 /// same text is asked for at every frame.

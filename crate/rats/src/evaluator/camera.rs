@@ -6,7 +6,6 @@ use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use glam::DVec3;
-use std::ops::Range;
 
 /// `eyep XYZ`
 pub fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {

@@ -272,10 +272,13 @@ impl<'a> Evaluator<'a> {
                     ),
                 ));
             }
-            if self.reading.len() >= MAX_NESTED_FILES {
+            if self.reading.len() >= limits::MAX_NESTED_FILES {
                 return Err(Problem::new(
                     name.span,
-                    format!("files can read each other {MAX_NESTED_FILES} deep at most"),
+                    format!(
+                        "files can read each other {} deep at most",
+                        limits::MAX_NESTED_FILES
+                    ),
                 ));
             }
             if self.run_inner(command, file)? == Flow::Quit {

@@ -5,7 +5,7 @@ use crate::marks::Marks;
 use crate::session::Session;
 use crate::{problems, theme};
 use egui::{Color32, Id, Response, RichText, Ui, vec2};
-use rats::assist::{self, Card};
+use assist::Card;
 
 /// Seconds the pointer rests before the card comes.
 const REST: f32 = 0.35;

@@ -6,7 +6,7 @@ use crate::session::Session;
 use crate::theme;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Area, FontId, Frame, Order, Rect, Ui, pos2, vec2};
-use rats::assist::{self, Signature};
+use assist::Signature;
 
 /// Seconds of rest after which a line that takes long is made.
 const REST: f64 = 0.2;

@@ -16,7 +16,7 @@ use crate::command::Command;
 use crate::session::Session;
 use egui::{Color32, Key, Modifiers, Painter, Rect, Response, Stroke, Ui};
 use glam::DVec3;
-use rats::handles::{self, Handle};
+use assist::handles::{self, Handle};
 use scene::{Camera, Origin, Scene, Shape};
 use std::ops::Range;
 
