@@ -8,7 +8,7 @@ mod cursor;
 mod expression;
 mod operands;
 
-pub use cursor::{Slot, Slots, Type, Want, What, find_option};
+pub use cursor::{Slot, Slots, Type, Want, What};
 
 use crate::grammar::{Grammar, Param};
 use rats::commands::OptionSpec;

@@ -45,7 +45,7 @@ impl<'a> Scope<'a> {
     /// A scope without variables.
     #[must_use]
     pub fn new(symbols: Symbols<'a>) -> Self {
-        let globals = vec![Slot::Empty; symbols.len()];
+        let globals = vec![Slot::Empty; symbols.count()];
         Self {
             symbols,
             random: Random::new(0.0),

@@ -254,12 +254,12 @@ impl<'i, 'p> Slots<'i, 'p> {
 }
 
 /// Whether a word is one of these options or the beginning of one.
-fn is_beginning(options: &[OptionSpec], word: &str) -> bool {
+pub fn is_beginning(options: &[OptionSpec], word: &str) -> bool {
     options.iter().any(|option| option.begins(word))
 }
 
 /// The option that a word names, whole or by a beginning that fits one only.
-pub fn find_option(options: &'static [OptionSpec], word: &str) -> Option<&'static OptionSpec> {
+fn find_option(options: &'static [OptionSpec], word: &str) -> Option<&'static OptionSpec> {
     if let Some(exact) = options.iter().find(|o| o.name.eq_ignore_ascii_case(word)) {
         return Some(exact);
     }

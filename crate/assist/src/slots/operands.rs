@@ -1,6 +1,6 @@
 //! Operands of each kind of parameter.
 
-use super::cursor::{Slots, Type, Want, What};
+use super::cursor::{Slots, Type, Want, What, is_beginning};
 use crate::grammar::Param;
 use rats::commands::{Arity, Kind, Names, OptionSpec, options};
 use rats::syntax::Datum;
