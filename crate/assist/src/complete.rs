@@ -1,4 +1,4 @@
-//! What can be written at the caret.
+//! Completion: the words that can be written at the caret.
 
 use crate::grammar::Param;
 use crate::index::{Here, Index, SymbolKind};
@@ -13,12 +13,12 @@ use std::ops::Range;
 /// At most so many are offered.
 pub const MAX_COMPLETIONS: usize = 50;
 
-/// What is offered at a place.
+/// The completions at a place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Completions {
     /// The bytes that a completion replaces: the word at the caret.
     pub replace: Range<usize>,
-    /// What is offered, the most likely first.
+    /// The completions, the most likely first.
     pub items: Vec<Completion>,
 }
 
@@ -27,17 +27,17 @@ pub struct Completions {
 pub struct Completion {
     /// As it is shown.
     pub text: String,
-    /// What it is.
+    /// Its kind.
     pub kind: CompletionKind,
     /// More about it, in a line.
     pub detail: String,
-    /// What is put into the text.
+    /// The text that is inserted.
     pub insert: String,
     /// Its colour, if it is one: red, green, blue.
     pub swatch: Option<[f32; 3]>,
 }
 
-/// What a completion is.
+/// Kinds of completions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum CompletionKind {
     /// A command of the language.
@@ -54,7 +54,15 @@ pub enum CompletionKind {
     Colour,
 }
 
-/// What can be written at a byte: commands where one begins, else what the operand there can be.
+/// The completions at a byte: commands where one begins, else values for the operand there.
+///
+/// ```
+/// let text = "surface Clay, diffuse Sandy";
+/// let found = assist::complete(&rats::Project::single(text), 0, text.len());
+/// assert_eq!(&text[found.replace], "Sandy");
+/// assert_eq!(found.items[0].text, "SandyBrown");
+/// assert!(found.items[0].swatch.is_some());
+/// ```
 #[must_use]
 pub fn complete(project: &Project, file: usize, byte: usize) -> Completions {
     let Some(text) = project.files.get(file).map(|file| file.text.as_str()) else {
@@ -105,7 +113,7 @@ pub fn complete(project: &Project, file: usize, byte: usize) -> Completions {
     Completions { replace, items }
 }
 
-/// What can be offered, the most likely first.
+/// Collects completions, the most likely first.
 #[derive(Debug, Default)]
 struct Offers {
     items: Vec<Completion>,
@@ -395,7 +403,7 @@ pub(crate) fn hex(colour: [f32; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// What a parameter is, its unit and range.
+/// A parameter's meaning, unit and range.
 pub(crate) fn described(parameter: &Param<'_>) -> String {
     let mut text = if parameter.meaning.is_empty() {
         parameter.name.to_owned()

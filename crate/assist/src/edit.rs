@@ -15,6 +15,14 @@ pub struct Edit {
 }
 
 /// The project with changes made, which must be in the order of the text and must not overlap.
+///
+/// ```
+/// use assist::{Edit, apply};
+///
+/// let project = rats::Project::single("sphere Clay 1, 0 0 0\n");
+/// let edit = Edit { file: 0, span: 12..13, text: "2.5".into() };
+/// assert_eq!(apply(&project, &[edit]).files[0].text, "sphere Clay 2.5, 0 0 0\n");
+/// ```
 #[must_use]
 pub fn apply(project: &Project, edits: &[Edit]) -> Project {
     let mut project = project.clone();

@@ -1,4 +1,4 @@
-//! What an editor can fold away.
+//! Folding: the ranges of a text that an editor can hide.
 
 use crate::walk;
 use rats::lexer::{TokenKind, lex};
@@ -9,6 +9,11 @@ use std::ops::Range;
 /// The ranges of lines, from 0, that can be folded into their first: blocks, lists in braces, objects and
 /// chains up to their `close`, and comments of several lines. Each has two lines or more; they begin in
 /// different lines, come in the order of the text, and each lies within another or apart from it.
+///
+/// ```
+/// let text = "object PAIR\n  sphere Clay 1, 0 0 0\nclose\nfor i = 1 to 3 {\n}\n";
+/// assert_eq!(assist::folds(text), [0..3, 3..5]);
+/// ```
 #[must_use]
 pub fn folds(text: &str) -> Vec<Range<usize>> {
     let lines = Lines::of(text);

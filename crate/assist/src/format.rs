@@ -21,6 +21,11 @@ const MAX_LEVELS: usize = 40;
 
 /// The text, laid out. What it means does not change, nor does it when it is laid out again. A text with
 /// braces that do not match, or one that would outgrow [`MAX_TEXT`], is given back as it is.
+///
+/// ```
+/// let text = "for i=1 to 3 {\nsphere Clay 1,i 0 0\n}";
+/// assert_eq!(assist::format(text), "for i = 1 to 3 {\n  sphere Clay 1, i 0 0\n}\n");
+/// ```
 #[must_use]
 pub fn format(text: &str) -> String {
     let tokens = lex(text);
@@ -55,7 +60,7 @@ fn braces_match(text: &str, tokens: &[Token]) -> bool {
     depth == 0
 }
 
-/// What the parser knows about a token.
+/// The parser's knowledge of a token.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mark {
     /// A space goes before it.
@@ -214,7 +219,7 @@ fn glued_equal(items: &[Item], index: usize) -> bool {
         .is_some_and(|next| next.datum == EQUAL && next.start == end)
 }
 
-/// What lines are indented for.
+/// Reasons to indent lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Level {
     Brace,

@@ -1,4 +1,4 @@
-//! What a command takes, as the table, the library or the text itself says.
+//! The parameters of a command, from the table, the library or the text itself.
 
 use rats::commands::{Arity, CommandSpec, Kind, Names, OptionSpec, Parameter, Unit};
 use rats::library;
@@ -12,9 +12,9 @@ use std::sync::LazyLock;
 pub struct Param<'p> {
     /// Its name in the synopsis.
     pub name: &'p str,
-    /// What it takes.
+    /// The kind of value it takes.
     pub kind: Kind,
-    /// What it is.
+    /// Its meaning.
     pub meaning: &'p str,
     /// In what it is measured.
     pub unit: Unit,
@@ -75,7 +75,7 @@ impl Param<'_> {
     }
 }
 
-/// What a command takes.
+/// The parameters and options of a command.
 #[derive(Clone, Debug, Default)]
 pub struct Grammar<'p> {
     /// The operands.
@@ -119,7 +119,7 @@ static LIBRARY: LazyLock<Vec<(&'static str, Vec<library::Parameter>)>> = LazyLoc
 });
 
 impl Grammar<'static> {
-    /// What a command of the table takes.
+    /// The parameters of a command of the table.
     pub fn of(spec: &'static CommandSpec) -> Self {
         if !spec.is_library() {
             return Self {
@@ -149,7 +149,7 @@ impl Grammar<'static> {
 }
 
 impl<'p> Grammar<'p> {
-    /// What a command takes that the text defines.
+    /// The parameters of a command that the text defines.
     pub fn own(define: &Define, syntax: &Syntax, text: &'p str, symbols: &Symbols<'p>) -> Self {
         let manual = comment_before(text, define.head.span.start);
         let param = |formal: &rats::syntax::Formal| {
@@ -204,7 +204,7 @@ pub fn comment_before(text: &str, byte: usize) -> &str {
     &text[start..line]
 }
 
-/// What a comment says of a parameter, in a line that begins with its name.
+/// A parameter's meaning, from a line of the comment that begins with its name; empty if there is none.
 fn meaning<'p>(comment: &'p str, name: &str) -> &'p str {
     let said = |line: &'p str| {
         let line = line.trim_start().trim_start_matches('#').trim_start();

@@ -5,6 +5,20 @@
 //! only the numbers that change are replaced, everything else stays as it was written. A number that a
 //! variable stands for is moved where the variable is set; one that is computed, or that made several
 //! shapes at once, has a handle that says so and cannot be moved.
+//!
+//! ```
+//! use assist::handles::{drag, handles};
+//! use glam::{DMat3, DVec3};
+//!
+//! let project = rats::Project::single("surface Clay, diffuse Tan\nsphere Clay 1, 0 0 0\n");
+//! let compiled = rats::compile(&project);
+//! let handles = handles(&project, &[], 0, &compiled, 0, &DMat3::IDENTITY);
+//! let centre = handles.iter().find(|handle| handle.label == "the centre").unwrap();
+//! // To the right by 2.5, exact to a tenth.
+//! let edits = drag(centre, DVec3::new(2.5, 0.0, 0.0), 0.1);
+//! let moved = assist::apply(&project, &edits);
+//! assert!(moved.files[0].text.ends_with("sphere Clay 1, 2.5 0 0\n"));
+//! ```
 
 mod decimal;
 mod drag;

@@ -6,7 +6,7 @@ use rats::functions;
 use rats::lexer::{Token, TokenKind as Lexeme, lex};
 use std::ops::Range;
 
-/// What a piece of text is, for colouring it.
+/// Kinds of pieces of text, for colouring them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TokenKind {
     /// A known command word.
@@ -29,6 +29,14 @@ pub enum TokenKind {
 ///
 /// A word is judged by its place and spelling alone, nothing is run, so a variable that is called like an
 /// option may get the option's colour.
+///
+/// ```
+/// use assist::highlight::{TokenKind, highlight};
+///
+/// let pieces = highlight("light White # lamp");
+/// let kinds: Vec<_> = pieces.into_iter().map(|(_, kind)| kind).collect();
+/// assert_eq!(kinds, [TokenKind::Command, TokenKind::Colour, TokenKind::Comment]);
+/// ```
 #[must_use]
 pub fn highlight(text: &str) -> Vec<(Range<usize>, TokenKind)> {
     let tokens = lex(text);

@@ -1,4 +1,4 @@
-//! What the word under the pointer is.
+//! Hover: help on the word under the pointer.
 
 use crate::complete::{described, hex};
 use crate::grammar::{Grammar, comment_before};
@@ -11,12 +11,12 @@ use rats::lexer::TokenKind;
 use rats::{Project, colours, functions};
 use std::ops::Range;
 
-/// What there is to say about a word.
+/// Help on a word.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Card {
     /// The word's bytes.
     pub span: Range<usize>,
-    /// What it is, in a few words.
+    /// The word's meaning, in a few words.
     pub title: String,
     /// More, line by line.
     pub lines: Vec<String>,
@@ -29,7 +29,14 @@ pub struct Card {
 /// Longest line that is quoted from a text, in characters.
 const MAX_QUOTE: usize = 100;
 
-/// What the word or number at a byte is.
+/// Help on the word or number at a byte; `None` where there is nothing to say.
+///
+/// ```
+/// let text = "sphere Clay 2, 0 0 0";
+/// let card = assist::hover(&rats::Project::single(text), 0, 3).unwrap();
+/// assert_eq!(&text[card.span], "sphere");
+/// assert_eq!(card.command, Some("sphere"));
+/// ```
 #[must_use]
 pub fn hover(project: &Project, file: usize, byte: usize) -> Option<Card> {
     let text = project.files.get(file)?.text.as_str();
@@ -160,7 +167,7 @@ fn option(span: &Range<usize>, option: &'static OptionSpec, here: &Here<'_>) -> 
     }
 }
 
-/// What a name stands for and where it is made.
+/// A name's kind and where it is made.
 fn named(index: &Index<'_>, file: usize, byte: usize) -> Option<Card> {
     let occurrence = index.occurrence(file, byte)?;
     let definition = index.definition(occurrence)?;
@@ -213,7 +220,7 @@ fn quote(command: &str) -> String {
     }
 }
 
-/// What an operand is for: `the centre, y`.
+/// The use of an operand: `the centre, y`.
 fn role(slot: &Slot<'_>) -> Option<String> {
     let parameter = slot.parameter?;
     let part = match slot.what {

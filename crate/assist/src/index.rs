@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::rc::Rc;
 
-/// What a name stands for.
+/// Kinds of things that have names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SymbolKind {
     /// A variable.
@@ -97,7 +97,7 @@ pub(crate) struct Entity<'p> {
 pub struct Symbol {
     /// The name.
     pub name: String,
-    /// What it stands for.
+    /// The kind of thing it stands for.
     pub kind: SymbolKind,
     /// Where it is first made.
     pub place: Place,
@@ -110,20 +110,30 @@ pub(crate) struct Here<'p> {
     /// The command's word as written, and where.
     pub word: &'p str,
     pub word_span: Range<usize>,
-    /// What the table says of it.
+    /// Its row in the table; `None` for a command that the text defines, and for a mistake.
     pub spec: Option<&'static CommandSpec>,
-    /// What the text defines under this name.
+    /// Where the text defines it, if it does.
     pub own: Option<Place>,
     pub grammar: Rc<Grammar<'p>>,
     /// The operands with their byte ranges.
     pub operands: Vec<(Range<usize>, Slot<'p>)>,
-    /// What could come where the operands before the place end.
+    /// Operands and words that could come where the operands before the place end.
     pub wants: Vec<Want<'p>>,
     /// The variables that can be seen here, and what they are.
     pub variables: Vec<(&'p str, Type, SymbolKind)>,
 }
 
 /// The index of a project.
+///
+/// ```
+/// use assist::{Index, SymbolKind};
+///
+/// let project = rats::Project::single("surface Clay, diffuse Tan\nfor i = 1 to 3 { sphere Clay 1, i 0 0 }\n");
+/// let index = Index::of(&project);
+/// let names: Vec<_> = index.symbols().into_iter().map(|s| (s.kind, s.name)).collect();
+/// assert!(names.contains(&(SymbolKind::Material, "Clay".into())));
+/// assert!(names.contains(&(SymbolKind::Loop, "i".into())));
+/// ```
 #[derive(Debug)]
 pub struct Index<'p> {
     pub(crate) project: &'p Project,
@@ -154,7 +164,7 @@ impl<'p> Index<'p> {
         (touches && !found.place.span.is_empty()).then_some(found)
     }
 
-    /// What a name at a byte stands for.
+    /// The thing that a name at a byte stands for; `None` if no name is there.
     #[must_use]
     pub fn symbol_at(&self, file: usize, byte: usize) -> Option<Symbol> {
         let occurrence = self.occurrence(file, byte)?;

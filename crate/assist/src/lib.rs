@@ -7,12 +7,10 @@
 //! character finds nothing.
 //!
 //! ```
-//! use rats::{File, Project};
+//! use rats::Project;
 //!
 //! let text = "surface Clay, diffuse SandyBrown\nsphere Clay 2, 0 0 0\n";
-//! let project = Project {
-//!     files: vec![File { name: "main.rat".into(), text: text.into() }],
-//! };
+//! let project = Project::single(text);
 //! // The material's name in the second line: where it is made, and what it would take to rename it.
 //! let used = text.rfind("Clay").unwrap();
 //! let made = assist::definition(&project, 0, used).unwrap();

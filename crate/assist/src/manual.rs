@@ -8,6 +8,11 @@ use rats::{File, Project, colours, functions, manual};
 use std::fmt::Write;
 
 /// The manual page of a command as plain text; `None` if there is no such command.
+///
+/// ```
+/// let page = assist::manual::page("sphere").unwrap();
+/// assert!(page.starts_with("sphere sn r POS: "));
+/// ```
 #[must_use]
 pub fn page(command: &str) -> Option<String> {
     commands::find(command).map(manual::page)

@@ -13,6 +13,15 @@ use rats::{Project, colours, commands, functions};
 /// A sentence that says why not: if there is no name at the byte, or the new one is not allowed, is taken,
 /// or would be read as something else somewhere; or if a text has a mistake of form, such as a block that
 /// is not closed, since names could be overlooked in it.
+///
+/// ```
+/// let project = rats::Project::single("var r = 1\nvar s = 2\nsurface Clay, diffuse Tan\nsphere Clay r, s 0 0\n");
+/// let edits = assist::rename(&project, 0, 4, "radius").unwrap();
+/// assert_eq!(edits.len(), 2);
+/// let renamed = assist::apply(&project, &edits);
+/// assert!(renamed.files[0].text.ends_with("sphere Clay radius, s 0 0\n"));
+/// assert!(assist::rename(&project, 0, 4, "s").is_err());
+/// ```
 pub fn rename(
     project: &Project,
     file: usize,
@@ -67,6 +76,15 @@ pub fn rename(
 ///
 /// # Errors
 /// A sentence, if there is no such file, or the new name is not allowed or taken.
+///
+/// ```
+/// use rats::{File, Project};
+///
+/// let mut project = Project::single("read leg.rat\n");
+/// project.files.push(File { name: "leg.rat".into(), text: String::new() });
+/// let edits = assist::rename_file(&project, 1, "arm.rat").unwrap();
+/// assert_eq!(assist::apply(&project, &edits).files[0].text, "read arm.rat\n");
+/// ```
 pub fn rename_file(project: &Project, file: usize, new_name: &str) -> Result<Vec<Edit>, String> {
     let renamed = project.files.get(file).ok_or("there is no such file")?;
     if new_name.is_empty() || new_name.starts_with("./") {

@@ -12,7 +12,7 @@ use rats::Project;
 pub struct Signature {
     /// The command; with an option of it, if the caret is among the option's operands: `surface … radius`.
     pub command: String,
-    /// What it takes.
+    /// Its parameters.
     pub parameters: Vec<Part>,
     /// The index of the parameter that the caret is at.
     pub active: Option<usize>,
@@ -23,11 +23,20 @@ pub struct Signature {
 pub struct Part {
     /// As it is written in a synopsis.
     pub text: String,
-    /// What it is, with its unit, range and default.
+    /// Its meaning, with its unit, range and default.
     pub meaning: String,
 }
 
-/// The signature of the command that a byte is in.
+/// The signature of the command that a byte is in; `None` outside of commands, and in those that are not known.
+///
+/// ```
+/// let text = "sphere Clay 2, ";
+/// let signature = assist::signature(&rats::Project::single(text), 0, text.len()).unwrap();
+/// let names: Vec<_> = signature.parameters.iter().map(|part| part.text.as_str()).collect();
+/// assert_eq!(names, ["sn", "r", "POS"]);
+/// // It is the turn of the position.
+/// assert_eq!(signature.active, Some(2));
+/// ```
 #[must_use]
 pub fn signature(project: &Project, file: usize, byte: usize) -> Option<Signature> {
     let text = project.files.get(file)?.text.as_str();

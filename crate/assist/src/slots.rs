@@ -1,4 +1,4 @@
-//! What each operand of a command is for, found without running anything.
+//! The use of each operand of a command, found without running anything.
 //!
 //! This follows the reader of operands (`reader`, `given`, `expression`), but instead of values it knows
 //! only whether something is a number or a triple, and instead of stopping at a mistake it goes on. Where

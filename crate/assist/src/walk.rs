@@ -2,7 +2,7 @@
 
 use rats::syntax::{Block, Command, Define, For, If, Node};
 
-/// What is met on the way.
+/// An event of a walk through a text.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'s> {
     /// A plain command.
@@ -15,7 +15,7 @@ pub enum Event<'s> {
     Branch,
     /// The definition of a command begins; its body follows.
     Define(&'s Define),
-    /// What began last ends.
+    /// The structure or branch that began last ends.
     End,
 }
 

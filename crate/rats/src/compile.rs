@@ -12,6 +12,19 @@ use scene::Origin;
 
 /// Runs the first file of a project. Never fails, never panics, always ends: the limits are in
 /// [`crate::limits`].
+///
+/// ```
+/// use rats::{HotValue, Project, compile};
+///
+/// let project = Project::single("var r = 0.5 hot 0 2 0.1\nsurface Clay, diffuse Tan\nsphere Clay r, 0 0 0\n");
+/// let compiled = compile(&project);
+/// assert!(compiled.diagnostics.is_empty());
+/// assert_eq!(compiled.scene.radius(&compiled.scene.elements[0]), 0.5);
+/// // A slider of the page.
+/// let slider = &compiled.hot[0];
+/// assert_eq!((slider.name.as_str(), &slider.value), ("r", &HotValue::Scalar(0.5)));
+/// assert_eq!(slider.range, Some([0.0, 2.0]));
+/// ```
 #[must_use]
 pub fn compile(project: &Project) -> Compiled {
     compile_at(project, &[], 0)
@@ -19,6 +32,13 @@ pub fn compile(project: &Project) -> Compiled {
 
 /// As [`compile`], with images and meshes that the texts may use, at a frame of the animation.
 /// Variables that change with every frame have changed `frame` times.
+///
+/// ```
+/// let text = "var x = 0 += 2\nsurface Clay, diffuse Tan\nsphere Clay 1, x 0 0\n";
+/// let compiled = rats::compile_at(&rats::Project::single(text), &[], 3);
+/// assert!(compiled.animated);
+/// assert_eq!(compiled.scene.elements[0].shape, scene::Shape::Sphere { center: [6.0, 0.0, 0.0].into(), radius: 1.0 });
+/// ```
 #[must_use]
 pub fn compile_at(project: &Project, assets: &[Asset], frame: u32) -> Compiled {
     if let Some(diagnostic) = too_large(project) {
@@ -35,6 +55,20 @@ pub fn compile_at(project: &Project, assets: &[Asset], frame: u32) -> Compiled {
 /// Finds from where in the texts the numbers of a shape's command come: runs the project up to the command
 /// with this origin (see [`scene::Element::origin`]), at a cost of at most that of compiling. `None` if the
 /// run does not come there.
+///
+/// ```
+/// use rats::provenance::Source;
+/// use rats::{Project, compile, provenance};
+///
+/// let text = "var r = 0.5\nsurface Clay, diffuse Tan\nsphere Clay r, 0 0 0\n";
+/// let project = Project::single(text);
+/// let origin = compile(&project).scene.elements[0].origin;
+/// let found = provenance(&project, &[], 0, origin).unwrap();
+/// assert_eq!((found.spec.name, found.operands[0].name), ("sphere", "r"));
+/// // The radius is the literal of the variable, in the first line.
+/// let Source::Literal { span, .. } = &found.operands[0].numbers[0].source else { panic!() };
+/// assert_eq!(&text[span.clone()], "0.5");
+/// ```
 #[must_use]
 pub fn provenance(
     project: &Project,

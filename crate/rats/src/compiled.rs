@@ -4,7 +4,7 @@ use crate::{Diagnostic, Tool};
 use glam::DAffine3;
 use scene::{Origin, Scene};
 
-/// What a text means.
+/// The scene of a text, and all else that a run gives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compiled {
     /// The scene, as far as the text could be understood.

@@ -9,6 +9,7 @@
 use crate::colours;
 use crate::functions::{self, Run};
 use crate::limits;
+use crate::operator::{NOT, Operator, SIGN};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Reader;
 use crate::suggest;
@@ -16,47 +17,6 @@ use crate::symbol::Symbol;
 use crate::syntax::Datum;
 use crate::value::Value;
 use glam::DVec3;
-
-/// Operators that join two values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Operator {
-    Or,
-    And,
-    Less,
-    LessEqual,
-    Greater,
-    GreaterEqual,
-    Equal,
-    Unequal,
-    Plus,
-    Minus,
-    Times,
-    Over,
-    Power,
-}
-
-impl Operator {
-    /// Larger binds stronger.
-    fn strength(self) -> u8 {
-        match self {
-            Self::Or => 1,
-            Self::And => 2,
-            Self::Less
-            | Self::LessEqual
-            | Self::Greater
-            | Self::GreaterEqual
-            | Self::Equal
-            | Self::Unequal => 4,
-            Self::Plus | Self::Minus => 5,
-            Self::Times | Self::Over => 6,
-            Self::Power => POWER,
-        }
-    }
-}
-
-const NOT: u8 = 3;
-const SIGN: u8 = 7;
-const POWER: u8 = 8;
 
 impl<'a> Reader<'_, 'a> {
     /// An expression's value.
@@ -113,68 +73,18 @@ impl<'a> Reader<'_, 'a> {
         }
         let start = self.here().start;
         let mut left = self.prefix(what)?;
-        while let Some((operator, length)) = self.operator() {
-            let strength = operator.strength();
-            if strength < least {
+        while let Some((operator, length)) =
+            Operator::at(self.items, self.at, self.text, self.listed, self.comparing)
+        {
+            if operator.strength() < least {
                 break;
             }
             self.at += length;
-            // `^` groups from the right: its right side may hold another `^`.
-            let right_least = strength + u8::from(operator != Operator::Power);
-            let right = self.binary(right_least, "a number after the operator")?;
+            let right = self.binary(operator.right_strength(), "a number after the operator")?;
             left = self.join(left, operator, right, start)?;
         }
         self.depth -= 1;
         Ok(left)
-    }
-
-    /// The operator that stands here and how many items it has.
-    fn operator(&self) -> Option<(Operator, usize)> {
-        let item = self.items.get(self.at)?;
-        let follows_equal = || {
-            self.items
-                .get(self.at + 1)
-                .is_some_and(|next| next.datum == Datum::Sign(b'=') && next.start == item.end)
-        };
-        Some(match item.datum {
-            Datum::Sign(sign @ (b'+' | b'-')) => {
-                if self.listed && item.spaced {
-                    let attached = self.items.get(self.at + 1).is_some_and(|next| !next.spaced);
-                    if attached {
-                        return None;
-                    }
-                }
-                // `+=` belongs to `var`.
-                if follows_equal() {
-                    return None;
-                }
-                if sign == b'+' {
-                    (Operator::Plus, 1)
-                } else {
-                    (Operator::Minus, 1)
-                }
-            }
-            Datum::Sign(b'*') if !follows_equal() => (Operator::Times, 1),
-            Datum::Sign(b'/') => (Operator::Over, 1),
-            Datum::Sign(b'^') => (Operator::Power, 1),
-            Datum::Sign(b'<') if self.comparing && follows_equal() => (Operator::LessEqual, 2),
-            Datum::Sign(b'<') if self.comparing => (Operator::Less, 1),
-            Datum::Sign(b'>') if self.comparing && follows_equal() => (Operator::GreaterEqual, 2),
-            Datum::Sign(b'>') if self.comparing => (Operator::Greater, 1),
-            Datum::Sign(b'=') if self.comparing && follows_equal() => (Operator::Equal, 2),
-            Datum::Sign(b'!') if self.comparing && follows_equal() => (Operator::Unequal, 2),
-            Datum::Word(symbol) if self.comparing => {
-                let word = self.scope.symbols.word(symbol);
-                if word.eq_ignore_ascii_case("and") {
-                    (Operator::And, 1)
-                } else if word.eq_ignore_ascii_case("or") {
-                    (Operator::Or, 1)
-                } else {
-                    return None;
-                }
-            }
-            _ => return None,
-        })
     }
 
     fn join(&self, left: Value, operator: Operator, right: Value, start: usize) -> Outcome<Value> {

@@ -39,7 +39,7 @@ pub enum Operand<'a> {
 pub struct Filled<'a> {
     /// The parameter.
     pub parameter: &'static str,
-    /// What was given.
+    /// Its value.
     pub operand: Operand<'a>,
     /// Where.
     pub span: Range<usize>,

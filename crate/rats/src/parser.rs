@@ -120,8 +120,9 @@ impl<'a> Parser<'a, '_, '_> {
                             "remove it, or open the block or list that it should close",
                         );
                     }
-                    // `@` only silences the echo of a command, and stray separators mean nothing.
-                    "@" | "," | "<" | ">" => self.at += 1,
+                    "@" => self.silenced(token),
+                    // Stray separators mean nothing.
+                    "," | "<" | ">" => self.at += 1,
                     _ => self.not_a_command(token),
                 },
                 TokenKind::Word => {
@@ -135,6 +136,27 @@ impl<'a> Parser<'a, '_, '_> {
             }
         }
         block
+    }
+
+    /// `@` before a command, whose echo it silences, and stray separators. Without a command in the same line
+    /// it is a mistake.
+    fn silenced(&mut self, at: Token) {
+        self.at += 1;
+        while let Some(next) = self.peek(false)
+            && ["@", ",", "<", ">"]
+                .iter()
+                .any(|sign| self.is_sign(next, sign))
+        {
+            self.at += 1;
+        }
+        let next = self.peek(false);
+        if next.is_none_or(|next| next.kind == TokenKind::Newline || self.is_sign(next, "}")) {
+            self.problem(
+                at.range(),
+                "a command was expected after this `@`",
+                "`@` silences the echo of the command behind it: remove it, or write the command in this line",
+            );
+        }
     }
 
     fn not_a_command(&mut self, token: Token) {

@@ -35,9 +35,9 @@ pub struct Number {
 pub struct Operand {
     /// The parameter's name in the table.
     pub name: &'static str,
-    /// What it is.
+    /// Its meaning, from the table.
     pub meaning: &'static str,
-    /// What it takes.
+    /// The kind of value it takes.
     pub kind: Kind,
     /// Its numbers.
     pub numbers: Vec<Number>,
@@ -46,7 +46,7 @@ pub struct Operand {
 /// The command that was watched for.
 #[derive(Clone, Debug)]
 pub struct Provenance {
-    /// What is known of the command.
+    /// The command's row in the table.
     pub spec: &'static CommandSpec,
     /// Its operands that are numbers.
     pub operands: Vec<Operand>,

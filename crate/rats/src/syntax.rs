@@ -31,7 +31,7 @@ pub type Block = Vec<Node>;
 /// A word, number or sign of a command.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
-    /// What it is.
+    /// Its kind and value.
     pub datum: Datum,
     /// First byte.
     pub start: u32,
@@ -49,7 +49,7 @@ impl Item {
     }
 }
 
-/// What an item is.
+/// A word, number or sign, with its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Datum {
     /// A number.
@@ -82,7 +82,7 @@ pub struct Command {
     pub word: Symbol,
     /// Where the opcode is.
     pub word_span: Range<usize>,
-    /// What is known of it; `None` for commands that the text defines, and for mistakes.
+    /// Its row in the table; `None` for commands that the text defines, and for mistakes.
     pub spec: Option<&'static CommandSpec>,
     /// The operands, a range of [`Syntax::items`].
     pub items: Range<usize>,
@@ -95,7 +95,7 @@ pub struct Command {
 pub struct For {
     /// `for` and what stands before the brace.
     pub head: Command,
-    /// What is repeated.
+    /// The commands that are repeated.
     pub body: Block,
 }
 
@@ -119,7 +119,7 @@ pub struct Define {
     pub name: Symbol,
     /// Its parameters.
     pub parameters: Vec<Formal>,
-    /// What it does.
+    /// The commands that a call runs.
     pub body: Block,
 }
 
@@ -130,7 +130,7 @@ pub struct Formal {
     pub name: Symbol,
     /// As messages call it.
     pub shown: String,
-    /// What it takes.
+    /// The kind of value it takes.
     pub takes: Takes,
     /// The operands that make its default, a range of [`Syntax::items`]; empty if it must be given.
     pub default: Range<usize>,
@@ -138,7 +138,7 @@ pub struct Formal {
     pub span: Range<usize>,
 }
 
-/// What a parameter of a defined command takes.
+/// The kind of value that a parameter of a defined command takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Takes {
     /// A number.

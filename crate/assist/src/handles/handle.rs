@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use rats::provenance::{Number, Source};
 use std::ops::Range;
 
-/// What a handle moves.
+/// Kinds of handles, by the quantity that they move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A place: it follows the hand.
@@ -36,11 +36,11 @@ pub enum Editable {
 /// A place that stands for numbers of the text.
 #[derive(Clone, Debug)]
 pub struct Handle {
-    /// What it moves.
+    /// The quantity that it moves.
     pub kind: Kind,
     /// Where it is, world coordinates.
     pub place: DVec3,
-    /// What it is: "the centre".
+    /// A label for a person: "the centre".
     pub label: String,
     /// Whether it can be moved.
     pub edit: Editable,

@@ -195,7 +195,7 @@ impl<'p, 's> Resolver<'p, 's> {
         self.note(entity, file, span, command.span.clone(), false);
     }
 
-    /// What a command of the table takes.
+    /// The operands of a command of the table; `in_chain` leaves the material out.
     pub(super) fn table(&mut self, spec: &'static CommandSpec, in_chain: bool) -> Rc<Grammar<'p>> {
         let make = || {
             let grammar = Grammar::of(spec);

@@ -43,7 +43,7 @@ pub struct Frame<'p> {
     pub objects: Vec<bool>,
 }
 
-/// What an open structure is.
+/// Kinds of structures that are open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Open {
     Loop { leaks: bool },
@@ -69,7 +69,7 @@ pub struct Resolver<'p, 's> {
     pub later: HashMap<&'p str, Rc<Own<'p>>>,
     /// The parameters of all commands, by the names of both.
     pub parameters: HashMap<(&'p str, &'p str), usize>,
-    /// What the commands of the table take, with and without a material.
+    /// The operands of the commands of the table, with and without a material.
     pub grammars: HashMap<(&'static str, bool), Rc<Grammar<'p>>>,
     /// Names used in defined commands without being set there.
     pub free_in_defines: HashSet<&'p str>,
@@ -222,12 +222,12 @@ impl<'p, 's> Resolver<'p, 's> {
         self.frames.last_mut().expect("the project's own frame")
     }
 
-    /// What the texts define under a name: so far, else further down.
+    /// The command that the texts define under a name: so far, else further down.
     pub(super) fn own(&self, name: &str) -> Option<&Rc<Own<'p>>> {
         self.defines.get(name).or_else(|| self.later.get(name))
     }
 
-    /// What is known of a variable that can be seen here.
+    /// The type of a variable that can be seen here; `None` if there is no such variable.
     pub(super) fn type_of(&self, name: &str) -> Option<Type> {
         let frame = self.frames.last()?;
         frame

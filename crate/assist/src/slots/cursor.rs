@@ -18,7 +18,7 @@ pub enum Type {
     Any,
 }
 
-/// What an operand is.
+/// Uses of an operand.
 #[derive(Clone, Copy, Debug)]
 pub enum What {
     /// An option's word.
@@ -53,7 +53,7 @@ pub enum What {
 pub struct Slot<'p> {
     /// The operand's items, as indices of the command's.
     pub items: Range<usize>,
-    /// What it is.
+    /// Its use.
     pub what: What,
     /// The parameter it is for.
     pub parameter: Option<Param<'p>>,
@@ -63,7 +63,7 @@ pub struct Slot<'p> {
     pub option: Option<&'static OptionSpec>,
 }
 
-/// What could come next.
+/// Something that could come next.
 #[derive(Clone, Copy, Debug)]
 pub enum Want<'p> {
     /// An operand for a parameter; of a triple number `part`.
@@ -104,7 +104,7 @@ pub struct Slots<'i, 'p> {
     pub slots: Vec<Slot<'p>>,
     /// The items that are words in expressions and no functions.
     pub words: Vec<usize>,
-    /// What could come next.
+    /// All that could come next where the operands end.
     pub wants: Vec<Want<'p>>,
 }
 

@@ -4,13 +4,8 @@ use super::cursor::{Slots, Type, Want};
 use rats::colours;
 use rats::functions::{self, Run};
 use rats::limits::MAX_NESTED_EXPRESSIONS;
+use rats::operator::{NOT, Operator, SIGN};
 use rats::syntax::{Datum, Item};
-
-const NOT: u8 = 3;
-const COMPARE: u8 = 4;
-const TIMES: u8 = 6;
-const SIGN: u8 = 7;
-const POWER: u8 = 8;
 
 impl<'i, 'p> Slots<'i, 'p> {
     /// Reads one expression.
@@ -37,7 +32,7 @@ impl<'i, 'p> Slots<'i, 'p> {
         kind
     }
 
-    pub(super) fn binary(&mut self, least: u8) -> Type {
+    fn binary(&mut self, least: u8) -> Type {
         self.depth += 1;
         if self.depth > MAX_NESTED_EXPRESSIONS {
             self.at = self.items.len();
@@ -45,55 +40,21 @@ impl<'i, 'p> Slots<'i, 'p> {
             return Type::Any;
         }
         let mut left = self.prefix();
-        while let Some((strength, length)) = self.operator() {
-            if strength < least {
+        while let Some((operator, length)) =
+            Operator::at(self.items, self.at, self.text, self.listed, self.comparing)
+        {
+            if operator.strength() < least {
                 break;
             }
             self.at += length;
-            // `^` groups from the right.
-            let right = self.binary(strength + u8::from(strength != POWER));
-            left = joined(left, right, strength);
+            let right = self.binary(operator.right_strength());
+            left = joined(left, right, operator);
         }
         self.depth -= 1;
         left
     }
 
-    /// How strongly the operator here binds, and how many items it has.
-    pub(super) fn operator(&self) -> Option<(u8, usize)> {
-        let item = self.items.get(self.at)?;
-        let next = self.items.get(self.at + 1);
-        let follows_equal =
-            next.is_some_and(|next| next.datum == Datum::Sign(b'=') && next.start == item.end);
-        Some(match item.datum {
-            Datum::Sign(b'+' | b'-') => {
-                if self.listed && item.spaced && next.is_some_and(|next| !next.spaced) {
-                    return None;
-                }
-                if follows_equal {
-                    return None;
-                }
-                (5, 1)
-            }
-            Datum::Sign(b'*') if !follows_equal => (TIMES, 1),
-            Datum::Sign(b'/') => (TIMES, 1),
-            Datum::Sign(b'^') => (POWER, 1),
-            Datum::Sign(b'<' | b'>') if self.comparing => (COMPARE, 1 + usize::from(follows_equal)),
-            Datum::Sign(b'=' | b'!') if self.comparing && follows_equal => (COMPARE, 2),
-            Datum::Word(_) if self.comparing => {
-                let word = &self.text[item.span()];
-                if word.eq_ignore_ascii_case("and") {
-                    (2, 1)
-                } else if word.eq_ignore_ascii_case("or") {
-                    (1, 1)
-                } else {
-                    return None;
-                }
-            }
-            _ => return None,
-        })
-    }
-
-    pub(super) fn prefix(&mut self) -> Type {
+    fn prefix(&mut self) -> Type {
         match self.datum(0) {
             Some(Datum::Sign(b'+' | b'-')) => {
                 self.at += 1;
@@ -111,7 +72,7 @@ impl<'i, 'p> Slots<'i, 'p> {
         }
     }
 
-    pub(super) fn value_operand(&mut self) -> Type {
+    fn value_operand(&mut self) -> Type {
         match self.datum(0) {
             None => {
                 if !self.stopped {
@@ -139,7 +100,7 @@ impl<'i, 'p> Slots<'i, 'p> {
         }
     }
 
-    pub(super) fn word_value(&mut self) -> Type {
+    fn word_value(&mut self) -> Type {
         let word = self.word().unwrap_or("");
         let is_called = self
             .items
@@ -172,7 +133,7 @@ impl<'i, 'p> Slots<'i, 'p> {
         Type::Any
     }
 
-    pub(super) fn call(&mut self, function: &functions::Function) -> Type {
+    fn call(&mut self, function: &functions::Function) -> Type {
         let mut first = None;
         let mut together = Type::Number;
         if self.datum(0) == Some(Datum::Sign(b'(')) {
@@ -182,7 +143,7 @@ impl<'i, 'p> Slots<'i, 'p> {
                 loop {
                     let kind = self.binary(0);
                     first = first.or(Some(kind));
-                    together = joined(together, kind, TIMES);
+                    together = joined(together, kind, Operator::Times);
                     if self.datum(0) != Some(Datum::Sign(b',')) {
                         break;
                     }
@@ -204,9 +165,9 @@ impl<'i, 'p> Slots<'i, 'p> {
 }
 
 /// The kind of two values that are joined.
-fn joined(left: Type, right: Type, strength: u8) -> Type {
+fn joined(left: Type, right: Type, operator: Operator) -> Type {
     match (left, right) {
-        _ if strength <= COMPARE => Type::Number,
+        _ if operator.is_logical() => Type::Number,
         (Type::Triple, _) | (_, Type::Triple) => Type::Triple,
         (Type::Number, Type::Number) => Type::Number,
         _ => Type::Any,

@@ -1,9 +1,9 @@
-//! What a command's operands are: the kinds, units and ranges from which the reader checks them and
+//! The operands of commands: the kinds, units and ranges from which the reader checks them and
 //! the manual, the hints of errors and the editor explain them.
 
 use crate::limits::MAX_MAGNITUDE;
 
-/// What a parameter takes.
+/// Kinds of values that a parameter takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     /// A number from `low` to `high`.
@@ -54,7 +54,7 @@ pub enum Kind {
     Block,
 }
 
-/// What a name stands for.
+/// Kinds of things that have names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Names {
     /// A material (`surface`).
@@ -127,9 +127,9 @@ pub enum Arity {
 pub struct Parameter {
     /// Its name in the synopsis; UPPERCASE is a triple.
     pub name: &'static str,
-    /// What it takes.
+    /// The kind of value it takes.
     pub kind: Kind,
-    /// What it is: `the tube radius`. Messages say that this was expected.
+    /// Its meaning: `the tube radius`. Messages say that this was expected.
     pub meaning: &'static str,
     /// In what it is measured.
     pub unit: Unit,
@@ -208,9 +208,9 @@ impl Parameter {
 pub struct OptionSpec {
     /// The whole word.
     pub name: &'static str,
-    /// What follows it.
+    /// Its operands, which follow it.
     pub parameters: &'static [Parameter],
-    /// What it means.
+    /// Its meaning, a few words.
     pub meaning: &'static str,
     /// Its value if it is left out.
     pub default: &'static str,

@@ -23,7 +23,7 @@ pub enum Group {
     Scene,
     /// Pictures and films.
     Tools,
-    /// What the original language did not have.
+    /// Commands that the original language did not have.
     Extensions,
 }
 
@@ -81,6 +81,7 @@ pub(crate) enum Routine {
     Warning,
     Verbose,
     Soft,
+    Double,
     Map,
     Nosave,
     Gamma,
@@ -146,9 +147,9 @@ pub struct CommandSpec {
     pub parameters: &'static [Parameter],
     /// Its option words, which follow the operands in any order.
     pub options: &'static [OptionSpec],
-    /// What it means, one line.
+    /// Its meaning, one line.
     pub meaning: &'static str,
-    /// What else there is to know; empty if nothing.
+    /// More about it; empty if there is no more.
     pub details: &'static str,
     /// The value without the command; empty if there is none.
     pub default: &'static str,

@@ -38,33 +38,10 @@ impl<'a> Evaluator<'a> {
         let mut surfaces = Vec::new();
         let mut named = false;
         while read.more() {
-            let start = read.start();
             let index = match read.named_argument() {
                 Some((symbol, word)) => {
                     named = true;
-                    let index = define.parameters.iter().position(|p| p.name == symbol);
-                    let Some(index) = index else {
-                        let names = define
-                            .parameters
-                            .iter()
-                            .map(|p| read.scope.symbols.word(p.name));
-                        let hint = crate::suggest::hint(word, names)
-                            .unwrap_or_else(|| usage(read.scope, define));
-                        let name = read.scope.symbols.word(define.name);
-                        return Err(Problem::new(
-                            start..start + word.len(),
-                            format!("`{name}` has no parameter `{word}`"),
-                        )
-                        .hint(hint));
-                    };
-                    if values[index].1.is_some() {
-                        return Err(Problem::new(
-                            start..start + word.len(),
-                            format!("`{word}` is given twice"),
-                        ));
-                    }
-                    read.at += 2;
-                    index
+                    named_parameter(&mut read, define, &values, symbol, word)?
                 }
                 None if named => {
                     return Err(Problem::new(
@@ -73,12 +50,12 @@ impl<'a> Evaluator<'a> {
                     )
                     .hint(usage(read.scope, define)));
                 }
+                None if next == define.parameters.len() => {
+                    let end = read.end();
+                    end.map_err(|problem| problem.hint(usage(read.scope, define)))?;
+                    break;
+                }
                 None => {
-                    let Some(_) = define.parameters.get(next) else {
-                        let end = read.end();
-                        end.map_err(|problem| problem.hint(usage(read.scope, define)))?;
-                        break;
-                    };
                     next += 1;
                     next - 1
                 }
@@ -130,6 +107,30 @@ impl<'a> Evaluator<'a> {
         }
         Ok(())
     }
+}
+
+/// Takes `word =`; returns the index of the parameter of that name.
+fn named_parameter(
+    read: &mut Reader<'_, '_>,
+    define: &Define,
+    values: &[(Symbol, Option<Value>)],
+    symbol: Symbol,
+    word: &str,
+) -> Outcome<usize> {
+    let start = read.start();
+    let span = start..start + word.len();
+    let Some(index) = define.parameters.iter().position(|p| p.name == symbol) else {
+        let symbols = &read.scope.symbols;
+        let names = define.parameters.iter().map(|p| symbols.word(p.name));
+        let hint = crate::suggest::hint(word, names).unwrap_or_else(|| usage(read.scope, define));
+        let name = symbols.word(define.name);
+        return Err(Problem::new(span, format!("`{name}` has no parameter `{word}`")).hint(hint));
+    };
+    if values[index].1.is_some() {
+        return Err(Problem::new(span, format!("`{word}` is given twice")));
+    }
+    read.at += 2;
+    Ok(index)
 }
 
 /// How a call of a defined command is written, as a hint.

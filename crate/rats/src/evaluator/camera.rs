@@ -201,7 +201,7 @@ impl Evaluator<'_> {
         camera
     }
 
-    /// What is odd about the camera as a whole, once the text is at its end.
+    /// Checks the camera as a whole, once the text is at its end.
     pub(super) fn check_camera(&mut self) {
         if let Some((vertical, file, span)) = self.vertical.take() {
             let [width, height] = self.settings.frame.map(f64::from);

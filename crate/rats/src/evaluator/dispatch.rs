@@ -66,6 +66,7 @@ pub fn function(routine: Routine) -> Run {
         Routine::Warning => options::warning,
         Routine::Verbose => options::verbose,
         Routine::Soft => options::soft,
+        Routine::Double => options::double,
         Routine::Map => options::map,
         Routine::Nosave => options::nosave,
         Routine::Gamma => options::gamma,

@@ -1,5 +1,5 @@
-//! What is probably not meant: shapes outside the picture, an eye inside the surface, flesh too weak
-//! to be seen.
+//! Warnings of scenes that are probably not meant: shapes outside the picture, an eye inside the surface,
+//! flesh too weak to be seen.
 //!
 //! Lints are about the finished scene, so they are looked for only when the text has no errors. Those
 //! that evaluate the field are left out in large scenes: an edit must not wait for them.

@@ -1,4 +1,4 @@
-//! What the evaluator has to say, and where: messages about the library and its examples go to the place
+//! Messages of the evaluator, and where they are shown: those about the library and its examples go to the place
 //! of the user's text that uses them.
 
 use super::state::Evaluator;
@@ -108,7 +108,14 @@ impl Evaluator<'_> {
             Group::Run | Group::Tools => spec.is_library() || spec.name == "test",
             Group::Options => matches!(
                 spec.name,
-                "soft" | "gamma" | "framesize" | "contrast" | "fragile" | "sample" | "mesh"
+                "soft"
+                    | "double"
+                    | "gamma"
+                    | "framesize"
+                    | "contrast"
+                    | "fragile"
+                    | "sample"
+                    | "mesh"
             ),
             Group::Scene => spec.name != "report",
             Group::Extensions => spec.name != "seed",

@@ -32,6 +32,12 @@ pub fn soft<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
     Ok(Flow::Next)
 }
 
+/// `double on|off`
+pub fn double<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.settings.double_sided = run.given(command)?.switch();
+    Ok(Flow::Next)
+}
+
 /// `gamma value`
 pub fn gamma<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     run.settings.gamma = run.given(command)?.number("value") as f32;

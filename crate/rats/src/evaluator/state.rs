@@ -18,7 +18,7 @@ use scene::{Camera, Light, Origin, Scene, Settings};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// What to do after a command.
+/// How a run goes on after a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// Run the next one.

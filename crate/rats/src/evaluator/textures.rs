@@ -44,7 +44,7 @@ pub fn texture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
     Ok(Flow::Next)
 }
 
-/// What a texture's own layer does.
+/// The effect of a texture's own layer.
 #[derive(Debug)]
 enum Method {
     Waves([Wave; 2]),

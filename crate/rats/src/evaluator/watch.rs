@@ -1,7 +1,7 @@
 //! Watching a run for one command: from where in the texts each of its numbers comes, so that a hand
 //! that moves the shape knows what to rewrite.
 //!
-//! What a word means depends on the variables at that time, so the text is run up to the command, as
+//! The meaning of a word depends on the variables at that time, so the text is run up to the command, as
 //! for a picture, and the run notes where variables and the radii of materials were written.
 
 use super::state::Evaluator;

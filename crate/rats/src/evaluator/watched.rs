@@ -9,7 +9,7 @@ use std::ops::Range;
 /// Where a variable was set: the file and its numbers' places, or why they cannot be rewritten.
 pub type Setting = Result<(usize, Vec<Range<usize>>), String>;
 
-/// What a run notes while it is watched.
+/// The notes of a run for one command.
 #[derive(Debug)]
 pub struct Watch<'a> {
     pub target: Origin,

@@ -39,7 +39,9 @@ pub static OPTIONS: &[CommandSpec] = &[
     switch("soft", "blend soft shapes; off draws their offset surfaces", run(Routine::Soft), "on")
         .example(flesh!("soft off\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
     switch("timer", "report times", idle(REPORTS), "on").example("timer on"),
-    switch("double", "draw both sides of faces", idle("both sides are always drawn"), "on").example("double on"),
+    switch("double", "draw both sides of faces", run(Routine::Double), "on")
+        .details("Off hides the faces of triangles, polygons, patches and meshes that are seen from behind; the front of a face is the side from which its corners run counterclockwise. RATS had `double` off unless a dataset said otherwise; here it is on.")
+        .example(clay!("double off\ntriangle Clay, <-2 -1 0> <2 -1 0> <0 2 0>")),
     switch("dither", "dither pictures for viewing", idle("screens show all colours now"), "on").example("dither on"),
     switch("compress", "compress saved pictures", idle(SAVING), "on").example("compress on"),
     switch("stat", "report statistics", idle(REPORTS), "off").example("stat on"),

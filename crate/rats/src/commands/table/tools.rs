@@ -8,7 +8,7 @@ use crate::commands::spec::{CommandSpec, Routine};
 const FILE: Parameter = parameter("fn", Kind::File, "a picture's name");
 const OTHER: Parameter = parameter("fn2", Kind::File, "another picture's name");
 const WINDOW: Parameter = parameter("w", Kind::Text, "a window").optional("");
-/// What all of them say: where the pictures are.
+/// Where the pictures are, for the details of all of them.
 const WORK: &str = "The program works on files of the dataset's folder when it runs the dataset. The page works on the images of the work and on its own picture (`scene.png`, or as `filename` and `format` say), and shows the results below the picture.";
 
 /// The commands.
