@@ -7,7 +7,7 @@ use rats::Project;
 /// the beginning of the file.
 ///
 /// ```
-/// let text = "var r = 1\nsurface Clay, diffuse Tan\nsphere Clay r, 0 0 0\n";
+/// let text = "var r = 1\nsurface Clay, diffuse SandyBrown\nsphere Clay r, 0 0 0\n";
 /// let used = text.find("r, 0").unwrap();
 /// let made = assist::definition(&rats::Project::single(text), 0, used).unwrap();
 /// assert_eq!((made.file, made.span), (0, 4..5));
@@ -20,7 +20,7 @@ pub fn definition(project: &Project, file: usize, byte: usize) -> Option<Place> 
 /// All places of the name at a byte, those that make it too, in the order of files and places.
 ///
 /// ```
-/// let text = "var r = 1\nsurface Clay, diffuse Tan\nsphere Clay r, r 0 0\n";
+/// let text = "var r = 1\nsurface Clay, diffuse SandyBrown\nsphere Clay r, r 0 0\n";
 /// assert_eq!(assist::references(&rats::Project::single(text), 0, 4).len(), 3);
 /// ```
 #[must_use]

@@ -10,7 +10,7 @@
 //! use assist::handles::{drag, handles};
 //! use glam::{DMat3, DVec3};
 //!
-//! let project = rats::Project::single("surface Clay, diffuse Tan\nsphere Clay 1, 0 0 0\n");
+//! let project = rats::Project::single("surface Clay, diffuse SandyBrown\nsphere Clay 1, 0 0 0\n");
 //! let compiled = rats::compile(&project);
 //! let handles = handles(&project, &[], 0, &compiled, 0, &DMat3::IDENTITY);
 //! let centre = handles.iter().find(|handle| handle.label == "the centre").unwrap();

@@ -128,7 +128,7 @@ pub(crate) struct Here<'p> {
 /// ```
 /// use assist::{Index, SymbolKind};
 ///
-/// let project = rats::Project::single("surface Clay, diffuse Tan\nfor i = 1 to 3 { sphere Clay 1, i 0 0 }\n");
+/// let project = rats::Project::single("surface Clay, diffuse SandyBrown\nfor i = 1 to 3 { sphere Clay 1, i 0 0 }\n");
 /// let index = Index::of(&project);
 /// let names: Vec<_> = index.symbols().into_iter().map(|s| (s.kind, s.name)).collect();
 /// assert!(names.contains(&(SymbolKind::Material, "Clay".into())));

@@ -15,7 +15,7 @@ use rats::{Project, colours, commands, functions};
 /// is not closed, since names could be overlooked in it.
 ///
 /// ```
-/// let project = rats::Project::single("var r = 1\nvar s = 2\nsurface Clay, diffuse Tan\nsphere Clay r, s 0 0\n");
+/// let project = rats::Project::single("var r = 1\nvar s = 2\nsurface Clay, diffuse SandyBrown\nsphere Clay r, s 0 0\n");
 /// let edits = assist::rename(&project, 0, 4, "radius").unwrap();
 /// assert_eq!(edits.len(), 2);
 /// let renamed = assist::apply(&project, &edits);

@@ -1,8 +1,10 @@
 //! The use of each operand of a command, found without running anything.
 //!
-//! This follows the reader of operands (`reader`, `given`, `expression`), but instead of values it knows
-//! only whether something is a number or a triple, and instead of stopping at a mistake it goes on. Where
-//! the operands end it notes what could come next.
+//! Parameters come from the same table as those of the language's own reader, operators from the same
+//! [`rats::operator`]. The reader itself is another: that one computes values, needs all variables for it, and
+//! stops at the first mistake; this one knows only whether something is a number or a triple, goes on after
+//! a mistake, and notes where the operands end what could come next. The tests hold the two together: in texts
+//! without errors every operand has a use here.
 
 mod cursor;
 mod expression;

@@ -16,7 +16,7 @@ use scene::Origin;
 /// ```
 /// use rats::{HotValue, Project, compile};
 ///
-/// let project = Project::single("var r = 0.5 hot 0 2 0.1\nsurface Clay, diffuse Tan\nsphere Clay r, 0 0 0\n");
+/// let project = Project::single("var r = 0.5 hot 0 2 0.1\nsurface Clay, diffuse SandyBrown\nsphere Clay r, 0 0 0\n");
 /// let compiled = compile(&project);
 /// assert!(compiled.diagnostics.is_empty());
 /// assert_eq!(compiled.scene.radius(&compiled.scene.elements[0]), 0.5);
@@ -34,7 +34,7 @@ pub fn compile(project: &Project) -> Compiled {
 /// Variables that change with every frame have changed `frame` times.
 ///
 /// ```
-/// let text = "var x = 0 += 2\nsurface Clay, diffuse Tan\nsphere Clay 1, x 0 0\n";
+/// let text = "var x = 0 += 2\nsurface Clay, diffuse SandyBrown\nsphere Clay 1, x 0 0\n";
 /// let compiled = rats::compile_at(&rats::Project::single(text), &[], 3);
 /// assert!(compiled.animated);
 /// assert_eq!(compiled.scene.elements[0].shape, scene::Shape::Sphere { center: [6.0, 0.0, 0.0].into(), radius: 1.0 });
@@ -60,7 +60,7 @@ pub fn compile_at(project: &Project, assets: &[Asset], frame: u32) -> Compiled {
 /// use rats::provenance::Source;
 /// use rats::{Project, compile, provenance};
 ///
-/// let text = "var r = 0.5\nsurface Clay, diffuse Tan\nsphere Clay r, 0 0 0\n";
+/// let text = "var r = 0.5\nsurface Clay, diffuse SandyBrown\nsphere Clay r, 0 0 0\n";
 /// let project = Project::single(text);
 /// let origin = compile(&project).scene.elements[0].origin;
 /// let found = provenance(&project, &[], 0, origin).unwrap();

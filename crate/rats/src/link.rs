@@ -8,7 +8,7 @@
 //! use rats::Project;
 //! use rats::link::{Shared, decode, encode};
 //!
-//! let project = Project::single("surface Clay, diffuse Tan\nsphere Clay 1, 0 0 0\n");
+//! let project = Project::single("surface Clay, diffuse SandyBrown\nsphere Clay 1, 0 0 0\n");
 //! let shared = Shared { project, camera: None };
 //! let fragment = encode(&shared).unwrap();
 //! assert_eq!(decode(&fragment), Ok(shared));

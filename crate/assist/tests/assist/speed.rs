@@ -1,5 +1,5 @@
 //! How long the answers take for the longest project that there may be. Run with
-//! `cargo test --release -p rats --test assist speed -- --ignored --nocapture`.
+//! `cargo test --release -p assist --test assist speed -- --ignored --nocapture`.
 
 use crate::texts::{file, one_file};
 
