@@ -108,7 +108,7 @@ fn objects(text: &str, lines: &Lines) -> Vec<Range<usize>> {
     let mut open = Vec::new();
     let mut folds = Vec::new();
     walk::commands(&syntax.block, &mut |command| match walk::name(command) {
-        Some("object" | "chain") => open.push(command.span.start),
+        Some("object" | "body" | "chain") => open.push(command.span.start),
         Some("close") => {
             let fold = open
                 .pop()

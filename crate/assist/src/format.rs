@@ -98,7 +98,9 @@ impl Marks {
 
     fn command(&mut self, tokens: &[Token], command: &Command, items: &[Item]) {
         match walk::name(command) {
-            Some("object" | "chain") => self.at(tokens, command.word_span.start).opens = true,
+            Some("object" | "body" | "chain") => {
+                self.at(tokens, command.word_span.start).opens = true
+            }
             Some("close") => self.at(tokens, command.word_span.start).closes = true,
             Some("var" | "define") => self.assignments(tokens, items),
             Some("for") => {

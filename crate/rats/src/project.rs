@@ -24,7 +24,7 @@ pub struct File {
 ///         file("clay.rat", "surface Clay, diffuse SandyBrown\n"),
 ///     ],
 /// };
-/// assert_eq!(compile(&project).scene.materials[0].name, "Clay");
+/// assert_eq!(compile(&project).scene.elements.len(), 1);
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Project {

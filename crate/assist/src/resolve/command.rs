@@ -36,7 +36,7 @@ impl<'p, 's> Resolver<'p, 's> {
         self.make_names(file, command, items, &slots);
         match walk::name(command) {
             Some("chain") => self.frame().objects.push(true),
-            Some("object") => self.frame().objects.push(false),
+            Some("object" | "body") => self.frame().objects.push(false),
             Some("close") => {
                 self.frame().objects.pop();
             }
