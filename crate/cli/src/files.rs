@@ -29,19 +29,19 @@ pub struct Loaded {
 /// Runs an action on each of several files, also where it fails on one of them. Returns the worst outcome: all
 /// sentences of failure, each in a line, else false if there was one.
 pub fn each(files: &[PathBuf], mut run: impl FnMut(&Path) -> Outcome) -> Outcome {
-    let mut worst = Ok(true);
+    let mut clean = true;
+    let mut failures: Vec<String> = Vec::new();
     for file in files {
-        match (run(file), &mut worst) {
-            (Ok(true), _) | (Ok(false), Err(_)) => {}
-            (Ok(false), Ok(clean)) => *clean = false,
-            (Err(sentence), Err(all)) => {
-                all.push_str("\nsinew: ");
-                all.push_str(&sentence);
-            }
-            (Err(sentence), Ok(_)) => worst = Err(sentence),
+        match run(file) {
+            Ok(is_clean) => clean &= is_clean,
+            Err(sentence) => failures.push(sentence),
         }
     }
-    worst
+    if failures.is_empty() {
+        Ok(clean)
+    } else {
+        Err(failures.join("\nsinew: "))
+    }
 }
 
 /// Loads a dataset and all that it reads.
