@@ -2,9 +2,9 @@
 #![no_main]
 
 #[allow(dead_code)]
-#[path = "../../crate/rats/examples/fuzz/check.rs"]
+#[path = "../../crate/assist/examples/fuzz/check.rs"]
 mod check;
-#[path = "../../crate/rats/examples/fuzz/generate.rs"]
+#[path = "../../crate/assist/examples/fuzz/generate.rs"]
 mod generate;
 
 use arbitrary::Unstructured;

@@ -2,7 +2,7 @@
 #![no_main]
 
 #[allow(dead_code)]
-#[path = "../../crate/rats/examples/fuzz/check.rs"]
+#[path = "../../crate/assist/examples/fuzz/check.rs"]
 mod check;
 
 use libfuzzer_sys::fuzz_target;

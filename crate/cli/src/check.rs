@@ -1,47 +1,71 @@
-//! `sinew check` and `sinew scene`: what a dataset says, without a picture.
+//! `sinew check` and `sinew scene`: the diagnostics and the scene of a dataset, without a picture.
 
-use crate::{Outcome, files, report};
+use crate::files::{self, Loaded};
+use crate::{Outcome, report};
 use clap::Args;
-use std::path::PathBuf;
+use rats::Diagnostic;
+use std::path::{Path, PathBuf};
 
-/// `sinew check FILE [--json]`.
+/// `sinew check FILE… [--json]`.
 #[derive(Args)]
 pub struct Check {
-    /// The dataset
-    file: PathBuf,
+    /// The datasets
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
     /// Print the diagnostics as a JSON array on the standard output
     #[arg(long)]
     json: bool,
 }
 
 impl Check {
-    /// Prints all diagnostics; false if any is an error.
+    /// Prints all diagnostics of all datasets; false if any is an error.
     pub fn run(&self) -> Outcome {
-        let loaded = files::load(&self.file)?;
+        let mut all = Vec::new();
+        let outcome = files::each(&self.files, |path| {
+            let loaded = files::load(path)?;
+            if self.json {
+                all.extend(with_paths(&loaded, path));
+                return Ok(report::is_clean(&loaded));
+            }
+            let clean = report::to_stderr(&loaded);
+            summarize(&loaded, path);
+            Ok(clean)
+        });
         if self.json {
-            let text = serde_json::to_string_pretty(&loaded.compiled.diagnostics)
-                .map_err(|error| error.to_string())?;
+            let text = serde_json::to_string_pretty(&all).map_err(|error| error.to_string())?;
             println!("{text}");
-            return Ok(report::is_clean(&loaded));
         }
-        let clean = report::to_stderr(&loaded);
-        let soft = loaded
-            .compiled
-            .scene
-            .elements
-            .iter()
-            .filter(|element| loaded.compiled.scene.is_soft(element))
-            .count();
-        eprintln!(
-            "{}: {} elements ({soft} soft), {} materials, {} lights, {} diagnostics",
-            self.file.display(),
-            loaded.compiled.scene.elements.len(),
-            loaded.compiled.scene.finishes.len(),
-            loaded.compiled.scene.lights.len(),
-            loaded.compiled.diagnostics.len(),
-        );
-        Ok(clean)
+        outcome
     }
+}
+
+/// The diagnostics of a dataset with the paths of their files, which tell the datasets apart.
+fn with_paths(loaded: &Loaded, path: &Path) -> Vec<Diagnostic> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let in_folder = |name: &str| folder.join(name).display().to_string();
+    let mut diagnostics = loaded.compiled.diagnostics.clone();
+    for diagnostic in &mut diagnostics {
+        diagnostic.file = in_folder(&diagnostic.file);
+        for related in &mut diagnostic.related {
+            related.file = in_folder(&related.file);
+        }
+    }
+    diagnostics
+}
+
+/// Prints one line on a dataset: its name and the counts of its elements, materials, lights and diagnostics.
+fn summarize(loaded: &Loaded, path: &Path) {
+    let scene = &loaded.compiled.scene;
+    let is_soft = |element: &&scene::Element| scene.is_soft(element);
+    eprintln!(
+        "{}: {} elements ({} soft), {} materials, {} lights, {} diagnostics",
+        path.display(),
+        scene.elements.len(),
+        scene.elements.iter().filter(is_soft).count(),
+        scene.finishes.len(),
+        scene.lights.len(),
+        loaded.compiled.diagnostics.len(),
+    );
 }
 
 /// `sinew scene FILE`.

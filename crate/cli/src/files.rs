@@ -3,6 +3,7 @@
 //! A dataset may `read` others. The compiler only ever sees the texts of a project, so the ones it
 //! asks for are fetched here, from the folder of the first file, until it asks for no more.
 
+use crate::Outcome;
 use rats::{Asset, Compiled, File, Project};
 use std::path::{Path, PathBuf};
 
@@ -23,6 +24,24 @@ pub struct Loaded {
     pub compiled: Compiled,
     /// Time the compiler took for the last, complete run.
     pub compile_seconds: f64,
+}
+
+/// Runs an action on each of several files, also where it fails on one of them. Returns the worst outcome: all
+/// sentences of failure, each in a line, else false if there was one.
+pub fn each(files: &[PathBuf], mut run: impl FnMut(&Path) -> Outcome) -> Outcome {
+    let mut clean = true;
+    let mut failures: Vec<String> = Vec::new();
+    for file in files {
+        match run(file) {
+            Ok(is_clean) => clean &= is_clean,
+            Err(sentence) => failures.push(sentence),
+        }
+    }
+    if failures.is_empty() {
+        Ok(clean)
+    } else {
+        Err(failures.join("\nsinew: "))
+    }
 }
 
 /// Loads a dataset and all that it reads.

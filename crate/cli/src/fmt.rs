@@ -19,22 +19,20 @@ pub struct Fmt {
 impl Fmt {
     /// Writes the files that change; with `--check` only tells them, and the result is false then.
     pub fn run(&self) -> Outcome {
-        let mut clean = true;
-        for file in &self.files {
+        files::each(&self.files, |file| {
             let text = files::read(file)?;
-            let tidy = rats::assist::format(&text);
+            let tidy = assist::format(&text);
             if tidy == text {
-                continue;
+                return Ok(true);
             }
             if self.check {
                 eprintln!("{} would be laid out anew", file.display());
-                clean = false;
             } else {
                 replace(file, &tidy)?;
                 eprintln!("laid out {}", file.display());
             }
-        }
-        Ok(clean)
+            Ok(!self.check)
+        })
     }
 }
 

@@ -39,6 +39,38 @@ fn check_points_at_every_error_and_exits_1() {
 }
 
 #[test]
+fn check_takes_several_files_and_exits_with_the_worst() {
+    let folder = Folder::new("several");
+    let good = folder.write("good.rat", BALL);
+    let bad = folder.write("bad.rat", "spere s 1 0 0 0\n");
+    let worse = folder.write("worse.rat", "sphere nobody 1 0 0 0\n");
+    let missing = folder.path("missing.rat");
+    let status = |files: &[&str]| {
+        let arguments: Vec<&str> = ["check"].iter().chain(files).copied().collect();
+        sinew(&arguments, "").status.code()
+    };
+    assert_eq!(status(&[&good, &good]), Some(0));
+    assert_eq!(status(&[&bad, &good]), Some(1));
+    assert_eq!(status(&[&missing, &bad, &good]), Some(2));
+    assert_eq!(status(&[]), Some(2));
+
+    // What follows a missing file is checked all the same, and each missing file is named.
+    let other = folder.path("other.rat");
+    let output = sinew(&["check", &missing, &bad, &other], "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    for named in ["missing.rat", "bad.rat:1:1", "other.rat"] {
+        assert!(said.contains(named), "{said}");
+    }
+
+    let output = sinew(&["check", "--json", &bad, &good, &worse], "");
+    assert_eq!(output.status.code(), Some(1));
+    let list: Vec<Value> = serde_json::from_str(&printed(&output)).expect("JSON");
+    let errors = list.iter().filter(|d| d["severity"] == "error");
+    let files: Vec<_> = errors.filter_map(|d| d["file"].as_str()).collect();
+    assert_eq!(files, [&bad, &worse]);
+}
+
+#[test]
 fn a_missing_file_is_a_sentence_and_exit_2() {
     let output = sinew(&["check", "no-such-file.rat"], "");
     assert_eq!(output.status.code(), Some(2));
@@ -381,11 +413,16 @@ fn fmt_lays_out_and_checks() {
     );
     assert_eq!(read(), untidy);
     assert_eq!(sinew(&["fmt", &tidy, &file], "").status.code(), Some(0));
-    assert_eq!(read(), rats::assist::format(untidy));
+    assert_eq!(read(), assist::format(untidy));
     assert_ne!(read(), untidy);
     assert_eq!(sinew(&["fmt", "--check", &file], "").status.code(), Some(0));
     assert_eq!(
         sinew(&["fmt", "no-such-file.rat"], "").status.code(),
         Some(2)
     );
+    // One that cannot be read does not keep the next from being laid out.
+    std::fs::write(&file, untidy).expect("written");
+    let output = sinew(&["fmt", "no-such-file.rat", &file], "");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(read(), assist::format(untidy));
 }

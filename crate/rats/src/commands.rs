@@ -3,140 +3,20 @@
 //! The parser, the evaluator, the highlighter, suggestions and `help` all read this table, so a command
 //! that is in it is known everywhere.
 
+mod build;
 pub mod options;
 pub mod parameter;
+mod spec;
 mod table;
 
-pub use parameter::{Arity, Kind, Names, Parameter, Unit};
+pub use parameter::{Arity, Kind, Names, OptionSpec, Parameter, Unit};
+pub(crate) use spec::{Action, Routine};
+pub use spec::{CommandSpec, Group};
 pub use table::GROUPS;
 
-use crate::evaluator::{Evaluator, Flow};
-use crate::problem::Outcome;
-use crate::syntax::Command;
-use crate::{library, suggest};
-
-/// The groups of appendix C of the thesis, and ours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Group {
-    /// Running texts.
-    Run,
-    /// The camera.
-    Camera,
-    /// Materials and textures.
-    Materials,
-    /// Shapes.
-    Primitives,
-    /// Objects made of shapes.
-    Objects,
-    /// Settings.
-    Options,
-    /// Lights, background, the picture.
-    Scene,
-    /// Pictures and films.
-    Tools,
-    /// What the original language did not have.
-    Extensions,
-}
-
-/// An option word of a command.
-#[derive(Debug)]
-pub struct OptionSpec {
-    /// The whole word.
-    pub name: &'static str,
-    /// What follows it.
-    pub parameters: &'static [Parameter],
-    /// What it means.
-    pub meaning: &'static str,
-    /// Its value if it is left out.
-    pub default: &'static str,
-}
-
-impl OptionSpec {
-    /// Whether its name begins with a word, in any case: options may be shortened.
-    #[must_use]
-    pub fn begins(&self, word: &str) -> bool {
-        let start = self.name.get(..word.len());
-        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
-    }
-
-    /// The word and what follows it.
-    #[must_use]
-    pub fn synopsis(&self) -> String {
-        join(self.name, self.parameters)
-    }
-}
-
-/// What runs a command.
-pub(crate) type Run = for<'a> fn(&mut Evaluator<'a>, &'a Command) -> Outcome<Flow>;
-
-/// How far a command is carried out.
-#[derive(Clone, Copy)]
-pub(crate) enum Action {
-    /// Fully, or as far as the function itself says.
-    Run(Run),
-    /// The parser makes it part of the tree.
-    Structure,
-    /// A file of the library defines it.
-    Library,
-    /// It never changes the picture, for the reason given.
-    NoEffect(&'static str),
-    /// Not in this version.
-    Later,
-}
-
-/// A command.
-pub struct CommandSpec {
-    /// Its opcode.
-    pub name: &'static str,
-    /// Its operands, in order. Those of a command of the library stand in its file (see
-    /// [`crate::library`]).
-    pub parameters: &'static [Parameter],
-    /// Its option words, which follow the operands in any order.
-    pub options: &'static [OptionSpec],
-    /// What it means, one line.
-    pub meaning: &'static str,
-    /// What else there is to know; empty if nothing.
-    pub details: &'static str,
-    /// The value without the command; empty if there is none.
-    pub default: &'static str,
-    /// A small text that uses it, complete and without mistakes.
-    pub example: &'static str,
-    /// What runs it.
-    pub(crate) action: Action,
-}
-
-impl std::fmt::Debug for CommandSpec {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("CommandSpec")
-            .field("name", &self.name)
-            .finish_non_exhaustive()
-    }
-}
+use crate::suggest;
 
 impl CommandSpec {
-    /// How it is written, as a hint.
-    #[must_use]
-    pub fn usage(&self) -> String {
-        format!("it is written `{}`", self.synopsis())
-    }
-
-    /// Its opcode and operands.
-    #[must_use]
-    pub fn synopsis(&self) -> String {
-        if matches!(self.action, Action::Library) {
-            return library::synopsis(self.name);
-        }
-        let mut synopsis = join(self.name, self.parameters);
-        if self.options.len() <= 3 {
-            for option in self.options {
-                synopsis += &format!(" [{}]", option.synopsis());
-            }
-        } else {
-            synopsis += " [option …]";
-        }
-        synopsis
-    }
-
     /// Its group.
     #[must_use]
     pub fn group(&self) -> Group {
@@ -146,31 +26,6 @@ impl CommandSpec {
             .find(|(_, list)| mine(list))
             .map_or(Group::Extensions, |(group, _)| *group)
     }
-
-    /// Whether it is carried out: `None` if it is, else the reason why it changes nothing.
-    #[must_use]
-    pub fn idle(&self) -> Option<&'static str> {
-        match self.action {
-            Action::Run(_) | Action::Structure | Action::Library => None,
-            Action::NoEffect(reason) => Some(reason),
-            Action::Later => Some("it is not carried out in this version"),
-        }
-    }
-
-    /// Whether a file of the library defines it.
-    #[must_use]
-    pub fn is_library(&self) -> bool {
-        matches!(self.action, Action::Library)
-    }
-}
-
-fn join(name: &str, parameters: &[Parameter]) -> String {
-    let mut text = name.to_owned();
-    for parameter in parameters {
-        text += " ";
-        text += &parameter.synopsis();
-    }
-    text
 }
 
 /// All commands, in the order of the table.

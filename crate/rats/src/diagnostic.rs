@@ -1,4 +1,5 @@
-//! What the compiler has to say about a text.
+//! Diagnostics: messages of the compiler about a text.
+
 use serde::{Deserialize, Serialize};
 
 /// How bad it is.
@@ -14,11 +15,22 @@ pub enum Severity {
 }
 
 /// One message about one place of the text.
+///
+/// ```
+/// use rats::{Project, Severity, compile};
+///
+/// let text = "sphere Clay 1, 0 0 0\n";
+/// let diagnostics = compile(&Project::single(text)).diagnostics;
+/// let first = &diagnostics[0];
+/// assert_eq!(first.severity, Severity::Error);
+/// assert_eq!((first.line, first.column, &text[first.span.clone()]), (1, 8, "Clay"));
+/// assert_eq!(first.command.as_deref(), Some("sphere"));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
-    /// What is wrong, in one sentence.
+    /// The mistake in one sentence.
     pub message: String,
     /// Name of the file.
     pub file: String,
@@ -28,7 +40,7 @@ pub struct Diagnostic {
     pub line: usize,
     /// Column of the start of the span in characters, from 1.
     pub column: usize,
-    /// What to do about it, e.g. "did you mean `sphere`?".
+    /// Advice, e.g. "did you mean `sphere`?".
     pub hint: Option<String>,
     /// Other places that explain it, such as "it begins here".
     #[serde(default)]
@@ -49,6 +61,6 @@ pub struct Related {
     pub line: usize,
     /// Column of the start of the span in characters, from 1.
     pub column: usize,
-    /// What is there.
+    /// A few words on that place.
     pub message: String,
 }

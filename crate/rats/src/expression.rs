@@ -6,55 +6,19 @@
 //! none after they begin the next operand, otherwise they join two numbers. So `1 -2` is two operands,
 //! `1 - 2`, `1-2` and `(1 -2)` are one.
 
+use crate::colours;
 use crate::functions::{self, Run};
 use crate::limits;
+use crate::operator::{NOT, Operator, SIGN};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Reader;
+use crate::suggest;
+use crate::symbol::Symbol;
 use crate::syntax::Datum;
 use crate::value::Value;
+use glam::DVec3;
 
-/// Operators that join two values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Operator {
-    Or,
-    And,
-    Less,
-    LessEqual,
-    Greater,
-    GreaterEqual,
-    Equal,
-    Unequal,
-    Plus,
-    Minus,
-    Times,
-    Over,
-    Power,
-}
-
-impl Operator {
-    /// Larger binds stronger.
-    fn strength(self) -> u8 {
-        match self {
-            Self::Or => 1,
-            Self::And => 2,
-            Self::Less
-            | Self::LessEqual
-            | Self::Greater
-            | Self::GreaterEqual
-            | Self::Equal
-            | Self::Unequal => 4,
-            Self::Plus | Self::Minus => 5,
-            Self::Times | Self::Over => 6,
-            Self::Power => POWER,
-        }
-    }
-}
-
-const NOT: u8 = 3;
-const SIGN: u8 = 7;
-const POWER: u8 = 8;
-
-impl Reader<'_, '_> {
+impl<'a> Reader<'_, 'a> {
     /// An expression's value.
     ///
     /// # Errors
@@ -109,68 +73,18 @@ impl Reader<'_, '_> {
         }
         let start = self.here().start;
         let mut left = self.prefix(what)?;
-        while let Some((operator, length)) = self.operator() {
-            let strength = operator.strength();
-            if strength < least {
+        while let Some((operator, length)) =
+            Operator::at(self.items, self.at, self.text, self.listed, self.comparing)
+        {
+            if operator.strength() < least {
                 break;
             }
             self.at += length;
-            // `^` groups from the right: its right side may hold another `^`.
-            let right_least = strength + u8::from(operator != Operator::Power);
-            let right = self.binary(right_least, "a number after the operator")?;
+            let right = self.binary(operator.right_strength(), "a number after the operator")?;
             left = self.join(left, operator, right, start)?;
         }
         self.depth -= 1;
         Ok(left)
-    }
-
-    /// The operator that stands here and how many items it has.
-    fn operator(&self) -> Option<(Operator, usize)> {
-        let item = self.items.get(self.at)?;
-        let follows_equal = || {
-            self.items
-                .get(self.at + 1)
-                .is_some_and(|next| next.datum == Datum::Sign(b'=') && next.start == item.end)
-        };
-        Some(match item.datum {
-            Datum::Sign(sign @ (b'+' | b'-')) => {
-                if self.listed && item.spaced {
-                    let attached = self.items.get(self.at + 1).is_some_and(|next| !next.spaced);
-                    if attached {
-                        return None;
-                    }
-                }
-                // `+=` belongs to `var`.
-                if follows_equal() {
-                    return None;
-                }
-                if sign == b'+' {
-                    (Operator::Plus, 1)
-                } else {
-                    (Operator::Minus, 1)
-                }
-            }
-            Datum::Sign(b'*') if !follows_equal() => (Operator::Times, 1),
-            Datum::Sign(b'/') => (Operator::Over, 1),
-            Datum::Sign(b'^') => (Operator::Power, 1),
-            Datum::Sign(b'<') if self.comparing && follows_equal() => (Operator::LessEqual, 2),
-            Datum::Sign(b'<') if self.comparing => (Operator::Less, 1),
-            Datum::Sign(b'>') if self.comparing && follows_equal() => (Operator::GreaterEqual, 2),
-            Datum::Sign(b'>') if self.comparing => (Operator::Greater, 1),
-            Datum::Sign(b'=') if self.comparing && follows_equal() => (Operator::Equal, 2),
-            Datum::Sign(b'!') if self.comparing && follows_equal() => (Operator::Unequal, 2),
-            Datum::Word(symbol) if self.comparing => {
-                let word = self.scope.symbols.word(symbol);
-                if word.eq_ignore_ascii_case("and") {
-                    (Operator::And, 1)
-                } else if word.eq_ignore_ascii_case("or") {
-                    (Operator::Or, 1)
-                } else {
-                    return None;
-                }
-            }
-            _ => return None,
-        })
     }
 
     fn join(&self, left: Value, operator: Operator, right: Value, start: usize) -> Outcome<Value> {
@@ -330,5 +244,43 @@ impl Reader<'_, '_> {
         }
         functions::apply(function, &arguments)
             .map_err(|message| Problem::new(self.since(start), message).hint(function.meaning))
+    }
+
+    /// The value of a word that stands in an expression and is no function.
+    fn word_value(&mut self, symbol: Symbol) -> Outcome<Value> {
+        if let Some(value) = self.scope.get(symbol) {
+            return Ok(value);
+        }
+        let word = self.scope.symbols.word(symbol);
+        if let Some((triple, component)) = word.rsplit_once('.')
+            && let Some(value) = self.scope.symbols.find(triple)
+            && let Some(value) = self.scope.get(value)
+            && let Some(number) = value.component(component)
+        {
+            return Ok(Value::Scalar(number));
+        }
+        if let Some(constant) = functions::constant(word) {
+            return Ok(Value::Scalar(constant));
+        }
+        if let Some(colour) = colours::find(word) {
+            // A search through names takes longer than a look at a variable.
+            self.scope.step(3, &self.here())?;
+            return Ok(Value::Colour(DVec3::from_array(colour.map(f64::from))));
+        }
+        let span = self.here();
+        if self.scope.is_broken(symbol) {
+            return Err(Problem::follow_up(span));
+        }
+        // More than the hint will look at need not be gathered.
+        let mut known: Vec<&'a str> = self.scope.names().take(2001).collect();
+        known.extend(functions::FUNCTIONS.iter().map(|f| -> &'a str { f.name }));
+        known.extend(colours::names().map(|name| -> &'a str { name }));
+        let suggestion = suggest::hint(word, known);
+        if word.starts_with(|c: char| c.is_ascii_digit()) {
+            return Err(Problem::new(span, format!("`{word}` is no number")));
+        }
+        let hint =
+            suggestion.unwrap_or_else(|| format!("set it before it is used: `var {word} = …`"));
+        Err(Problem::new(span, format!("there is no variable or colour `{word}`")).hint(hint))
     }
 }

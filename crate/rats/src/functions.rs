@@ -11,11 +11,11 @@ pub struct Function {
     pub name: &'static str,
     /// How it is written and what it gives.
     pub meaning: &'static str,
-    /// What it does.
+    /// The computation.
     pub run: Run,
 }
 
-/// What a function does with its arguments.
+/// The computation of a function on its arguments.
 #[derive(Clone, Copy, Debug)]
 pub enum Run {
     /// One number; of a triple, each of its numbers.

@@ -49,7 +49,7 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// What three points make.
+/// The curve through three points.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ThreePoints {
     /// A piece of a circle from the first over the second to the third.

@@ -39,7 +39,7 @@ pub enum Operand<'a> {
 pub struct Filled<'a> {
     /// The parameter.
     pub parameter: &'static str,
-    /// What was given.
+    /// Its value.
     pub operand: Operand<'a>,
     /// Where.
     pub span: Range<usize>,
@@ -312,18 +312,6 @@ impl<'a> Reader<'_, 'a> {
             Kind::Block => false,
             _ => !self.is_option_next(options),
         }
-    }
-
-    /// Whether the next word is one of these or the beginning of one.
-    pub(crate) fn is_option_next(&mut self, options: &[OptionSpec]) -> bool {
-        let Some((symbol, word)) = self.peek_word() else {
-            return false;
-        };
-        // A variable is meant where its name is short for an option, but not where it is the option.
-        let is_variable = self.scope.get(symbol).is_some();
-        options
-            .iter()
-            .any(|option| option.begins(word) && !(is_variable && word.len() < option.name.len()))
     }
 
     /// The problem that none of these words stands here.

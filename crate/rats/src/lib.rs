@@ -4,25 +4,36 @@
 //! best [`scene::Scene`] it can make of the text and a list of [`Diagnostic`]s. [`link`] packs a
 //! project and a camera into a short text that fits behind the `#` of an address.
 //!
-//! A text goes through these rooms: [`lexer`] cuts it into tokens, `parser` makes a tree of commands
-//! (`syntax`), `evaluator` runs the tree. Each command's operands are read while it runs
-//! (`given`, `reader`, `operands`, `expression`), because what a word means depends on the variables at that time. What
-//! commands there are stands in one table ([`commands`]), which also serves [`highlight`] and help.
-//! [`assist`] answers what an editor asks. All bounds are in [`limits`].
+//! ```
+//! let project = rats::Project::single(
+//!     "surface Clay, diffuse SandyBrown, blobbiness -2\n\
+//!      for i = 0 to 4 { sphere Clay 0.5, i 0 0 }\n\
+//!      spere Clay 1, 0 0 0\n",
+//! );
+//! let compiled = rats::compile(&project);
+//! assert_eq!(compiled.scene.elements.len(), 5);
+//! let mistake = &compiled.diagnostics[0];
+//! assert_eq!((mistake.line, mistake.message.as_str()), (3, "there is no command `spere`"));
+//! assert_eq!(mistake.hint.as_deref(), Some("did you mean `sphere`?"));
+//! ```
+//!
+//! A text goes through these stages: [`lexer`] cuts it into tokens, [`parser`] makes a tree of commands
+//! ([`syntax`]), `evaluator` runs the tree. Each command's operands are read while it runs
+//! (`reader`, `expression`, `operands`, `given`), because the meaning of a word depends on the variables at that
+//! time. All commands stand in one table of plain data ([`commands`]), which also serves help and the
+//! editor (the crate `assist`); the evaluator's `dispatch` maps it to functions. All bounds are in [`limits`].
 
 mod assets;
-pub mod assist;
 pub mod colours;
 pub mod commands;
 pub mod compile;
+pub mod compiled;
 pub mod diagnostic;
 mod evaluator;
 mod expression;
-mod functions;
+pub mod functions;
 mod geometry;
 mod given;
-pub mod handles;
-pub mod highlight;
 pub mod hot;
 pub mod lexer;
 pub mod library;
@@ -30,22 +41,25 @@ pub mod limits;
 pub mod link;
 pub mod manual;
 mod operands;
-mod parser;
+pub mod operator;
+pub mod parser;
 mod problem;
 pub mod project;
+pub mod provenance;
 pub mod random;
 mod reader;
 pub mod reads;
 mod report;
 mod scope;
 mod sources;
-mod suggest;
-mod symbol;
-mod syntax;
+pub mod suggest;
+pub mod symbol;
+pub mod syntax;
 pub mod tool;
 mod value;
 
-pub use compile::{Compiled, HotValue, HotVariable, Output, Placement, compile, compile_at};
+pub use compile::{compile, compile_at, provenance};
+pub use compiled::{Compiled, HotValue, HotVariable, Output, Placement};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
 pub use reads::{ASSET_ENDINGS, asset_names, places, reads};

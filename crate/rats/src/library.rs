@@ -48,7 +48,7 @@ pub struct Parameter {
     pub is_surface: bool,
     /// The expression it has if it is left out; empty if it must be given.
     pub default: &'static str,
-    /// What it is.
+    /// Its meaning.
     pub meaning: String,
 }
 
@@ -121,7 +121,7 @@ fn split(list: &'static str) -> Vec<&'static str> {
     parts
 }
 
-/// What the head comment says of a parameter.
+/// A parameter's meaning, from the comment at the head of the text; empty if it is not there.
 fn meaning(text: &str, name: &str) -> String {
     let mut meaning = String::new();
     let mut found = false;

@@ -12,18 +12,18 @@ pub const MAX_FILES: usize = 64;
 /// would have given up waiting: a step takes 50 nanoseconds or so, so all take a
 /// fifteenth of a second.
 pub const MAX_STEPS: u64 = 1_320_000;
-/// What one turn of a loop costs in steps, besides its commands.
+/// Steps that one turn of a loop costs, besides its commands.
 pub const STEPS_PER_TURN: u64 = 2;
-/// What a look into the table of commands costs in steps (`help`, `man`, `test`).
+/// Steps that a look into the table of commands costs (`help`, `man`, `test`).
 pub const STEPS_PER_LOOKUP: u64 = 8;
-/// What the call of a defined command costs in steps, besides its arguments and its body.
+/// Steps that the call of a defined command costs, besides its arguments and its body.
 pub const STEPS_PER_CALL: u64 = 12;
-/// What one error costs in steps, so that a loop of errors ends soon too.
+/// Steps that one error costs, so that a loop of errors ends soon too.
 pub const STEPS_PER_ERROR: u64 = 4200;
 /// Some hints look through the text: an error costs one step more for so many operands in its file. (Not for
 /// so many bytes: how a text is laid out must not matter.)
 pub const OPERANDS_PER_STEP: usize = 20;
-/// What reading a command's operands costs in steps, besides one for each: lists are made of them.
+/// Steps that reading a command's operands costs, besides one for each: lists are made of them.
 pub const STEPS_PER_OPERANDS: u64 = 5;
 /// Files read from files.
 pub const MAX_NESTED_FILES: usize = 128;

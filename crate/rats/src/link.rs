@@ -3,6 +3,17 @@
 //! The form is: one byte for the version, then the deflated JSON of a [`Shared`], all in base64url
 //! without padding. Version 1 is frozen: every link that was ever made must open. Links come from
 //! strangers, so [`decode`] bounds and checks everything.
+//!
+//! ```
+//! use rats::Project;
+//! use rats::link::{Shared, decode, encode};
+//!
+//! let project = Project::single("surface Clay, diffuse SandyBrown\nsphere Clay 1, 0 0 0\n");
+//! let shared = Shared { project, camera: None };
+//! let fragment = encode(&shared).unwrap();
+//! assert_eq!(decode(&fragment), Ok(shared));
+//! assert!(decode("no link at all").is_err());
+//! ```
 
 use crate::limits::{MAX_FILES, MAX_MAGNITUDE};
 use crate::{File, Project};
@@ -13,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::fmt;
 
-/// What a link carries.
+/// The content of a link.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shared {
     /// The texts.
@@ -37,7 +48,7 @@ const VERSION: u8 = 1;
 pub enum LinkError {
     /// The fragment is longer than [`MAX_FRAGMENT`].
     TooLong,
-    /// What it carries is larger than [`MAX_INFLATED`].
+    /// Its content is larger than [`MAX_INFLATED`].
     TooLarge,
     /// It is not the form of our links.
     NotALink,
@@ -45,7 +56,7 @@ pub enum LinkError {
     NewerVersion(u8),
     /// It is of the right form but its content is broken.
     Damaged,
-    /// What it carries is not a project; the sentence says why.
+    /// Its content is not a project; the sentence says why.
     NotAProject(String),
 }
 
@@ -128,7 +139,7 @@ pub fn decode(fragment: &str) -> Result<Shared, LinkError> {
     Ok(shared)
 }
 
-/// What holds for every project that a link carries.
+/// Checks the limits of every project that a link carries.
 fn check(shared: &Shared) -> Result<(), LinkError> {
     let refuse = |why: &str| Err(LinkError::NotAProject(why.to_owned()));
     let files = &shared.project.files;

@@ -60,7 +60,7 @@ pub fn page(spec: &CommandSpec) -> String {
     page
 }
 
-/// What a parameter is: its meaning, unit, range and default.
+/// A parameter's meaning, unit, range and default.
 #[must_use]
 pub fn parameter_line(parameter: &Parameter) -> String {
     let mut line = parameter.meaning.to_owned();

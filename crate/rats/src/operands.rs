@@ -1,13 +1,9 @@
 //! Operands that are values: numbers, triples, colours.
 
-use crate::colours;
 use crate::commands::OptionSpec;
-use crate::functions;
 use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Reader;
-use crate::suggest;
-use crate::symbol::Symbol;
 use crate::syntax::Datum;
 use crate::value::Value;
 use glam::DVec3;
@@ -24,7 +20,7 @@ pub enum Share {
 /// Largest number of a colour.
 const MAX_COLOUR: f64 = 1e4;
 
-impl<'a> Reader<'_, 'a> {
+impl Reader<'_, '_> {
     /// A number.
     ///
     /// # Errors
@@ -258,43 +254,5 @@ impl<'a> Reader<'_, 'a> {
                 format!("{what} is a colour or a share, this is a name"),
             )),
         }
-    }
-
-    /// The value of a word that stands in an expression and is no function.
-    pub(crate) fn word_value(&mut self, symbol: Symbol) -> Outcome<Value> {
-        if let Some(value) = self.scope.get(symbol) {
-            return Ok(value);
-        }
-        let word = self.scope.symbols.word(symbol);
-        if let Some((triple, component)) = word.rsplit_once('.')
-            && let Some(value) = self.scope.symbols.find(triple)
-            && let Some(value) = self.scope.get(value)
-            && let Some(number) = value.component(component)
-        {
-            return Ok(Value::Scalar(number));
-        }
-        if let Some(constant) = functions::constant(word) {
-            return Ok(Value::Scalar(constant));
-        }
-        if let Some(colour) = colours::find(word) {
-            // A search through names takes longer than a look at a variable.
-            self.scope.step(3, &self.here())?;
-            return Ok(Value::Colour(DVec3::from_array(colour.map(f64::from))));
-        }
-        let span = self.here();
-        if self.scope.is_broken(symbol) {
-            return Err(Problem::follow_up(span));
-        }
-        // More than the hint will look at need not be gathered.
-        let mut known: Vec<&'a str> = self.scope.names().take(2001).collect();
-        known.extend(functions::FUNCTIONS.iter().map(|f| -> &'a str { f.name }));
-        known.extend(colours::names().map(|name| -> &'a str { name }));
-        let suggestion = suggest::hint(word, known);
-        if word.starts_with(|c: char| c.is_ascii_digit()) {
-            return Err(Problem::new(span, format!("`{word}` is no number")));
-        }
-        let hint =
-            suggestion.unwrap_or_else(|| format!("set it before it is used: `var {word} = …`"));
-        Err(Problem::new(span, format!("there is no variable or colour `{word}`")).hint(hint))
     }
 }

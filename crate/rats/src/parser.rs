@@ -120,8 +120,9 @@ impl<'a> Parser<'a, '_, '_> {
                             "remove it, or open the block or list that it should close",
                         );
                     }
-                    // `@` only silences the echo of a command, and stray separators mean nothing.
-                    "@" | "," | "<" | ">" => self.at += 1,
+                    "@" => self.silenced(token),
+                    // Stray separators mean nothing.
+                    "," | "<" | ">" => self.at += 1,
                     _ => self.not_a_command(token),
                 },
                 TokenKind::Word => {
@@ -135,6 +136,27 @@ impl<'a> Parser<'a, '_, '_> {
             }
         }
         block
+    }
+
+    /// `@` before a command, whose echo it silences, and stray separators. Without a command in the same line
+    /// it is a mistake.
+    fn silenced(&mut self, at: Token) {
+        self.at += 1;
+        while let Some(next) = self.peek(false)
+            && ["@", ",", "<", ">"]
+                .iter()
+                .any(|sign| self.is_sign(next, sign))
+        {
+            self.at += 1;
+        }
+        let next = self.peek(false);
+        if next.is_none_or(|next| next.kind == TokenKind::Newline || self.is_sign(next, "}")) {
+            self.problem(
+                at.range(),
+                "a command was expected after this `@`",
+                "`@` silences the echo of the command behind it: remove it, or write the command in this line",
+            );
+        }
     }
 
     fn not_a_command(&mut self, token: Token) {
@@ -424,7 +446,33 @@ impl<'a> Parser<'a, '_, '_> {
         self.at += 1;
         let word = self.word(token);
         let first = self.items.len();
-        let mut end = token.end;
+        let end = self.operands(ends).unwrap_or(token.end);
+        let items = first..self.items.len();
+        if items.len() > limits::MAX_OPERANDS {
+            self.items.truncate(first);
+            return Err(Problem::new(
+                token.range(),
+                format!(
+                    "`{word}` has {} operands; {} is the limit",
+                    items.len(),
+                    limits::MAX_OPERANDS
+                ),
+            )
+            .hint("split it into several commands"));
+        }
+        Ok(Command {
+            word: self.symbols.intern(word),
+            word_span: token.range(),
+            spec: commands::find(word),
+            items,
+            span: token.start..end,
+        })
+    }
+
+    /// Takes the operands of a command up to where they end. Returns one past the last byte of the last operand or
+    /// closing brace; `None` if there is neither.
+    fn operands(&mut self, ends: Ends) -> Option<usize> {
+        let mut end = None;
         let mut depth = 0_usize;
         let mut spaced = false;
         while let Some(&token) = self.tokens.get(self.at) {
@@ -468,7 +516,7 @@ impl<'a> Parser<'a, '_, '_> {
                         }
                         depth -= 1;
                         spaced = true;
-                        end = token.end;
+                        end = Some(token.end);
                         self.at += 1;
                         continue;
                     }
@@ -484,28 +532,9 @@ impl<'a> Parser<'a, '_, '_> {
                 spaced,
             });
             spaced = false;
-            end = token.end;
+            end = Some(token.end);
             self.at += 1;
         }
-        let items = first..self.items.len();
-        if items.len() > limits::MAX_OPERANDS {
-            self.items.truncate(first);
-            return Err(Problem::new(
-                token.range(),
-                format!(
-                    "`{word}` has {} operands; {} is the limit",
-                    items.len(),
-                    limits::MAX_OPERANDS
-                ),
-            )
-            .hint("split it into several commands"));
-        }
-        Ok(Command {
-            word: self.symbols.intern(word),
-            word_span: token.range(),
-            spec: commands::find(word),
-            items,
-            span: token.start..end,
-        })
+        end
     }
 }

@@ -1,4 +1,4 @@
-//! What goes wrong with one command, before it becomes a [`crate::Diagnostic`].
+//! A mistake in one command, before it becomes a [`crate::Diagnostic`].
 
 use std::ops::Range;
 
@@ -7,9 +7,9 @@ use std::ops::Range;
 pub struct Problem {
     /// The place in the file that is being run.
     pub span: Range<usize>,
-    /// What is wrong, in one sentence.
+    /// The mistake in one sentence.
     pub message: String,
-    /// What to do about it.
+    /// Advice.
     pub hint: Option<String>,
     /// Other places that explain it: the file (`None` for the same), the place, what it is.
     pub related: Vec<(Option<usize>, Range<usize>, String)>,

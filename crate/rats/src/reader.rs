@@ -1,5 +1,5 @@
 //! Reads a command's operands one after the other: names and options here, values in
-//! [`crate::operands`].
+//! `operands`.
 //!
 //! Commas, `<` and `>` only separate, so they are skipped wherever an operand may begin.
 
@@ -322,6 +322,18 @@ impl<'e, 'a> Reader<'e, 'a> {
                 .hint(suggestion.unwrap_or_else(all)))
             }
         }
+    }
+
+    /// Whether the next word is one of these or the beginning of one.
+    pub(crate) fn is_option_next(&mut self, options: &[OptionSpec]) -> bool {
+        let Some((symbol, word)) = self.peek_word() else {
+            return false;
+        };
+        // A variable is meant where its name is short for an option, but not where it is the option.
+        let is_variable = self.scope.get(symbol).is_some();
+        options
+            .iter()
+            .any(|option| option.begins(word) && !(is_variable && word.len() < option.name.len()))
     }
 
     /// The end of the command.

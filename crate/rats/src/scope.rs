@@ -1,4 +1,4 @@
-//! What a running text knows besides the scene: variables, random numbers and how long it has run.
+//! The state of a running text besides the scene: variables, random numbers and how long it has run.
 
 use crate::limits;
 use crate::problem::{Outcome, Problem};
@@ -35,7 +35,7 @@ pub struct Scope<'a> {
     steps: Cell<u64>,
 }
 
-/// What to restore when a call ends.
+/// The state to restore when a call ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     start: usize,
@@ -45,7 +45,7 @@ impl<'a> Scope<'a> {
     /// A scope without variables.
     #[must_use]
     pub fn new(symbols: Symbols<'a>) -> Self {
-        let globals = vec![Slot::Empty; symbols.len()];
+        let globals = vec![Slot::Empty; symbols.count()];
         Self {
             symbols,
             random: Random::new(0.0),

@@ -50,7 +50,7 @@ impl<'a> Symbols<'a> {
 
     /// The number of words.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.words.len()
     }
 }

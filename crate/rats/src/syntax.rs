@@ -12,8 +12,17 @@ pub struct Syntax {
     pub block: Block,
     /// The operands of all its commands, which commands index by ranges.
     pub items: Vec<Item>,
-    /// What is wrong with its form.
-    pub problems: Vec<Problem>,
+    /// The mistakes of its form, in the order in which they were found.
+    pub(crate) problems: Vec<Problem>,
+}
+
+impl Syntax {
+    /// The first mistake of form: its byte range and message. `None` if the text is well-formed.
+    #[must_use]
+    pub fn mistake(&self) -> Option<(Range<usize>, &str)> {
+        let problem = self.problems.first()?;
+        Some((problem.span.clone(), &problem.message))
+    }
 }
 
 /// Commands that are run one after the other.
@@ -22,7 +31,7 @@ pub type Block = Vec<Node>;
 /// A word, number or sign of a command.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
-    /// What it is.
+    /// Its kind and value.
     pub datum: Datum,
     /// First byte.
     pub start: u32,
@@ -40,7 +49,7 @@ impl Item {
     }
 }
 
-/// What an item is.
+/// A word, number or sign, with its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Datum {
     /// A number.
@@ -73,7 +82,7 @@ pub struct Command {
     pub word: Symbol,
     /// Where the opcode is.
     pub word_span: Range<usize>,
-    /// What is known of it; `None` for commands that the text defines, and for mistakes.
+    /// Its row in the table; `None` for commands that the text defines, and for mistakes.
     pub spec: Option<&'static CommandSpec>,
     /// The operands, a range of [`Syntax::items`].
     pub items: Range<usize>,
@@ -86,7 +95,7 @@ pub struct Command {
 pub struct For {
     /// `for` and what stands before the brace.
     pub head: Command,
-    /// What is repeated.
+    /// The commands that are repeated.
     pub body: Block,
 }
 
@@ -110,7 +119,7 @@ pub struct Define {
     pub name: Symbol,
     /// Its parameters.
     pub parameters: Vec<Formal>,
-    /// What it does.
+    /// The commands that a call runs.
     pub body: Block,
 }
 
@@ -121,7 +130,7 @@ pub struct Formal {
     pub name: Symbol,
     /// As messages call it.
     pub shown: String,
-    /// What it takes.
+    /// The kind of value it takes.
     pub takes: Takes,
     /// The operands that make its default, a range of [`Syntax::items`]; empty if it must be given.
     pub default: Range<usize>,
@@ -129,7 +138,7 @@ pub struct Formal {
     pub span: Range<usize>,
 }
 
-/// What a parameter of a defined command takes.
+/// The kind of value that a parameter of a defined command takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Takes {
     /// A number.

@@ -1,4 +1,4 @@
-//! What the commands of the TOOLS group ask for.
+//! Work on pictures, as the commands of the TOOLS group ask for it.
 //!
 //! The compiler touches no files. It turns `resize`, `collage`, `diff` … into the jobs below, in the
 //! order of the text, and leaves them to whoever keeps files: the program carries them out in the folder
@@ -13,7 +13,7 @@ pub enum Tool {
     Animate {
         /// The frames, in order.
         files: Vec<String>,
-        /// What happens after the last frame.
+        /// How playing goes on after the last frame.
         playback: Playback,
         /// Whether colours that a format of 256 colours cannot show are mixed from dots.
         dither: bool,
@@ -91,7 +91,7 @@ pub enum Tool {
     },
     /// `show …`: a file, a colour or a palette.
     Show {
-        /// What is shown.
+        /// The thing that is shown.
         what: Shown,
     },
     /// `table v1 v2 …`: a line through numbers.
@@ -155,7 +155,7 @@ impl Tool {
     }
 }
 
-/// What an animation does after its last frame.
+/// How an animation goes on after its last frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Playback {
     /// It stops.
@@ -167,7 +167,7 @@ pub enum Playback {
     Mirror,
 }
 
-/// What `show` shows.
+/// The things that `show` can show.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shown {
     /// A picture or an animation.

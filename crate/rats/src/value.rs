@@ -17,7 +17,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// What kind of value it is, for messages.
+    /// Its kind as messages name it: `a number`.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {

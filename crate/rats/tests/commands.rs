@@ -470,7 +470,7 @@ fn scaled_flesh_scales_with_its_bones() {
 #[test]
 fn options() {
     let settings = scene(
-        "soft off\nfragile arc cyl\nframesize 320 200\nsample 3\ngamma 2.2\ncontrast .1 .2 .3\nblobscale absolute\n\
+        "soft off\ndouble off\nfragile arc cyl\nframesize 320 200\nsample 3\ngamma 2.2\ncontrast .1 .2 .3\nblobscale absolute\n\
          influence .01\ndigger HERMITE2 4\nmap on 2",
     )
     .settings;
@@ -480,6 +480,7 @@ fn options() {
         contrast: [0.1, 0.2, 0.3],
         gamma: 2.2,
         soft: false,
+        double_sided: false,
         blob_scale: BlobScale::Absolute,
         fragile: Fragile {
             arc: true,

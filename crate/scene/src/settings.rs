@@ -16,6 +16,8 @@ pub struct Settings {
     pub gamma: f32,
     /// `soft on`: soft elements blend; off: their offset surfaces are drawn.
     pub soft: bool,
+    /// `double on`: faces are seen from both sides; off: those seen from behind are hidden.
+    pub double_sided: bool,
     /// How a blobbiness is read.
     pub blob_scale: BlobScale,
     /// Which soft primitives take their material's radius instead of their own.
@@ -46,6 +48,7 @@ impl Default for Settings {
             contrast: [0.25, 0.2, 0.4],
             gamma: 1.0,
             soft: true,
+            double_sided: true,
             blob_scale: BlobScale::Relative,
             fragile: Fragile::default(),
             influence: 1e-3,

@@ -50,36 +50,20 @@ impl Scene {
     #[must_use]
     pub fn radius(&self, element: &Element) -> f64 {
         let own = element.shape.radius();
-        let Some(flesh) = self.flesh_in_world(element) else {
-            return own;
-        };
+        self.radius_of_flesh(element).unwrap_or(own)
+    }
+
+    /// The radius of a soft element's flesh; `None` if the shape's own radius counts.
+    #[must_use]
+    pub fn radius_of_flesh(&self, element: &Element) -> Option<f64> {
+        let flesh = self.flesh_in_world(element)?;
+        let own = element.shape.radius();
         let Fragile {
             arc,
             pipe,
             cylinder,
             sphere,
         } = self.settings.fragile;
-        let given = if flesh.depth > 0.0 {
-            let shaping = self.shaping(element, &flesh, 1.0);
-            let dimension = match element.shape {
-                Shape::Sphere { .. } => 0,
-                Shape::Cylinder { .. }
-                | Shape::Pipe { .. }
-                | Shape::Arc { .. }
-                | Shape::Curve { .. } => 1,
-                Shape::Triangle { .. }
-                | Shape::Patch { .. }
-                | Shape::Polygon { .. }
-                | Shape::Plane { .. } => 2,
-                Shape::Cone { .. } | Shape::Box { .. } | Shape::Quadric(_) => return own,
-            };
-            let radius = shaping.radius_of_depth(flesh.depth, dimension);
-            radius.unwrap_or(0.0)
-        } else {
-            // A tip may be at the start.
-            let end = flesh.end_radius.unwrap_or(0.0);
-            flesh.radius.max(SLIMMEST * end)
-        };
         let overruled = match element.shape {
             Shape::Arc { .. } | Shape::Curve { .. } => arc,
             Shape::Cylinder { .. } => cylinder,
@@ -90,14 +74,23 @@ impl Scene {
             | Shape::Patch { .. }
             | Shape::Polygon { .. }
             | Shape::Plane { .. } => true,
-            Shape::Cone { .. } | Shape::Box { .. } | Shape::Quadric(_) => return own,
+            Shape::Cone { .. } | Shape::Box { .. } | Shape::Quadric(_) => return None,
         };
         // Some commands write shapes without a radius (`dot`, `line`).
-        if (overruled || own == 0.0) && given > 0.0 {
-            given
-        } else {
-            own
+        if !overruled && own != 0.0 {
+            return None;
         }
+        let given = if flesh.depth > 0.0 {
+            let dimension = skeleton(&element.shape)?.dimension();
+            self.shaping(element, &flesh, 1.0)
+                .radius_of_depth(flesh.depth, dimension)
+                .unwrap_or(0.0)
+        } else {
+            // A tip may be at the start.
+            let end = flesh.end_radius.unwrap_or(0.0);
+            flesh.radius.max(SLIMMEST * end)
+        };
+        (given > 0.0).then_some(given)
     }
 
     /// Whether a soft element's skeleton is integrated numerically, and too long for that.

@@ -55,7 +55,7 @@ impl App {
                 session.end_step();
             }
             Command::Edit(edits) => {
-                let project = rats::assist::rename::apply(session.project(), &edits);
+                let project = assist::apply(session.project(), &edits);
                 if let Err(refused) = session.put_files(project.files, now) {
                     self.notice = Some(Notice::trouble(refused.to_string()));
                 }

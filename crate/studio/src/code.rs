@@ -1,9 +1,9 @@
 //! The colours of the text.
 
 use crate::theme::{CODE_SIZE, Palette};
+use assist::highlight::{TokenKind, highlight};
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Color32, FontId};
-use rats::highlight::{TokenKind, highlight};
 
 /// Lays out a text with coloured words, wrapped at `width`. The last result is kept, because the
 /// same text is asked for at every frame.

@@ -25,7 +25,7 @@ pub enum Command {
         text: String,
     },
     /// Change several places at once, as one undo step.
-    Edit(Vec<rats::assist::Edit>),
+    Edit(Vec<assist::Edit>),
     /// Say something about the text.
     Tell(String),
     /// Whether a line at the caret says how its command is written.

@@ -246,8 +246,8 @@ impl Session {
                 rats::link::MAX_NAME
             ));
         }
-        let edits = rats::assist::rename_file(&self.project, file, name)?;
-        let mut project = rats::assist::rename::apply(&self.project, &edits);
+        let edits = assist::rename_file(&self.project, file, name)?;
+        let mut project = assist::apply(&self.project, &edits);
         name.clone_into(&mut project.files[file].name);
         check_size(&project).map_err(|refused| refused.to_string())?;
         self.whole_step(now);

@@ -3,10 +3,10 @@
 
 mod driver;
 
+use assist::handles::Editable;
 use driver::Window;
 use egui::{Key, Modifiers, Pos2, Rect, TextEdit, vec2};
 use egui_kittest::kittest::Queryable;
-use rats::handles::Editable;
 use std::time::Instant;
 use studio::hands::{Picker, Sight};
 use studio::{examples, places};
@@ -212,7 +212,7 @@ fn every_example_has_shapes_to_pick_with_handles() {
         let begin = Instant::now();
         for met in met.iter().take(6) {
             let view = &sight.projection.world_from_view;
-            let handles = rats::handles::handles(&project, &[], 0, &compiled, met.element, view);
+            let handles = assist::handles::handles(&project, &[], 0, &compiled, met.element, view);
             assert!(!handles.is_empty(), "{}", example.title);
             movable += handles
                 .iter()

@@ -1,9 +1,8 @@
 //! The option words of the commands that have them.
 
-use super::OptionSpec;
 use super::parameter::{
-    Kind, Names, Parameter, Unit, colour, degrees, direction, length, number, parameter, vector,
-    word,
+    Kind, Names, OptionSpec, Parameter, Unit, colour, degrees, direction, length, number,
+    parameter, vector, word,
 };
 
 const fn option(
@@ -146,7 +145,7 @@ pub static SURFACE: &[OptionSpec] = &[
     ),
 ];
 
-/// What rays `skip` names.
+/// Rays that `skip` names.
 pub static RAYS: &[OptionSpec] = &[
     plain("pixel", "rays from the eye"),
     plain("shadow", "rays to the lights"),
@@ -172,7 +171,7 @@ pub static KERNELS: &[OptionSpec] = &[
     plain("compact6", "(1−r²)³, nothing beyond r = 1"),
 ];
 
-/// What a texture changes.
+/// Properties of a material that a texture changes.
 pub static TARGETS: &[OptionSpec] = &[
     plain("diffuse", "the diffuse colour"),
     plain("ambient", "the ambient colour"),

@@ -1,10 +1,9 @@
-//! What a command's operands are: the kinds, units and ranges from which the reader checks them and
+//! The operands of commands: the kinds, units and ranges from which the reader checks them and
 //! the manual, the hints of errors and the editor explain them.
 
-use super::OptionSpec;
 use crate::limits::MAX_MAGNITUDE;
 
-/// What a parameter takes.
+/// Kinds of values that a parameter takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     /// A number from `low` to `high`.
@@ -55,7 +54,7 @@ pub enum Kind {
     Block,
 }
 
-/// What a name stands for.
+/// Kinds of things that have names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Names {
     /// A material (`surface`).
@@ -128,9 +127,9 @@ pub enum Arity {
 pub struct Parameter {
     /// Its name in the synopsis; UPPERCASE is a triple.
     pub name: &'static str,
-    /// What it takes.
+    /// The kind of value it takes.
     pub kind: Kind,
-    /// What it is: `the tube radius`. Messages say that this was expected.
+    /// Its meaning: `the tube radius`. Messages say that this was expected.
     pub meaning: &'static str,
     /// In what it is measured.
     pub unit: Unit,
@@ -202,6 +201,44 @@ impl Parameter {
     pub(super) const fn at_least(self, low: f64) -> Self {
         self.from(low, MAX_MAGNITUDE)
     }
+}
+
+/// An option word of a command.
+#[derive(Debug)]
+pub struct OptionSpec {
+    /// The whole word.
+    pub name: &'static str,
+    /// Its operands, which follow it.
+    pub parameters: &'static [Parameter],
+    /// Its meaning, a few words.
+    pub meaning: &'static str,
+    /// Its value if it is left out.
+    pub default: &'static str,
+}
+
+impl OptionSpec {
+    /// Whether its name begins with a word, in any case: options may be shortened.
+    #[must_use]
+    pub fn begins(&self, word: &str) -> bool {
+        let start = self.name.get(..word.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
+    }
+
+    /// The word and what follows it.
+    #[must_use]
+    pub fn synopsis(&self) -> String {
+        join(self.name, self.parameters)
+    }
+}
+
+/// A name followed by the synopses of what it takes.
+pub(super) fn join(name: &str, parameters: &[Parameter]) -> String {
+    let mut text = name.to_owned();
+    for parameter in parameters {
+        text += " ";
+        text += &parameter.synopsis();
+    }
+    text
 }
 
 fn range(low: f64, high: f64) -> String {

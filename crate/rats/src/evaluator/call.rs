@@ -1,8 +1,6 @@
-//! Calls of commands that a text or the library defines: their arguments, defaults, and the run of
-//! their bodies.
+//! The arguments of calls of commands that a text or the library defines.
 
-use super::{Evaluator, Flow};
-use crate::limits;
+use super::state::Evaluator;
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
 use crate::scope::Scope;
@@ -11,83 +9,8 @@ use crate::syntax::{Command, Define, Formal, Takes};
 use crate::value::Value;
 
 impl<'a> Evaluator<'a> {
-    /// Runs a command of the library, which is read when it is used for the first time. A command of the
-    /// same name that the text defines hides it.
-    pub(super) fn call_library(
-        &mut self,
-        command: &'a Command,
-        name: &'static str,
-    ) -> Outcome<Flow> {
-        if self.definitions.contains_key(&command.word) {
-            return self.call(command, command.word);
-        }
-        let symbol = self.scope.symbols.find(name);
-        let is_known = |run: &Self| symbol.is_some_and(|s| run.definitions.contains_key(&s));
-        if !is_known(self)
-            && let Some(file) = self.sources.find_built_in(&format!("{name}.rat"))
-        {
-            self.enter(&command.word_span)?;
-            self.uses.push((self.file, command.span.clone()));
-            self.run_file(file);
-            self.uses.pop();
-            self.depth -= 1;
-        }
-        match symbol.filter(|_| is_known(self)) {
-            Some(symbol) => self.call(command, symbol),
-            None => Err(self.unknown(command)),
-        }
-    }
-
-    /// Runs a command that a text defines, under the name `symbol`.
-    pub(super) fn call(&mut self, command: &'a Command, symbol: Symbol) -> Outcome<Flow> {
-        let Some(&(file, define)) = self.definitions.get(&symbol) else {
-            return Err(self.unknown(command));
-        };
-        self.scope
-            .step(limits::STEPS_PER_CALL, &command.word_span)?;
-        let values = self.arguments(command, define)?;
-        if self.scope.calls() >= limits::MAX_NESTED_CALLS {
-            return Err(Problem::new(
-                command.word_span.clone(),
-                format!(
-                    "stopped here: commands call each other more than {} deep",
-                    limits::MAX_NESTED_CALLS
-                ),
-            )
-            .hint("give a command that calls itself an `if` that ends it")
-            .fatal());
-        }
-        self.enter(&command.word_span)?;
-        self.repeating += 1;
-        let from_own = self.file < self.sources.own;
-        if from_own {
-            self.uses.push((self.file, command.span.clone()));
-        }
-        let frame = self.scope.enter(
-            values
-                .iter()
-                .filter_map(|(name, value)| Some((*name, (*value)?))),
-        );
-        let outer = std::mem::replace(&mut self.file, file);
-        let flow = self
-            .defaults(define, &values)
-            .map(|()| self.block(&define.body));
-        self.file = outer;
-        self.scope.leave(frame);
-        if from_own {
-            self.uses.pop();
-        }
-        self.repeating -= 1;
-        self.depth -= 1;
-        Ok(if flow? == Flow::Quit {
-            Flow::Quit
-        } else {
-            Flow::Next
-        })
-    }
-
-    /// What a call gives for each parameter; `None` where the default is to be taken.
-    fn arguments(
+    /// The value that a call gives each parameter; `None` where the default is to be taken.
+    pub(super) fn arguments(
         &mut self,
         command: &'a Command,
         define: &'a Define,
@@ -115,33 +38,10 @@ impl<'a> Evaluator<'a> {
         let mut surfaces = Vec::new();
         let mut named = false;
         while read.more() {
-            let start = read.start();
             let index = match read.named_argument() {
                 Some((symbol, word)) => {
                     named = true;
-                    let index = define.parameters.iter().position(|p| p.name == symbol);
-                    let Some(index) = index else {
-                        let names = define
-                            .parameters
-                            .iter()
-                            .map(|p| read.scope.symbols.word(p.name));
-                        let hint = crate::suggest::hint(word, names)
-                            .unwrap_or_else(|| usage(read.scope, define));
-                        let name = read.scope.symbols.word(define.name);
-                        return Err(Problem::new(
-                            start..start + word.len(),
-                            format!("`{name}` has no parameter `{word}`"),
-                        )
-                        .hint(hint));
-                    };
-                    if values[index].1.is_some() {
-                        return Err(Problem::new(
-                            start..start + word.len(),
-                            format!("`{word}` is given twice"),
-                        ));
-                    }
-                    read.at += 2;
-                    index
+                    named_parameter(&mut read, define, &values, symbol, word)?
                 }
                 None if named => {
                     return Err(Problem::new(
@@ -150,12 +50,12 @@ impl<'a> Evaluator<'a> {
                     )
                     .hint(usage(read.scope, define)));
                 }
+                None if next == define.parameters.len() => {
+                    let end = read.end();
+                    end.map_err(|problem| problem.hint(usage(read.scope, define)))?;
+                    break;
+                }
                 None => {
-                    let Some(_) = define.parameters.get(next) else {
-                        let end = read.end();
-                        end.map_err(|problem| problem.hint(usage(read.scope, define)))?;
-                        break;
-                    };
                     next += 1;
                     next - 1
                 }
@@ -189,7 +89,11 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Sets the parameters that a call left out, in the call's own scope.
-    fn defaults(&mut self, define: &'a Define, values: &[(Symbol, Option<Value>)]) -> Outcome<()> {
+    pub(super) fn defaults(
+        &mut self,
+        define: &'a Define,
+        values: &[(Symbol, Option<Value>)],
+    ) -> Outcome<()> {
         for (parameter, (name, value)) in define.parameters.iter().zip(values) {
             if value.is_some() {
                 continue;
@@ -203,6 +107,30 @@ impl<'a> Evaluator<'a> {
         }
         Ok(())
     }
+}
+
+/// Takes `word =`; returns the index of the parameter of that name.
+fn named_parameter(
+    read: &mut Reader<'_, '_>,
+    define: &Define,
+    values: &[(Symbol, Option<Value>)],
+    symbol: Symbol,
+    word: &str,
+) -> Outcome<usize> {
+    let start = read.start();
+    let span = start..start + word.len();
+    let Some(index) = define.parameters.iter().position(|p| p.name == symbol) else {
+        let symbols = &read.scope.symbols;
+        let names = define.parameters.iter().map(|p| symbols.word(p.name));
+        let hint = crate::suggest::hint(word, names).unwrap_or_else(|| usage(read.scope, define));
+        let name = symbols.word(define.name);
+        return Err(Problem::new(span, format!("`{name}` has no parameter `{word}`")).hint(hint));
+    };
+    if values[index].1.is_some() {
+        return Err(Problem::new(span, format!("`{word}` is given twice")));
+    }
+    read.at += 2;
+    Ok(index)
 }
 
 /// How a call of a defined command is written, as a hint.

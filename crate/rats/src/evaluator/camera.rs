@@ -1,25 +1,11 @@
 //! CAMERA: from where the picture is taken.
 
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use glam::DVec3;
-use std::ops::Range;
-
-/// What `cp`, `vpn` and `window` have said, in view coordinates.
-#[derive(Clone, Debug, Default)]
-pub struct ViewPlane {
-    /// The centre of projection.
-    cp: Option<DVec3>,
-    /// The normal of the view plane.
-    normal: Option<DVec3>,
-    /// Left, right, lower and upper edge.
-    window: Option<[f64; 4]>,
-    /// Where the last of them stands.
-    place: (usize, Range<usize>),
-}
 
 /// `eyep XYZ`
 pub fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
@@ -215,7 +201,7 @@ impl Evaluator<'_> {
         camera
     }
 
-    /// What is odd about the camera as a whole, once the text is at its end.
+    /// Checks the camera as a whole, once the text is at its end.
     pub(super) fn check_camera(&mut self) {
         if let Some((vertical, file, span)) = self.vertical.take() {
             let [width, height] = self.settings.frame.map(f64::from);

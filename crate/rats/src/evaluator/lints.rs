@@ -1,10 +1,10 @@
-//! What is probably not meant: shapes outside the picture, an eye inside the surface, flesh too weak
-//! to be seen.
+//! Warnings of scenes that are probably not meant: shapes outside the picture, an eye inside the surface,
+//! flesh too weak to be seen.
 //!
 //! Lints are about the finished scene, so they are looked for only when the text has no errors. Those
 //! that evaluate the field are left out in large scenes: an edit must not wait for them.
 
-use super::Evaluator;
+use super::state::Evaluator;
 use crate::Severity;
 use field::{Primitive, THRESHOLD};
 use glam::DVec3;

@@ -1,7 +1,7 @@
 //! `surface` and its synonym `material`.
 
 use super::palette::{Colours, Surface};
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::given::Chosen;
 use crate::operands::Share;

@@ -1,7 +1,7 @@
-//! What the evaluator has to say, and where: messages about the library and its examples go to the place
+//! Messages of the evaluator, and where they are shown: those about the library and its examples go to the place
 //! of the user's text that uses them.
 
-use super::Evaluator;
+use super::state::Evaluator;
 use crate::Severity;
 use crate::commands;
 use crate::problem::Problem;
@@ -10,11 +10,6 @@ use crate::syntax::Command;
 use std::ops::Range;
 
 impl Evaluator<'_> {
-    /// Whether the text that is being run is one of the user's.
-    pub(super) fn is_own(&self) -> bool {
-        self.file < self.sources.own
-    }
-
     /// Adds a message about the present file. One about the library goes to where it was used.
     pub(super) fn tell(&mut self, severity: Severity, mut problem: Box<Problem>) {
         if self.is_own() {
@@ -113,7 +108,14 @@ impl Evaluator<'_> {
             Group::Run | Group::Tools => spec.is_library() || spec.name == "test",
             Group::Options => matches!(
                 spec.name,
-                "soft" | "gamma" | "framesize" | "contrast" | "fragile" | "sample" | "mesh"
+                "soft"
+                    | "double"
+                    | "gamma"
+                    | "framesize"
+                    | "contrast"
+                    | "fragile"
+                    | "sample"
+                    | "mesh"
             ),
             Group::Scene => spec.name != "report",
             Group::Extensions => spec.name != "seed",

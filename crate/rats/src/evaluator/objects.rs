@@ -1,7 +1,7 @@
 //! OBJECTS: groups of shapes and their transforms.
 
 use super::model::Group;
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::geometry::Transform;
 use crate::given::Given;

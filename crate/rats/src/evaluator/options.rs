@@ -1,6 +1,6 @@
 //! OPTIONS: settings of the whole picture.
 
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::options::{FORMATS, MESH};
 use crate::problem::Outcome;
@@ -29,6 +29,12 @@ pub fn verbose<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
 /// `soft on|off`
 pub fn soft<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     run.settings.soft = run.given(command)?.switch();
+    Ok(Flow::Next)
+}
+
+/// `double on|off`
+pub fn double<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.settings.double_sided = run.given(command)?.switch();
     Ok(Flow::Next)
 }
 

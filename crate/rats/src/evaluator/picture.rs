@@ -1,10 +1,10 @@
 //! The scene that the commands so far have made, checked: what cannot be drawn is left out with a
 //! warning.
 
-use super::Evaluator;
 use super::model::Part;
+use super::state::Evaluator;
 use crate::Severity;
-use crate::compile::Placement;
+use crate::compiled::Placement;
 use crate::limits::MAX_MAGNITUDE;
 use glam::DVec3;
 use scene::{Body, Element, Finish, Frame, Scene, Shape};

@@ -1,7 +1,7 @@
 //! PRIMITIVES: shapes made of a material.
 
 use super::model::Part;
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::assets;
 use crate::geometry::{self, ThreePoints, Transform};

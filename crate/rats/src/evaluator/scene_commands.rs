@@ -1,6 +1,6 @@
 //! SCENE: lights, background, `reset`, `report`, `shoot`.
 
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::limits::MAX_LIGHTS;
 use crate::problem::{Outcome, Problem};
@@ -187,13 +187,13 @@ pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
             run.camera = Camera::default();
             run.aimed_at = (run.file, command.span.clone());
             run.vertical = None;
-            run.view_plane = super::camera::ViewPlane::default();
+            run.view_plane = super::view_plane::ViewPlane::default();
         }
         if is("options") {
             run.settings = Settings::default();
             run.report.no_warnings = false;
             run.report.no_notes = false;
-            run.output = crate::compile::Output::default();
+            run.output = crate::compiled::Output::default();
         }
         if is("var") {
             run.scope.clear();

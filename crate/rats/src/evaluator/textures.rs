@@ -3,7 +3,7 @@
 //! they are not drawn.
 
 use super::palette::Texture;
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::OptionSpec;
 use crate::commands::options::{SOLIDS, TARGETS, TEXTURE, WAVES};
@@ -44,7 +44,7 @@ pub fn texture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
     Ok(Flow::Next)
 }
 
-/// What a texture's own layer does.
+/// The effect of a texture's own layer.
 #[derive(Debug)]
 enum Method {
     Waves([Wave; 2]),

@@ -1,7 +1,7 @@
 //! TOOLS: work on pictures. The compiler touches no files, so each command becomes a [`Tool`] in the
 //! result, for the program and the page to carry out.
 
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::colours;
 use crate::given::Given;
 use crate::limits::MAX_TOOLS;

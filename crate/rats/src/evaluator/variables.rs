@@ -1,12 +1,13 @@
 //! `var` and `seed`.
 
-use super::{Evaluator, Flow};
+use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::compile::{HotValue, HotVariable};
+use crate::compiled::{HotValue, HotVariable};
 use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
 use crate::random::Random;
-use crate::reader::Reader;
+use crate::reader::{Name, Reader};
+use crate::symbol::Symbol;
 use crate::syntax::{Command, Datum};
 use crate::value::Value;
 use glam::DVec3;
@@ -24,22 +25,8 @@ pub fn var<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
 
 fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let mut read = run.reader(command);
-    let Some((name, word)) = read.peek_word() else {
-        return Err(read.expected("the variable's name"));
-    };
-    let spelled = read.new_name("the variable's name")?;
-    if spelled.text != word {
-        return Err(Problem::new(
-            spelled.span,
-            "a variable's name cannot hold `^`, which is the power in expressions",
-        ));
-    }
-    if is_taken(word) {
-        return Err(
-            Problem::new(spelled.span, format!("`{word}` is a word of the language"))
-                .hint("choose another name"),
-        );
-    }
+    let (name, spelled) = new_variable(&mut read)?;
+    let word = spelled.text;
     let mut animated = per_frame(&mut read)?;
     if animated.is_none() && !read.sign(b'=') {
         return Err(read.expected("`=`"));
@@ -92,25 +79,57 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         read.end()?;
     }
     run.watch_variable(name, place, animated.is_some());
-    if let Some((change, span)) = animated {
-        run.animated = true;
-        let now = run.scope.get(name).unwrap_or(Value::Scalar(0.0));
-        if let (Value::Scalar(_), Change::Add(Value::Vector(_) | Value::Colour(_))) = (now, change)
-        {
-            return Err(Problem::new(
-                span,
-                format!("`{word}` is a number, so its change with every frame must be one"),
-            ));
-        }
-        let value = moved(now, change, run.moment);
-        if !value.all(|x| x.abs() <= MAX_MAGNITUDE) {
-            return Err(Problem::new(
-                span,
-                format!("in frame {} the value is too large", run.moment),
-            ));
-        }
-        run.scope.set(name, value);
+    match animated {
+        Some((change, span)) => animate(run, name, change, span),
+        None => Ok(()),
     }
+}
+
+/// The name of the variable that is made or changed, and how it is spelled.
+fn new_variable<'a>(read: &mut Reader<'_, 'a>) -> Outcome<(Symbol, Name<'a>)> {
+    let Some((name, word)) = read.peek_word() else {
+        return Err(read.expected("the variable's name"));
+    };
+    let spelled = read.new_name("the variable's name")?;
+    if spelled.text != word {
+        return Err(Problem::new(
+            spelled.span,
+            "a variable's name cannot hold `^`, which is the power in expressions",
+        ));
+    }
+    if is_taken(word) {
+        return Err(
+            Problem::new(spelled.span, format!("`{word}` is a word of the language"))
+                .hint("choose another name"),
+        );
+    }
+    Ok((name, spelled))
+}
+
+/// Sets a variable to its value in the present frame. `span` is the place of the change.
+fn animate(
+    run: &mut Evaluator<'_>,
+    name: Symbol,
+    change: Change,
+    span: Range<usize>,
+) -> Outcome<()> {
+    run.animated = true;
+    let now = run.scope.get(name).unwrap_or(Value::Scalar(0.0));
+    if let (Value::Scalar(_), Change::Add(Value::Vector(_) | Value::Colour(_))) = (now, change) {
+        let word = run.scope.symbols.word(name);
+        return Err(Problem::new(
+            span,
+            format!("`{word}` is a number, so its change with every frame must be one"),
+        ));
+    }
+    let value = moved(now, change, run.moment);
+    if !value.all(|x| x.abs() <= MAX_MAGNITUDE) {
+        return Err(Problem::new(
+            span,
+            format!("in frame {} the value is too large", run.moment),
+        ));
+    }
+    run.scope.set(name, value);
     Ok(())
 }
 

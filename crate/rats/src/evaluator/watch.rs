@@ -1,111 +1,21 @@
 //! Watching a run for one command: from where in the texts each of its numbers comes, so that a hand
 //! that moves the shape knows what to rewrite.
 //!
-//! What a word means depends on the variables at that time, so the text is run up to the command, as
+//! The meaning of a word depends on the variables at that time, so the text is run up to the command, as
 //! for a picture, and the run notes where variables and the radii of materials were written.
 
-use super::Evaluator;
-use crate::commands::{CommandSpec, Kind, Parameter};
-use crate::given::{Filled, Given};
+use super::state::Evaluator;
+use crate::commands::Parameter;
+use crate::given::{self, Filled, Given};
 use crate::lexer::{TokenKind, lex};
+use crate::provenance::{Number, Operand, Provenance, Source};
 use crate::reader::{Name, Reader};
 use crate::symbol::Symbol;
 use crate::syntax::Command;
 use crate::value::Value;
-use scene::Origin;
-use std::collections::HashMap;
 use std::ops::Range;
 
-/// From where a number comes.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Source {
-    /// It is written out.
-    Literal {
-        /// The file, an index of the project's.
-        file: usize,
-        /// Its bytes, with the sign.
-        span: Range<usize>,
-        /// Whether a `-` stands before the variable, so that the number has the other sign.
-        negated: bool,
-        /// The variable that stands for it.
-        variable: Option<String>,
-    },
-    /// It cannot be rewritten; the text goes on after "the number".
-    Computed(String),
-}
-
-/// A number of the command.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Number {
-    /// Its value.
-    pub value: f64,
-    /// From where it comes.
-    pub source: Source,
-}
-
-/// An operand: one number or three.
-#[derive(Clone, Debug)]
-pub struct Operand {
-    /// The parameter's name in the table.
-    pub name: &'static str,
-    /// What it is.
-    pub meaning: &'static str,
-    /// What it takes.
-    pub kind: Kind,
-    /// Its numbers.
-    pub numbers: Vec<Number>,
-}
-
-/// The command that was watched for.
-#[derive(Clone, Debug)]
-pub struct Seen {
-    /// What is known of the command.
-    pub spec: &'static CommandSpec,
-    /// Its operands that are numbers.
-    pub operands: Vec<Operand>,
-    /// The material's name.
-    pub material: String,
-    /// From where the material's radius comes.
-    pub radius: Number,
-}
-
-/// Where a variable was set: the file and its numbers' places, or why they cannot be rewritten.
-type Setting = Result<(usize, Vec<Range<usize>>), String>;
-
-/// What a run notes while it is watched.
-#[derive(Debug)]
-pub struct Watch<'a> {
-    target: Origin,
-    /// Where variables of the whole text were set last.
-    variables: HashMap<Symbol, Setting>,
-    radii: HashMap<&'a str, Number>,
-    seen: Option<Seen>,
-}
-
-impl Watch<'_> {
-    /// Whether the command was met, so that the run may end.
-    pub fn is_done(&self) -> bool {
-        self.seen.is_some()
-    }
-}
-
 impl<'a> Evaluator<'a> {
-    /// Runs the first file up to the command with this origin, a shape of the project's own texts.
-    /// `None` if the run does not come there.
-    #[must_use]
-    pub fn watch_for(mut self, target: Origin) -> Option<Seen> {
-        self.watch = Some(Box::new(Watch {
-            target,
-            variables: HashMap::new(),
-            radii: HashMap::new(),
-            seen: None,
-        }));
-        if !self.sources.all.is_empty() {
-            self.run_file(0);
-        }
-        self.watch.and_then(|watch| watch.seen)
-    }
-
     /// Notes that a loop sets a variable.
     pub(super) fn watch_loop(&mut self, name: Symbol) {
         if let Some(watch) = &mut self.watch {
@@ -204,7 +114,7 @@ impl<'a> Evaluator<'a> {
                 operands.extend(self.operand(command, parameters, filled));
             }
         }
-        let seen = Seen {
+        let seen = Provenance {
             spec,
             operands,
             material: material.text.to_owned(),
@@ -227,9 +137,9 @@ impl<'a> Evaluator<'a> {
     ) -> Option<Operand> {
         let parameter = parameters.iter().find(|p| p.name == filled.parameter)?;
         let values = match filled.operand {
-            crate::given::Operand::Number(number) => vec![number],
+            given::Operand::Number(number) => vec![number],
             // A direction was made a unit vector; here it is wanted as it is written.
-            crate::given::Operand::Triple(_) => Vec::new(),
+            given::Operand::Triple(_) => Vec::new(),
             _ => return None,
         };
         let (values, sources) = if values.is_empty() {

@@ -2,7 +2,7 @@
 //! are looked at all the same: one that is nowhere defined is a mistake. What follows a plain `return` or
 //! `quit` is not: published datasets keep notes and programs there.
 
-use super::Evaluator;
+use super::state::Evaluator;
 use crate::Severity;
 use crate::commands;
 use crate::problem::Problem;

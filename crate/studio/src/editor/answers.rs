@@ -7,7 +7,6 @@ use crate::command::Command;
 use crate::session::Session;
 use egui::text::{CCursor, CCursorRange};
 use egui::{Galley, Key, Modifiers, Pos2, Rect, TextEdit, Ui};
-use rats::assist;
 
 impl Editor {
     /// Shows the field for a new name, if it is open.

@@ -8,11 +8,11 @@ use super::Place;
 use crate::platform;
 use crate::session::Session;
 use crate::theme::{self, Palette};
+use assist::{Completion, CompletionKind, Completions};
 use egui::{
     Align2, Area, Color32, FontId, Frame, Key, Modifiers, Order, Rect, Role, Sense, Ui, WidgetInfo,
     pos2, vec2,
 };
-use rats::assist::{self, Completion, CompletionKind, Completions};
 
 /// Seconds of rest after which a list that takes long is made.
 const REST: f64 = 0.15;

@@ -152,7 +152,7 @@ impl Folds {
                 *line
             }
         };
-        self.ranges = rats::assist::folds(text);
+        self.ranges = assist::folds(text);
         let starts: BTreeSet<usize> = self.ranges.iter().map(|fold| fold.start).collect();
         self.shut = self
             .shut

@@ -4,8 +4,8 @@ use super::Place;
 use crate::marks::Marks;
 use crate::session::Session;
 use crate::{problems, theme};
+use assist::Card;
 use egui::{Color32, Id, Response, RichText, Ui, vec2};
-use rats::assist::{self, Card};
 
 /// Seconds the pointer rests before the card comes.
 const REST: f32 = 0.35;

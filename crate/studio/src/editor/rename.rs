@@ -5,7 +5,6 @@ use crate::command::Command;
 use crate::session::Session;
 use crate::theme;
 use egui::{Area, Frame, Id, Key, Order, Rect, RichText, TextEdit, Ui, pos2};
-use rats::assist;
 
 /// The field.
 pub struct Rename {

@@ -4,9 +4,9 @@ use super::Place;
 use crate::platform;
 use crate::session::Session;
 use crate::theme;
+use assist::Signature;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Area, FontId, Frame, Order, Rect, Ui, pos2, vec2};
-use rats::assist::{self, Signature};
 
 /// Seconds of rest after which a line that takes long is made.
 const REST: f64 = 0.2;

@@ -3,11 +3,11 @@
 
 use super::LIT;
 use crate::places;
+use assist::handles::{Editable, Handle};
 use egui::{
     Align2, Color32, CursorIcon, EventFilter, FontId, Key, Painter, Pos2, Rect, Role, Sense,
     Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
-use rats::handles::{Editable, Handle};
 
 /// What is done to a knob in a frame.
 pub struct Answer {

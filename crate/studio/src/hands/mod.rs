@@ -12,9 +12,9 @@ pub use sight::Sight;
 
 use crate::command::Command;
 use crate::session::Session;
+use assist::handles::{self, Handle};
 use egui::{Color32, Key, Modifiers, Painter, Rect, Response, Stroke, Ui};
 use glam::DVec3;
-use rats::handles::{self, Handle};
 use scene::{Camera, Origin, Scene, Shape};
 use std::ops::Range;
 use tracer::Picker;

@@ -1,37 +1,36 @@
 //! CAMERA: from where and with what lens the picture is taken.
 
-use super::{clay, row, run};
-use crate::commands::CommandSpec;
+use crate::commands::build::{clay, row, run};
 use crate::commands::parameter::{degrees, direction, length, number, vector};
-use crate::evaluator::camera;
+use crate::commands::spec::{CommandSpec, Routine};
 
 /// The commands.
 #[rustfmt::skip]
 pub static CAMERA: &[CommandSpec] = &[
-    row("aperture", "radius of the lens", run(camera::aperture))
+    row("aperture", "radius of the lens", run(Routine::Aperture))
         .takes(&[length("radius", "the radius of the lens").at_least(0.0)])
         .default("0")
         .details("0 is a pinhole, which draws everything sharp.")
         .example(clay!("aperture 0\nsphere Clay 2, 0 0 0")),
-    row("focus", "distance of the focal plane", run(camera::focus))
+    row("focus", "distance of the focal plane", run(Routine::Focus))
         .takes(&[length("distance", "the distance of the focal plane").at_least(1e-9)])
         .default("to vrp")
         .details("It only shows when the lens has an `aperture`.")
         .example(clay!("focus 10\nsphere Clay 2, 0 0 0")),
-    row("shutter", "how long the shutter is open", run(camera::shutter))
+    row("shutter", "how long the shutter is open", run(Routine::Shutter))
         .takes(&[number("fraction", "the fraction of time").from(0.0, 1.0)])
         .default("0")
         .details("0 is no blur, 1 blurs over the whole frame of an animation.")
         .example(clay!("shutter 0\nsphere Clay 2, 0 0 0")),
-    row("vrp", "view reference point, in the middle of the picture", run(camera::vrp))
+    row("vrp", "view reference point, in the middle of the picture", run(Routine::Vrp))
         .takes(&[vector("XYZ", "the view reference point")])
         .default("0 0 0")
         .example(clay!("vrp 0 1 0\nsphere Clay 2, 0 0 0")),
-    row("vup", "direction that is up in the picture", run(camera::vup))
+    row("vup", "direction that is up in the picture", run(Routine::Vup))
         .takes(&[direction("XYZ", "the direction up")])
         .default("0 1 0")
         .example(clay!("vup 0 0 1\neyep 8 4 4\ncylinder Clay 1, <0 0 -2>, <0 0 2>")),
-    row("cp", "centre of projection, view coordinates", run(camera::cp))
+    row("cp", "centre of projection, view coordinates", run(Routine::Cp))
         .takes(&[
             length("x", "the place to the right"),
             length("y", "the place upwards"),
@@ -40,11 +39,11 @@ pub static CAMERA: &[CommandSpec] = &[
         ])
         .details("The camera of Foley et al.: the view plane goes through `vrp` with normal `vpn`; `window` is the part of it that the picture shows, seen from `cp`. The weight divides the others.")
         .example(clay!("vrp 0 0 0\nvpn 0 0 1\ncp 0 0 8\nwindow -3 3 -3 3\nsphere Clay 2, 0 0 0")),
-    row("vpn", "normal of the view plane, towards the eye", run(camera::vpn))
+    row("vpn", "normal of the view plane, towards the eye", run(Routine::Vpn))
         .takes(&[direction("XYZ", "the normal of the view plane")])
         .default("0 0 1")
         .example(clay!("vpn 1 1 1\ncp 0 0 8\nwindow -3 3 -3 3\nsphere Clay 2, 0 0 0")),
-    row("window", "the part of the view plane that the picture shows", run(camera::window))
+    row("window", "the part of the view plane that the picture shows", run(Routine::Window))
         .takes(&[
             length("x", "the left edge"),
             length("X", "the right edge"),
@@ -53,11 +52,11 @@ pub static CAMERA: &[CommandSpec] = &[
         ])
         .details("In view coordinates, as for `cp`. Pixels are square: the width counts, the height follows from `framesize`.")
         .example(clay!("cp 0 0 8\nwindow -4 4 -4 4\nsphere Clay 2, 0 0 0")),
-    row("eyep", "position of the eye", run(camera::eyep))
+    row("eyep", "position of the eye", run(Routine::Eyep))
         .takes(&[vector("XYZ", "the eye's position")])
         .default("0 0 10")
         .example(clay!("eyep 5 5 8\nsphere Clay 2, 0 0 0")),
-    row("fov", "angle of view", run(camera::fov))
+    row("fov", "angle of view", run(Routine::Fov))
         .takes(&[
             degrees("hor", "the horizontal angle of view").from(0.01, 179.0),
             degrees("vert", "the vertical angle of view").from(0.01, 179.0).optional("as the frame's sides"),

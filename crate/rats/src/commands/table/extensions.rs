@@ -1,42 +1,41 @@
 //! Ours: what the original language did not have.
 
-use super::{clay, flesh, library, row, run, structure};
-use crate::commands::CommandSpec;
+use crate::commands::build::{clay, flesh, library, row, run, structure};
 use crate::commands::options as o;
 use crate::commands::parameter::{
     Arity, Kind, Names, Parameter, length, number, parameter, vector, word,
 };
-use crate::evaluator::{materials, objects, options, primitives, variables};
+use crate::commands::spec::{CommandSpec, Routine};
 
 const BLOCK: Parameter = parameter("block", Kind::Block, "commands in `{ … }`");
 
 /// The commands.
 #[rustfmt::skip]
 pub static EXTENSIONS: &[CommandSpec] = &[
-    row("material", "the same as surface", run(materials::surface))
+    row("material", "the same as surface", run(Routine::Surface))
         .takes(&[
             parameter("alias", Kind::New(Names::Material), "the material's name"),
             parameter("= old", Kind::Copy(Names::Material), "the name of the old material").optional(""),
         ])
         .options(o::SURFACE)
         .example("light White, position 4 8 10\nmaterial Gold { diffuse Gold, specular White, shine 80 }\nsphere Gold 2, 0 0 0"),
-    row("blobscale", "how blobbiness is read", run(options::blobscale))
+    row("blobscale", "how blobbiness is read", run(Routine::Blobscale))
         .takes(&[word("what", o::BLOBSCALE, "`relative` or `absolute`")])
         .default("relative")
         .details("relative: a² = |B|/R²; absolute: a² = |B|, as the published datasets read.")
         .example(flesh!("blobscale absolute\nsphere Flesh 0.6, 0 0 0")),
-    row("influence", "share of the threshold below which the draft ignores a soft shape", run(options::influence))
+    row("influence", "share of the threshold below which the draft ignores a soft shape", run(Routine::Influence))
         .takes(&[number("e", "the share of the threshold").from(1e-9, 0.5)])
         .default("0.001")
         .details("Counts for the draft and for every digger but hermite: traced pictures ignore nothing that could be seen.")
         .example(flesh!("influence 1e-4\nsphere Flesh 0.6, 0 0 0")),
-    row("body", "begin a body, whose shapes blend with no others", run(objects::body))
+    row("body", "begin a body, whose shapes blend with no others", run(Routine::Body))
         .takes(&[parameter("name", Kind::New(Names::Object), "the body's name")])
         .details("Soft shapes of a body flow together; those of two bodies do not, however near they are: legs that touch stay legs. \
             Shapes that stand in no body make one together. A body is an object: it is moved, turned and copied by its name, and a copy is \
             a new body. Objects can stand in bodies and bodies in objects, but no body in a body.")
         .example(flesh!("body LEFT\n  sphere Flesh 1, -0.9 0 0\nclose\nbody RIGHT\n  sphere Flesh 1, 0.9 0 0\nclose")),
-    row("curve", "cubic Bézier curve", run(primitives::curve))
+    row("curve", "cubic Bézier curve", run(Routine::Curve))
         .takes(&[
             parameter("sn", Kind::Known(Names::Material), "the material's name"),
             length("b", "the tube radius"),
@@ -48,7 +47,7 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         ])
         .details("More points, three at a time, join more curves: each begins where the last one ends.")
         .example(flesh!("curve Flesh 0.6, <-3 -1 0> <-1 3 0> <1 -3 0> <3 1 0>")),
-    row("seed", "start the random numbers of `rand`", run(variables::seed))
+    row("seed", "start the random numbers of `rand`", run(Routine::Seed))
         .takes(&[number("n", "the seed")])
         .default("0")
         .example(clay!("seed 7\nfor i = 1 to 20 { sphere Clay 0.3, rand*6-3, rand*6-3, 0 }")),

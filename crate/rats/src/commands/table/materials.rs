@@ -1,15 +1,14 @@
 //! MATERIALS: what shapes are made of.
 
-use super::{row, run};
-use crate::commands::CommandSpec;
+use crate::commands::build::{row, run};
 use crate::commands::options as o;
 use crate::commands::parameter::{Kind, Names, parameter, word};
-use crate::evaluator::{materials, textures};
+use crate::commands::spec::{CommandSpec, Routine};
 
 /// The commands.
 #[rustfmt::skip]
 pub static MATERIALS: &[CommandSpec] = &[
-    row("surface", "make a material", run(materials::surface))
+    row("surface", "make a material", run(Routine::Surface))
         .takes(&[
             parameter("alias", Kind::New(Names::Material), "the material's name"),
             parameter("= old", Kind::Copy(Names::Material), "the name of the old material").optional(""),
@@ -17,7 +16,7 @@ pub static MATERIALS: &[CommandSpec] = &[
         .options(o::SURFACE)
         .details("All fields are optional; braces around them let them run over several lines. A material with a blobbiness is soft: its shapes are skeletons, and their flesh melts together. `surface new = old` copies a material; options behind it change the copy (ours).")
         .example("light White, position 4 8 10\nsurface { Red, body OrangeRed\n  specular 50%, shine 40\n  radius 0.8, blobbiness -1 }\nsurface Blue = Red, diffuse RoyalBlue\nsphere Red 1, -1 0 0\nsphere Blue 1, 1 0 0"),
-    row("texture", "make a texture", run(textures::texture))
+    row("texture", "make a texture", run(Routine::Texture))
         .takes(&[
             parameter("alias", Kind::New(Names::Texture), "the texture's name"),
             parameter("= old", Kind::Copy(Names::Texture), "the name of the old texture").optional(""),

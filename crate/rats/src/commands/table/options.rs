@@ -1,12 +1,11 @@
 //! OPTIONS: settings of the picture and of how it is made.
 
-use super::{Action, clay, flesh, idle, later, row, run};
-use crate::commands::CommandSpec;
+use crate::commands::build::{clay, flesh, idle, later, row, run};
 use crate::commands::options as o;
 use crate::commands::parameter::{
     Kind, Names, ON_OFF, Parameter, SWITCH, Unit, colour, number, parameter, whole, word,
 };
-use crate::evaluator::options;
+use crate::commands::spec::{Action, CommandSpec, Routine};
 use scene::Settings;
 
 const SAVING: &str = "the picture is named and saved by whoever draws it";
@@ -33,44 +32,46 @@ const FRAGILE: Parameter = word(
 /// The commands.
 #[rustfmt::skip]
 pub static OPTIONS: &[CommandSpec] = &[
-    switch("echo", "echo commands", run(options::silent_switch), "on").example("echo off"),
-    switch("warning", "show warnings", run(options::warning), "on").example("warning off"),
-    switch("verbose", "show notes", run(options::verbose), "on").example("verbose off"),
+    switch("echo", "echo commands", run(Routine::SilentSwitch), "on").example("echo off"),
+    switch("warning", "show warnings", run(Routine::Warning), "on").example("warning off"),
+    switch("verbose", "show notes", run(Routine::Verbose), "on").example("verbose off"),
     switch("bounds", "use bounding volumes", idle(PACKING), "on").example("bounds on"),
-    switch("soft", "blend soft shapes; off draws their offset surfaces", run(options::soft), "on")
+    switch("soft", "blend soft shapes; off draws their offset surfaces", run(Routine::Soft), "on")
         .example(flesh!("soft off\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
     switch("timer", "report times", idle(REPORTS), "on").example("timer on"),
-    switch("double", "draw both sides of faces", idle("both sides are always drawn"), "on").example("double on"),
+    switch("double", "draw both sides of faces", run(Routine::Double), "on")
+        .details("Off hides the faces of triangles, polygons, patches and meshes that are seen from behind; the front of a face is the side from which its corners run counterclockwise. RATS had `double` off unless a dataset said otherwise; here it is on.")
+        .example(clay!("double off\ntriangle Clay, <-2 -1 0> <2 -1 0> <0 2 0>")),
     switch("dither", "dither pictures for viewing", idle("screens show all colours now"), "on").example("dither on"),
     switch("compress", "compress saved pictures", idle(SAVING), "on").example("compress on"),
     switch("stat", "report statistics", idle(REPORTS), "off").example("stat on"),
-    row("map", "show what each pixel costs instead of its colour", run(options::map))
+    row("map", "show what each pixel costs instead of its colour", run(Routine::Map))
         .takes(&[ON_OFF, number("N", "the gamma of the map").from(0.1, 10.0).optional("1")])
         .default("off")
         .details("Black is no work, white the dearest pixel of a sample (a packet of rays in every 16×16 pixels); N above 1 lifts what is dark. Work is counted, not timed, so that a map is the same everywhere: an evaluation of one shape's field at one point counts 1, and so does each ray to the eye or to a light. Rays of a packet share the work that is done for all of them, and a pixel shows the mean of its rays.")
         .example(flesh!("map on 1.5\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
     switch("penumbra", "soft shadows", later(), "off").example("penumbra off"),
     switch("noview", "do not display the picture", idle(WINDOWS), "off").example("noview on"),
-    switch("nosave", "do not save the picture", run(options::nosave), "off")
+    switch("nosave", "do not save the picture", run(Routine::Nosave), "off")
         .details("The program that runs the dataset then neither traces nor writes the picture, unless it is told a name for it with `-o`. In the page, tools do not find the picture among the files; you can still save it by hand.")
         .example("nosave on"),
-    row("gamma", "gamma correction", run(options::gamma))
+    row("gamma", "gamma correction", run(Routine::Gamma))
         .takes(&[number("value", "gamma").from(0.1, 10.0)])
         .default("1")
         .example(clay!("gamma 1.8\nsphere Clay 2, 0 0 0")),
-    row("framesize", "size of the picture", run(options::framesize))
+    row("framesize", "size of the picture", run(Routine::Framesize))
         .takes(&[
             whole("w", 1, Settings::MAX_FRAME, "the width").unit(Unit::Pixels),
             whole("h", 1, Settings::MAX_FRAME, "the height").unit(Unit::Pixels),
         ])
         .default("128 128")
         .example(clay!("framesize 320 200\nsphere Clay 2, 0 0 0")),
-    row("filename", "name of the saved picture", run(options::filename))
+    row("filename", "name of the saved picture", run(Routine::Filename))
         .takes(&[parameter("name", Kind::NewFile, "the picture's name")])
         .default("scene")
         .details("The program saves the picture under this name, and tools such as `collage` know it by this name and its `format`: `shell.png`.")
         .example("filename shell"),
-    row("format", "format of the saved picture", run(options::format))
+    row("format", "format of the saved picture", run(Routine::Format))
         .takes(&[word("format", o::FORMATS, "a format, such as `tif`")])
         .default("tif")
         .details("The program writes all of these; the page saves PNG whatever stands here.")
@@ -91,7 +92,7 @@ pub static OPTIONS: &[CommandSpec] = &[
         .takes(&[whole("number", 1, 1_000_000_000, "the number of shapes")])
         .default("300")
         .example("maxmol 300"),
-    row("digger", "what finds where a ray meets the soft surface", run(options::digger))
+    row("digger", "what finds where a ray meets the soft surface", run(Routine::Digger))
         .takes(&[
             word("name", o::DIGGER, "the digger's name"),
             whole("n", 1, Settings::MAX_SPANS, "the number of spans a shape gets from `hermite2`").optional("2"),
@@ -99,7 +100,7 @@ pub static OPTIONS: &[CommandSpec] = &[
         .default("hermite")
         .details("Only `hermite` is certified, and it is the fastest. The others are there to compare with: they follow rays one by one, and what they miss or misplace is missing or misplaced in the picture.")
         .example(flesh!("digger hermite2 4\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
-    row("contrast", "contrast above which a pixel is sampled further", run(options::contrast))
+    row("contrast", "contrast above which a pixel is sampled further", run(Routine::Contrast))
         .takes(&[colour("r g b", "the contrast")])
         .default(".25 .2 .4")
         .example(clay!("contrast 0.1 0.1 0.1\nsample 4\nsphere Clay 2, 0 0 0")),
@@ -111,18 +112,18 @@ pub static OPTIONS: &[CommandSpec] = &[
         .takes(&[word("what", o::INDICATOR, "what to show, such as `bar`").many()])
         .default("bar")
         .example("indicator bar"),
-    row("fragile", "soft shapes whose own radius is overruled by their material's", run(options::fragile))
+    row("fragile", "soft shapes whose own radius is overruled by their material's", run(Routine::Fragile))
         .takes(&[FRAGILE])
         .default("none")
         .example(flesh!("fragile all\nsphere Flesh 2, -0.6 0 0\nsphere Flesh 0.1, 0.6 0 0")),
-    row("sample", "at most n×n rays a pixel", run(options::sample))
+    row("sample", "at most n×n rays a pixel", run(Routine::Sample))
         .takes(&[
             whole("n", 1, Settings::MAX_SAMPLES, "the number of samples"),
             parameter("method", Kind::Text, "the method").optional(""),
         ])
         .default("1")
         .example(clay!("sample 4\nsphere Clay 2, 0 0 0")),
-    row("mesh", "triangles of a file (ours), or how polygons are checked", run(options::mesh))
+    row("mesh", "triangles of a file (ours), or how polygons are checked", run(Routine::Mesh))
         .takes(&[
             parameter("sn", Kind::Known(Names::Material), "the material's name"),
             parameter("fn", Kind::File, "the mesh's name"),

@@ -1,12 +1,11 @@
 //! PRIMITIVES: shapes, and the skeletons of soft ones.
 
-use super::{clay, flesh, row, run};
-use crate::commands::CommandSpec;
+use crate::commands::build::{clay, flesh, row, run};
 use crate::commands::options as o;
 use crate::commands::parameter::{
     Kind, Names, Parameter, degrees, direction, length, number, parameter, vector,
 };
-use crate::evaluator::primitives;
+use crate::commands::spec::{CommandSpec, Routine};
 
 /// Of every primitive the first, which a `chain` leaves out.
 const SN: Parameter = parameter("sn", Kind::Known(Names::Material), "the material's name");
@@ -14,7 +13,7 @@ const SN: Parameter = parameter("sn", Kind::Known(Names::Material), "the materia
 /// The commands.
 #[rustfmt::skip]
 pub static PRIMITIVES: &[CommandSpec] = &[
-    row("arc", "arc of a circle", run(primitives::arc))
+    row("arc", "arc of a circle", run(Routine::Arc))
         .takes(&[
             SN,
             length("a", "the sweep radius"),
@@ -26,7 +25,7 @@ pub static PRIMITIVES: &[CommandSpec] = &[
         ])
         .details("Angles run from the local x axis (the world's, made perpendicular to the normal) towards normal × x; so they run clockwise when the normal points away. Soft: the arc itself is the skeleton.")
         .example(flesh!("arc Flesh 2, 0.6, <0 0 0>, <0 0 1>, 30 240")),
-    row("arch", "arc through three points", run(primitives::arch))
+    row("arch", "arc through three points", run(Routine::Arch))
         .takes(&[
             SN,
             length("b", "the tube radius"),
@@ -35,11 +34,11 @@ pub static PRIMITIVES: &[CommandSpec] = &[
             vector("P3", "the third point"),
         ])
         .example(flesh!("arch Flesh 0.6, <-2 -1 0>, <0 1.5 0>, <2 -1 0>")),
-    row("box", "box between two corners", run(primitives::box_))
+    row("box", "box between two corners", run(Routine::Box))
         .takes(&[SN, vector("PMIN", "one corner"), vector("PMAX", "the opposite corner")])
         .details("A box is always hard: it is no skeleton.")
         .example(clay!("eyep 6 5 8\nbox Clay, <-2 -1 -1>, <2 1 1>")),
-    row("brick", "box around the origin", run(primitives::brick))
+    row("brick", "box around the origin", run(Routine::Brick))
         .takes(&[
             SN,
             length("x", "the width").at_least(0.0),
@@ -48,7 +47,7 @@ pub static PRIMITIVES: &[CommandSpec] = &[
         ])
         .details("A brick is always hard: it is no skeleton.")
         .example(clay!("eyep 6 5 8\nbrick Clay, 4 1 2")),
-    row("cone", "cone with lids", run(primitives::cone))
+    row("cone", "cone with lids", run(Routine::Cone))
         .takes(&[
             SN,
             length("b", "the radius at the base").at_least(0.0),
@@ -58,40 +57,40 @@ pub static PRIMITIVES: &[CommandSpec] = &[
         ])
         .details("Soft: a line segment whose flesh tapers with the cone.")
         .example(clay!("cone Clay 1.5, <0 -2 0>, 0.2, <0 2 0>")),
-    row("cylinder", "cylinder with lids; a line segment when soft", run(primitives::cylinder))
+    row("cylinder", "cylinder with lids; a line segment when soft", run(Routine::Cylinder))
         .takes(&[SN, length("r", "the radius"), vector("BASE", "the base"), vector("APEX", "the apex")])
         .example(flesh!("cylinder Flesh 0.6, <-2 -1 0>, <2 1 0>")),
-    row("pipe", "cylinder without lids", run(primitives::pipe))
+    row("pipe", "cylinder without lids", run(Routine::Pipe))
         .takes(&[SN, length("r", "the radius"), vector("BASE", "the base"), vector("APEX", "the apex")])
         .example(clay!("eyep 3 3 9\npipe Clay 1, <-2 0 0>, <2 0 1>")),
-    row("dot", "point with a polynomial kernel", run(primitives::dot))
+    row("dot", "point with a polynomial kernel", run(Routine::Dot))
         .takes(&[SN, vector("POS", "the position")])
         .example(flesh!("dot Flesh, -0.5 0 0\ndot Flesh, 0.5 0 0")),
-    row("gauss", "point with a Gaussian kernel", run(primitives::gauss))
+    row("gauss", "point with a Gaussian kernel", run(Routine::Gauss))
         .takes(&[SN, vector("POS", "the position")])
         .example(flesh!("gauss Flesh, -0.6 0 0\ngauss Flesh, 0.6 0 0")),
-    row("line", "line segment with a Gaussian kernel", run(primitives::line))
+    row("line", "line segment with a Gaussian kernel", run(Routine::Line))
         .takes(&[SN, vector("BASE", "the base"), vector("APEX", "the apex")])
         .example(flesh!("line Flesh, <-2 0 0>, <2 0 0>\nline Flesh, <0 0 0>, <0 2 0>")),
-    row("sphere", "sphere; a point when soft", run(primitives::sphere))
+    row("sphere", "sphere; a point when soft", run(Routine::Sphere))
         .takes(&[SN, length("r", "the radius"), vector("POS", "the centre")])
         .example(flesh!("sphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
-    row("triangle", "flat triangle; a Cauchy triangle when soft", run(primitives::triangle))
+    row("triangle", "flat triangle; a Cauchy triangle when soft", run(Routine::Triangle))
         .takes(&[SN, vector("V1", "the first corner"), vector("V2", "the second corner"), vector("V3", "the third corner")])
         .example(flesh!("triangle Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>")),
-    row("triad", "triangle with the Newtonian kernel", run(primitives::triad))
+    row("triad", "triangle with the Newtonian kernel", run(Routine::Triad))
         .takes(&[SN, vector("V1", "the first corner"), vector("V2", "the second corner"), vector("V3", "the third corner")])
         .details("The potential of a flat mass. Its flesh is as thick as the radius only where the triangle is many radii wide; smaller ones need more `strength`.")
         .example("light White, position 4 8 10\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine 40, radius 0.4, blobbiness -2, strength 3\ntriad Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>"),
-    row("plane", "infinite plane", run(primitives::plane))
+    row("plane", "infinite plane", run(Routine::Plane))
         .takes(&[SN, vector("POS", "a point of the plane"), direction("NORM", "the normal")])
         .example(clay!("plane Clay, <0 -2 0>, <0 1 0>")),
-    row("polygon", "planar polygon, with holes", run(primitives::polygon))
+    row("polygon", "planar polygon, with holes", run(Routine::Polygon))
         .takes(&[SN, vector("V1", "a corner").many()])
         .options(o::POLYGON)
         .details("At least three corners, at most 800 with those of the holes; edges must not cross. (RATS stopped at 128; holes are ours.)")
         .example(clay!("polygon Clay, <-2 -2 0> <2 -2 0> <2 2 0> <-2 2 0> hole <-1 -1 0> <-1 1 0> <1 1 0> <1 -1 0>")),
-    row("patch", "triangle shaded as if it were curved", run(primitives::patch))
+    row("patch", "triangle shaded as if it were curved", run(Routine::Patch))
         .takes(&[
             SN,
             vector("V1", "the first corner"), direction("N1", "the first normal"),
@@ -100,7 +99,7 @@ pub static PRIMITIVES: &[CommandSpec] = &[
         ])
         .details("Phong's shading: the normal varies between the corners. Soft: a triangle.")
         .example(clay!("patch Clay, <-2 -1.5 0> <-1 0 1>, <2 -1.5 0> <1 0 1>, <0 2 0> <0 1 1>")),
-    row("torus", "ring of a round tube", run(primitives::torus))
+    row("torus", "ring of a round tube", run(Routine::Torus))
         .takes(&[
             SN,
             length("a", "the sweep radius"),
@@ -109,7 +108,7 @@ pub static PRIMITIVES: &[CommandSpec] = &[
             direction("NORM", "the normal"),
         ])
         .example(flesh!("torus Flesh 2, 0.6, <0 0 0>, <0 1 2>")),
-    row("quadric", "quadric surface", run(primitives::quadric))
+    row("quadric", "quadric surface", run(Routine::Quadric))
         .takes(&[
             SN,
             number("a", "the factor of x²"), number("b", "the factor of y²"), number("c", "the factor of z²"),
@@ -120,7 +119,7 @@ pub static PRIMITIVES: &[CommandSpec] = &[
         .options(o::QUADRIC)
         .details("The points where ax² + by² + cz² + dxy + eyz + fzx + gx + hy + iz + j = 0 in local coordinates, cut off at the box `bounds`. The printed table leaves its operands open; these are ours. A quadric is always hard.")
         .example(clay!("eyep 4 4 8\nquadric Clay, 1 -1 1  0 0 0  0 0 0  -0.2, scale 2 2 2")),
-    row("terra", "height field from an image", run(primitives::terra))
+    row("terra", "height field from an image", run(Routine::Terra))
         .takes(&[
             SN,
             parameter("fn", Kind::File, "the image's name"),

@@ -1,0 +1,269 @@
+//! What must hold for every text and every link, whatever they contain.
+
+use assist::{format, highlight};
+use rats::link::{self, Shared};
+use rats::{Compiled, File, Project, Severity, compile};
+use scene::Origin;
+
+/// Elements of the largest scene that is looked through for numbers that are none, which takes long.
+const LOOKED_THROUGH: usize = 5000;
+
+/// A project of two files; the second is there to be read.
+pub fn project(text: &str, other: &str) -> Project {
+    let file = |name: &str, text: &str| File {
+        name: name.to_owned(),
+        text: text.to_owned(),
+    };
+    Project {
+        files: vec![file("main.rat", text), file("other.rat", other)],
+    }
+}
+
+/// Checks what a text was compiled to.
+///
+/// # Errors
+/// Says what does not hold.
+pub fn compiled(project: &Project, compiled: &Compiled) -> Result<(), String> {
+    let text = |file: usize| project.files.get(file).map(|file| file.text.as_str());
+    if compiled.diagnostics.len() > rats::limits::MAX_DIAGNOSTICS {
+        return Err(format!("{} messages", compiled.diagnostics.len()));
+    }
+    for message in &compiled.diagnostics {
+        // Messages may be about a file of the library as well.
+        let own = project.files.iter().find(|file| file.name == message.file);
+        let known = own
+            .map(|file| file.text.as_str())
+            .or_else(|| rats::library::find(&message.file));
+        let Some(text) = known else {
+            return Err(format!("a message about no file: {message:?}"));
+        };
+        let said = !message.message.is_empty() && message.line >= 1 && message.column >= 1;
+        if !said || text.get(message.span.clone()).is_none() {
+            return Err(format!("a message without a place or a word: {message:?}"));
+        }
+    }
+    for hot in &compiled.hot {
+        let place = hot.literal.clone();
+        if place.is_some_and(|range| text(hot.file).is_none_or(|text| text.get(range).is_none())) {
+            return Err(format!("a slider outside its text: {hot:?}"));
+        }
+    }
+    let scene = &compiled.scene;
+    if scene.finishes.is_empty() {
+        return Err(String::from("a scene without a material"));
+    }
+    if scene.elements.len() > rats::limits::MAX_ELEMENTS {
+        return Err(format!("{} elements", scene.elements.len()));
+    }
+    let lost = scene
+        .elements
+        .iter()
+        .find(|element| element.finish as usize >= scene.finishes.len());
+    if let Some(element) = lost {
+        return Err(format!("an element of no material: {element:?}"));
+    }
+    if scene.elements.len() <= LOOKED_THROUGH
+        && let Some(place) = not_a_number(&format!("{scene:?}"))
+    {
+        return Err(format!("a number that is none: {place}"));
+    }
+    Ok(())
+}
+
+/// Finds `NaN` or `inf` outside quotes in what `Debug` prints of plain data.
+fn not_a_number(printed: &str) -> Option<&str> {
+    let mut quoted = false;
+    let mut escaped = false;
+    for (index, c) in printed.char_indices() {
+        match c {
+            '"' if !escaped => quoted = !quoted,
+            'N' | 'i' if !quoted => {
+                let rest = &printed[index..];
+                let before = printed[..index].chars().next_back();
+                let begins = before.is_some_and(|c| !c.is_alphanumeric() && c != '_');
+                let is_number = |word| {
+                    rest.strip_prefix(word)
+                        .is_some_and(|rest| rest.starts_with([',', ')', ']', ' ', '}']))
+                };
+                if begins && (is_number("NaN") || is_number("inf")) {
+                    let start = printed.floor_char_boundary(index.saturating_sub(120));
+                    let end = printed.floor_char_boundary(index + 20);
+                    return Some(&printed[start..end]);
+                }
+            }
+            _ => {}
+        }
+        escaped = c == '\\' && !escaped;
+    }
+    None
+}
+
+/// Checks what needs no run: colouring and the names of files.
+///
+/// # Errors
+/// Says what does not hold.
+pub fn unrun(text: &str) -> Result<(), String> {
+    let mut end = 0;
+    for (range, _) in highlight::highlight(text) {
+        if range.start < end || range.start >= range.end || text.get(range.clone()).is_none() {
+            return Err(format!("coloured {range:?} after {end}"));
+        }
+        end = range.end;
+    }
+    let _ = rats::reads(text);
+    Ok(())
+}
+
+/// A text that is compiled twice must mean the same.
+///
+/// # Errors
+/// Says that it does not.
+pub fn repeats(project: &Project, first: &Compiled) -> Result<(), String> {
+    if compile(project) == *first {
+        Ok(())
+    } else {
+        Err(String::from(
+            "compiled again, the text means something else",
+        ))
+    }
+}
+
+/// A text that is laid out must mean the same, and be left alone when it is laid out again.
+///
+/// # Errors
+/// Says what does not hold.
+pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
+    let mut project = project.clone();
+    for file in &mut project.files {
+        let once = format(&file.text);
+        if format(&once) != once {
+            return Err(format!("laid out again, {} changes", file.name));
+        }
+        file.text = once;
+    }
+    let again = compile(&project);
+    // Places move, and hints tell of them.
+    let scene = |compiled: &Compiled| {
+        let mut scene = compiled.scene.clone();
+        for element in &mut scene.elements {
+            element.origin = Origin::default();
+        }
+        scene
+    };
+    let said = |compiled: &Compiled| -> Vec<_> {
+        let messages = compiled.diagnostics.iter();
+        messages
+            .map(|message| (message.severity, message.message.clone()))
+            .collect()
+    };
+    let moves = |compiled: &Compiled| -> Vec<_> {
+        let hot = compiled.hot.iter();
+        hot.map(|hot| (hot.name.clone(), hot.value.clone()))
+            .collect()
+    };
+    let differs = if scene(&again) != scene(first) {
+        "another scene"
+    } else if moves(&again) != moves(first) {
+        "other sliders"
+    } else if said(&again) != said(first) {
+        "other messages"
+    } else if again.tools != first.tools || again.output != first.output {
+        "other work"
+    } else {
+        return Ok(());
+    };
+    Err(format!("laid out, the text gives {differs}"))
+}
+
+/// What the editor asks about a place, which may lie between the bytes of a letter or behind the end, must be
+/// answered; and a name that is changed everywhere changes nothing else.
+///
+/// # Errors
+/// Says what does not hold.
+pub fn helped(project: &Project, first: &Compiled, byte: usize) -> Result<(), String> {
+    let _ = assist::complete(project, 0, byte);
+    let _ = assist::hover(project, 0, byte);
+    let _ = assist::signature(project, 0, byte);
+    let _ = assist::folds(&project.files[0].text);
+    let definition = assist::definition(project, 0, byte);
+    for place in assist::references(project, 0, byte)
+        .iter()
+        .chain(&definition)
+    {
+        let text = project.files.get(place.file).map(|file| file.text.as_str());
+        if text.is_some_and(|text| text.get(place.span.clone()).is_none()) {
+            return Err(format!("a reference outside its text: {place:?}"));
+        }
+    }
+    let has_errors = |compiled: &Compiled| {
+        let mut messages = compiled.diagnostics.iter();
+        messages.any(|message| message.severity == Severity::Error)
+    };
+    // With mistakes nobody knows what a name means.
+    if has_errors(first) {
+        return Ok(());
+    }
+    let Ok(edits) = assist::rename(project, 0, byte, "another_name") else {
+        return Ok(());
+    };
+    let again = compile(&assist::apply(project, &edits));
+    let shapes = |compiled: &Compiled| -> Vec<_> {
+        let elements = compiled.scene.elements.iter();
+        elements
+            .map(|element| (element.shape.clone(), element.finish, element.body))
+            .collect()
+    };
+    if has_errors(&again) {
+        return Err(String::from("renamed, the text has mistakes"));
+    }
+    if shapes(&again) != shapes(first) {
+        return Err(String::from("renamed, the text gives another scene"));
+    }
+    Ok(())
+}
+
+/// Opens a link, and what opens must survive being sent on.
+///
+/// # Errors
+/// Says what does not hold.
+pub fn link(fragment: &str) -> Result<(), String> {
+    let Ok(shared) = link::decode(fragment) else {
+        return Ok(());
+    };
+    match link::encode(&shared).map(|again| link::decode(&again)) {
+        Ok(Ok(again)) if again == shared => Ok(()),
+        // The compressor may be worse than the one that made the link, so that it becomes too long.
+        Err(link::LinkError::TooLong | link::LinkError::TooLarge) => Ok(()),
+        other => Err(format!("a link that cannot be sent on: {other:?}")),
+    }
+}
+
+/// Opens the content of a link: JSON that was not packed by us.
+///
+/// # Errors
+/// As [`link`].
+pub fn link_content(json: &[u8]) -> Result<(), String> {
+    use base64::Engine;
+    let mut bytes = vec![1];
+    bytes.extend(miniz_oxide::deflate::compress_to_vec(json, 1));
+    link(&base64::engine::general_purpose::URL_SAFE_NO_PAD.encode(bytes))
+}
+
+/// A project becomes a link and comes back.
+///
+/// # Errors
+/// Says that it does not.
+pub fn sent(project: &Project) -> Result<(), String> {
+    let shared = Shared {
+        project: project.clone(),
+        camera: None,
+    };
+    let Ok(fragment) = link::encode(&shared) else {
+        return Ok(());
+    };
+    if link::decode(&fragment) == Ok(shared) {
+        Ok(())
+    } else {
+        Err(String::from("a link that brings something else"))
+    }
+}

@@ -1,0 +1,270 @@
+//! The handles of one element, from the numbers of its command.
+
+use super::handle::{Editable, Handle, Kind, Moves, handle};
+use glam::{DMat3, DVec3};
+use rats::Placement;
+use rats::commands::Kind as Takes;
+use rats::provenance::{Operand, Provenance};
+use scene::{Element, Flesh, Scene, Shape};
+
+/// Makes the handles of one element: its scene, itself, how it came from its command, the axes of the view,
+/// and from where the numbers of its command come.
+pub struct Maker<'a> {
+    pub scene: &'a Scene,
+    pub element: &'a Element,
+    pub placement: &'a Placement,
+    pub view: &'a DMat3,
+    pub seen: &'a Provenance,
+}
+
+impl Maker<'_> {
+    /// The handles of all operands that stand for places, radii and angles, and of the material's radius if
+    /// that counts.
+    pub fn handles(&self) -> Vec<Handle> {
+        let mut handles = Vec::new();
+        for (index, operand) in self.seen.operands.iter().enumerate() {
+            let same = |o: &&Operand| o.meaning == operand.meaning;
+            let mut label = operand.meaning.to_owned();
+            if self.seen.operands.iter().filter(same).count() > 1 {
+                let number = self.seen.operands[..=index].iter().filter(same).count();
+                label = format!("{label} ({number})");
+            }
+            match operand.kind {
+                // A quadric's triples are factors and bounds.
+                Takes::Vector if matches!(self.element.shape, Shape::Quadric(_)) => {}
+                Takes::Vector => handles.push(self.point(operand, label)),
+                Takes::Direction => handles.extend(self.direction(operand, label)),
+                Takes::Number { .. } => handles.extend(self.number(operand, label)),
+                _ => {}
+            }
+        }
+        if self.material_decides() {
+            let label = format!("the radius of the material `{}`", self.seen.material);
+            let length = self.radius(0.0);
+            handles.push(handle(
+                Kind::Length,
+                label,
+                vec![self.seen.radius.clone()],
+                length,
+            ));
+        }
+        handles.retain(|handle| handle.place.is_finite());
+        handles
+    }
+
+    /// The knob of the radius of a shape that a loop or a defined command makes, if the number is written
+    /// out or is a variable from outside: then all that is made so follows it.
+    pub fn shared_radius(&self) -> Option<Handle> {
+        let mut handle = self.handles().into_iter().find(|handle| {
+            let is_radius = handle.label.contains("radius") && !handle.label.contains("sweep");
+            handle.kind == Kind::Length && is_radius
+        })?;
+        let radius = handle.numbers.first()?.value * self.placement.growth;
+        let shown = self.scene.radius(self.element);
+        let same = (radius - shown).abs() <= 1e-9 * shown.abs();
+        if !same || matches!(handle.edit, Editable::Fixed { .. }) {
+            return None;
+        }
+        handle.label += "; of all that are made here";
+        Some(handle)
+    }
+
+    fn point(&self, operand: &Operand, label: String) -> Handle {
+        let moves = Moves::Freely(self.placement.to_world);
+        handle(Kind::Point, label, operand.numbers.clone(), moves)
+    }
+
+    fn direction(&self, operand: &Operand, label: String) -> Option<Handle> {
+        let linear = self.placement.to_world.matrix3;
+        let (anchor, linear, size) = match self.element.shape {
+            Shape::Arc { center, sweep, .. } => (center, linear, 0.75 * sweep),
+            // A normal stays perpendicular to what the map makes of its plane.
+            Shape::Plane { point, .. } => {
+                (point, linear.inverse().transpose(), self.placement.growth)
+            }
+            _ => return None,
+        };
+        let moves = Moves::Around {
+            anchor,
+            linear,
+            size,
+        };
+        Some(handle(
+            Kind::Direction,
+            label,
+            operand.numbers.clone(),
+            moves,
+        ))
+    }
+
+    /// A radius or an angle of the shape, if it can be seen.
+    fn number(&self, operand: &Operand, label: String) -> Option<Handle> {
+        let circle = |start: bool| match self.element.shape {
+            Shape::Arc {
+                center,
+                u,
+                v,
+                sweep,
+                angle,
+                ..
+            } => {
+                let width = self.seen.operands.iter().find(|o| o.name == "a2");
+                let width = width.map_or(1.0, |width| width.numbers[0].value);
+                // Turning a full circle changes nothing.
+                let moves = Moves::Circle {
+                    center,
+                    u,
+                    v,
+                    sweep,
+                    angle,
+                    turns: if width < 0.0 { -1.0 } else { 1.0 },
+                    start,
+                };
+                (!start || angle < std::f64::consts::TAU - 1e-3).then_some(moves)
+            }
+            _ => None,
+        };
+        let (kind, moves) = match (self.seen.spec.name, operand.name) {
+            ("arc", "a1") => (Kind::Angle, circle(true)?),
+            ("arc", "a2") => (Kind::Angle, circle(false)?),
+            ("arc" | "torus", "a") => (Kind::Length, self.sweep()?),
+            ("brick", side) => (Kind::Length, self.side(side)?),
+            ("sphere" | "cylinder" | "pipe", "r")
+            | ("arc" | "torus" | "arch" | "curve" | "cone", "b")
+            | ("cone", "a") => {
+                if self.material_decides() {
+                    return None;
+                }
+                let at_apex = operand.name == "a";
+                (Kind::Length, self.radius(if at_apex { 1.0 } else { 0.0 }))
+            }
+            _ => return None,
+        };
+        Some(handle(kind, label, operand.numbers.clone(), moves))
+    }
+
+    /// The element's flesh, if it is soft.
+    fn flesh(&self) -> Option<&Flesh> {
+        self.scene.flesh.get(self.element.flesh? as usize)
+    }
+
+    /// Whether the radius that counts is the material's.
+    fn material_decides(&self) -> bool {
+        let Some(flesh) = self.flesh() else {
+            return false;
+        };
+        if !self.element.shape.has_skeleton() || self.seen.radius.value == 0.0 && flesh.depth == 0.0
+        {
+            return false;
+        }
+        // A shape without a radius of its own (`dot`, `line`) has its material's.
+        self.element.shape.radius() == 0.0 || self.scene.radius_of_flesh(self.element).is_some()
+    }
+
+    /// Where the knob of the shape's radius is: on the rim, across the view. `end` is the end of a cone
+    /// or limb that tapers, 0 or 1.
+    fn radius(&self, end: f64) -> Moves {
+        let view = self.view;
+        let (right, towards) = (view.x_axis, view.z_axis);
+        let tapers = self.flesh().is_some_and(|flesh| flesh.end_radius.is_some())
+            || matches!(self.element.shape, Shape::Cone { .. });
+        let share = if tapers { end } else { 0.5 };
+        let across = |axis: DVec3| {
+            let across = axis.cross(towards).try_normalize().unwrap_or(right);
+            if across.dot(right + view.y_axis * 0.5) < 0.0 {
+                -across
+            } else {
+                across
+            }
+        };
+        let (anchor, along) = match &self.element.shape {
+            Shape::Sphere { center, .. } => (*center, right),
+            Shape::Cylinder { base, apex, .. }
+            | Shape::Cone { base, apex, .. }
+            | Shape::Pipe { base, apex, .. } => {
+                let axis = (*apex - *base).normalize_or(right);
+                (base.lerp(*apex, share), across(axis))
+            }
+            Shape::Arc {
+                center,
+                u,
+                v,
+                sweep,
+                angle,
+                ..
+            } => {
+                let (sin, cos) = libm::sincos(share * angle);
+                let radial = *u * cos + *v * sin;
+                let tangent = *v * cos - *u * sin;
+                (*center + radial * *sweep, across(tangent))
+            }
+            Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
+                let [a, b, c] = *corners;
+                let normal = (b - a).cross(c - a).normalize_or(towards);
+                ((a + b + c) / 3.0, normal)
+            }
+            Shape::Polygon { rings, .. } => {
+                let outer = rings.first().map_or(&[][..], Vec::as_slice);
+                let first = outer.first().copied().unwrap_or_default();
+                let normal: DVec3 = outer
+                    .windows(2)
+                    .map(|w| (w[0] - first).cross(w[1] - first))
+                    .sum();
+                let count = outer.len().max(1) as f64;
+                let middle = outer.iter().map(|p| *p / count).sum();
+                (middle, normal.normalize_or(towards))
+            }
+            Shape::Curve { control, .. } => {
+                let [a, b, c, d] = *control;
+                if tapers {
+                    (a, across((b - a).normalize_or((d - a).normalize_or(right))))
+                } else {
+                    let tangent = (c + d - a - b).normalize_or((d - a).normalize_or(right));
+                    ((a + 3.0 * (b + c) + d) / 8.0, across(tangent))
+                }
+            }
+            Shape::Plane { point, normal, .. } => (*point, *normal),
+            Shape::Box { center, .. } => (*center, right),
+            Shape::Quadric(quadric) => (quadric.center, right),
+        };
+        Moves::Along {
+            anchor,
+            along,
+            growth: self.placement.growth,
+        }
+    }
+
+    /// Where the knob of a brick's side is: in the middle of a face.
+    fn side(&self, name: &str) -> Option<Moves> {
+        let Shape::Box { center, axes } = self.element.shape else {
+            return None;
+        };
+        let k = ["x", "y", "z"].iter().position(|side| *side == name)?;
+        Some(Moves::Along {
+            anchor: center,
+            along: axes[k].try_normalize()?,
+            // The side is as long as both halves.
+            growth: 0.5 * self.placement.to_world.matrix3.col(k).length(),
+        })
+    }
+
+    /// Where the knob of an arc's sweep radius is: in the middle of the arc.
+    fn sweep(&self) -> Option<Moves> {
+        let Shape::Arc {
+            center,
+            u,
+            v,
+            angle,
+            ..
+        } = self.element.shape
+        else {
+            return None;
+        };
+        let (sin, cos) = libm::sincos(0.5 * angle);
+        Some(Moves::Along {
+            anchor: center,
+            along: u * cos + v * sin,
+            growth: self.placement.growth,
+        })
+    }
+}

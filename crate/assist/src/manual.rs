@@ -1,0 +1,305 @@
+//! The reference page: every command with all that the table says of it, as one HTML document.
+
+use crate::complete::hex;
+use crate::grammar::{Grammar, Param};
+use rats::commands::{self, CommandSpec, GROUPS, Group, Kind, OptionSpec};
+use rats::link::{self, Shared};
+use rats::{File, Project, colours, functions, manual};
+use std::fmt::Write;
+
+/// The manual page of a command as plain text; `None` if there is no such command.
+///
+/// ```
+/// let page = assist::manual::page("sphere").unwrap();
+/// assert!(page.starts_with("sphere sn r POS: "));
+/// ```
+#[must_use]
+pub fn page(command: &str) -> Option<String> {
+    commands::find(command).map(manual::page)
+}
+
+/// The reference page: an HTML document that needs nothing else. Each command has its name as its
+/// anchor.
+#[must_use]
+pub fn reference() -> String {
+    let mut page = String::with_capacity(200_000);
+    page += HEAD;
+    page += "<nav>\n";
+    for (group, list) in GROUPS {
+        let _ = write!(page, "<p><a href=\"#group-{0:?}\">{0:?}</a>", group);
+        for spec in *list {
+            let _ = write!(page, " <a class=\"c\" href=\"#{0}\">{0}</a>", spec.name);
+        }
+        page += "</p>\n";
+    }
+    page +=
+        "<p><a href=\"#functions\">Functions</a> <a href=\"#colours\">Colours</a></p>\n</nav>\n";
+    page += RULES;
+    for (group, list) in GROUPS {
+        let _ = writeln!(
+            page,
+            "<h2 id=\"group-{group:?}\">{group:?}</h2>\n<p>{}</p>",
+            about(*group)
+        );
+        for spec in *list {
+            command(&mut page, spec, *group == Group::Extensions);
+        }
+    }
+    functions(&mut page);
+    colours(&mut page);
+    page += "</main>\n</html>\n";
+    page
+}
+
+const HEAD: &str = r#"<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Sinew: the language</title>
+<style>
+:root { color-scheme: light dark; --line: #8884; --soft: #8882; --ours: #b5500a; }
+@media (prefers-color-scheme: dark) { :root { --ours: #ffb066; } }
+body { font: 16px/1.5 system-ui, sans-serif; margin: 0 auto; max-width: 60rem; padding: 1rem; }
+h2 { border-bottom: 1px solid var(--line); margin-top: 3rem; }
+h3 { margin: 2.5rem 0 .3rem; }
+code, pre, .c { font-family: ui-monospace, monospace; font-size: .92em; }
+pre { background: var(--soft); border-radius: .4rem; overflow-x: auto; padding: .6rem .8rem; }
+table { border-collapse: collapse; margin: .5rem 0; }
+th { font-weight: 600; text-align: left; }
+td, th { border-top: 1px solid var(--line); padding: .15rem .8rem .15rem 0; vertical-align: top; }
+td:first-child { font-family: ui-monospace, monospace; font-size: .92em; white-space: nowrap; }
+nav p { margin: .3rem 0; }
+.ours { border: 1px solid; border-radius: .3rem; color: var(--ours); font-size: .75rem; padding: 0 .3rem; }
+.idle { opacity: .75; }
+.colours { display: flex; flex-wrap: wrap; gap: .2rem .8rem; font-size: .85rem; }
+.colours i { border: 1px solid var(--line); display: inline-block; height: .8rem; width: 1.4rem; }
+</style>
+<main>
+<h1>The language</h1>
+"#;
+
+const RULES: &str = r#"<h2>How a text is written</h2>
+<p>A text is a list of commands, one in a line, run from top to bottom. <code>#</code> begins a comment.
+Commas, <code>&lt;</code> and <code>&gt;</code> separate like space does. Operands may go on over several
+lines inside <code>{ … }</code>.</p>
+<p>Commands and options are written in any case, and options may be shortened as long as they stay
+unmistakable: <code>diff</code>, <code>rad</code>, <code>blob</code>. Names of your own keep their case.</p>
+<p>In what follows, an operand in CAPITALS is three numbers, a vector or a colour; what stands in
+<code>[ ]</code> may be left out; <code>…</code> means that more of the kind may follow. Wherever a number
+stands there can be arithmetic: <code>2*r + sin(a)</code>. In a list, <code>1 -2</code> is two operands
+and <code>1 - 2</code> is one.</p>
+<p><span class="ours">ours</span> marks what RATS did not have.</p>
+"#;
+
+fn about(group: Group) -> &'static str {
+    match group {
+        Group::Run => "Running texts, variables, help.",
+        Group::Camera => "From where the picture is taken.",
+        Group::Materials => "What shapes are made of.",
+        Group::Primitives => {
+            "Shapes. The name of their material comes first, but not in a chain. Shapes of a material \
+             that has a blobbiness are soft: they are skeletons, and their flesh melts together."
+        }
+        Group::Objects => "Groups of shapes, and moving them.",
+        Group::Options => "Settings of the whole picture.",
+        Group::Scene => "Lights, the background, the picture.",
+        Group::Tools => "Pictures and films.",
+        Group::Extensions => {
+            "What RATS did not have: loops, choices, commands of your own, and more."
+        }
+    }
+}
+
+fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
+    let idle = spec.idle();
+    let class = if idle.is_some() {
+        " class=\"idle\""
+    } else {
+        ""
+    };
+    let _ = writeln!(
+        page,
+        "<section id=\"{}\"{class}>\n<h3><code>{}</code>{}</h3>\n<p>{}.</p>",
+        spec.name,
+        escape(&spec.synopsis()),
+        if is_ours {
+            " <span class=\"ours\">ours</span>"
+        } else {
+            ""
+        },
+        sentence(spec.meaning)
+    );
+    if let Some(reason) = idle {
+        let _ = writeln!(page, "<p>Changes nothing here: {}.</p>", escape(reason));
+    }
+    if !spec.details.is_empty() {
+        let _ = writeln!(page, "<p>{}</p>", marked(spec.details));
+    }
+    if !spec.default.is_empty() {
+        let _ = writeln!(page, "<p>By default {}.</p>", escape(spec.default));
+    }
+    let grammar = Grammar::of(spec);
+    if !grammar.parameters.is_empty() {
+        page.push_str("<table>\n");
+        for parameter in &grammar.parameters {
+            row(page, parameter);
+        }
+        page.push_str("</table>\n");
+    }
+    for parameter in &grammar.parameters {
+        if let Kind::Word(words) = parameter.kind {
+            options(page, words, parameter.meaning);
+        }
+    }
+    if !spec.options.is_empty() {
+        options(page, spec.options, "options");
+        for option in spec.options {
+            for parameter in option.parameters {
+                if let Kind::Word(words) = parameter.kind {
+                    options(page, words, &format!("after `{}`", option.name));
+                }
+            }
+        }
+    }
+    if !spec.example.is_empty() {
+        let _ = writeln!(page, "<pre>{}</pre>", escape(spec.example));
+        if let Some(link) = link_to(spec) {
+            let _ = writeln!(page, "<p><a href=\"./#{link}\">Try it</a></p>");
+        }
+    }
+    page.push_str("</section>\n");
+}
+
+/// The fragment that opens a command's example in the page.
+fn link_to(spec: &CommandSpec) -> Option<String> {
+    let file = File {
+        name: format!("{}-example.rat", spec.name),
+        text: format!("{}\n", spec.example),
+    };
+    let shared = Shared {
+        project: Project { files: vec![file] },
+        camera: None,
+    };
+    link::encode(&shared).ok()
+}
+
+fn row(page: &mut String, parameter: &Param<'_>) {
+    let mut more = Vec::new();
+    let range = parameter.range();
+    for part in [parameter.unit.word(), &range] {
+        if !part.is_empty() {
+            more.push(escape(part));
+        }
+    }
+    let _ = writeln!(
+        page,
+        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+        escape(&parameter.synopsis()),
+        marked(parameter.meaning),
+        more.join(", "),
+        default(parameter.default)
+    );
+}
+
+fn options(page: &mut String, list: &'static [OptionSpec], title: &str) {
+    let _ = writeln!(
+        page,
+        "<table>\n<tr><th colspan=\"3\">{}</th></tr>",
+        sentence(title)
+    );
+    for option in list {
+        let _ = writeln!(
+            page,
+            "<tr><td>{}</td><td>{}{}</td><td>{}</td></tr>",
+            escape(&option.synopsis()),
+            marked(option.meaning),
+            units(option),
+            default(option.default)
+        );
+    }
+    page.push_str("</table>\n");
+}
+
+/// The units and ranges of an option's operands.
+fn units(option: &OptionSpec) -> String {
+    let mut text = String::new();
+    for parameter in option.parameters {
+        let range = parameter.range();
+        let parts = [parameter.unit.word(), range.as_str()];
+        let parts: Vec<_> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        if !parts.is_empty() {
+            let name = escape(&parameter.synopsis());
+            let _ = write!(
+                text,
+                "<br><code>{name}</code>: {}",
+                escape(&parts.join(", "))
+            );
+        }
+    }
+    text
+}
+
+fn default(default: &str) -> String {
+    if default.is_empty() {
+        String::new()
+    } else {
+        format!("by default {}", escape(default))
+    }
+}
+
+fn functions(page: &mut String) {
+    page.push_str("<h2 id=\"functions\">Functions</h2>\n<p>Angles are in radians.</p>\n<table>\n");
+    for function in functions::FUNCTIONS {
+        let (form, meaning) = function
+            .meaning
+            .split_once(": ")
+            .unwrap_or(("", function.meaning));
+        let _ = writeln!(
+            page,
+            "<tr><td>{}</td><td>{}</td></tr>",
+            escape(form),
+            marked(meaning)
+        );
+    }
+    page.push_str("<tr><td>pi</td><td>3.14159…</td></tr>\n</table>\n");
+}
+
+fn colours(page: &mut String) {
+    page.push_str("<h2 id=\"colours\">Colours</h2>\n<p>Also <code>Gray0</code> (black) to <code>Gray100</code> (white).</p>\n<div class=\"colours\">\n");
+    for name in colours::names() {
+        let code = colours::find(name).map(hex).unwrap_or_default();
+        let _ = writeln!(
+            page,
+            "<span><i style=\"background:{code}\"></i> {name}</span>"
+        );
+    }
+    page.push_str("</div>\n");
+}
+
+/// A meaning with a capital letter first.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().collect::<String>());
+    marked(&(first.unwrap_or_default() + letters.as_str()))
+}
+
+/// Text for HTML, with `code` and the mark of what is ours.
+fn marked(text: &str) -> String {
+    let mut out = String::new();
+    for (index, part) in text.split('`').enumerate() {
+        let part = escape(part);
+        if index % 2 == 1 {
+            let _ = write!(out, "<code>{part}</code>");
+        } else {
+            out += &part;
+        }
+    }
+    out.replace(" (ours)", " <span class=\"ours\">ours</span>")
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}

@@ -1,0 +1,92 @@
+//! The command that the caret is in, with the parameter whose turn it is.
+
+use crate::complete::described;
+use crate::grammar::Param;
+use crate::index::Index;
+use crate::mend::mended;
+use crate::place;
+use rats::Project;
+
+/// How a command is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Signature {
+    /// The command; with an option of it, if the caret is among the option's operands: `surface … radius`.
+    pub command: String,
+    /// Its parameters.
+    pub parameters: Vec<Part>,
+    /// The index of the parameter that the caret is at.
+    pub active: Option<usize>,
+}
+
+/// A parameter of a signature.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// As it is written in a synopsis.
+    pub text: String,
+    /// Its meaning, with its unit, range and default.
+    pub meaning: String,
+}
+
+/// The signature of the command that a byte is in; `None` outside of commands, and in those that are not known.
+///
+/// ```
+/// let text = "sphere Clay 2, ";
+/// let signature = assist::signature(&rats::Project::single(text), 0, text.len()).unwrap();
+/// let names: Vec<_> = signature.parameters.iter().map(|part| part.text.as_str()).collect();
+/// assert_eq!(names, ["sn", "r", "POS"]);
+/// // It is the turn of the position.
+/// assert_eq!(signature.active, Some(2));
+/// ```
+#[must_use]
+pub fn signature(project: &Project, file: usize, byte: usize) -> Option<Signature> {
+    let text = project.files.get(file)?.text.as_str();
+    if !place::is_in(text, byte) || place::in_comment(text, byte) {
+        return None;
+    }
+    let mut index = Index::at(project, Some((file, byte)));
+    let mended = match index.here {
+        Some(_) => None,
+        None => mended(project, file, byte),
+    };
+    if let Some(mended) = &mended {
+        index = Index::at(mended, Some((file, byte)));
+    }
+    let here = index.here.as_ref()?;
+    if here.spec.is_none() && here.own.is_none() {
+        return None;
+    }
+    let part = |parameter: &Param<'_>| Part {
+        text: parameter.synopsis(),
+        meaning: described(parameter),
+    };
+    let word = here.spec.map_or(here.word, |spec| spec.name);
+    let active = (byte > here.word_span.end)
+        .then(|| here.active(byte))
+        .flatten();
+    if let Some(active) = active
+        && let Some(option) = active.option
+    {
+        return Some(Signature {
+            command: format!("{word} … {}", option.name),
+            parameters: option.parameters.iter().map(|p| part(&p.into())).collect(),
+            active: Some(active.index),
+        });
+    }
+    let mut parameters: Vec<Part> = here.grammar.parameters.iter().map(part).collect();
+    if !here.grammar.options.is_empty() {
+        let names: Vec<_> = here.grammar.options.iter().map(|o| o.name).collect();
+        parameters.push(Part {
+            text: String::from("[option …]"),
+            meaning: names.join(", "),
+        });
+    }
+    let at_options =
+        byte > here.word_span.end && active.is_none() && !here.grammar.options.is_empty();
+    Some(Signature {
+        command: word.to_owned(),
+        active: active
+            .map(|active| active.index)
+            .or(at_options.then(|| parameters.len() - 1)),
+        parameters,
+    })
+}

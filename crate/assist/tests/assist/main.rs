@@ -1,0 +1,12 @@
+//! What an editor asks of the language.
+
+mod complete;
+mod fold;
+mod format;
+mod highlight;
+mod hover;
+mod manual;
+mod names;
+mod signature;
+mod speed;
+mod texts;

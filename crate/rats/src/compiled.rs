@@ -1,0 +1,97 @@
+//! The result of compiling a text.
+
+use crate::{Diagnostic, Tool};
+use glam::DAffine3;
+use scene::{Origin, Scene};
+
+/// The scene of a text, and all else that a run gives.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Compiled {
+    /// The scene, as far as the text could be understood.
+    pub scene: Scene,
+    /// How each element of the scene came from its command, for those who move it by hand.
+    pub placements: Vec<Placement>,
+    /// All that is to be said about the text, in the order of the text.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The variables that are marked `hot`.
+    pub hot: Vec<HotVariable>,
+    /// The work on files that the text asks for, in order.
+    pub tools: Vec<Tool>,
+    /// Where each of [`Self::tools`] stands in the texts.
+    pub tool_origins: Vec<Origin>,
+    /// Under what name the picture is to be saved.
+    pub output: Output,
+    /// Whether a variable changes with every frame.
+    pub animated: bool,
+}
+
+/// How an element came from its command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// From the coordinates that the command names to those of the world.
+    pub to_world: DAffine3,
+    /// By how much lengths grew on the way.
+    pub growth: f64,
+    /// Whether its command was run in a loop, a defined command or by `instance`, so that it may have
+    /// made more elements than this one.
+    pub repeated: bool,
+}
+
+/// The name and format of the picture's file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// `filename`, without an ending.
+    pub name: String,
+    /// `format`; `None` if the text does not say.
+    pub format: Option<&'static str>,
+    /// Whether the picture is to be saved at all, which `nosave on` denies.
+    pub saved: bool,
+}
+
+impl Output {
+    /// The whole name of the picture's file: a PNG file where the text does not say.
+    #[must_use]
+    pub fn file(&self) -> String {
+        format!("{}.{}", self.name, self.format.unwrap_or("png"))
+    }
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self {
+            name: String::from("scene"),
+            format: None,
+            saved: true,
+        }
+    }
+}
+
+/// A variable that the page shows as a slider.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HotVariable {
+    /// Its name.
+    pub name: String,
+    /// Its present value.
+    pub value: HotValue,
+    /// Index of the file in [`Project::files`].
+    pub file: usize,
+    /// The byte range of the value in that file if it is a plain number, three numbers, a colour's name or
+    /// `rgb(…)`, so that a slider can replace it (see [`crate::hot::set`]); `None` if it comes from an
+    /// expression.
+    pub literal: Option<std::ops::Range<usize>>,
+    /// The slider's range, if the text says it.
+    pub range: Option<[f64; 2]>,
+    /// The slider's step, if the text says it.
+    pub step: Option<f64>,
+}
+
+/// A value that can be adjusted.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HotValue {
+    /// A number.
+    Scalar(f64),
+    /// Three numbers.
+    Vector([f64; 3]),
+    /// A colour.
+    Colour([f32; 3]),
+}

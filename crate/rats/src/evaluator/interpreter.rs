@@ -1,0 +1,354 @@
+//! Runs files, blocks, loops, choices and calls of defined commands.
+
+use super::state::{Evaluator, Flow};
+use super::{dispatch, run};
+use crate::commands::Action;
+use crate::limits;
+use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
+use crate::sources::Sources;
+use crate::symbol::Symbol;
+use crate::syntax::{Command, For, If, Node};
+use crate::value::Value;
+use crate::{Severity, library, places, suggest};
+
+impl<'a> Evaluator<'a> {
+    /// Runs a file from its beginning.
+    pub(super) fn run_file(&mut self, file: usize) -> Flow {
+        let outer = std::mem::replace(&mut self.file, file);
+        self.reading.push(file);
+        let sources: &'a Sources<'a> = self.sources;
+        let syntax = &sources.all[file].syntax;
+        if !std::mem::replace(&mut self.reported[file], true) {
+            for problem in &syntax.problems {
+                self.tell(Severity::Error, Box::new(problem.clone()));
+            }
+        }
+        let flow = self.block(&syntax.block);
+        self.reading.pop();
+        self.file = outer;
+        if flow == Flow::Quit {
+            Flow::Quit
+        } else {
+            Flow::Next
+        }
+    }
+
+    /// Runs commands one after the other. A command that fails is reported and left out.
+    fn block(&mut self, block: &'a [Node]) -> Flow {
+        for node in block {
+            let flow = self.node(node).or_else(|mut problem| {
+                let fatal = problem.fatal;
+                let span = problem.span.clone();
+                // What follows from an error that was reported is found and dropped soon.
+                let cost = if problem.quiet {
+                    20
+                } else {
+                    let size = self.sources.all[self.file].syntax.items.len();
+                    limits::STEPS_PER_ERROR + (size / limits::OPERANDS_PER_STEP) as u64
+                };
+                if let Node::Command(command) = node
+                    && let Some(spec) = command.spec
+                {
+                    problem.command.get_or_insert(spec.name);
+                }
+                self.tell(Severity::Error, problem);
+                if fatal {
+                    return Ok(Flow::Quit);
+                }
+                self.scope.step(cost, &span)?;
+                Ok(Flow::Next)
+            });
+            match flow {
+                Ok(Flow::Next) => {}
+                Ok(flow) => return flow,
+                Err(problem) => {
+                    let problem: Box<Problem> = problem;
+                    self.tell(Severity::Error, problem);
+                    return Flow::Quit;
+                }
+            }
+        }
+        Flow::Next
+    }
+
+    fn node(&mut self, node: &'a Node) -> Outcome<Flow> {
+        match node {
+            Node::Command(command) => self.command(command),
+            Node::For(node) => self.repeat(node),
+            Node::If(node) => self.choose(node),
+            Node::Define(node) => {
+                self.scope.step(1, &node.head.word_span)?;
+                self.definitions.insert(node.name, (self.file, node));
+                Ok(Flow::Next)
+            }
+        }
+    }
+
+    fn command(&mut self, command: &'a Command) -> Outcome<Flow> {
+        self.scope.step(1, &command.word_span)?;
+        if self.watch.as_ref().is_some_and(|watch| watch.is_done()) {
+            return Ok(Flow::Quit);
+        }
+        let Some(spec) = command.spec else {
+            return self.call(command, command.word);
+        };
+        self.tell_after_shot(command);
+        match spec.action {
+            Action::Run(routine) => dispatch::function(routine)(self, command),
+            Action::Read => self.read(command),
+            Action::Test => self.test(command),
+            // The parser gives these no plain command.
+            Action::Structure => Ok(Flow::Next),
+            Action::Library => self.call_library(command, spec.name),
+            Action::NoEffect(reason) => {
+                self.given(command)?;
+                self.say(Severity::Note, command.word_span.clone(), || {
+                    (
+                        format!("`{}` changes nothing here: {reason}", spec.name),
+                        None,
+                    )
+                });
+                Ok(Flow::Next)
+            }
+            Action::Later => {
+                let given = self.given(command)?;
+                // What is switched off is as if it were not there.
+                if given.is_off() {
+                    return Ok(Flow::Next);
+                }
+                if self.is_news(Severity::Warning, &command.word_span) {
+                    self.not_carried_out(command.word_span.clone(), &format!("`{}`", spec.name));
+                }
+                Ok(Flow::Next)
+            }
+        }
+    }
+
+    fn repeat(&mut self, node: &'a For) -> Outcome<Flow> {
+        self.scope.step(1, &node.head.word_span)?;
+        let mut read = self.reader(&node.head).unlisted();
+        let (name, word) = read
+            .peek_word()
+            .ok_or_else(|| read.expected("the name of the loop's variable"))?;
+        read.at += 1;
+        if !read.sign(b'=') {
+            return Err(read.expected(&format!("`=` after `{word}`")));
+        }
+        let from = read.number("the first value")?;
+        if !read.keyword("to") {
+            return Err(read.expected("`to`"));
+        }
+        let to = read.number("the last value")?;
+        let mut step = 1.0;
+        let start = read.start();
+        if read.keyword("step") {
+            step = read.number("the step")?;
+            if step == 0.0 {
+                return Err(Problem::new(read.since(start), "the step must not be 0"));
+            }
+        }
+        read.end()?;
+        // A last value that rounding puts just beyond the end still counts.
+        let last = ((to - from) / step + 1e-9).floor();
+        let before = self.scope.get(name);
+        self.watch_loop(name);
+        self.enter(&node.head.word_span)?;
+        self.repeating += 1;
+        let mut flow = Flow::Next;
+        let mut index = 0.0;
+        let mut result = Ok(());
+        while index <= last && flow == Flow::Next {
+            result = self
+                .scope
+                .step(limits::STEPS_PER_TURN, &node.head.word_span);
+            if result.is_err() {
+                break;
+            }
+            self.scope.set(name, Value::Scalar(from + index * step));
+            flow = self.block(&node.body);
+            index += 1.0;
+        }
+        self.repeating -= 1;
+        self.depth -= 1;
+        self.scope.restore(name, before);
+        result.map(|()| flow)
+    }
+
+    fn choose(&mut self, node: &'a If) -> Outcome<Flow> {
+        self.scope.step(1, &node.head.word_span)?;
+        let branch = if self.reader(&node.head).unlisted().condition()? {
+            &node.then
+        } else {
+            &node.otherwise
+        };
+        self.enter(&node.head.word_span)?;
+        let flow = self.block(branch);
+        self.depth -= 1;
+        Ok(flow)
+    }
+
+    /// Runs a command of the library, which is read when it is used for the first time. A command of the
+    /// same name that the text defines hides it.
+    fn call_library(&mut self, command: &'a Command, name: &'static str) -> Outcome<Flow> {
+        if self.definitions.contains_key(&command.word) {
+            return self.call(command, command.word);
+        }
+        let symbol = self.scope.symbols.find(name);
+        let is_known = |run: &Self| symbol.is_some_and(|s| run.definitions.contains_key(&s));
+        if !is_known(self)
+            && let Some(file) = self.sources.find_built_in(&format!("{name}.rat"))
+        {
+            self.enter(&command.word_span)?;
+            self.uses.push((self.file, command.span.clone()));
+            self.run_file(file);
+            self.uses.pop();
+            self.depth -= 1;
+        }
+        match symbol.filter(|_| is_known(self)) {
+            Some(symbol) => self.call(command, symbol),
+            None => Err(self.unknown(command)),
+        }
+    }
+
+    /// Runs a command that a text defines, under the name `symbol`.
+    fn call(&mut self, command: &'a Command, symbol: Symbol) -> Outcome<Flow> {
+        let Some(&(file, define)) = self.definitions.get(&symbol) else {
+            return Err(self.unknown(command));
+        };
+        self.scope
+            .step(limits::STEPS_PER_CALL, &command.word_span)?;
+        let values = self.arguments(command, define)?;
+        if self.scope.calls() >= limits::MAX_NESTED_CALLS {
+            return Err(Problem::new(
+                command.word_span.clone(),
+                format!(
+                    "stopped here: commands call each other more than {} deep",
+                    limits::MAX_NESTED_CALLS
+                ),
+            )
+            .hint("give a command that calls itself an `if` that ends it")
+            .fatal());
+        }
+        self.enter(&command.word_span)?;
+        self.repeating += 1;
+        let from_own = self.file < self.sources.own;
+        if from_own {
+            self.uses.push((self.file, command.span.clone()));
+        }
+        let frame = self.scope.enter(
+            values
+                .iter()
+                .filter_map(|(name, value)| Some((*name, (*value)?))),
+        );
+        let outer = std::mem::replace(&mut self.file, file);
+        let flow = self
+            .defaults(define, &values)
+            .map(|()| self.block(&define.body));
+        self.file = outer;
+        self.scope.leave(frame);
+        if from_own {
+            self.uses.pop();
+        }
+        self.repeating -= 1;
+        self.depth -= 1;
+        Ok(if flow? == Flow::Quit {
+            Flow::Quit
+        } else {
+            Flow::Next
+        })
+    }
+
+    /// `read fn1 [fn2 …]`
+    fn read(&mut self, command: &'a Command) -> Outcome<Flow> {
+        for name in self.given(command)?.names("fn") {
+            let file = self.find_file(&name)?;
+            if self.reading.contains(&file) {
+                return Err(Problem::new(
+                    name.span,
+                    format!(
+                        "`{}` is being read already: this would never end",
+                        name.text
+                    ),
+                ));
+            }
+            if self.reading.len() >= limits::MAX_NESTED_FILES {
+                return Err(Problem::new(
+                    name.span,
+                    format!(
+                        "files can read each other {} deep at most",
+                        limits::MAX_NESTED_FILES
+                    ),
+                ));
+            }
+            if self.run_inner(command, file)? == Flow::Quit {
+                return Ok(Flow::Quit);
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    /// Runs another text; what is said about one of the library or an example is said here.
+    fn run_inner(&mut self, command: &'a Command, file: usize) -> Outcome<Flow> {
+        self.enter(&command.word_span)?;
+        let leaves_own = self.is_own() && file >= self.sources.own;
+        if leaves_own {
+            self.uses.push((self.file, command.span.clone()));
+        }
+        let flow = self.run_file(file);
+        if leaves_own {
+            self.uses.pop();
+        }
+        self.depth -= 1;
+        Ok(flow)
+    }
+
+    fn find_file(&self, name: &Name<'_>) -> Outcome<usize> {
+        let places = places(&self.sources.all[self.file].name, name.text);
+        let found = places.iter().find_map(|place| self.sources.find(place));
+        found.ok_or_else(|| {
+            let own = self.sources.all[..self.sources.own]
+                .iter()
+                .map(|source| source.name.as_str());
+            let known: Vec<&str> = own
+                .chain(library::FILES.iter().map(|file| file.0))
+                .collect();
+            let bare = name.text.strip_prefix("./").unwrap_or(name.text);
+            let hint = suggest::hint(bare, known.iter().copied())
+                .unwrap_or_else(|| format!("the files are {}", known.join(", ")));
+            Problem::new(
+                name.span.clone(),
+                format!("there is no file `{}` in the project", name.text),
+            )
+            .hint(hint)
+        })
+    }
+
+    /// `test command [print]`
+    fn test(&mut self, command: &'a Command) -> Outcome<Flow> {
+        let given = self.given(command)?;
+        let spec = run::find_command(self, given.name("command"))?;
+        // These would end or undo the run that they are shown in.
+        let would_harm = matches!(spec.name, "quit" | "reset" | "shoot");
+        if given.word("print").is_some() || would_harm {
+            self.say(Severity::Note, command.span.clone(), || {
+                let hint = would_harm.then(|| {
+                    String::from("it is only shown, as running it would end or undo what is here")
+                });
+                (spec.example.to_owned(), hint)
+            });
+            return Ok(Flow::Next);
+        }
+        let Some(file) = self.sources.find_built_in(&format!("test {}", spec.name)) else {
+            return Err(Problem::new(
+                given.name("command").span.clone(),
+                format!("the example of `{}` cannot be run from here", spec.name),
+            )
+            .hint("write the name out after `test`"));
+        };
+        if self.reading.contains(&file) {
+            return Ok(Flow::Next);
+        }
+        self.run_inner(command, file)
+    }
+}

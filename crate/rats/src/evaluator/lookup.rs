@@ -1,0 +1,117 @@
+//! Looks up what commands name: operands as the table describes them, materials, images and meshes.
+
+use super::later;
+use super::state::Evaluator;
+use crate::given::Given;
+use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
+use crate::syntax::{Command, Datum};
+use crate::value::Value;
+use crate::{Asset, commands, library, limits, places, suggest};
+
+impl<'a> Evaluator<'a> {
+    pub(super) fn unknown(&self, command: &Command) -> Box<Problem> {
+        let word = self.scope.symbols.word(command.word);
+        let problem = Problem::new(
+            command.word_span.clone(),
+            format!("there is no command `{word}`"),
+        );
+        let defined = self.definitions.keys().map(|s| self.scope.symbols.word(*s));
+        problem.maybe_hint(commands::suggestion(word, defined))
+    }
+
+    /// The index of a material. If it is made further down, the hint says so.
+    pub(super) fn material(&self, name: &Name<'a>) -> Outcome<usize> {
+        self.palette.find(name).map_err(|problem| {
+            if problem.quiet {
+                return problem;
+            }
+            let source = &self.sources.all[self.file];
+            match later::place_of_material(source, name) {
+                Some(span) => {
+                    let line = source.text[..span.start].matches('\n').count() + 1;
+                    problem
+                        .hint(format!(
+                            "it is made further down, in line {line}: move that up"
+                        ))
+                        .related(None, span, format!("`{}` is made here", name.text))
+                }
+                None => problem,
+            }
+        })
+    }
+
+    /// All operands and options of a command, read as the table says. Within a chain its shapes leave
+    /// out the material's name.
+    pub(super) fn given(&mut self, command: &'a Command) -> Outcome<Given<'a>> {
+        let Some(spec) = command.spec else {
+            return Ok(Given::default());
+        };
+        self.scope
+            .step(limits::STEPS_PER_OPERANDS, &command.word_span)?;
+        let mut parameters = spec.parameters;
+        let mut skipped = 0;
+        if let Some(first) = parameters.first()
+            && first.name == "sn"
+        {
+            let in_chain = self.model.chain.is_some();
+            let mut read = self.reader(command);
+            read.more();
+            let (at, datum, here) = (read.at, read.datum(), read.here());
+            let found = read.found().unwrap_or_default();
+            match datum {
+                Some(Datum::Word(symbol)) if in_chain => match self.scope.get(symbol) {
+                    // A parameter of a defined command that stands for the material.
+                    Some(Value::Name(_)) => skipped = at + 1,
+                    None if self.palette.has(self.scope.symbols.word(symbol)) => {
+                        return Err(Problem::new(
+                            here,
+                            "shapes of a chain leave out the material's name: the chain gives it",
+                        ));
+                    }
+                    _ => {}
+                },
+                // `sphere 1 0 0 0`: better say this than that a coordinate is missing at the end.
+                Some(Datum::Number(_)) if !in_chain && !self.palette.has(found) => {
+                    return Err(Problem::new(
+                        here,
+                        format!("expected the material's name, found `{found}`"),
+                    )
+                    .hint(spec.usage()));
+                }
+                _ => {}
+            }
+            if in_chain {
+                parameters = &parameters[1..];
+            }
+        }
+        let mut read = self.reader(command);
+        read.at = skipped;
+        read.given(parameters, spec.options)
+    }
+
+    /// An image or mesh of the project.
+    pub(super) fn asset(&self, name: &Name<'_>) -> Outcome<&'a Asset> {
+        let assets: &'a [Asset] = self.assets;
+        let bare = name.text.strip_prefix("./").unwrap_or(name.text);
+        let find = |place: &String| {
+            let mut all = assets.iter().chain(library::assets());
+            all.find(|asset| asset.name == *place)
+        };
+        let places = places(&self.sources.all[self.file].name, name.text);
+        places.iter().find_map(find).ok_or_else(|| {
+            let known: Vec<_> = assets.iter().map(|asset| asset.name.as_str()).collect();
+            let hint = if known.is_empty() {
+                String::from("drop the file onto the page, or put it beside the dataset")
+            } else {
+                suggest::hint(bare, known.iter().copied())
+                    .unwrap_or_else(|| format!("the files are {}", known.join(", ")))
+            };
+            Problem::new(
+                name.span.clone(),
+                format!("there is no image or mesh `{bare}` in the project"),
+            )
+            .hint(hint)
+        })
+    }
+}

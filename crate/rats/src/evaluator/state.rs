@@ -1,0 +1,163 @@
+//! The state of a running text, which every command reads and changes.
+
+use super::model::Model;
+use super::palette::Palette;
+use super::view_plane::ViewPlane;
+use super::watched::Watch;
+use crate::compiled::{HotVariable, Output, Placement};
+use crate::limits;
+use crate::problem::{Outcome, Problem};
+use crate::reader::Reader;
+use crate::report::Report;
+use crate::scope::Scope;
+use crate::sources::Sources;
+use crate::symbol::Symbol;
+use crate::syntax::{Command, Define};
+use crate::{Asset, Tool};
+use scene::{Camera, Light, Origin, Scene, Settings};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// How a run goes on after a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// Run the next one.
+    Next,
+    /// Leave the file or the call.
+    Return,
+    /// End the run.
+    Quit,
+}
+
+/// A running text.
+#[derive(Debug)]
+pub struct Evaluator<'a> {
+    pub(super) sources: &'a Sources<'a>,
+    pub(super) assets: &'a [Asset],
+    /// The moment of the animation, in frames.
+    pub(super) moment: f64,
+    /// Variables, random numbers, steps.
+    pub(super) scope: Scope<'a>,
+    pub(super) report: Report,
+    pub(super) model: Model<'a>,
+    pub(super) palette: Palette<'a>,
+    pub(super) lights: Vec<Light>,
+    pub(super) background: scene::Rgb,
+    pub(super) camera: Camera,
+    /// The file and place of the last `eyep` or `vrp`.
+    pub(super) aimed_at: (usize, Range<usize>),
+    /// The other way to place the camera.
+    pub(super) view_plane: ViewPlane,
+    /// A vertical angle of view that differs from the horizontal one, and where it was given.
+    pub(super) vertical: Option<(f64, usize, Range<usize>)>,
+    pub(super) settings: Settings,
+    pub(super) definitions: HashMap<Symbol, (usize, &'a Define)>,
+    pub(super) hot: Vec<HotVariable>,
+    pub(super) tools: Vec<Tool>,
+    pub(super) tool_origins: Vec<Origin>,
+    pub(super) output: Output,
+    /// Whether a variable changes with every frame.
+    pub(super) animated: bool,
+    /// The file that is being run.
+    pub(super) file: usize,
+    /// The files that are being read, the innermost last.
+    pub(super) reading: Vec<usize>,
+    /// Where the texts of the project use the library, the innermost last: what is to be said about a
+    /// text of the library is said there.
+    pub(super) uses: Vec<(usize, Range<usize>)>,
+    /// Files whose mistakes of form have been reported.
+    pub(super) reported: Vec<bool>,
+    /// Blocks, calls and files inside each other.
+    pub(super) depth: usize,
+    /// Loops and calls inside each other.
+    pub(super) repeating: usize,
+    /// The picture that `shoot` took.
+    pub(super) shot: Option<(Scene, Vec<Placement>)>,
+    pub(super) told_after_shot: bool,
+    /// Whether, and for which command, the run is watched.
+    pub(super) watch: Option<Box<Watch<'a>>>,
+}
+
+impl<'a> Evaluator<'a> {
+    /// The state before anything has run.
+    #[must_use]
+    pub fn new(
+        sources: &'a Sources<'a>,
+        assets: &'a [Asset],
+        moment: f64,
+        scope: Scope<'a>,
+    ) -> Self {
+        Self {
+            sources,
+            assets,
+            moment,
+            scope,
+            report: Report::default(),
+            model: Model::default(),
+            palette: Palette::default(),
+            lights: Vec::new(),
+            background: scene::DEFAULT_BACKGROUND,
+            camera: Camera::default(),
+            aimed_at: (0, 0..0),
+            view_plane: ViewPlane::default(),
+            vertical: None,
+            settings: Settings::default(),
+            definitions: HashMap::new(),
+            hot: Vec::new(),
+            tools: Vec::new(),
+            tool_origins: Vec::new(),
+            output: Output::default(),
+            animated: false,
+            file: 0,
+            reading: Vec::new(),
+            uses: Vec::new(),
+            reported: vec![false; sources.all.len()],
+            depth: 0,
+            repeating: 0,
+            shot: None,
+            told_after_shot: false,
+            watch: None,
+        }
+    }
+
+    /// Whether the text that is being run is one of the user's.
+    pub(super) fn is_own(&self) -> bool {
+        self.file < self.sources.own
+    }
+
+    /// One level deeper.
+    pub(super) fn enter(&mut self, span: &Range<usize>) -> Outcome<()> {
+        if self.depth >= limits::MAX_NESTED {
+            return Err(Problem::new(
+                span.clone(),
+                format!(
+                    "stopped here: files, blocks and calls are more than {} deep",
+                    limits::MAX_NESTED
+                ),
+            )
+            .fatal());
+        }
+        self.depth += 1;
+        Ok(())
+    }
+
+    /// Reads the operands of a command of the present file.
+    pub(super) fn reader(&mut self, command: &Command) -> Reader<'_, 'a> {
+        let source = &self.sources.all[self.file];
+        Reader::new(command, &source.syntax.items, source.text, &mut self.scope)
+    }
+
+    /// Where an element of this command comes from: in the user's text, even if the library makes it.
+    pub(super) fn origin(&self, command: &Command) -> Origin {
+        let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let (file, span) = match self.uses.last() {
+            Some((file, span)) if !self.is_own() => (*file, span),
+            _ => (self.file, &command.span),
+        };
+        Origin {
+            file: small(file),
+            start: small(span.start),
+            end: small(span.end),
+        }
+    }
+}

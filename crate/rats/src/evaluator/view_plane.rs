@@ -1,0 +1,17 @@
+//! The camera of Foley et al. as far as the text has given it.
+
+use glam::DVec3;
+use std::ops::Range;
+
+/// The settings of `cp`, `vpn` and `window`, in view coordinates.
+#[derive(Clone, Debug, Default)]
+pub struct ViewPlane {
+    /// The centre of projection.
+    pub cp: Option<DVec3>,
+    /// The normal of the view plane.
+    pub normal: Option<DVec3>,
+    /// Left, right, lower and upper edge.
+    pub window: Option<[f64; 4]>,
+    /// Where the last of them stands.
+    pub place: (usize, Range<usize>),
+}

@@ -1,0 +1,127 @@
+//! The operators of expressions: where one stands, and how strongly it binds.
+//!
+//! The reader that computes values and the one that only tells operands apart both ask here.
+
+use crate::syntax::{Datum, Item};
+
+/// An operator that joins two values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// `or`
+    Or,
+    /// `and`
+    And,
+    /// `<`
+    Less,
+    /// `<=`
+    LessEqual,
+    /// `>`
+    Greater,
+    /// `>=`
+    GreaterEqual,
+    /// `==`
+    Equal,
+    /// `!=`
+    Unequal,
+    /// `+`
+    Plus,
+    /// `-`
+    Minus,
+    /// `*`
+    Times,
+    /// `/`
+    Over,
+    /// `^`
+    Power,
+}
+
+/// Strength of `not`, between `and` and the comparisons.
+pub const NOT: u8 = 3;
+/// Strength of a sign, between `*` and `^`.
+pub const SIGN: u8 = 7;
+
+impl Operator {
+    /// The operator at an item and how many items it has; `None` if none stands there. `listed` tells whether
+    /// operands follow each other with nothing but space between, so that `a -b` is two of them; `comparing`
+    /// whether it is a condition, where `<` and `>` compare.
+    #[must_use]
+    pub fn at(
+        items: &[Item],
+        at: usize,
+        text: &str,
+        listed: bool,
+        comparing: bool,
+    ) -> Option<(Self, usize)> {
+        let item = items.get(at)?;
+        let next = items.get(at + 1);
+        let with_equal =
+            next.is_some_and(|next| next.datum == Datum::Sign(b'=') && next.start == item.end);
+        let one_or_two = |one, two| if with_equal { (two, 2) } else { (one, 1) };
+        Some(match item.datum {
+            Datum::Sign(sign @ (b'+' | b'-')) => {
+                let begins_operand = listed && item.spaced && next.is_some_and(|next| !next.spaced);
+                // `+=` belongs to `var`.
+                if begins_operand || with_equal {
+                    return None;
+                }
+                (
+                    if sign == b'+' {
+                        Self::Plus
+                    } else {
+                        Self::Minus
+                    },
+                    1,
+                )
+            }
+            Datum::Sign(b'*') if !with_equal => (Self::Times, 1),
+            Datum::Sign(b'/') => (Self::Over, 1),
+            Datum::Sign(b'^') => (Self::Power, 1),
+            Datum::Sign(b'<') if comparing => one_or_two(Self::Less, Self::LessEqual),
+            Datum::Sign(b'>') if comparing => one_or_two(Self::Greater, Self::GreaterEqual),
+            Datum::Sign(b'=') if comparing && with_equal => (Self::Equal, 2),
+            Datum::Sign(b'!') if comparing && with_equal => (Self::Unequal, 2),
+            Datum::Word(_) if comparing => {
+                let word = &text[item.span()];
+                if word.eq_ignore_ascii_case("and") {
+                    (Self::And, 1)
+                } else if word.eq_ignore_ascii_case("or") {
+                    (Self::Or, 1)
+                } else {
+                    return None;
+                }
+            }
+            _ => return None,
+        })
+    }
+
+    /// How strongly it binds: larger binds stronger.
+    #[must_use]
+    pub fn strength(self) -> u8 {
+        match self {
+            Self::Or => 1,
+            Self::And => 2,
+            Self::Less
+            | Self::LessEqual
+            | Self::Greater
+            | Self::GreaterEqual
+            | Self::Equal
+            | Self::Unequal => 4,
+            Self::Plus | Self::Minus => 5,
+            Self::Times | Self::Over => 6,
+            Self::Power => 8,
+        }
+    }
+
+    /// The least strength of an operator that belongs to its right side: `^` groups from the right, the others
+    /// from the left.
+    #[must_use]
+    pub fn right_strength(self) -> u8 {
+        self.strength() + u8::from(self != Self::Power)
+    }
+
+    /// Whether it gives a truth, 0 or 1.
+    #[must_use]
+    pub fn is_logical(self) -> bool {
+        self.strength() <= Self::Equal.strength()
+    }
+}
