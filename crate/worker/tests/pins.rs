@@ -12,39 +12,63 @@ use scene::Scene;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
-use tracer::Pass;
+use tracer::{Pass, Tile};
 
 const PINS: &str = include_str!("../../../tests/pins.txt");
 /// Width and height of the pictures, pixels.
 const SIZE: u32 = 256;
-/// Scenes that take too long at [`SIZE`], and the sizes that they are traced at instead.
-const SMALLER: [(&str, u32); 0] = [];
+/// Scenes that take too long, and the sides of the squares in the middle of their pictures that are traced instead, pixels.
+const PARTS: [(&str, u32); 2] = [("generators", 128), ("flake-7381-cauchy", 16)];
 /// At most n×n rays a pixel, so that the smooth pass has something to do in every scene.
 const SAMPLES: u32 = 2;
 const PASSES: [Pass; 2] = [Pass::Full, Pass::Smooth];
 
-/// RGBA bytes of the picture, one for each of [`PASSES`].
-#[cfg(not(target_arch = "wasm32"))]
-fn pictures(scene: &Scene, size: u32) -> [Vec<u8>; 2] {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    PASSES.map(|pass| tracer::render(scene, [size; 2], threads, pass, &|_| {}).0)
+/// The square in the middle of a picture.
+fn middle(side: u32) -> Tile {
+    let first = (SIZE - side) / 2;
+    let (x, y) = (first, first);
+    let (width, height) = (side, side);
+    Tile {
+        x,
+        y,
+        width,
+        height,
+    }
 }
 
-/// RGBA bytes of the picture, one for each of [`PASSES`].
+/// RGBA bytes of a part of the picture, one for each of [`PASSES`].
+#[cfg(not(target_arch = "wasm32"))]
+fn pictures(scene: &Scene, part: Tile) -> [Vec<u8>; 2] {
+    let picture = tracer::Picture::new(scene, [SIZE; 2]);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    PASSES.map(|pass| {
+        if part.width == SIZE {
+            return tracer::render_picture(&picture, threads, pass, &|_| {}).0;
+        }
+        let traced = picture.trace(part, pass, &|| false, &mut tracer::Stats::default());
+        traced.expect("nobody stops it")
+    })
+}
+
+/// RGBA bytes of a part of the picture, one for each of [`PASSES`].
 #[cfg(target_arch = "wasm32")]
-fn pictures(scene: &Scene, size: u32) -> [Vec<u8>; 2] {
-    let tiles = tracer::tiles(size, size, common::TILE);
+fn pictures(scene: &Scene, part: Tile) -> [Vec<u8>; 2] {
+    let tiles = if part.width == SIZE {
+        tracer::tiles(SIZE, SIZE, common::TILE)
+    } else {
+        vec![part]
+    };
     let orders = PASSES
         .iter()
         .flat_map(|&pass| tiles.iter().map(move |&tile| (pass, tile)));
-    let done = common::traced(scene, [size; 2], orders);
+    let done = common::traced(scene, [SIZE; 2], orders);
     assert_eq!(done.len(), 2 * tiles.len());
     [0, 1].map(|pass| {
-        let mut picture = vec![0; 4 * (size * size) as usize];
+        let mut picture = vec![0; 4 * (part.width * part.height) as usize];
         for (tile, pixels, _) in &done[pass * tiles.len()..][..tiles.len()] {
             let rows = pixels.chunks_exact(4 * tile.width as usize);
-            for (y, row) in (tile.y..).zip(rows) {
-                let at = 4 * (y * size + tile.x) as usize;
+            for (y, row) in (tile.y - part.y..).zip(rows) {
+                let at = 4 * (y * part.width + tile.x - part.x) as usize;
                 picture[at..at + row.len()].copy_from_slice(row);
             }
         }
@@ -52,7 +76,7 @@ fn pictures(scene: &Scene, size: u32) -> [Vec<u8>; 2] {
     })
 }
 
-/// The pins of a text, `NAME PASS SIZE HASH` a line, by `NAME PASS`. Lines that begin with `#` are comments.
+/// The pins of a text, `NAME PASS SIDE HASH` a line, by `NAME PASS`. Lines that begin with `#` are comments.
 fn pins(text: &str) -> BTreeMap<String, String> {
     text.lines()
         .filter(|line| !line.starts_with('#'))
@@ -61,7 +85,7 @@ fn pins(text: &str) -> BTreeMap<String, String> {
                 .match_indices(' ')
                 .nth(1)
                 .map(|(at, _)| line.split_at(at))
-                .expect("a pin is NAME PASS SIZE HASH");
+                .expect("a pin is NAME PASS SIDE HASH");
             (picture.to_owned(), pin.trim().to_owned())
         })
         .collect()
@@ -111,9 +135,9 @@ fn pictures_are_as_pinned() {
         for (name, text) in scenes {
             let mut scene = compile(text);
             scene.settings.samples = SAMPLES;
-            let smaller = SMALLER.iter().find(|(slow, _)| slow == name);
-            let size = smaller.map_or(SIZE, |(_, size)| *size);
-            for (pass, pixels) in PASSES.iter().zip(pictures(&scene, size)) {
+            let part = PARTS.iter().find(|(slow, _)| slow == name);
+            let size = part.map_or(SIZE, |(_, side)| *side);
+            for (pass, pixels) in PASSES.iter().zip(pictures(&scene, middle(size))) {
                 let picture = format!("{place}/{name} {pass:?}");
                 let pin = format!("{size} {:016x}", hash(&pixels));
                 if let Some(folder) = &folder {

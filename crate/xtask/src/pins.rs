@@ -13,11 +13,12 @@ use std::path::Path;
 
 const FILE: &str = "tests/pins.txt";
 const HEAD: &str = "\
-# Hashes of traced pictures: NAME PASS SIZE HASH, SIZE the width and height in pixels, at most 2x2 rays a pixel.
+# Hashes of traced pictures of 256x256 pixels, at most 2x2 rays a pixel: NAME PASS SIDE HASH. Where SIDE is less than 256, only
+# a square of SIDExSIDE pixels in the middle of the picture is traced, as the rest would take minutes.
 # crate/worker/tests/pins.rs compares them, natively and as wasm. Written by: cargo xtask pins
 ";
 
-/// Hashes (`SIZE HASH`) by picture (`NAME PASS`).
+/// Hashes (`SIDE HASH`) by picture (`NAME PASS`).
 type Pins = BTreeMap<String, String>;
 
 /// Draws all pictures, writes their hashes, and old and new pictures side by side where they differ.
