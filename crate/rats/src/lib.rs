@@ -45,6 +45,7 @@ mod syntax;
 pub mod tool;
 mod value;
 
+pub use assets::{is_mesh_read, keep_mesh};
 pub use compile::{Compiled, HotValue, HotVariable, Output, Placement, compile, compile_at};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};

@@ -1,4 +1,4 @@
-//! Building the page: two packages of wasm, and the files of `www/`.
+//! Building the page: three packages of wasm, and the files of `www/`.
 
 use crate::shell::{artifacts, cargo, command, root, run, target};
 use crate::tools;
@@ -24,8 +24,9 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
         Build::Release => "page",
     };
     let app = compile("studio", profile, &[])?;
-    // A feature of the worker is wanted here that the app must not have: hence two builds.
+    // The workers need a feature that the app must not have: hence separate builds.
     let tracer = compile("worker", "release", &["--features", "entry"])?;
+    let jobs = compile("tools", "release", &["--features", "entry"])?;
 
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("{} is in use", folder.display()))?;
@@ -35,10 +36,15 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
     copy(&root().join("www"), folder)?;
     bind(&app, "studio", folder)?;
     bind(&tracer, "tracer", folder)?;
+    bind(&jobs, "tools", folder)?;
     if build == Build::Release
         && let Some(wasm_opt) = tools::wasm_opt()
     {
-        for (name, level) in [("studio", "-O1"), ("tracer", WORKER_LEVEL)] {
+        for (name, level) in [
+            ("studio", "-O1"),
+            ("tracer", WORKER_LEVEL),
+            ("tools", WORKER_LEVEL),
+        ] {
             let file = folder.join(format!("{name}_bg.wasm"));
             optimise(&wasm_opt, level, &file, &file)?;
         }
