@@ -8,16 +8,25 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::{Arc, Weak};
 
-/// How many are kept.
-const KEPT: usize = 8;
+/// How many are kept: more than a work has files.
+const KEPT: usize = 24;
 
 type Made = Result<Rc<Mesh>, Error>;
+/// The file's name, and the size of a height field.
+type How = (String, Option<DVec3>);
 
-/// What was made of some bytes, and how.
+/// A mesh made of some bytes.
 struct Kept {
     bytes: Weak<[u8]>,
-    how: (String, Option<DVec3>),
+    how: How,
     made: Made,
+}
+
+impl Kept {
+    fn is_of(&self, asset: &Asset, how: &How) -> bool {
+        let bytes = self.bytes.upgrade();
+        self.how == *how && bytes.is_some_and(|bytes| Arc::ptr_eq(&bytes, &asset.bytes))
+    }
 }
 
 thread_local! {
@@ -64,26 +73,39 @@ pub fn cost(asset: &Asset) -> u64 {
     1 + bytes.len() as u64 / 100 + pixels / 64
 }
 
-fn make(
-    asset: &Asset,
-    how: (String, Option<DVec3>),
-    read: impl FnOnce(&[u8]) -> Result<Mesh, Error>,
-) -> Made {
-    let is_it = |kept: &Kept| {
-        kept.how == how
-            && kept
-                .bytes
-                .upgrade()
-                .is_some_and(|bytes| Arc::ptr_eq(&bytes, &asset.bytes))
-    };
-    let known = CACHE.with_borrow(|cache| {
-        let kept = cache.iter().find(|kept| is_it(kept))?;
-        Some(kept.made.clone())
-    });
-    if let Some(made) = known {
-        return made;
-    }
-    let made = read(&asset.bytes).map(Rc::new);
+/// Whether [`keep_mesh`] or an earlier compilation has the mesh of this file, so that compiling does not
+/// read it.
+#[must_use]
+pub fn is_mesh_read(asset: &Asset) -> bool {
+    find(asset, &(asset.name.clone(), None)).is_some()
+}
+
+/// Keeps the mesh of a file that was read elsewhere, or the error message of its reader, for all
+/// compilations by this thread while the file's bytes are kept. It must be what [`mesh::read`] gives.
+pub fn keep_mesh(asset: &Asset, mesh: Result<Mesh, String>) {
+    let how = (asset.name.clone(), None);
+    CACHE.with_borrow_mut(|cache| cache.retain(|kept| !kept.is_of(asset, &how)));
+    keep(asset, how, mesh.map(Rc::new).map_err(Error));
+}
+
+fn make(asset: &Asset, how: How, read: impl FnOnce(&[u8]) -> Result<Mesh, Error>) -> Made {
+    find(asset, &how).unwrap_or_else(|| {
+        let made = read(&asset.bytes).map(Rc::new);
+        keep(asset, how, made.clone());
+        made
+    })
+}
+
+/// What was made of a file before. It becomes the last one to be dropped.
+fn find(asset: &Asset, how: &How) -> Option<Made> {
+    CACHE.with_borrow_mut(|cache| {
+        let index = cache.iter().position(|kept| kept.is_of(asset, how))?;
+        cache[index..].rotate_left(1);
+        cache.last().map(|kept| kept.made.clone())
+    })
+}
+
+fn keep(asset: &Asset, how: How, made: Made) {
     CACHE.with_borrow_mut(|cache| {
         cache.retain(|kept| kept.bytes.strong_count() > 0);
         if cache.len() >= KEPT {
@@ -92,8 +114,46 @@ fn make(
         cache.push(Kept {
             bytes: Arc::downgrade(&asset.bytes),
             how,
-            made: made.clone(),
+            made,
         });
     });
-    made
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asset(name: &str, text: &str) -> Asset {
+        Asset {
+            name: name.to_owned(),
+            bytes: text.as_bytes().into(),
+        }
+    }
+
+    #[test]
+    fn kept_mesh_is_used_in_place_of_the_file() {
+        let file = asset("a.obj", "broken");
+        assert!(!is_mesh_read(&file));
+        keep_mesh(&file, Err(String::from("on purpose")));
+        assert!(is_mesh_read(&file));
+        assert_eq!(mesh(&file), Err(Error(String::from("on purpose"))));
+        let triangle = mesh::read("b.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        keep_mesh(&file, Ok(triangle.clone()));
+        assert_eq!(*mesh(&file).unwrap(), triangle);
+        // Other bytes of the same content are another file.
+        assert!(!is_mesh_read(&asset("a.obj", "broken")));
+    }
+
+    #[test]
+    fn mesh_in_use_is_not_dropped_for_others() {
+        let used = asset("used.obj", "broken");
+        keep_mesh(&used, Err(String::from("kept")));
+        let others: Vec<Asset> = (0..2 * KEPT).map(|_| asset("other.obj", "")).collect();
+        for other in &others {
+            let _ = mesh(other);
+            assert!(is_mesh_read(&used));
+        }
+        assert!(!is_mesh_read(&others[0]));
+        assert!(CACHE.with_borrow(|cache| cache.len() <= KEPT));
+    }
 }

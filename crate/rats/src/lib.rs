@@ -58,6 +58,7 @@ pub mod syntax;
 pub mod tool;
 mod value;
 
+pub use assets::{is_mesh_read, keep_mesh};
 pub use compile::{compile, compile_at, provenance};
 pub use compiled::{Compiled, HotValue, HotVariable, Output, Placement};
 pub use diagnostic::{Diagnostic, Related, Severity};

@@ -1,13 +1,14 @@
-//! Carrying out what the user asked for.
+//! Carrying out the user's commands.
 
 use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::intake::Taken;
-use crate::lab::Lesson;
+use crate::lesson::Lesson;
 use crate::notice::Notice;
 use crate::tray::item::Item;
 use crate::{picture, platform, share, work};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
+use std::ops::Range;
 
 impl App {
     pub(crate) fn keys(&self, ctx: &Context, commands: &mut Vec<Command>) {
@@ -37,74 +38,55 @@ impl App {
         }
     }
 
+    /// Carries out a command of the user.
     pub(crate) fn carry_out(&mut self, ctx: &Context, command: Command, now: f64) {
         let session = &mut self.work.session;
         match command {
-            Command::SetText { file, text } => {
-                if let Err(refused) = session.set_text(file, text, now) {
-                    self.editor.resync(ctx);
-                    self.notice = Some(Notice::trouble(refused.to_string()));
-                }
-            }
+            Command::SetText { file, text } => self.set_text(ctx, file, text, now),
             Command::Step { file, text } => {
                 session.end_step();
-                if let Err(refused) = session.set_text(file, text, now) {
-                    self.editor.resync(ctx);
-                    self.notice = Some(Notice::trouble(refused.to_string()));
-                }
-                session.end_step();
+                self.set_text(ctx, file, text, now);
+                self.work.session.end_step();
             }
             Command::Edit(edits) => {
                 let project = assist::apply(session.project(), &edits);
-                if let Err(refused) = session.put_files(project.files, now) {
-                    self.notice = Some(Notice::trouble(refused.to_string()));
-                }
+                let result = session.put_files(project.files, now);
+                self.warn_if_refused(result);
             }
             Command::Tell(text) => self.notice = Some(Notice::done(text, now)),
             Command::SetHints(hints) => self.settings.hints = hints,
             Command::Replace { file, range, with } => {
-                if let Err(refused) = session.replace(file, range, &with, now) {
-                    self.notice = Some(Notice::trouble(refused.to_string()));
-                }
+                let result = session.replace(file, range, &with, now);
+                self.warn_if_refused(result);
             }
-            Command::AddFile => match session.add_file(now) {
-                Ok(file) => self.editor.jump(file, 0..0),
-                Err(refused) => self.notice = Some(Notice::trouble(refused.to_string())),
-            },
+            Command::AddFile => {
+                let result = session.add_file(now);
+                let result = result.map(|file| self.editor.jump(file, 0..0));
+                self.warn_if_refused(result);
+            }
             Command::RenameFile(file, name) => {
-                if let Err(trouble) = session.rename_file(file, &name, now) {
-                    self.notice = Some(Notice::trouble(trouble));
-                }
+                let result = session.rename_file(file, &name, now);
+                self.warn_if_refused(result);
             }
             Command::RemoveFile(file) => session.remove_file(file, now),
             Command::PickFiles => platform::pick_files(&self.parts.requests),
-            Command::PutAsset(asset) => match session.put_assets(vec![asset]) {
-                Ok(()) => self.notice = None,
-                Err(refused) => self.notice = Some(Notice::trouble(refused.to_string())),
-            },
-            Command::RemoveAsset(name) => {
-                if let Some(asset) = session.remove_asset(&name) {
-                    let text = format!("Removed {name}.");
-                    let put_back = Command::PutAsset(asset);
-                    self.notice = Some(Notice::done(text, now).offering("Put it back", put_back));
-                }
+            Command::PutAsset(asset) => {
+                let result = session.put_assets(vec![asset]);
+                self.notice = None;
+                self.warn_if_refused(result);
             }
+            Command::RemoveAsset(name) => self.remove_asset(&name, now),
             Command::Hold => session.hold(),
             Command::Release => session.release(),
             Command::Undo => {
-                if let Some((file, byte)) = session.undo() {
-                    self.editor.show_place(file, byte);
-                }
+                let place = session.undo();
+                self.show_change(place);
             }
             Command::Redo => {
-                if let Some((file, byte)) = session.redo() {
-                    self.editor.show_place(file, byte);
-                }
+                let place = session.redo();
+                self.show_change(place);
             }
-            Command::Jump { file, range } => {
-                self.tab = Tab::Text;
-                self.editor.jump(file, range);
-            }
+            Command::Jump { file, range } => self.jump(file, range),
             Command::ShowPlace { file, byte } => self.editor.show_place(file, byte),
             Command::SetCamera(camera) => {
                 session.set_camera(camera);
@@ -135,6 +117,55 @@ impl App {
             Command::SetFilmLength(count) => self.player.count = count,
             Command::SaveFilm => self.begin_film(ctx),
             Command::StopFilm => self.stop_film("You stopped it."),
+            Command::ShowResult(_)
+            | Command::SaveResult(_)
+            | Command::KeepResult(_)
+            | Command::FindResult(_)
+            | Command::FoldTray(_) => self.carry_out_in_tray(ctx, command, now),
+            Command::SavePng => self.save_png(now),
+            Command::Share => self.share(ctx, now),
+            Command::OpenExample(_)
+            | Command::OpenSaved(_)
+            | Command::OpenText { .. }
+            | Command::New
+            | Command::GoBack
+            | Command::Rename(_)
+            | Command::Delete(_) => self.carry_out_on_works(ctx, command, now),
+            Command::OpenLab(lesson) => self.open_lab(lesson),
+            Command::ShowLab => self.open_lab(self.lab.lesson()),
+            Command::CloseLab => {
+                platform::push_hash(self.lab.came_from());
+                self.lab.close();
+            }
+            Command::ShareLab => {
+                let text = "Link to this lesson copied.";
+                ctx.copy_text(format!("{}{}", platform::page(), self.lab.lesson().hash()));
+                self.lab.say(text, now);
+            }
+            Command::Enable => {
+                self.notice = None;
+                session.enable();
+            }
+            Command::ShowGallery => self.show_gallery(),
+            Command::ShowHelp => {
+                self.help.turn_to_words();
+                self.dialog = Some(Dialog::Help);
+            }
+            Command::ShowManual(name) => {
+                self.help.turn_to(&name);
+                self.dialog = Some(Dialog::Help);
+            }
+            Command::Close => {
+                if self.dialog.take().is_none() {
+                    self.notice = None;
+                }
+            }
+        }
+    }
+
+    /// Commands about the results of the text's jobs on pictures. Others do nothing.
+    fn carry_out_in_tray(&mut self, ctx: &Context, command: Command, now: f64) {
+        match command {
             Command::ShowResult(index) => {
                 self.tray.open(index);
                 self.dialog = Some(Dialog::Result);
@@ -142,16 +173,20 @@ impl App {
             Command::SaveResult(index) => self.save_result(index, now),
             Command::KeepResult(index) => self.keep_result(ctx, index, now),
             Command::FindResult(index) => {
-                if let Some((file, range)) = self.tray.place_of(index, session) {
+                if let Some((file, range)) = self.tray.place_of(index, &self.work.session) {
                     self.dialog = None;
-                    self.tab = Tab::Text;
                     self.editor.asset = None;
-                    self.editor.jump(file, range);
+                    self.jump(file, range);
                 }
             }
             Command::FoldTray(folded) => self.tray.folded = folded,
-            Command::SavePng => self.save_png(now),
-            Command::Share => self.share(ctx, now),
+            _ => {}
+        }
+    }
+
+    /// Commands that open, name or delete works. Others do nothing.
+    fn carry_out_on_works(&mut self, ctx: &Context, command: Command, now: f64) {
+        match command {
             Command::OpenExample(index) => {
                 let result = self.work.open_example(index);
                 self.opened_or(ctx, result);
@@ -163,17 +198,6 @@ impl App {
             Command::OpenText { name, text } => {
                 let result = self.work.open_text(&name, text);
                 self.opened_or(ctx, result);
-            }
-            Command::OpenLab(lesson) => self.open_lab(lesson),
-            Command::ShowLab => self.open_lab(self.lab.lesson()),
-            Command::CloseLab => {
-                platform::push_hash(self.lab.came_from());
-                self.lab.close();
-            }
-            Command::ShareLab => {
-                let text = "Link to this lesson copied.";
-                ctx.copy_text(format!("{}{}", platform::page(), self.lab.lesson().hash()));
-                self.lab.say(text, now);
             }
             Command::New => {
                 let result = self.work.open_new();
@@ -191,31 +215,51 @@ impl App {
                 self.parts.shelf.borrow_mut().delete(&id);
                 self.gallery.refresh(self.parts.shelf.borrow().entries());
             }
-            Command::Enable => {
-                self.notice = None;
-                self.work.session.enable();
-            }
-            Command::ShowGallery => {
-                if let Err(trouble) = self.work.flush() {
-                    self.notice = Some(Notice::trouble(trouble));
-                }
-                self.gallery.refresh(self.parts.shelf.borrow().entries());
-                self.dialog = Some(Dialog::Gallery);
-            }
-            Command::ShowHelp => {
-                self.help.turn_to_words();
-                self.dialog = Some(Dialog::Help);
-            }
-            Command::ShowManual(name) => {
-                self.help.turn_to(&name);
-                self.dialog = Some(Dialog::Help);
-            }
-            Command::Close => {
-                if self.dialog.take().is_none() {
-                    self.notice = None;
-                }
-            }
+            _ => {}
         }
+    }
+
+    /// Shows a notice if an edit was refused.
+    fn warn_if_refused<T>(&mut self, result: Result<T, impl ToString>) {
+        if let Err(refused) = result {
+            self.notice = Some(Notice::trouble(refused.to_string()));
+        }
+    }
+
+    fn set_text(&mut self, ctx: &Context, file: usize, text: String, now: f64) {
+        let result = self.work.session.set_text(file, text, now);
+        if result.is_err() {
+            self.editor.resync(ctx);
+        }
+        self.warn_if_refused(result);
+    }
+
+    fn remove_asset(&mut self, name: &str, now: f64) {
+        if let Some(asset) = self.work.session.remove_asset(name) {
+            let text = format!("Removed {name}.");
+            let put_back = Command::PutAsset(asset);
+            self.notice = Some(Notice::done(text, now).offering("Put it back", put_back));
+        }
+    }
+
+    /// Shows where undoing or redoing changed the text.
+    fn show_change(&mut self, place: Option<(usize, usize)>) {
+        if let Some((file, byte)) = place {
+            self.editor.show_place(file, byte);
+        }
+    }
+
+    fn jump(&mut self, file: usize, range: Range<usize>) {
+        self.tab = Tab::Text;
+        self.editor.jump(file, range);
+    }
+
+    fn show_gallery(&mut self) {
+        if let Err(trouble) = self.work.flush() {
+            self.notice = Some(Notice::trouble(trouble));
+        }
+        self.gallery.refresh(self.parts.shelf.borrow().entries());
+        self.dialog = Some(Dialog::Gallery);
     }
 
     fn open_lab(&mut self, lesson: Lesson) {

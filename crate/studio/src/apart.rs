@@ -56,7 +56,7 @@ impl Apart {
         self.wanted = Some([begun, now]);
         let card = &mut *self.card.borrow_mut();
         match card {
-            // What was drawn the last time is of another camera or scene.
+            // The last drawing is of another camera or scene.
             Card::Here(drawer) => drawer.texture(ctx, session, size, known.is_some()),
             Card::Away => None,
             Card::Unknown if now - begun < PATIENCE => {
@@ -78,7 +78,7 @@ impl Apart {
     }
 }
 
-/// What is drawn of what: the session's generation, the camera, the size.
+/// Key of a drawing: the session's generation, the camera, the size.
 type Subject = (u64, Camera, [u32; 2]);
 
 /// A picture on its way back from the card.

@@ -1,7 +1,7 @@
 //! The app: ties the user's work, the tracer and the draft to the widgets.
 //!
-//! [`App::tick`] does what time and messages demand and runs even while the tab is hidden;
-//! [`App::show`] draws one frame. Widgets only list [`Command`]s, which are carried out afterwards.
+//! [`App::tick`] does the work of timers and messages and runs even while the tab is hidden;
+//! [`App::show`] (in `draw`) draws one frame. Widgets only list [`Command`]s, which are carried out afterwards.
 
 use crate::apart::Apart;
 use crate::asset_view::AssetView;
@@ -9,31 +9,33 @@ use crate::command::Command;
 use crate::draft::Draft;
 use crate::editor::Editor;
 use crate::film::Player;
+use crate::film::Saving;
 use crate::gallery::Gallery;
 use crate::hands::Hands;
 use crate::help::Help;
 use crate::keyboard::Keyboard;
-use crate::lab::{Lab, Lesson};
+use crate::lab::Lab;
+use crate::lesson::Lesson;
 use crate::notice::Notice;
-use crate::pool::Pool;
+use crate::reading::MeshReading;
 use crate::render::{Phase, Renderer};
 use crate::report::Shared;
-use crate::request::Requests;
-use crate::screening::Saving;
+use crate::request::{Answer, Requests};
 use crate::settings::Settings;
 use crate::sliders::Sliders;
 use crate::storage::Shelf;
 use crate::tray::Tray;
 use crate::work::{Origin, Work};
-use crate::{Backend, fonts, platform, size, theme};
-use egui::{Context, Ui};
+use crate::{Backend, fonts, platform, size};
+use egui::Context;
+use pool::Pool;
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
 
 /// Seconds of running without trouble after which a start counts as a good one.
 const HEALTHY: f64 = 4.0;
 
-/// What lies over the page.
+/// A window over the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dialog {
     /// Examples and own works.
@@ -56,14 +58,14 @@ pub enum Tab {
     Problems,
 }
 
-/// What an app is made of that outlives it when the window must be started anew.
+/// Parts of an app that outlive it when the window must be started anew.
 #[derive(Clone)]
 pub struct Parts {
     /// Storage.
     pub shelf: Rc<RefCell<Shelf>>,
     /// Wishes of scripts.
     pub requests: Requests,
-    /// What scripts can read.
+    /// State that scripts can read.
     pub outbox: Shared,
     /// The workers of the app that runs, for tests that end one.
     pub pool: Rc<RefCell<Weak<RefCell<Pool>>>>,
@@ -108,6 +110,8 @@ pub struct App {
     pub(crate) saving: Option<Saving>,
     pub(crate) tray: Tray,
     pub(crate) lab: Lab,
+    /// Large meshes on their way into the work.
+    pub(crate) reading: MeshReading,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) notice: Option<Notice>,
     pub(crate) tab: Tab,
@@ -124,8 +128,8 @@ pub struct App {
     healthy: bool,
     /// The name in the title of the browser's tab.
     titled: String,
-    /// Who waits for the picture to be finished.
-    pub(crate) finished: Vec<Box<dyn FnOnce()>>,
+    /// Scripts that wait for the picture to be finished.
+    pub(crate) finished: Vec<Answer>,
     pub(crate) touch: Option<bool>,
 }
 
@@ -134,7 +138,7 @@ pub struct App {
 const REST: f32 = 0.4;
 
 /// Has the window drawn again, once: what egui is asked for at once it draws twice.
-fn once(ctx: &Context) {
+pub(crate) fn once(ctx: &Context) {
     ctx.request_repaint_after_secs(1e-3);
 }
 
@@ -178,7 +182,9 @@ impl App {
         let pool = Pool::new(move || once(&repaint));
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
+        let repaint = ctx.clone();
         let mut app = Self {
+            reading: MeshReading::new(move || once(&repaint)),
             lab: Lab::new(pool.clone(), lesson),
             renderer: Renderer::new(pool),
             draft: render_state
@@ -266,6 +272,9 @@ impl App {
         if let Some(trouble) = self.work.tick(now) {
             self.notice = Some(Notice::trouble(trouble));
         }
+        if self.reading.tick(&self.work.session) {
+            self.work.session.compile();
+        }
         if self.settings != self.saved_settings {
             self.saved_settings = self.settings.clone();
             self.parts.shelf.borrow_mut().set_settings(&self.settings);
@@ -293,13 +302,11 @@ impl App {
             self.notice = None;
         }
         self.report(ctx);
-        if self.rests() {
-            answers.append(&mut self.finished);
-        }
         for answer in answers {
             answer();
         }
-        // What is to be written while frames are dear is written with the next one, which comes soon.
+        self.answer_finished();
+        // While frames are expensive, writing waits for the next one, which comes soon.
         let mut waits = vec![self.work.wait(now).filter(|_| !self.is_short_of_time())];
         if !self.lab.is_open() {
             waits.push(self.renderer.wait(now));
@@ -328,7 +335,7 @@ impl App {
     }
 
     /// Begins the picture that is wanted, if its time has come, and takes in what the workers have done.
-    fn trace(&mut self, ctx: &Context, now: f64) {
+    pub(crate) fn trace(&mut self, ctx: &Context, now: f64) {
         let size = self.size(ctx);
         let session = &self.work.session;
         if !session.enabled() {
@@ -349,8 +356,28 @@ impl App {
         self.rest > 0.0 && self.renderer.phase() == Phase::Tracing
     }
 
+    /// Answers scripts that wait for the picture if it is finished, and refuses if the lab keeps it waiting.
+    fn answer_finished(&mut self) {
+        let result = if self.rests() {
+            Ok(())
+        } else if self.lab.is_open() && self.renderer.phase() != Phase::Tracing {
+            Err(String::from(
+                "The lab is open, and the picture waits until it is closed.",
+            ))
+        } else {
+            return;
+        };
+        for answer in std::mem::take(&mut self.finished) {
+            answer(result.clone());
+        }
+    }
+
     /// Whether nothing more will happen to the picture by itself.
     fn rests(&self) -> bool {
+        let session = &self.work.session;
+        if session.enabled() && !session.is_compiled() {
+            return false;
+        }
         match self.renderer.phase() {
             Phase::Done | Phase::Cancelled => true,
             Phase::Idle => !self.work.session.enabled(),
@@ -384,44 +411,12 @@ impl App {
         self.dialog = None;
         ctx.request_repaint();
     }
-
-    /// Draws one frame into all of `ui`.
-    pub fn show(&mut self, ui: &mut Ui) {
-        let ctx = ui.ctx().clone();
-        let touch = ctx.input(egui::InputState::has_touch_screen) || crate::layout::is_narrow(&ctx);
-        if self.touch != Some(touch) {
-            self.touch = Some(touch);
-            theme::apply(&ctx, touch);
-            if self.rest > 0.0 {
-                // What fades in is drawn many times, each time at the cost of the picture.
-                ctx.all_styles_mut(|style| style.animation_time = 0.0);
-            }
-        }
-        let mut commands = Vec::new();
-        self.keys(&ctx, &mut commands);
-        crate::layout::show(self, ui, &mut commands);
-        let now = platform::now(&ctx);
-        let acts = !commands.is_empty();
-        for command in commands {
-            self.carry_out(&ctx, command, now);
-        }
-        self.work.settle(now);
-        // Workers need not wait for this frame to be drawn.
-        self.trace(&ctx, now);
-        let dear = self.is_short_of_time();
-        platform::set_frames_dear(dear);
-        match (acts, dear) {
-            (true, true) => ctx.request_repaint(),
-            (true, false) => once(&ctx),
-            (false, _) => {}
-        }
-    }
 }
 
 impl Drop for App {
     /// The window may be started anew on another backend; nothing that waits is lost.
     fn drop(&mut self) {
-        // What is refused here stays on the shelf and is tried again by the next app.
+        // A refused write stays on the shelf and is tried again by the next app.
         let _ = self.work.flush();
     }
 }

@@ -15,7 +15,10 @@ pub const MAX_ASSETS: usize = 16;
 /// Longest side of an image, pixels.
 pub const MAX_SIDE: u32 = 4096;
 
-/// What an asset is.
+/// A mesh file of more bytes than this is read by the tools worker, not by the page's thread.
+pub const LARGE_MESH: usize = 256 << 10;
+
+/// Kind of an asset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A picture: PNG, or another format that `darkroom` reads.
@@ -32,7 +35,7 @@ pub fn extension(name: &str) -> String {
         .unwrap_or_default()
 }
 
-/// What a file of this name would be.
+/// Kind of a file by its name; `None` if it is neither.
 #[must_use]
 pub fn kind(name: &str) -> Option<Kind> {
     match extension(name).as_str() {
@@ -42,7 +45,13 @@ pub fn kind(name: &str) -> Option<Kind> {
     }
 }
 
-/// What is in the file, in a few words.
+/// Whether this is a mesh that the page's thread must not read, as it would stand still.
+#[must_use]
+pub fn is_large_mesh(asset: &Asset) -> bool {
+    kind(&asset.name) == Some(Kind::Mesh) && asset.bytes.len() > LARGE_MESH
+}
+
+/// Describes the file's content in a few words.
 ///
 /// # Errors
 /// Says why the file cannot be what its name says, or is too large.
@@ -84,7 +93,7 @@ pub fn size(bytes: usize) -> String {
     }
 }
 
-/// What a mesh is made of.
+/// Size of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Counts {
     corners: Option<u64>,

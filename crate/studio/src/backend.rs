@@ -1,6 +1,6 @@
-//! What draws the window and the draft.
+//! Backend that draws the window and the draft.
 
-/// What the browser offers for drawing.
+/// The browser's interface for drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Backend {
     /// WebGPU: window and draft.

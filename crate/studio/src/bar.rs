@@ -62,8 +62,8 @@ pub fn show(
                 if icon::button(ui, Icon::Help, "How it works", true).clicked() {
                     commands.push(Command::ShowHelp);
                 }
-                let next = other_theme(ui);
-                let tip = format!("Colours: {}", theme_label(theme_choice));
+                let next = theme::other(ui);
+                let tip = format!("Colours: {}", theme::label(theme_choice));
                 if icon::button(ui, Icon::Theme, &tip, true).clicked() {
                     commands.push(Command::SetTheme(next));
                 }
@@ -142,27 +142,10 @@ fn more(ui: &mut Ui, choice: theme::Choice, commands: &mut Vec<Command>) {
             theme::Choice::Dark,
             theme::Choice::Light,
         ] {
-            let label = format!("Colours: {}", theme_label(theme));
+            let label = format!("Colours: {}", theme::label(theme));
             if ui.selectable_label(choice == theme, label).clicked() {
                 commands.push(Command::SetTheme(theme));
             }
         }
     });
-}
-
-pub(crate) fn theme_label(choice: theme::Choice) -> &'static str {
-    match choice {
-        theme::Choice::System => "as the system",
-        theme::Choice::Dark => "dark",
-        theme::Choice::Light => "light",
-    }
-}
-
-/// The other palette than the one on the screen.
-pub(crate) fn other_theme(ui: &Ui) -> theme::Choice {
-    if ui.visuals().dark_mode {
-        theme::Choice::Light
-    } else {
-        theme::Choice::Dark
-    }
 }

@@ -1,12 +1,12 @@
 //! Starts the window on the best that the browser can draw with: WebGPU, else WebGL2, else the
 //! processor ([`crate::software`]).
 //!
-//! What a browser claims and what it can do differ: `navigator.gpu` may be there without an
+//! A browser's claims and abilities differ: `navigator.gpu` may be there without an
 //! adapter, a context may be refused, and a device may be lost while the page runs. So each
 //! [`Backend`] is probed, then tried, and when it fails the next one is tried on a fresh canvas (a
 //! canvas that once had a context of one kind never gives another).
 //!
-//! Where the browser only pretends to have WebGL2 and computes it on the processor, the processor draws
+//! If the browser only pretends to have WebGL2 and computes it on the processor, the processor draws
 //! the window itself: it does so many times more quickly, as it draws what changed, and leaves the time to
 //! the workers.
 //!
@@ -34,7 +34,7 @@ const STEADY: f64 = 10_000.0;
 /// Milliseconds that a browser may take to say whether it has WebGPU. It may never answer.
 const PATIENCE: i32 = 5_000;
 
-/// What WEBGL_debug_renderer_info calls UNMASKED_RENDERER_WEBGL.
+/// UNMASKED_RENDERER_WEBGL of WEBGL_debug_renderer_info.
 const UNMASKED_RENDERER: u32 = 0x9246;
 
 /// The event that a lost WebGPU device sends to the canvas; WebGL has its own.
@@ -200,7 +200,7 @@ fn after(backend: Backend) -> Backend {
     }
 }
 
-/// What the page's address asks for.
+/// Options in the page's address.
 fn forced() -> Option<Backend> {
     let query = window().location().search().ok()?;
     let parameters = web_sys::UrlSearchParams::new_with_str(&query).ok()?;
@@ -318,7 +318,7 @@ fn warn(message: &str) {
     web_sys::console::warn_1(&message.into());
 }
 
-/// What an error says, without the traces that some carry in the lines below.
+/// First line of an error's message, without the stack trace that some carry below it.
 fn text_of(error: &JsValue) -> String {
     let text = error
         .as_string()

@@ -1,9 +1,10 @@
-//! What the widgets ask the app to do. Widgets only read the state and list commands; the app
+//! Commands from the widgets to the app. Widgets only read the state and list commands; the app
 //! carries them out after the frame, in one place ([`crate::app`]).
 
 use crate::asset::Asset;
-use crate::lab::Lesson;
-use crate::{size, theme, view::Show};
+use crate::lesson::Lesson;
+use crate::settings::Show;
+use crate::{size, theme};
 use scene::Camera;
 use std::ops::Range;
 
@@ -36,7 +37,7 @@ pub enum Command {
         file: usize,
         /// Byte range.
         range: Range<usize>,
-        /// What comes there.
+        /// Replacement.
         with: String,
     },
     /// Add an empty file.

@@ -6,7 +6,7 @@ use std::cell::{Cell, RefCell};
 use wasm_bindgen::JsValue;
 
 thread_local! {
-    /// What is to be saved. The hook below must be `Send`, so it cannot hold this itself.
+    /// The work to save. The hook below must be `Send`, so it cannot hold this itself.
     static PARTS: RefCell<Option<Parts>> = const { RefCell::new(None) };
     static HAPPENED: Cell<bool> = const { Cell::new(false) };
 }

@@ -5,6 +5,7 @@ mod answers;
 mod completion;
 mod folding;
 mod hover;
+mod place;
 mod rename;
 mod signature;
 
@@ -18,17 +19,11 @@ use crate::session::Session;
 use crate::theme::{self, Palette};
 use egui::text::{CCursor, CCursorRange};
 use egui::{
-    Align, FontId, Galley, Id, Key, Margin, Modifiers, Pos2, Rect, ScrollArea, TextBuffer,
-    TextEdit, Ui, pos2,
+    Align, FontId, Galley, Key, Margin, Modifiers, Pos2, Rect, ScrollArea, TextBuffer, TextEdit,
+    Ui, pos2,
 };
+use place::{Place, id, to_bytes, to_chars};
 use std::ops::Range;
-
-/// A place between two characters of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
-    pub(crate) file: usize,
-    pub(crate) byte: usize,
-}
 
 /// The state of the editor that is not part of the user's work.
 #[derive(Default)]
@@ -58,11 +53,6 @@ pub struct Editor {
     caret: Option<(usize, usize)>,
     /// The bytes of a file behind which there is light: what is chosen in the picture.
     pub lit: Option<(usize, Range<usize>)>,
-}
-
-/// The id of the text widget, the same at every frame and size.
-fn id() -> Id {
-    Id::unique("editor")
 }
 
 impl Editor {
@@ -446,31 +436,4 @@ fn writes_letters(event: &egui::Event) -> bool {
         }
         _ => false,
     }
-}
-
-/// Selects all of a field's text.
-fn select_all(ctx: &egui::Context, id: Id, text: &str) {
-    let mut state = TextEdit::load_state(ctx, id).unwrap_or_default();
-    let end = CCursor::new(text.chars().count());
-    let all = CCursorRange::two(CCursor::new(0), end);
-    state.cursor.set_char_range(Some(all));
-    state.store(ctx, id);
-}
-
-/// Lets screen readers say a line when it changes.
-fn say(ctx: &egui::Context, id: Id, text: &str) {
-    ctx.accesskit_node_builder(id, |node| {
-        node.set_live(egui::accesskit::Live::Polite);
-        node.set_value(text);
-    });
-}
-
-fn to_bytes(text: &str, char: usize) -> usize {
-    text.char_indices()
-        .nth(char)
-        .map_or(text.len(), |(byte, _)| byte)
-}
-
-fn to_chars(text: &str, byte: usize) -> usize {
-    text[..text.floor_char_boundary(byte)].chars().count()
 }

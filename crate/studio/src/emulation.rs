@@ -38,7 +38,7 @@ async fn watch(canvas: &str) -> Result<(), JsValue> {
                 && let Ok(prototype) = Reflect::get(&class, &"prototype".into())
                 && let Ok(prototype) = prototype.dyn_into::<js_sys::Object>()
             {
-                // Where it is refused, the page is only too small.
+                // If it is refused, the page is only too small.
                 let _ = Reflect::delete_property(&prototype, &SIZE.into());
             }
             // The function of a promise never throws.

@@ -1,4 +1,4 @@
-//! Where the page's program begins.
+//! Entry point of the page's program.
 
 use crate::app::{App, Parts};
 use crate::request::Request;
@@ -74,7 +74,7 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
                 platform::set_troubled(false);
             }
             if let Ok(mut shelf) = shelf.try_borrow_mut() {
-                // What is refused here was already reported, or will be at the next edit.
+                // A refused write was already reported, or will be at the next edit.
                 let _ = shelf.flush(platform::unix_time());
             }
         })?;

@@ -6,13 +6,13 @@ use rats::{File, Project};
 pub struct Example {
     /// Its title.
     pub title: &'static str,
-    /// What it shows, in a few words.
+    /// Its subject, in a few words.
     pub about: &'static str,
     /// Its file name.
     pub name: &'static str,
     /// Its text.
     pub text: &'static str,
-    /// Where its thumbnail is, a PNG file beside the page: fetched when the gallery is opened, as few
+    /// Address of its thumbnail, a PNG file beside the page: fetched when the gallery is opened, as few
     /// visits open it.
     pub thumbnail: &'static str,
 }
@@ -72,7 +72,7 @@ pub const ALL: [Example; 22] = [
     example!("Starfish F", "skinny and crisp", "starfish-f"),
 ];
 
-/// What a new work begins with.
+/// Text of a new work.
 pub const BLANK: &str = "\
 eyep 0 0 8
 vrp 0 0 0

@@ -119,7 +119,7 @@ fn asset_tab(ui: &mut Ui, asset: &Asset, editor: &mut Editor, commands: &mut Vec
     });
 }
 
-/// What a right click or a long touch on a tab offers.
+/// Context menu of a tab.
 fn menu(ui: &mut Ui, index: usize, name: &str, commands: &mut Vec<Command>) {
     ui.set_min_width(190.0);
     let id = ui.scope_id().with(("rename", index));

@@ -169,6 +169,15 @@ impl Recording {
     }
 }
 
+/// A film that is being saved.
+pub(crate) struct Saving {
+    pub(crate) recording: Recording,
+    /// The text it is of.
+    pub(crate) revision: u64,
+    /// The size of the picture that tests asked for before.
+    pub(crate) forced: Option<[u32; 2]>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

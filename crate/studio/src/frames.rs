@@ -30,14 +30,14 @@ const TOGETHER: u32 = 3;
 /// Given frames that can still be cancelled, more than anyone waits for.
 const GIVEN: usize = 8;
 
-/// What people and the browser do to a page, …
+/// Events of the keyboard and the browser that call for a frame.
 const EVENTS: &str = "beforeinput blur compositionend compositionstart compositionupdate copy cut dragend dragenter \
     dragleave dragover drop focus hashchange input keydown load pagehide pageshow paste popstate resize scroll \
     visibilitychange";
-/// … with a pointer, …
+/// Events of pointers that do.
 const POINTER: &str = "gesturechange gestureend gesturestart mousedown mouseleave mousemove mouseup pointercancel \
     pointerdown pointerleave pointermove pointerup touchcancel touchend touchmove touchstart wheel";
-/// … and what is of no haste.
+/// Events that can wait for the next frame.
 const LATER: &str = "keyup";
 
 thread_local! {
@@ -51,7 +51,7 @@ struct Frames {
     cancel: Function,
     /// The last number given to a request.
     number: i32,
-    /// Who waits for a frame, by number.
+    /// Callbacks that wait for a frame, by number.
     held: VecDeque<(i32, Function)>,
     /// The numbers by which the browser knows requests.
     given: VecDeque<(i32, JsValue)>,

@@ -8,7 +8,7 @@
 //! | `text()` | the text of the first file |
 //! | `files()` | all texts, as `{name: text, …}` |
 //! | `status()` | the state, see below |
-//! | `finished()` | promise of a `status()`, resolved when the picture of the present text, camera and size is finished or was stopped |
+//! | `finished()` | promise of a `status()`, resolved when the picture of the present text, camera and size is finished or was stopped; rejected while the lab keeps that picture waiting |
 //! | `image()` | promise of a PNG `Blob` of the traced picture as it is now; rejected while there is none |
 //! | `link()` | the full address that Share copies |
 //! | `camera()` | `{eye, target, up, fov}` in use |
@@ -21,7 +21,8 @@
 //! (seconds or null), `fresh` (whether the picture on the screen is of the present text and camera),
 //! `picture` (`{width, height}` or null), `errors` (how many), `elements` (how many the text makes),
 //! `diagnostics` (each `{severity, message, file, span, line, column, hint, related, command}`), `hot`
-//! (names of the sliders), `assets` (names of the images and meshes), `frame` (of an animated work, else
+//! (names of the sliders), `assets` (names of the images and meshes), `reading` (name of the mesh that is being read, or null),
+//! `frame` (of an animated work, else
 //! null), `backend` (`"webgpu"`, `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`,
 //! `timings` (seconds: `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays,
 //! fieldEvaluations}`), `revision` (rises with each change of the text), `name`, `saved` (whether all
@@ -30,7 +31,8 @@
 //! `lab()` gives `lesson` (the word in its link, as in `#lab=kernels`), `title`, `waiting` (small
 //! pictures still to be traced), `drawn` (small pictures there), `refused` (texts that the language
 //! does not draw yet) and `readings` (`{name: number}`: what the lesson shows as numbers). While the
-//! lab is open the picture of the text waits, and so does `finished()`.
+//! lab is open no picture of the text is begun: `finished()` is rejected unless the picture is finished
+//! or being traced.
 //!
 //! `sinew.debug` is for tests of the page itself and may change at any time: `killWorker(i)`
 //! (whether there was such a worker),
@@ -120,11 +122,13 @@ fn state(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
     method(sinew, "status", move |_, _| status(&p))?;
     let p = parts.clone();
     method(sinew, "finished", move |_, _| {
-        Ok(promise(|yes, _| {
+        Ok(promise(|yes, no| {
             let shared = p.clone();
-            p.requests.ask(Request::Finished(Box::new(move || {
-                call(&yes, &status(&shared).unwrap_or_default());
-            })));
+            p.requests
+                .ask(Request::Finished(Box::new(move |result| match result {
+                    Ok(()) => call(&yes, &status(&shared).unwrap_or_default()),
+                    Err(reason) => call(&no, &js_sys::Error::new(&reason)),
+                })));
         }))
     })?;
     let p = parts.clone();

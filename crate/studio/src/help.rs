@@ -60,7 +60,7 @@ const KEYS: [(&str, &str); 15] = [
     ("Ctrl+S", "save the picture as PNG"),
 ];
 
-/// What the help shows.
+/// Page of the help.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Page {
     /// A few words for a beginning.

@@ -3,7 +3,7 @@
 use crate::theme;
 use egui::{Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
-/// What a button shows.
+/// An icon of a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Icon {
     /// An arrow that bends back.

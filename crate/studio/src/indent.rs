@@ -1,4 +1,4 @@
-//! What Tab, Enter and Ctrl+/ do to a text: indenting in steps of two blanks, going on with the
+//! Tab, Enter and Ctrl+/ in a text: indenting in steps of two blanks, going on with the
 //! indentation of the line above, and turning lines into comments.
 //!
 //! Positions are bytes; a selection is a pair of them in any order.

@@ -8,7 +8,7 @@ use rats::link::MAX_NAME;
 
 /// Extensions of texts.
 const TEXTS: [&str; 5] = ["rat", "art", "ice", "dat", "txt"];
-/// What can be taken in, in words.
+/// The kinds of files that are accepted, in words.
 pub const KINDS: &str = "texts (.rat .art .ice .dat .txt), images (.png .gif .tga .tif .mtv) and meshes (.obj .ply .stl .glb)";
 /// Files that are read at once.
 pub const MOST: usize = 32;
@@ -18,11 +18,11 @@ pub const MOST: usize = 32;
 pub struct Taken {
     /// Its name, perhaps with folders before it.
     pub name: String,
-    /// What is in it, or why it could not be read.
+    /// Its content, or why it could not be read.
     pub bytes: Result<Vec<u8>, String>,
 }
 
-/// What to do with files from outside.
+/// Files from outside, sorted by kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sorted {
     /// Texts.

@@ -30,7 +30,7 @@ impl egui::Plugin for Keyboard {
     }
 }
 
-/// What this frame may see, and what must wait.
+/// Splits the events into those for this frame and those that must wait.
 fn split(events: Vec<Event>) -> (Vec<Event>, Vec<Event>) {
     let (mut now, mut later) = (Vec::new(), Vec::new());
     let (mut written, mut clicked) = (false, false);
@@ -84,7 +84,7 @@ fn is_ours(event: &Event) -> bool {
     };
     match key {
         Key::Enter | Key::Tab | Key::Escape => true,
-        // What they are about stands where the arrow keys before them went.
+        // They act where the arrow keys before them have moved the caret.
         Key::F1 | Key::F2 | Key::F8 | Key::F12 => true,
         Key::Z | Key::Y | Key::S | Key::F | Key::Slash | Key::Space => {
             modifiers.contains(Modifiers::COMMAND) || modifiers.command || modifiers.ctrl

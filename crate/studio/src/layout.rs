@@ -1,38 +1,37 @@
-//! Where the parts of the page stand. Wide: text on the left, picture on the right, with a split
+//! Layout of the page. Wide: text on the left, picture on the right, with a split
 //! that can be dragged. Narrow: the picture on top, and text, sliders and problems in turn below.
 
 use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::hands::Around;
 use crate::icon::{self, Icon};
+use crate::render::Phase;
+use crate::settings::Show;
 use crate::theme::{self, STRIP};
-use crate::view::{self, Scenery, Show};
+use crate::view::{self, Scenery};
 use crate::{
-    bar, files, intake, lab, notice, places, platform, problems, size, sliders, status, timeline,
-    tray,
+    bar, files, intake, lab, notice, places, platform, problems, screen, size, sliders, status,
+    timeline, tray,
 };
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Rect, RichText,
     ScrollArea, Stroke, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 
-/// Below this width in points the parts stand on top of each other.
-pub const NARROW: f32 = 700.0;
-
-/// Whether the page is narrow.
-#[must_use]
-pub fn is_narrow(ctx: &Context) -> bool {
-    ctx.content_rect().width() < NARROW
-}
-
 /// Draws everything.
 pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     places::clear(ui.ctx());
     if app.lab.is_open() {
-        lab::show(app, ui, commands);
+        let busy = app.renderer.phase() == Phase::Tracing;
+        let frame = lab::Frame {
+            session: &app.work.session,
+            tracing: busy.then(|| app.renderer.progress().fraction),
+            theme: app.settings.theme,
+        };
+        lab::show(&mut app.lab, &frame, ui, commands);
         return;
     }
-    let narrow = is_narrow(ui.ctx());
+    let narrow = screen::is_narrow(ui.ctx());
     let palette = theme::palette(ui.visuals());
     let line = Stroke::new(1.0, palette.line);
     let flat = Frame::new().fill(palette.panel);
@@ -49,7 +48,16 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         .show(ui, |ui| {
             let enabled = app.work.session.enabled();
             places::note(ui.ctx(), "status", ui.max_rect());
-            status::show(ui, &app.renderer, app.backend, enabled, narrow, commands);
+            let reading = app.reading.current();
+            status::show(
+                ui,
+                &app.renderer,
+                app.backend,
+                enabled,
+                reading,
+                narrow,
+                commands,
+            );
         });
     if narrow {
         stacked(app, ui, commands);
@@ -167,7 +175,7 @@ fn problem_list(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
 fn slider_list(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     places::note(ui.ctx(), "sliders", ui.max_rect());
-    if !is_narrow(ui.ctx()) {
+    if !screen::is_narrow(ui.ctx()) {
         ui.label(RichText::new("Sliders").size(12.5).color(palette.weak))
             .on_hover_text("Variables marked hot in the text");
     }
@@ -294,7 +302,7 @@ fn has_tray(place: Rect, narrow: bool) -> bool {
 /// The picture in its place.
 fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
-    let narrow = is_narrow(ui.ctx());
+    let narrow = screen::is_narrow(ui.ctx());
     ui.painter().rect_filled(place, 0.0, palette.stage);
     let mut place = place;
     if app.work.session.is_animated() {
@@ -490,10 +498,18 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
     let modal = egui::Modal::new(egui::Id::unique("dialog"))
         .backdrop_color(Color32::from_black_alpha(130))
         .frame(
-            Frame::window(&ctx.global_style()).inner_margin(if is_narrow(ctx) { 14 } else { 20 }),
+            Frame::window(&ctx.global_style()).inner_margin(if screen::is_narrow(ctx) {
+                14
+            } else {
+                20
+            }),
         )
         .show(ctx, |ui| {
-            let inner = if is_narrow(ui.ctx()) { 28.0 } else { 40.0 };
+            let inner = if screen::is_narrow(ui.ctx()) {
+                28.0
+            } else {
+                40.0
+            };
             ui.set_width(size.x - inner);
             ui.set_max_height(size.y - inner);
             match dialog {

@@ -1,7 +1,7 @@
 //! The page: an egui app that edits a dataset, shows the draft and the traced picture, and shares
 //! them.
 //!
-//! What the user works on ([`session`], [`history`], [`picture`], [`storage`], [`share`]) knows
+//! The user's work ([`session`], [`history`], [`picture`], [`storage`], [`share`]) knows
 //! nothing of windows and is tested without one. [`app::App`] ties it to the widgets.
 
 mod act;
@@ -14,11 +14,13 @@ pub mod backend;
 pub mod bar;
 #[cfg(target_arch = "wasm32")]
 pub mod boot;
+pub mod clock;
 pub mod code;
 pub mod command;
 #[cfg(target_arch = "wasm32")]
 pub mod crash;
 pub mod draft;
+mod draw;
 pub mod editor;
 #[cfg(target_arch = "wasm32")]
 pub mod emulation;
@@ -42,6 +44,7 @@ pub mod intake;
 pub mod keyboard;
 pub mod lab;
 pub mod layout;
+pub mod lesson;
 pub mod marks;
 pub mod notice;
 mod outside;
@@ -49,17 +52,19 @@ pub mod pad;
 pub mod picture;
 pub mod places;
 pub mod platform;
-pub mod pool;
 pub mod problems;
+pub mod reading;
 pub mod reference;
 pub mod render;
 pub mod report;
 pub mod request;
+pub mod screen;
 mod screening;
 pub mod session;
 pub mod settings;
 pub mod share;
 pub mod size;
+pub mod slider;
 pub mod sliders;
 pub mod software;
 pub mod status;

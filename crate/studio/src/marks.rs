@@ -1,4 +1,4 @@
-//! Where the messages of the compiler stand in the laid-out text: underlines, dots beside the line
+//! Places of the compiler's messages in the laid-out text: underlines, dots beside the line
 //! numbers, and which messages are under the pointer.
 
 use crate::problems;

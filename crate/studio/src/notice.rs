@@ -9,7 +9,7 @@ use egui::{Align, Button, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBu
 /// A message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// What it says.
+    /// Its text.
     pub text: String,
     /// Whether something went wrong.
     pub bad: bool,

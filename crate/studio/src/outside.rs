@@ -1,7 +1,7 @@
 //! Between the app and what is outside its window: serving requests, and telling how things are.
 
 use crate::app::App;
-use crate::lab::Lesson;
+use crate::lesson::Lesson;
 use crate::notice::Notice;
 use crate::render::pass_label;
 use crate::report;
@@ -82,10 +82,9 @@ impl App {
         state.workers = progress.workers;
         state.replaced = progress.restarted;
         state.failure.clone_from(&progress.error);
-        state.fresh = self
-            .renderer
-            .texture()
-            .is_some_and(|(_, generation)| generation == session.generation());
+        let texture = self.renderer.texture();
+        state.fresh = session.is_compiled()
+            && texture.is_some_and(|(_, generation)| generation == session.generation());
         state.timings.coarse = self.renderer.timings().coarse;
         state.timings.done = self.renderer.timings().done;
         state.picture = self.renderer.image().map(|image| report::Size {
@@ -100,8 +99,9 @@ impl App {
         state.revision = session.revision();
         state.name.clone_from(&self.work.name);
         state.saved = !self.parts.shelf.borrow().is_dirty();
+        state.reading = self.reading.current().map(|(name, _)| name.to_owned());
         state.frame = session.is_animated().then(|| session.film_frame());
-        let text = (session.revision(), session.enabled());
+        let text = (session.revision(), session.is_compiled());
         if self.reported != Some(text) {
             self.reported = Some(text);
             state.diagnostics = session.diagnostics().into();

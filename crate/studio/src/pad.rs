@@ -1,19 +1,19 @@
 //! Controls for a hot vector: a square in which dragging sets x and y, a slim slider beside it for z,
 //! and three fields for exact numbers. The wheel over the square and Page Up and Page Down move z too.
 
-use crate::{places, sliders, theme};
+use crate::{places, slider, theme};
 use egui::{
     DragValue, EventFilter, Key, Pos2, Rect, Response, Role, Sense, Slider, Stroke, Ui, WidgetInfo,
     pos2, vec2,
 };
 use rats::{HotValue, hot};
 
-/// What the controls may do with the numbers.
+/// Limits of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Smallest and largest number that the square and the slider reach.
     pub range: (f64, f64),
-    /// What the numbers are multiples of, counted from the smallest.
+    /// Step of the numbers, counted from the smallest.
     pub step: Option<f64>,
 }
 
@@ -22,7 +22,7 @@ impl Bounds {
     fn snap(self, value: f64) -> f64 {
         let (low, high) = self.range;
         let value = value.clamp(low, high);
-        sliders::stepped(value, low, self.step, sliders::decimals(high - low))
+        slider::stepped(value, low, self.step, slider::decimals(high - low))
     }
 }
 
@@ -47,7 +47,7 @@ pub fn show(
     let square = square(ui, name, &mut vector, bounds, side);
     let (low, high) = bounds.range;
     let rail = ui.scope(|ui| {
-        sliders::colours(ui);
+        slider::colours(ui);
         ui.spacing_mut().slider_width = side;
         ui.spacing_mut().interact_size.y = 18.0;
         let mut z = vector[2].clamp(low, high);
@@ -119,13 +119,13 @@ fn square(ui: &mut Ui, name: &str, vector: &mut [f64; 3], bounds: Bounds, side: 
         .on_hover_text("Drag: x and y. Wheel, Page Up and Page Down: z. Arrow keys move it too.")
 }
 
-/// Where the pointer is, as numbers; y grows upwards.
+/// Numbers at the pointer; y grows upwards.
 fn numbers(at: Pos2, rect: Rect, (low, high): (f64, f64)) -> [f64; 2] {
     let share = (at - rect.min) / rect.size();
     [share.x, 1.0 - share.y].map(|share| low + f64::from(share.clamp(0.0, 1.0)) * (high - low))
 }
 
-/// Where numbers are in the square.
+/// Position of the numbers in the square.
 fn place(x: f64, y: f64, rect: Rect, (low, high): (f64, f64)) -> Pos2 {
     let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
     pos2(

@@ -15,7 +15,7 @@ pub struct Image {
     pub rgba: Vec<u8>,
 }
 
-/// What changed on the screen when a tile came.
+/// Change on the screen when a tile came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// Nothing: the tile is for an older picture, is already there, or the new picture is not

@@ -1,4 +1,4 @@
-//! Where the widgets are, for tests that drive the page from outside: a canvas has no elements that
+//! Places of the widgets, for tests that drive the page from outside: a canvas has no elements that
 //! they could look for.
 
 use egui::{Context, Id, Rect};

@@ -5,8 +5,8 @@
 //! the change itself, which frees the workers for the next one.
 
 use crate::picture::{self, Assembly, Change, Image};
-use crate::pool::{Job, Pool, Progress};
 use egui::{ColorImage, TextureHandle, TextureOptions};
+use pool::{Job, Pool, Progress};
 use scene::Scene;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -24,7 +24,7 @@ pub const START: f64 = 0.05;
 /// Seconds in which a new picture fades in over the draft.
 pub const FADE: f64 = 0.22;
 
-/// Where the picture stands.
+/// State of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Nothing to draw yet.
@@ -68,7 +68,7 @@ pub struct Renderer {
     assembly: Assembly,
     texture: Option<TextureHandle>,
     phase: Phase,
-    /// What was asked for last: the session's generation and the size.
+    /// The picture wanted last: the session's generation and the size.
     wanted: Option<(u64, [u32; 2])>,
     due: f64,
     /// Number of the running picture. Sizes change too, so it is not the session's generation.
@@ -80,7 +80,7 @@ pub struct Renderer {
     appeared: f64,
     progress: Progress,
     timings: Timings,
-    /// What the last coarse picture took the workers.
+    /// Seconds that the workers took for the last coarse picture.
     coarse: f64,
 }
 
@@ -250,7 +250,7 @@ impl Renderer {
         }
     }
 
-    /// Where the picture stands.
+    /// State of the picture.
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.phase

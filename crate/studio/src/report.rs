@@ -1,4 +1,4 @@
-//! What the page tells scripts about its state.
+//! The page's state as scripts read it.
 
 use rats::{Diagnostic, Project};
 use scene::Camera;
@@ -32,7 +32,7 @@ pub struct Report {
     pub errors: usize,
     /// Elements of the scene that the text now makes.
     pub elements: usize,
-    /// What the compiler says.
+    /// Messages of the compiler.
     pub diagnostics: Vec<Diagnostic>,
     /// Milestones of the picture.
     pub timings: Timings,
@@ -44,6 +44,8 @@ pub struct Report {
     pub hot: Vec<String>,
     /// Names of the images and meshes.
     pub assets: Vec<String>,
+    /// Name of the mesh that is being read.
+    pub reading: Option<String>,
     /// The frame on show of an animated work.
     pub frame: Option<u32>,
     /// Rises when the text changes.
@@ -61,7 +63,7 @@ pub struct Timings {
     pub coarse: Option<f64>,
     /// Finished.
     pub done: Option<f64>,
-    /// What compiling the text took.
+    /// Compiling the text.
     pub compile: f64,
 }
 
@@ -86,7 +88,7 @@ pub struct Stats {
     pub field_evaluations: u64,
 }
 
-/// What scripts can read at any time.
+/// State that scripts can read at any time.
 #[derive(Clone, Default)]
 pub struct Outbox {
     /// The state.
@@ -99,7 +101,7 @@ pub struct Outbox {
     pub camera: Camera,
     /// The open lesson of the lab.
     pub lab: Option<crate::lab::Report>,
-    /// Where the widgets are, in points.
+    /// Places of the widgets, in points.
     pub places: crate::places::Places,
 }
 

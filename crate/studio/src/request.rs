@@ -1,4 +1,4 @@
-//! What comes from outside the window: scripts of the page (`handle`) and the browser itself.
+//! Requests from outside the window: from scripts of the page (`handle`) and from the browser itself.
 
 use crate::intake::Taken;
 use crate::picture::Image;
@@ -11,6 +11,9 @@ use std::rc::Rc;
 /// Looks at the traced picture, if there is one.
 pub type Viewer = Box<dyn FnOnce(Option<&Image>)>;
 
+/// Takes the outcome of a request, with the reason if it was refused.
+pub type Answer = Box<dyn FnOnce(Result<(), String>)>;
+
 /// One wish from outside. The app carries it out at its next tick.
 pub enum Request {
     /// Answer when the app runs.
@@ -18,15 +21,16 @@ pub enum Request {
     /// The fragment of the page's address changed.
     HashChanged,
     /// Open these texts; the answer is given when they are compiled.
-    Load(Project, Box<dyn FnOnce(Result<(), String>)>),
+    Load(Project, Answer),
     /// Take in files that the user dropped or chose.
     Files(Vec<Taken>),
     /// See the scene from here; `None`: from where the text says.
     SetCamera(Option<Camera>),
     /// Give the traced picture.
     Picture(Viewer),
-    /// Answer when the picture of the present text and camera is finished, or was stopped.
-    Finished(Box<dyn FnOnce()>),
+    /// Answer when the picture of the present text and camera is finished, or was stopped. It is refused, with
+    /// the reason, while the lab keeps the picture waiting.
+    Finished(Answer),
     /// Stop tracing.
     Cancel,
     /// Trace again.
@@ -45,7 +49,7 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Whom to wake when something is asked.
+    /// Sets the context that is woken by requests.
     pub fn attach(&self, ctx: &Context) {
         self.ctx.replace(Some(ctx.clone()));
     }

@@ -2,21 +2,12 @@
 
 use crate::app::App;
 use crate::command::Command;
-use crate::film::Recording;
+use crate::film::{Recording, Saving};
 use crate::notice::Notice;
 use crate::render::Phase;
-use crate::view::Show;
+use crate::settings::Show;
 use crate::{platform, work};
 use egui::Context;
-
-/// A film that is being saved.
-pub(crate) struct Saving {
-    recording: Recording,
-    /// The text it is of.
-    revision: u64,
-    /// The size of the picture that tests asked for before.
-    pub(crate) forced: Option<[u32; 2]>,
-}
 
 impl App {
     /// Whether the picture of what is to be drawn is finished.

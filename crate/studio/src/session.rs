@@ -1,4 +1,4 @@
-//! What the user is working on, without any window: the project, its undo steps, what the compiler
+//! The user's work without any window: the project, its undo steps, what the compiler
 //! says about it, the last scene that could be drawn, and the camera chosen by hand.
 //!
 //! Two counters tell others what changed: [`Session::revision`] rises with every change of the text,
@@ -10,6 +10,7 @@ use crate::history::{History, Snapshot};
 use rats::{Compiled, Diagnostic, Project, Severity};
 use scene::{Camera, Scene};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Longest project the editor takes, bytes over all files. The editor lays the whole text out at
 /// every key, so this is far below what a link could carry.
@@ -94,7 +95,7 @@ pub struct Kept {
     pub project: Project,
     /// The camera chosen by hand.
     pub camera: Option<Camera>,
-    /// What can be undone.
+    /// Undo steps.
     #[serde(default)]
     pub history: History<Project>,
     /// Images and meshes; the storage keeps them apart from the texts.
@@ -158,7 +159,7 @@ impl Session {
         self.changed();
     }
 
-    /// What to keep when the page is closed; the undo steps take at most `history_bytes`.
+    /// The part to keep when the page is closed; the undo steps take at most `history_bytes`.
     #[must_use]
     pub fn keep(&self, history_bytes: usize) -> Kept {
         Kept {
@@ -325,7 +326,11 @@ impl Session {
                 bytes,
             });
         }
-        if all != self.assets {
+        // The same content in other memory is taken over, too: a file whose reading failed may be put again.
+        let is_same = |(new, old): (&Asset, &Asset)| {
+            new.name == old.name && Arc::ptr_eq(&new.bytes, &old.bytes)
+        };
+        if all.len() != self.assets.len() || !all.iter().zip(&self.assets).all(is_same) {
             self.assets = all;
             self.changed();
         }
@@ -408,7 +413,7 @@ impl Session {
         self.history.can_redo()
     }
 
-    /// What the compiler made of the text at the last [`Session::compile`].
+    /// Result of the last [`Session::compile`].
     #[must_use]
     pub fn compiled(&self) -> &Compiled {
         &self.compiled
@@ -542,15 +547,27 @@ impl Session {
         self.enabled = true;
     }
 
-    /// Compiles the present text if it changed since the last call. Whoever keeps the text safe does
-    /// so before: should the compiler ever stop the program, what was typed is not lost.
+    /// Large meshes that the text names and nobody has read yet. Until [`rats::keep_mesh`] was called
+    /// for each, [`Session::compile`] waits.
+    pub fn unread_meshes(&self) -> impl Iterator<Item = &Asset> {
+        let files = &self.project.files;
+        let is_named = |asset: &Asset| files.iter().any(|file| file.text.contains(&asset.name));
+        self.assets.iter().filter(move |asset| {
+            asset::is_large_mesh(asset) && is_named(asset) && !rats::is_mesh_read(asset)
+        })
+    }
+
+    /// Compiles the present text if it changed since the last call and all large meshes it names are
+    /// read. Call it after the text was stored, so that nothing typed is lost if the compiler stops the
+    /// program.
     pub fn compile(&mut self) {
-        if !self.enabled || !std::mem::take(&mut self.stale) {
+        if !self.enabled || !self.stale || self.unread_meshes().next().is_some() {
             return;
         }
-        let start = crate::platform::stopwatch();
+        self.stale = false;
+        let start = crate::clock::stopwatch();
         self.compiled = rats::compile_at(&self.project, &self.assets, f64::from(self.film_frame));
-        self.compile_seconds = crate::platform::stopwatch() - start;
+        self.compile_seconds = crate::clock::stopwatch() - start;
         if self.errors() == 0 || self.good.is_none() {
             let scene = &self.compiled.scene;
             let same = self

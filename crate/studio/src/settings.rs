@@ -1,8 +1,20 @@
-//! How the user likes the page. Kept in the browser, apart from the works.
+//! The user's choices about the page, kept in the browser apart from the works.
 
-use crate::view::Show;
 use crate::{size, theme};
 use serde::{Deserialize, Serialize};
+
+/// Content of the picture's place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Show {
+    /// The draft while turning and editing, then the traced picture.
+    #[default]
+    Auto,
+    /// The draft only.
+    Draft,
+    /// The traced picture only.
+    Traced,
+}
 
 /// The user's choices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -19,7 +19,7 @@ pub fn link(page: &str, project: &Project, camera: Option<Camera>) -> Result<Str
     Ok(format!("{page}#{fragment}"))
 }
 
-/// What a fragment (with or without `#`) carries; `None` if it is empty.
+/// Reads the work in a fragment (with or without `#`); `None` if it is empty.
 ///
 /// # Errors
 /// Says what is wrong with it.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What the user chose.
+/// The user's choice of size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Choice {
@@ -85,5 +85,19 @@ mod tests {
             [1280, 960]
         );
         assert_eq!(pixels(Choice::Fit, [0, 0], [0.0, 0.0], 2048), [1, 1]);
+    }
+
+    /// Workers share first samples in every picture that fits the view.
+    #[test]
+    fn workers_keep_the_samples_of_all_pictures_that_fit() {
+        for aspect in 1..=16 {
+            let aspect = f64::from(aspect);
+            let high = (FIT_PIXELS / aspect).sqrt();
+            let tiles = |side: f64| (side as usize).div_ceil(pool::job::TILE as usize);
+            assert!(
+                tiles(high) * tiles(aspect * high) <= worker::engine::KEPT,
+                "{aspect}"
+            );
+        }
     }
 }

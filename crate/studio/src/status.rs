@@ -35,12 +35,18 @@ pub fn count(number: u64) -> String {
     }
 }
 
-/// What is going on, in a few words.
+/// The state of the work in a few words. `reading` is the mesh file that is being read, with the fraction done.
 #[must_use]
-pub fn summary(renderer: &Renderer, enabled: bool) -> String {
+pub fn summary(renderer: &Renderer, enabled: bool, reading: Option<(&str, f32)>) -> String {
     let progress = renderer.progress();
     if let Some(failure) = &progress.error {
         return failure.clone();
+    }
+    if let Some((name, fraction)) = reading {
+        return match (fraction * 100.0).round() {
+            percent if percent > 0.0 => format!("Reading {name} {percent:.0}%"),
+            _ => format!("Reading {name}"),
+        };
     }
     match renderer.phase() {
         Phase::Idle if !enabled => String::from("Not rendering"),
@@ -67,6 +73,7 @@ pub fn show(
     renderer: &Renderer,
     backend: Backend,
     enabled: bool,
+    reading: Option<(&str, f32)>,
     narrow: bool,
     commands: &mut Vec<Command>,
 ) {
@@ -79,11 +86,11 @@ pub fn show(
         let bar = Rect::from_min_size(strip.min, vec2(width, 2.0));
         ui.painter().rect_filled(bar, 0.0, palette.accent);
     }
-    // What is there only at times counts always: egui draws twice more where it finds a button at a new place.
+    // Optional widgets always count: egui draws twice more where it finds a button at a new place.
     ui.horizontal_centered(|ui| {
         ui.add_space(12.0);
         ui.label(
-            RichText::new(summary(renderer, enabled))
+            RichText::new(summary(renderer, enabled, reading))
                 .color(palette.text)
                 .size(13.0),
         );

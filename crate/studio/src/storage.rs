@@ -63,12 +63,12 @@ impl Store for std::collections::BTreeMap<String, String> {
     }
 }
 
-/// What stands in a list of saved works.
+/// Entry in the list of saved works.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// Key of the record.
     pub id: String,
-    /// What the user calls it.
+    /// Name given by the user.
     pub name: String,
     /// When it was written, milliseconds since 1970.
     pub saved: f64,
@@ -100,7 +100,7 @@ pub struct Shelf {
     pending: Option<(String, Kept)>,
     /// The images and meshes that were written last, and the record they belong to.
     assets: Option<(String, Vec<Asset>)>,
-    /// What must be said about images and meshes that were not kept.
+    /// Warning about images and meshes that were not kept.
     warning: Option<String>,
 }
 
@@ -157,7 +157,7 @@ impl Shelf {
         Some((record.name, record.kept))
     }
 
-    /// What must be said about images and meshes that could not be kept, once.
+    /// Takes the warning about images and meshes that could not be kept.
     pub fn take_warning(&mut self) -> Option<String> {
         self.warning.take()
     }
@@ -483,7 +483,7 @@ mod tests {
         assert_eq!(shelf.take_warning(), None);
         let id = shelf.opened().unwrap().to_owned();
         let key = format!("{ASSETS}{id}");
-        // What did not change is not written again.
+        // Unchanged assets are not written again.
         let mut watched = store.clone();
         watched.remove(&key);
         shelf.put("a", with_assets(&[3, 5]));

@@ -52,7 +52,7 @@ pub struct Palette {
     pub weak: Color32,
     /// Headings and what is chosen.
     pub strong: Color32,
-    /// What acts: the share button, progress, slider fill.
+    /// Accents: the share button, progress, slider fill.
     pub accent: Color32,
     /// Text on the accent.
     pub on_accent: Color32,
@@ -261,4 +261,24 @@ fn style(palette: &Palette, mut visuals: Visuals, touch: bool) -> Style {
 
     style.visuals = visuals;
     style
+}
+
+/// The choice in words.
+#[must_use]
+pub fn label(choice: Choice) -> &'static str {
+    match choice {
+        Choice::System => "as the system",
+        Choice::Dark => "dark",
+        Choice::Light => "light",
+    }
+}
+
+/// The other palette than the one on the screen.
+#[must_use]
+pub fn other(ui: &egui::Ui) -> Choice {
+    if ui.visuals().dark_mode {
+        Choice::Light
+    } else {
+        Choice::Dark
+    }
 }

@@ -3,7 +3,7 @@
 use crate::command::Command;
 use crate::film::{MAX_FRAMES, Player};
 use crate::icon::{self, Icon};
-use crate::{places, sliders, theme};
+use crate::{places, slider, theme};
 use egui::{DragValue, RichText, Slider, Ui};
 
 /// Shows the strip in all of `ui`; `frame` is the frame on show.
@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, player: &Player, frame: u32, commands: &mut Vec<Command
         let last = player.count.saturating_sub(1).max(1);
         let width = (ui.available_width() - 200.0).clamp(60.0, 520.0);
         let slider = ui.scope(|ui| {
-            sliders::colours(ui);
+            slider::colours(ui);
             ui.spacing_mut().slider_width = width;
             ui.add(
                 Slider::new(&mut shown, 0..=last)

@@ -6,6 +6,7 @@
 use crate::command::Command;
 use crate::render::Renderer;
 use crate::session::Session;
+use crate::settings::Show;
 use crate::theme;
 use egui::emath::GuiRounding;
 use egui::epaint::RectShape;
@@ -14,20 +15,6 @@ use egui::{
 };
 use preview::orbit;
 use scene::Camera;
-use serde::{Deserialize, Serialize};
-
-/// What the view shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Show {
-    /// The draft while turning and editing, then the traced picture.
-    #[default]
-    Auto,
-    /// The draft only.
-    Draft,
-    /// The traced picture only.
-    Traced,
-}
 
 /// Seconds to the coarse picture, beside which a processor's draft would take long.
 pub const SOON: f64 = 1.0;
@@ -35,7 +22,7 @@ pub const SOON: f64 = 1.0;
 /// Pixels of the shorter side of a picture below which its place is not made to its measure.
 const SHORT: f32 = 32.0;
 
-/// What the view needs to know beside the session.
+/// Inputs of the view.
 pub struct Scenery<'a> {
     /// The user's work.
     pub session: &'a Session,
@@ -43,7 +30,7 @@ pub struct Scenery<'a> {
     pub renderer: &'a Renderer,
     /// The draft, if there is one.
     pub draft: Option<TextureId>,
-    /// What to show.
+    /// Choice between draft and picture.
     pub show: Show,
     /// Seconds on the app's clock.
     pub now: f64,

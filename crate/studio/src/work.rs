@@ -6,7 +6,7 @@
 
 use crate::asset::Asset;
 use crate::examples;
-use crate::lab::Lesson;
+use crate::lesson::Lesson;
 use crate::platform;
 use crate::session::{Kept, Session, check_size};
 use crate::share;
@@ -16,7 +16,7 @@ use scene::Camera;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Where the open work came from.
+/// Origin of the open work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// The user's own.
@@ -31,18 +31,18 @@ pub enum Origin {
 
 /// The open work.
 pub struct Work {
-    /// What is being edited.
+    /// Text, undo steps and scene.
     pub session: Session,
     /// Its name.
     pub name: String,
-    /// Where it came from.
+    /// Its origin.
     pub origin: Origin,
     shelf: Rc<RefCell<Shelf>>,
     /// The own work that was open before the link was.
     before: Option<String>,
     /// When what is not yet written was changed.
     changed: Option<f64>,
-    /// What was last put on the shelf: the session's revision and camera.
+    /// The session's revision and camera that were last put on the shelf.
     noted: (u64, Option<Camera>),
 }
 
@@ -250,7 +250,7 @@ impl Work {
     /// If the browser stores nothing.
     pub fn flush(&mut self) -> Result<(), String> {
         let written = self.shelf.borrow_mut().flush(platform::unix_time());
-        // What was refused is tried again with the next edit.
+        // A refused write is tried again with the next edit.
         self.changed = None;
         written
     }
@@ -311,7 +311,7 @@ impl Work {
     }
 }
 
-/// What a file of this work is called, without its ending.
+/// File name for this work, without extension.
 #[must_use]
 pub fn file_stem(name: &str) -> String {
     let stem: String = name

@@ -7,6 +7,8 @@ use egui::{Event, Key, Modifiers, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use rats::{File, Project};
+use std::cell::RefCell;
+use std::rc::Rc;
 use studio::Backend;
 use studio::app::{App, Parts};
 use studio::request::Request;
@@ -357,4 +359,87 @@ fn a_related_place_is_a_way_there() {
     window.write("#");
     let at = related.span.start;
     assert_eq!(&window.text()[at..=at], "#");
+}
+
+/// Asks for the finished picture. The cell holds the answer once there is one.
+fn ask_finished(parts: &Parts) -> Rc<RefCell<Option<Result<(), String>>>> {
+    let answer = Rc::new(RefCell::new(None));
+    let inner = answer.clone();
+    parts
+        .requests
+        .ask(Request::Finished(Box::new(move |result| {
+            inner.replace(Some(result));
+        })));
+    answer
+}
+
+#[test]
+fn finished_waits_for_the_picture_and_is_refused_while_the_lab_keeps_it_waiting() {
+    let mut window = Window::with_text(TEXT);
+    let early = ask_finished(&window.parts);
+    window.finish();
+    window.steps(1);
+    assert_eq!(early.take(), Some(Ok(())));
+    // A finished picture stays finished in the lab.
+    let lab = window.place("lab").center();
+    window.click(lab);
+    window.steps(2);
+    assert!(window.parts.outbox.borrow().lab.is_some());
+    let done = ask_finished(&window.parts);
+    window.steps(2);
+    assert_eq!(done.take(), Some(Ok(())));
+    // One that is to be drawn anew waits, and the answer does not.
+    let camera = scene::Camera {
+        eye: [3.0, 0.0, 5.0].into(),
+        ..window.parts.outbox.borrow().camera
+    };
+    window.parts.requests.ask(Request::SetCamera(Some(camera)));
+    let refused = ask_finished(&window.parts);
+    window.steps(3);
+    let reason = refused.take().expect("an answer").unwrap_err();
+    assert!(reason.contains("lab"), "{reason}");
+    // Outside the lab it is answered again.
+    let back = window.place("lab back").center();
+    window.click(back);
+    let again = ask_finished(&window.parts);
+    window.finish();
+    window.steps(1);
+    assert_eq!(again.take(), Some(Ok(())));
+}
+
+#[test]
+fn large_mesh_is_read_apart_while_the_picture_stays() {
+    let mut window = Window::with_text(TEXT);
+    window.finish();
+    let picture = window.image();
+    let mut mesh = String::from("v -1 -1 0\nv 1 -1 0\nv 0 1 0\n");
+    while mesh.len() <= studio::asset::LARGE_MESH {
+        mesh.push_str("# a remark that makes the file large\n");
+    }
+    mesh.push_str("f 1 2 3\n");
+    let text = TEXT.replace("sphere flesh size, 0 0 0", "mesh flesh big.obj");
+    let taken = |name: &str, text: &str| studio::intake::Taken {
+        name: name.to_owned(),
+        bytes: Ok(text.as_bytes().to_vec()),
+    };
+    let files = vec![taken("big.obj", &mesh), taken("main.rat", &text)];
+    window.parts.requests.ask(Request::Files(files));
+    window.steps(1);
+    {
+        let outbox = window.parts.outbox.borrow();
+        assert_eq!(outbox.report.reading.as_deref(), Some("big.obj"));
+        assert_eq!(outbox.report.errors, 0);
+    }
+    let finished = ask_finished(&window.parts);
+    for _ in 0..2000 {
+        window.steps(1);
+        if finished.borrow().is_some() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert_eq!(finished.take(), Some(Ok(())));
+    assert_eq!(window.parts.outbox.borrow().report.reading, None);
+    assert_eq!(window.errors(), 0);
+    assert_ne!(window.image(), picture);
 }

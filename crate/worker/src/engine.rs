@@ -79,7 +79,7 @@ enum Prepared {
     Errors(Box<Errors>),
 }
 
-/// What a step came to.
+/// Outcome of a step.
 #[derive(Debug, PartialEq)]
 pub enum Step {
     /// There was nothing to do.
@@ -447,13 +447,13 @@ mod tests {
             work(&mut second, Pass::Smooth),
             (Vec::new(), smooth.clone(), rays)
         );
-        // What belongs to another picture is no use.
+        // Samples of another picture are ignored.
         let mut third = worker(true);
         third.accept(learn(2, &told));
         let (_, same, alone) = work(&mut third, Pass::Smooth);
         assert!(same == smooth);
         assert!(alone >= rays + all, "{alone} {rays}");
-        // Who shares nothing neither tells nor listens.
+        // Without sharing, samples are neither reported nor taken.
         let mut fourth = worker(false);
         fourth.accept(learn(1, &told));
         let (none, _, rays) = work(&mut fourth, Pass::Full);
@@ -541,7 +541,7 @@ mod tests {
         assert_eq!(engine.learnt.len(), KEPT);
         engine.accept(begin(2, &other, size));
         assert!(work(&mut engine, 2, Pass::Smooth).0 == truth);
-        // Where no picture is wanted, or one of more squares, nothing is.
+        // Without a picture, or with one of more squares, nothing is kept.
         engine.accept(Request::Stop { generation: 3 });
         engine.accept(learn(3, 1));
         assert!(engine.learnt.is_empty());

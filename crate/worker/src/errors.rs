@@ -10,7 +10,7 @@ use tracer::{Picture, Tile};
 /// Pixels of a row whose rays are followed together.
 const TOGETHER: u32 = 8;
 
-/// What became of a pixel.
+/// Result of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pixel {
     /// Neither hits.

@@ -2,8 +2,8 @@
 //!
 //! The page cuts a picture into tiles and sends [`Request`]s to its workers; a worker keeps them in
 //! an [`Engine`], does one step of work at a time and sends [`Answer`]s. Between two steps it looks
-//! at what has come in, so queued tiles of an older picture are never begun. The same engine runs
-//! on a thread in native builds. What is special to a web worker is in `entry`, which is compiled
+//! at new requests, so queued tiles of an older picture are never begun. The same engine runs
+//! on a thread in native builds. The part for web workers is in `entry`, which is compiled
 //! only into the worker's own wasm (feature `entry`).
 
 pub mod engine;

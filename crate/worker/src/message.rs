@@ -1,4 +1,4 @@
-//! What the page and a worker say to each other: plain data, packed as bytes.
+//! Messages between the page and a tracing worker: plain data, packed as bytes.
 
 use scene::Scene;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -15,7 +15,7 @@ pub struct Order {
     pub pass: Pass,
 }
 
-/// What the pixels of a picture tell.
+/// Meaning of the pixels of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Kind {
     /// Colours, as RGBA.
@@ -25,18 +25,18 @@ pub enum Kind {
     Errors,
 }
 
-/// What the page asks of a worker.
+/// A message to a worker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Request {
     /// A new picture begins: whatever is queued is forgotten.
     Begin {
         /// Its number, larger than those before.
         generation: u64,
-        /// What to draw.
+        /// Scene to draw.
         scene: Box<Scene>,
         /// Width and height in pixels, each > 0.
         size: [u32; 2],
-        /// What of it is wanted.
+        /// Meaning of its pixels.
         kind: Kind,
         /// Whether others trace it, too, and want to hear of the first samples that were taken.
         shared: bool,
@@ -45,7 +45,7 @@ pub enum Request {
     Learn {
         /// The picture.
         generation: u64,
-        /// What they know.
+        /// The samples.
         known: Vec<Known>,
     },
     /// Trace these tiles after those already queued.
@@ -57,7 +57,7 @@ pub enum Request {
     },
 }
 
-/// What a worker answers. A message holds a list of answers, as far as they came at about the same
+/// An answer of a worker. A message holds a list of answers, as far as they came at about the same
 /// time: a page that is busy drawing takes few messages a second.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
@@ -77,7 +77,7 @@ pub enum Answer {
     },
     /// A tile is done.
     Traced {
-        /// What had been asked.
+        /// The order.
         order: Order,
         /// Four bytes each, for what the [`Kind`] says; rows from the top.
         // Copied as a whole, not byte by byte.

@@ -18,7 +18,7 @@ pub struct Module {
 }
 
 /// All wasm files of the page. Each is compiled apart from the others, as features of one must not reach another.
-pub const MODULES: [Module; 2] = [
+pub const MODULES: [Module; 3] = [
     Module {
         package: "studio",
         features: "",
@@ -34,6 +34,14 @@ pub const MODULES: [Module; 2] = [
         name: "tracer",
         budget: 400_000,
         seconds: 60,
+    },
+    Module {
+        package: "tools",
+        features: "entry",
+        profile: "release",
+        name: "tools",
+        budget: 1_500_000,
+        seconds: 20,
     },
 ];
 

@@ -1,8 +1,9 @@
-//! What the editor asks the language, and what it does with the answers: opening the completions and
+//! The editor's queries to the language, and its use of the answers: opening the completions and
 //! writing one, going to definitions, renaming, laying the text out, the card under the pointer.
 
 use super::completion::Keyed;
-use super::{Editor, Place, id, rename, to_bytes, to_chars};
+use super::place::{Place, id, to_bytes, to_chars};
+use super::{Editor, rename};
 use crate::command::Command;
 use crate::session::Session;
 use egui::text::{CCursor, CCursorRange};
@@ -26,7 +27,7 @@ impl Editor {
         }
     }
 
-    /// Where the caret is.
+    /// Place of the caret.
     pub(super) fn place(&self) -> Option<Place> {
         let caret = self.before?.primary.index.0;
         Some(Place {
@@ -149,7 +150,7 @@ impl Editor {
         }
     }
 
-    /// What is under the pointer: a card about it, or with Ctrl and a click the way to where it is made.
+    /// Shows a card about the name under the pointer, or with Ctrl and a click goes to its definition.
     pub(super) fn pointed(
         &mut self,
         response: &egui::Response,

@@ -4,8 +4,7 @@
 //! While the user types, the list is only made when that is quick; else it waits for a short rest, so
 //! that typing never waits for it.
 
-use super::Place;
-use crate::platform;
+use super::place::{self, Place};
 use crate::session::Session;
 use crate::theme::{self, Palette};
 use assist::{Completion, CompletionKind, Completions};
@@ -32,7 +31,7 @@ fn rows(style: &egui::Style) -> (usize, f32) {
 /// The list and where it belongs.
 #[derive(Default)]
 pub struct Popup {
-    /// What is offered, and for which place of which text.
+    /// The completions on offer, and the place and text they are for.
     offers: Option<(Place, Completions)>,
     /// The part of the word that was written, in small letters.
     written: String,
@@ -45,7 +44,7 @@ pub struct Popup {
     cost: f64,
 }
 
-/// What the keys did.
+/// Effect of the keys.
 #[derive(Debug, PartialEq)]
 pub enum Keyed {
     /// Nothing.
@@ -108,9 +107,9 @@ impl Popup {
             return;
         }
         self.wanted = None;
-        let start = platform::stopwatch();
+        let start = crate::clock::stopwatch();
         let completions = assist::complete(session.project(), here.file, here.byte);
-        self.cost = platform::stopwatch() - start;
+        self.cost = crate::clock::stopwatch() - start;
         let typed = session
             .text(here.file)
             .get(completions.replace.clone())
@@ -301,7 +300,7 @@ fn foot(ui: &mut Ui, palette: &Palette, item: &Completion, told: &str) {
         .color(palette.weak);
     ui.add_space(4.0);
     let line = ui.add(egui::Label::new(text).truncate());
-    super::say(ui.ctx(), line.id, told);
+    place::say(ui.ctx(), line.id, told);
 }
 
 /// A letter for a kind, and its colour.

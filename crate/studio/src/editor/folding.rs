@@ -7,7 +7,7 @@ use egui::{Color32, CursorIcon, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, po
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-/// What is folded, for each file.
+/// The folded blocks of each file.
 #[derive(Default)]
 pub struct Folding {
     files: HashMap<usize, Folds>,
@@ -16,7 +16,7 @@ pub struct Folding {
 #[derive(Default)]
 struct Folds {
     text: String,
-    /// What can be folded, lines from 0.
+    /// Blocks that can be folded, as lines from 0.
     ranges: Vec<Range<usize>>,
     /// The first lines of what is.
     shut: BTreeSet<usize>,
@@ -175,7 +175,7 @@ impl Folds {
             .filter(|fold| self.shut.contains(&fold.start))
         {
             let bytes = byte(fold.start + 1)..byte(fold.end);
-            // What lies inside of one that is folded is hidden already.
+            // A block inside a folded one is hidden already.
             let is_inside = self.hidden.last().is_some_and(|last| last.end >= bytes.end);
             if !is_inside && !bytes.is_empty() {
                 self.hidden.push(bytes);

@@ -1,6 +1,6 @@
 //! The card about the word under the pointer, and the messages that stand there.
 
-use super::Place;
+use super::place::Place;
 use crate::marks::Marks;
 use crate::session::Session;
 use crate::{problems, theme};

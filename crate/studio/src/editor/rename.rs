@@ -1,6 +1,6 @@
 //! A small field at a name that gives it another name everywhere.
 
-use super::Place;
+use super::place::{self, Place};
 use crate::command::Command;
 use crate::session::Session;
 use crate::theme;
@@ -79,7 +79,7 @@ impl Rename {
                 crate::places::note(ui.ctx(), "rename", field.rect);
                 if std::mem::take(&mut self.fresh) {
                     field.request_focus();
-                    super::select_all(ui.ctx(), id, &self.name);
+                    place::select_all(ui.ctx(), id, &self.name);
                 }
                 if field.changed() {
                     self.trouble = None;
@@ -94,7 +94,7 @@ impl Rename {
                 let line = RichText::new(text).size(12.0).color(colour);
                 let line = ui.add(egui::Label::new(line).wrap());
                 if let Some(trouble) = &self.trouble {
-                    super::say(ui.ctx(), line.id, trouble);
+                    place::say(ui.ctx(), line.id, trouble);
                 }
                 if field.lost_focus() {
                     open = ui.input(|input| input.key_pressed(Key::Enter))

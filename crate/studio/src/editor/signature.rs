@@ -1,6 +1,6 @@
 //! A quiet line at the caret: how the command is written there, with the operand whose turn it is.
 
-use super::Place;
+use super::place::{self, Place};
 use crate::platform;
 use crate::session::Session;
 use crate::theme;
@@ -17,7 +17,7 @@ const QUICK: f64 = 0.003;
 #[derive(Default)]
 pub struct Line {
     known: Option<(Place, u64, Option<Signature>)>,
-    /// Where the caret is, and since when.
+    /// Place of the caret, and since when it is there.
     here: Option<(Place, u64, f64)>,
     cost: f64,
     /// The caret's line in which the user closed it.
@@ -85,7 +85,7 @@ impl Line {
                 .inner_margin(egui::Margin::symmetric(8, 4))
                 .show(ui, |ui| {
                     let label = ui.add(egui::Label::new(galley));
-                    super::say(ui.ctx(), label.id, &told);
+                    place::say(ui.ctx(), label.id, &told);
                 });
         });
         crate::places::note(ui.ctx(), "signature", shown.response.rect);
@@ -111,13 +111,13 @@ impl Line {
         if self.cost > QUICK && now - since < REST {
             let rest = (REST - (now - since)) as f32;
             ui.ctx().request_repaint_after_secs(rest + 0.002);
-            // What was said about another place is wrong here.
+            // The line about another place is wrong here.
             self.known = None;
             return;
         }
-        let start = platform::stopwatch();
+        let start = crate::clock::stopwatch();
         let signature = assist::signature(session.project(), place.file, place.byte);
-        self.cost = platform::stopwatch() - start;
+        self.cost = crate::clock::stopwatch() - start;
         self.known = Some((place, session.revision(), signature));
     }
 }
@@ -143,7 +143,7 @@ fn written(signature: &Signature, ui: &Ui, width: f32) -> LayoutJob {
     job
 }
 
-/// What screen readers say.
+/// Text for screen readers.
 fn told(signature: &Signature) -> String {
     match signature
         .active

@@ -1,7 +1,6 @@
 //! A knob on the picture that stands for numbers of the text: dragged by the pointer or a finger, or
 //! moved by the arrow keys.
 
-use super::LIT;
 use crate::places;
 use assist::handles::{Editable, Handle};
 use egui::{
@@ -9,7 +8,10 @@ use egui::{
     Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
 
-/// What is done to a knob in a frame.
+/// The colour of what is lit.
+pub const LIT: Color32 = Color32::from_rgb(255, 222, 122);
+
+/// Input on a knob in one frame.
 pub struct Answer {
     /// A drag begins.
     pub begins: bool,
@@ -113,7 +115,7 @@ fn keys(ui: &Ui, response: &egui::Response) -> (Vec2, bool) {
     })
 }
 
-/// What the knob is, beside it.
+/// Label beside the knob.
 fn caption(painter: &Painter, rect: Rect, at: Pos2, handle: &Handle, fixed: Option<&str>) {
     let mut text = format!("{}  {}", handle.label, handle.text());
     if let Some(why) = fixed {

@@ -23,8 +23,6 @@ use tracer::Picker;
 const MOST_BONES: usize = 400;
 /// Knobs that are shown, at most: a polygon may have hundreds of corners.
 const MOST_KNOBS: usize = 240;
-/// The colour of what is lit.
-const LIT: Color32 = Color32::from_rgb(255, 222, 122);
 
 /// The chosen shape and what is being done to it.
 #[derive(Default)]
@@ -36,7 +34,7 @@ pub struct Hands {
     /// The file and byte of the caret when it was last looked at.
     caret: Option<(usize, usize)>,
     handles: Vec<Handle>,
-    /// What the handles were made from: revision, frame of the film, element; and the camera.
+    /// Key of the handles: revision, frame of the film, element; and the camera.
     made: Option<((u64, u32, usize), Camera)>,
     /// The scene of a revision and frame, as the draft shows it or not, ready for clicks.
     picker: Option<((u64, u32, bool), Picker)>,
@@ -46,11 +44,11 @@ pub struct Hands {
 /// A knob that is held.
 struct Drag {
     handle: usize,
-    /// Where the pointer has brought it, or would have if its numbers allowed.
+    /// Position to which the pointer has dragged it, before its numbers' limits.
     target: DVec3,
 }
 
-/// What the hands need to know of the page.
+/// Surroundings of the handles.
 pub struct Around<'a> {
     /// The user's work.
     pub session: &'a Session,
@@ -349,7 +347,7 @@ fn stroke(painter: &Painter, sight: &Sight, places: &[DVec3], strength: f32) {
         .windows(2)
         .filter_map(|ends| sight.line(ends[0], ends[1]))
         .collect();
-    for (width, colour) in [(3.6, Color32::from_black_alpha(110)), (1.5, LIT)] {
+    for (width, colour) in [(3.6, Color32::from_black_alpha(110)), (1.5, knob::LIT)] {
         let stroke = Stroke::new(width, colour.gamma_multiply(strength));
         for piece in &pieces {
             painter.line_segment(*piece, stroke);

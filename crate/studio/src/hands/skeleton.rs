@@ -1,4 +1,4 @@
-//! What of an element is drawn over the picture when it is chosen: its bone, as lines.
+//! The skeleton of the chosen element, drawn over the picture as lines.
 
 use glam::DVec3;
 use scene::Shape;

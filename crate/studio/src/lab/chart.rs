@@ -1,13 +1,13 @@
 //! Lesson 6: every kernel on every primitive, traced and timed.
 
-use super::Bench;
+use super::bench::Bench;
 use super::formulas::{self, BONES, Bone};
 use super::grid::refused;
 use super::plot::number;
 use super::sample;
 use super::tools::{self, heading, remark};
 use crate::command::Command;
-use crate::{places, platform, theme};
+use crate::{places, theme};
 use egui::{
     Align2, Color32, CursorIcon, FontId, Frame, Margin, Rect, RichText, Sense, Stroke, StrokeKind,
     Ui, pos2, vec2,
@@ -29,7 +29,7 @@ const SHARE: f64 = 0.4;
 /// Cells of the chart.
 const CELLS: usize = Kernel::ALL.len() * BONES.len();
 
-/// What the numbers below the pictures are.
+/// Quantity shown below the pictures.
 const COSTS: &str = "2× means: a value and its gradient take twice the time of a Cauchy point, measured just now in this window.";
 
 /// A cell of the chart.
@@ -174,7 +174,7 @@ fn time(cell: Cell) -> Option<f64> {
     for _ in 0..3 {
         let mut sum = f32x8::splat(0.0);
         let mut count = 0u32;
-        let begun = platform::stopwatch();
+        let begun = crate::clock::stopwatch();
         let mut taken = 0.0;
         while taken < TIMING {
             for place in &places {
@@ -182,7 +182,7 @@ fn time(cell: Cell) -> Option<f64> {
                 sum += jet.value + jet.gradient[0] + jet.gradient[1] + jet.gradient[2];
             }
             count += 64;
-            taken = platform::stopwatch() - begun;
+            taken = crate::clock::stopwatch() - begun;
         }
         black_box(sum);
         quickest = quickest.min(1e9 * taken / (8.0 * f64::from(count)));
@@ -209,8 +209,8 @@ impl Chart {
         }
         let frame = f64::from(ui.input(|input| input.unstable_dt));
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
-        let begun = platform::stopwatch();
-        while !self.is_timed() && platform::stopwatch() - begun < budget {
+        let begun = crate::clock::stopwatch();
+        while !self.is_timed() && crate::clock::stopwatch() - begun < budget {
             let index = self.timings % CELLS;
             let cell = (Kernel::ALL[index / BONES.len()], BONES[index % BONES.len()]);
             let cost = time(cell).unwrap_or(f64::NAN);
@@ -324,7 +324,7 @@ impl Chart {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
         let label = format!("lab cell {} {}", kernel.name(), bone.name());
         places::note(ui.ctx(), label, place);
-        // What is far off the screen is not traced before it is looked for.
+        // Cells far off the screen are not traced before they are scrolled to.
         let near = ui.clip_rect().expand(400.0).intersects(picture);
         if near && self.is_timed() {
             let slot = ("chart", kernel, bone);

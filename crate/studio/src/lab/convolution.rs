@@ -4,7 +4,7 @@
 //! divided by what an endless bar would give, so that a long bar has the field 1. With H the
 //! kernel's integral from 0, a bar [a, b] gives `w·(H((b−x)/w) − H((a−x)/w))`.
 
-use super::Bench;
+use super::bench::Bench;
 use super::plot::{self, Axis, Plot, number};
 use super::tools::{self, Stage, heading, reading, remark, slider};
 use crate::{places, theme};
@@ -74,7 +74,7 @@ impl Convolution {
         })
     }
 
-    /// What one bar gives at x.
+    /// Contribution of one bar at x.
     fn part(&self, [a, b]: [f64; 2], x: f64) -> f64 {
         let [a, b] = [a, b].map(|end| self.integral((end - x) / self.width));
         (b - a) / (2.0 * self.endless())
@@ -103,7 +103,7 @@ impl Convolution {
         (length > 0.0).then(|| inside / length)
     }
 
-    /// Where the field is above the iso-value.
+    /// Intervals in which the field is above the iso-value.
     fn flesh(&self, samples: usize) -> Vec<[f64; 2]> {
         let at = |i: usize| LINE[0] + (LINE[1] - LINE[0]) * i as f64 / samples as f64;
         let mut spans = Vec::new();

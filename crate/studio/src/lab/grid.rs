@@ -1,6 +1,6 @@
 //! Lesson 4: the T shape for a range of radii and blobbinesses.
 
-use super::Bench;
+use super::bench::Bench;
 use super::pictures::Shown;
 use super::plot::number;
 use super::tools::{self, Stage, heading, remark, slider};

@@ -1,6 +1,6 @@
 //! Lesson 1: the eight kernels, bare and as the field of a point.
 
-use super::Bench;
+use super::bench::Bench;
 use super::plot::{self, Axis, Plot, number};
 use super::sample;
 use super::tools::{self, Stage, choice, heading, reading, remark, slider};
@@ -12,7 +12,7 @@ use glam::DVec3;
 /// Below this share of the threshold an infinite kernel counts as over.
 const INFLUENCE: f64 = 1e-3;
 
-/// What is plotted.
+/// Plotted quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum View {
     /// The field of a point, against the distance.
@@ -196,7 +196,7 @@ impl Kernels {
                 "R, the radius in isolation",
             );
         }
-        // What was chosen comes last, above the others.
+        // The chosen kernel is drawn last, above the others.
         let (above, below): (Vec<Kernel>, Vec<Kernel>) = Kernel::ALL
             .into_iter()
             .partition(|kernel| self.chosen.contains(kernel));
@@ -245,7 +245,7 @@ impl Kernels {
         if !chosen {
             return;
         }
-        // Where the formula changes, and where the kernel is over.
+        // The radii at which the formula changes, and at which the kernel ends.
         let unit = if self.view == View::Flesh {
             shape.width
         } else {

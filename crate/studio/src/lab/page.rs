@@ -1,12 +1,15 @@
 //! The lab's page: its bar, the list of lessons, and the open lesson.
 
-use super::{Bench, Lesson, text};
-use crate::app::App;
+use super::bench::Bench;
+use super::state::Lab;
+use super::text;
 use crate::command::Command;
 use crate::icon::{self, Icon};
-use crate::{bar, layout, places, platform, theme};
+use crate::lesson::Lesson;
+use crate::session::Session;
+use crate::{places, platform, screen, theme};
 use egui::{
-    Align, Align2, Button, CentralPanel, Color32, FontId, Frame, Layout, Margin, Panel, Pos2, Rect,
+    Align, Align2, Button, CentralPanel, Color32, FontId, Layout, Margin, Panel, Pos2, Rect,
     RichText, ScrollArea, Sense, Stroke, Ui, vec2,
 };
 
@@ -15,41 +18,50 @@ const LIST: f32 = 236.0;
 /// Widest line of text that reads well, points.
 const MEASURE: f32 = 820.0;
 
+/// State outside the lab that its page shows.
+pub struct Frame<'a> {
+    /// The open work.
+    pub session: &'a Session,
+    /// Fraction done of the picture that the workers trace for the editor, while they do.
+    pub tracing: Option<f64>,
+    /// The chosen palette.
+    pub theme: theme::Choice,
+}
+
 /// Draws the lab in place of the editor.
-pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    let narrow = layout::is_narrow(ui.ctx());
+pub fn show(lab: &mut Lab, frame: &Frame<'_>, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let narrow = screen::is_narrow(ui.ctx());
     let palette = theme::palette(ui.visuals());
-    let flat = Frame::new().fill(palette.panel);
-    app.lab.pictures.begin_frame();
-    app.lab.readings.clear();
+    let flat = egui::Frame::new().fill(palette.panel);
+    lab.pictures.begin_frame();
+    lab.readings.clear();
     Panel::top("lab bar")
         .exact_size(if narrow { 52.0 } else { 46.0 })
         .frame(flat)
-        .show(ui, |ui| lab_bar(app, ui, narrow, commands));
+        .show(ui, |ui| lab_bar(lab, frame.theme, ui, narrow, commands));
     if narrow {
         Panel::top("lab lessons")
             .exact_size(54.0)
             .frame(flat)
-            .show(ui, |ui| strip(app.lab.lesson, ui, commands));
+            .show(ui, |ui| strip(lab.lesson, ui, commands));
     } else {
         Panel::left("lab lessons")
             .exact_size(LIST)
             .resizable(false)
             .frame(flat.inner_margin(Margin::symmetric(12, 14)))
-            .show(ui, |ui| list(app.lab.lesson, ui, commands));
+            .show(ui, |ui| list(lab.lesson, ui, commands));
     }
-    let busy = app.renderer.phase() == crate::render::Phase::Tracing;
-    app.lab.pictures.blocked = busy.then(|| app.renderer.progress().fraction);
+    lab.pictures.blocked = frame.tracing;
     CentralPanel::no_frame().show(ui, |ui| {
         let all = ui.max_rect();
         ui.painter().rect_filled(all, 0.0, palette.panel);
         let margin = if narrow { 14.0 } else { 28.0 };
         ScrollArea::vertical()
-            .id_salt(("lesson", app.lab.lesson))
+            .id_salt(("lesson", lab.lesson))
             .auto_shrink(false)
             .show(ui, |ui| {
                 let width = (all.width() - 2.0 * margin).min(1500.0);
-                Frame::new()
+                egui::Frame::new()
                     .inner_margin(Margin::symmetric(
                         margin as i8,
                         if narrow { 14 } else { 22 },
@@ -57,13 +69,19 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
                     .show(ui, |ui| {
                         ui.set_width(width);
                         ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
-                        lesson(app, ui, all, narrow, commands);
+                        lesson(lab, frame.session, ui, all, narrow, commands);
                     });
             });
     });
 }
 
-fn lab_bar(app: &mut App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
+fn lab_bar(
+    lab: &mut Lab,
+    chosen: theme::Choice,
+    ui: &mut Ui,
+    narrow: bool,
+    commands: &mut Vec<Command>,
+) {
     let palette = theme::palette(ui.visuals());
     ui.horizontal_centered(|ui| {
         ui.add_space(if narrow { 6.0 } else { 12.0 });
@@ -86,18 +104,18 @@ fn lab_bar(app: &mut App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>
             if share.clicked() {
                 commands.push(Command::ShareLab);
             }
-            let next = bar::other_theme(ui);
-            let tip = format!("Colours: {}", bar::theme_label(app.settings.theme));
+            let next = theme::other(ui);
+            let tip = format!("Colours: {}", theme::label(chosen));
             if icon::button(ui, Icon::Theme, &tip, true).clicked() {
                 commands.push(Command::SetTheme(next));
             }
             let now = platform::now(ui.ctx());
-            if let Some((said, until)) = app.lab.said {
+            if let Some((said, until)) = lab.said {
                 if now < until {
                     ui.label(RichText::new(said).color(palette.weak).size(13.0));
                     ui.ctx().request_repaint_after_secs((until - now) as f32);
                 } else {
-                    app.lab.said = None;
+                    lab.said = None;
                 }
             }
         });
@@ -163,7 +181,7 @@ fn list(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
             let size = vec2(ui.available_width(), 52.0);
             let (rect, response) = ui.allocate_exact_size(size, Sense::click());
             response.widget_info(|| {
-                egui::WidgetInfo::selected(egui::Role::Button, true, chosen, words.title)
+                egui::WidgetInfo::selected(egui::Role::Button, true, chosen, lesson.title())
             });
             note(ui, lesson, rect);
             let painter = ui.painter();
@@ -220,14 +238,21 @@ fn lesson_name(lesson: Lesson) -> &'static str {
 }
 
 /// Title, sentences, button, and the figure.
-fn lesson(app: &mut App, ui: &mut Ui, all: Rect, narrow: bool, commands: &mut Vec<Command>) {
+fn lesson(
+    lab: &mut Lab,
+    session: &Session,
+    ui: &mut Ui,
+    all: Rect,
+    narrow: bool,
+    commands: &mut Vec<Command>,
+) {
     let palette = theme::palette(ui.visuals());
-    let open = app.lab.lesson;
+    let open = lab.lesson;
     let words = text::of(open);
     let width = ui.available_width();
     let top = ui.cursor().top();
     let mut wanted = false;
-    let title = RichText::new(words.title).size(if narrow { 22.0 } else { 26.0 });
+    let title = RichText::new(open.title()).size(if narrow { 22.0 } else { 26.0 });
     let title = title.color(palette.strong);
     if narrow {
         ui.label(title);
@@ -255,9 +280,8 @@ fn lesson(app: &mut App, ui: &mut Ui, all: Rect, narrow: bool, commands: &mut Ve
     }
     ui.add_space(if narrow { 6.0 } else { 12.0 });
     let used = ui.cursor().top() - top;
-    let lab = &mut app.lab;
     let mut bench = Bench {
-        session: &app.work.session,
+        session,
         pictures: &mut lab.pictures,
         commands,
         readings: &mut lab.readings,

@@ -7,11 +7,11 @@
 //! nothing would ever be seen while it moves.
 
 use crate::picture::Assembly;
-use crate::pool::{Job, Pool};
 use crate::theme;
 use egui::{
     Color32, ColorImage, Context, FontId, Pos2, Rect, TextureHandle, TextureOptions, Ui, vec2,
 };
+use pool::{Job, Pool};
 use rats::{File, Project, Severity};
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -27,7 +27,7 @@ const MOST: usize = 260;
 /// Longest side of a picture, pixels.
 const LARGEST: f32 = 420.0;
 
-/// What became of a text.
+/// Outcome of compiling a text.
 enum Kept {
     /// It was traced.
     Drawn(TextureHandle),
@@ -59,7 +59,7 @@ struct Running {
     assembly: Assembly,
 }
 
-/// What a slot shows.
+/// Content of a slot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Shown {
     /// The picture of this text.
@@ -78,7 +78,7 @@ pub struct Pictures {
     pool: Rc<RefCell<Pool>>,
     wishes: Vec<Wish>,
     entries: HashMap<u64, Entry>,
-    /// What each slot showed last, and in which frame it was last given a new picture.
+    /// The text that each slot showed last, and the frame in which it was last given a new picture.
     slots: HashMap<u64, (u64, u64)>,
     running: Option<Running>,
     number: u64,
@@ -198,7 +198,7 @@ impl Pictures {
                     text: wish.text.to_string(),
                 }],
             });
-            // What is wrong says more than that therefore something is left over.
+            // An error says more than a warning that follows from it.
             let worst = compiled.diagnostics.iter().find(|diagnostic| {
                 matches!(diagnostic.severity, Severity::Error | Severity::Warning)
             });

@@ -29,22 +29,22 @@ pub fn hue(ui: &Ui, index: usize) -> Color32 {
 
 /// A place with axes.
 pub struct Plot {
-    /// Where the curves are.
+    /// Place of the curves.
     pub rect: Rect,
-    /// What of x is shown.
+    /// Shown range of x.
     pub x: [f64; 2],
-    /// What of y is shown, from the bottom.
+    /// Shown range of y, from the bottom.
     pub y: [f64; 2],
     /// Paints inside `rect` only.
     pub painter: Painter,
 }
 
-/// What stands along an axis.
+/// Labels of an axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis<'a> {
     /// The first and the last value.
     pub range: [f64; 2],
-    /// What it is.
+    /// Its quantity.
     pub label: &'a str,
     /// Whether there are numbers.
     pub numbers: bool,
@@ -139,7 +139,7 @@ impl Plot {
         plot
     }
 
-    /// Where a value lies. Far values are kept near, for the painter's sake.
+    /// Position of a value on the screen. Values far outside are clamped, for the painter's sake.
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> Pos2 {
         let share = |value: f64, [low, high]: [f64; 2]| {

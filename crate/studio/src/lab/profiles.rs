@@ -1,6 +1,6 @@
 //! Lesson 5: the strength of a bone as a function along it.
 
-use super::Bench;
+use super::bench::Bench;
 use super::grid::refused;
 use super::plot::{self, Axis, Plot};
 use super::tools::{Stage, heading, remark, slider};

@@ -5,7 +5,7 @@ use field::{BlobScale, Kernel, Shaping, Sum};
 use glam::DVec3;
 use wide::f32x8;
 
-/// What the lessons say of a primitive: kernel, radius, magnitude of the blobbiness.
+/// Flesh of a primitive in the lessons: kernel, radius, magnitude of the blobbiness.
 #[must_use]
 pub fn shaping(kernel: Kernel, radius: f64, blobbiness: f64) -> Shaping {
     Shaping {

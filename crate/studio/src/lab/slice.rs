@@ -3,13 +3,13 @@
 //! The field is sampled coarsely at once and then ever more finely, a few milliseconds in each
 //! frame, so that nothing stutters however large the dataset is.
 
-use super::Bench;
+use super::bench::Bench;
 use super::plot::{self, number};
 use super::sample::{self, Filling, Window};
 use super::tools::{Stage, choice, heading, reading, remark, slider};
 use crate::command::Command;
 use crate::session::Session;
-use crate::{examples, platform, theme};
+use crate::{examples, theme};
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions,
     Ui, pos2, vec2,
@@ -36,7 +36,7 @@ enum Axis {
     Camera,
 }
 
-/// What a slice was sampled of.
+/// Key of a sampled slice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cut {
     generation: u64,
@@ -56,14 +56,14 @@ struct Subject {
 /// The lesson's state.
 pub struct Slice {
     axis: Axis,
-    /// Where the plane is, in shares of the reach from the middle.
+    /// Distance of the plane from the middle as a fraction of the reach.
     offset: f64,
     zoom: f64,
     subject: Option<Subject>,
     cut: Option<Cut>,
     level: usize,
     filling: Filling,
-    /// What is on the screen: the colours, and the lines in shares of the window.
+    /// Content of the screen: the colours, and the lines in fractions of the window.
     texture: Option<TextureHandle>,
     surface: Vec<[[f32; 2]; 2]>,
     lines: Vec<[[f32; 2]; 2]>,
@@ -143,11 +143,11 @@ impl Slice {
             self.filling = grid(0, cut.tall);
         }
         let Some(subject) = &self.subject else { return };
-        let begun = platform::stopwatch();
+        let begun = crate::clock::stopwatch();
         let frame = f64::from(ui.input(|input| input.unstable_dt));
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
         while self.level < LEVELS.len() {
-            let enough = || platform::stopwatch() - begun > budget;
+            let enough = || crate::clock::stopwatch() - begun > budget;
             if !self.filling.go_on(&subject.bodies, &cut.window, enough) {
                 break;
             }
@@ -185,7 +185,7 @@ impl Slice {
             if self.level < LEVELS.len() {
                 self.filling = grid(self.level, cut.tall);
             }
-            if platform::stopwatch() - begun > budget {
+            if crate::clock::stopwatch() - begun > budget {
                 break;
             }
         }
@@ -553,7 +553,7 @@ fn legend(ui: &mut Ui) {
     }
 }
 
-/// What to do about a dataset without soft shapes.
+/// Advice about a dataset without soft shapes.
 fn nothing(ui: &mut Ui, stage: &Stage, bench: &mut Bench<'_>) {
     let palette = theme::palette(ui.visuals());
     plot::panel(ui, stage.figure);

@@ -4,7 +4,7 @@
 //! Pictures and maps come from the workers: for a map each pixel's hit is held against the exact
 //! crossing, found on the field itself in double precision.
 
-use super::Bench;
+use super::bench::Bench;
 use super::grid::refused;
 use super::pictures::Shown;
 use super::slice::shade;
@@ -32,14 +32,14 @@ const COLUMNS: [(&str, &str, &str); 3] = [
     ("certified", "hermite", "worst certified"),
 ];
 
-/// Where the cross is seen from.
+/// Viewpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum View {
     Side,
     Front,
 }
 
-/// What is compared.
+/// Compared methods.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     view: View,
@@ -119,7 +119,7 @@ impl Map {
     }
 }
 
-/// Where on the scale of colours a distance is, by equal ratios.
+/// Position of a distance on the logarithmic colour scale.
 fn share(radii: f64) -> f32 {
     let decades = -libm::log10(LEAST);
     (1.0 + libm::log10(radii.max(1e-12)) / decades).clamp(0.0, 1.0) as f32

@@ -1,7 +1,7 @@
 //! Lesson 7: cutting a bone changes nothing, since the integral over the whole is the sum of those
 //! over its parts; a field made of distances bulges at the cut.
 
-use super::Bench;
+use super::bench::Bench;
 use super::contour::Grid;
 use super::plot::{self, number};
 use super::sample::{self, Window};
@@ -30,7 +30,7 @@ enum Bone {
     Arc,
 }
 
-/// What the fields are computed of.
+/// Inputs of the fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     bone: Bone,
@@ -67,7 +67,7 @@ struct Fields {
     convolution: [Vec<Piece>; 2],
     /// The same for fields made of distances.
     distance: [Vec<Piece>; 2],
-    /// What the parts enclose, by convolution and by distance.
+    /// Areas that the parts enclose, by convolution and by distance.
     insides: [Vec<Vec<[f32; 2]>>; 2],
     /// Largest difference that the cut makes, over the plane, in units of T.
     differences: [f64; 2],

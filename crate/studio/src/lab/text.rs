@@ -1,11 +1,9 @@
-//! What the lessons say: a title, a few words for the list, and three sentences.
+//! Texts of the lessons: a few words for the list, and three sentences.
 
-use super::Lesson;
+use crate::lesson::Lesson;
 
 /// The words of one lesson.
 pub struct Words {
-    /// Title.
-    pub title: &'static str,
     /// A few words for the list.
     pub about: &'static str,
     /// Three sentences.
@@ -16,7 +14,6 @@ pub struct Words {
 pub fn of(lesson: Lesson) -> Words {
     match lesson {
         Lesson::Kernels => Words {
-            title: "Kernels",
             about: "how flesh thins with distance",
             sentences: "A kernel says how much flesh a point of the skeleton gives at a distance r. \
                         Whatever the kernel, it is scaled so that a lone point has its surface exactly \
@@ -25,7 +22,6 @@ pub fn of(lesson: Lesson) -> Words {
                         see nothing beyond it.",
         },
         Lesson::Convolution => Words {
-            title: "Convolution in one dimension",
             about: "geometry × kernel = field",
             sentences: "Slide the kernel along the line: the field at a place is the area that kernel \
                         and geometry have in common there. The surface lies where this field crosses \
@@ -34,7 +30,6 @@ pub fn of(lesson: Lesson) -> Words {
                         the same in its middle however much longer it grows.",
         },
         Lesson::Slice => Words {
-            title: "A slice through the field",
             about: "your dataset, seen from inside",
             sentences: "Here is the field of the dataset in your editor, cut by a plane. The surface \
                         that the picture shows is one of these lines, F = T, and the other lines show \
@@ -42,7 +37,6 @@ pub fn of(lesson: Lesson) -> Words {
                         to read the field there.",
         },
         Lesson::Grid => Words {
-            title: "Radius and blobbiness",
             about: "the numbers behind a joint",
             sentences: "Two bars make a T, and only two numbers change from picture to picture. The \
                         radius says how thick a bar is by itself; the blobbiness says how freely its \
@@ -50,7 +44,6 @@ pub fn of(lesson: Lesson) -> Words {
                         the editor.",
         },
         Lesson::Profiles => Words {
-            title: "Profiles",
             about: "strength along a bone",
             sentences: "A profile multiplies the field of a bone by a function along it, here drawn \
                         below each picture. Where the function is large the flesh swells, where it is \
@@ -58,7 +51,6 @@ pub fn of(lesson: Lesson) -> Words {
                         the radius, so the outline does not copy the curve.",
         },
         Lesson::Chart => Words {
-            title: "The chart",
             about: "eight kernels × seven primitives",
             sentences: "Every kernel can be convolved with every primitive; this is the whole table, \
                         traced just now. Some cells have a closed formula, some need an elliptic \
@@ -66,7 +58,6 @@ pub fn of(lesson: Lesson) -> Words {
                         Choose a cell to see how its field is computed.",
         },
         Lesson::Superposition => Words {
-            title: "Superposition",
             about: "why a cut bone shows no seam",
             sentences: "Cut the bone wherever you like: an integral over the whole is the sum of the \
                         integrals over its parts, so a convolution surface does not notice. Next to it \
@@ -75,7 +66,6 @@ pub fn of(lesson: Lesson) -> Words {
                         together from many pieces here.",
         },
         Lesson::Spans => Words {
-            title: "How many spans?",
             about: "cubics along a ray, and errors",
             sentences: "Along each ray a few cubics stand in for a bone's field, and what a picture shows \
                         is their surface, not the field's. Two spans a bone, as first published, give way \
@@ -93,9 +83,14 @@ mod tests {
     fn each_lesson_says_three_sentences() {
         for lesson in Lesson::ALL {
             let words = of(lesson);
-            assert_eq!(words.sentences.matches(". ").count(), 2, "{}", words.title);
-            assert!(words.sentences.ends_with('.'), "{}", words.title);
-            assert!(!words.sentences.contains("  "), "{}", words.title);
+            assert_eq!(
+                words.sentences.matches(". ").count(),
+                2,
+                "{}",
+                lesson.title()
+            );
+            assert!(words.sentences.ends_with('.'), "{}", lesson.title());
+            assert!(!words.sentences.contains("  "), "{}", lesson.title());
         }
     }
 }

@@ -2,7 +2,7 @@
 //! choices side by side.
 
 use super::plot;
-use crate::{places, sliders, theme};
+use crate::{places, slider, theme};
 use egui::{
     Button, Color32, Rect, Response, RichText, Sense, Slider, Stroke, StrokeKind, Ui, UiBuilder,
     vec2,
@@ -14,9 +14,9 @@ const SIDE: f32 = 292.0;
 
 /// A figure's place and, beside or below it, that of its controls.
 pub struct Stage {
-    /// Where the figure goes.
+    /// Place of the figure.
     pub figure: Rect,
-    /// Where the controls go.
+    /// Place of the controls.
     pub controls: Ui,
 }
 
@@ -68,7 +68,7 @@ pub fn slider(
                 ui.label(RichText::new(text).size(13.5).color(palette.strong));
             });
         });
-        sliders::colours(ui);
+        slider::colours(ui);
         ui.spacing_mut().slider_width = width.min(520.0);
         let slider = ui
             .add(Slider::new(value, range).show_value(false).smart_aim(false))

@@ -1,4 +1,4 @@
-//! What the app needs of the page around it: address, storage, clock, downloads. Native builds
+//! Services of the page around the app: address, storage, clock, downloads. Native builds
 //! (tests) have stand-ins in memory.
 
 #[cfg(target_arch = "wasm32")]

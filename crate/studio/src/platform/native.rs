@@ -19,12 +19,6 @@ pub fn now(ctx: &egui::Context) -> f64 {
     ctx.input(|input| input.time)
 }
 
-/// Seconds on a clock for measuring how long something takes.
-#[must_use]
-pub fn stopwatch() -> f64 {
-    unix_time() / 1000.0
-}
-
 /// Says whether each frame keeps the tracer waiting.
 pub fn set_frames_dear(_dear: bool) {}
 

@@ -16,16 +16,7 @@ fn window() -> web_sys::Window {
 /// Seconds on a clock that never goes back. egui's own stands still while the tab is hidden.
 #[must_use]
 pub fn now(_ctx: &egui::Context) -> f64 {
-    stopwatch()
-}
-
-/// Seconds on a clock for measuring how long something takes.
-#[must_use]
-pub fn stopwatch() -> f64 {
-    window()
-        .performance()
-        .map_or_else(js_sys::Date::now, |performance| performance.now())
-        / 1000.0
+    crate::clock::stopwatch()
 }
 
 /// Says whether each frame keeps the tracer waiting.
@@ -219,7 +210,7 @@ pub fn troubled() -> bool {
 /// Notes that the program may stop unexpectedly, or with `false` that it works.
 pub fn set_troubled(troubled: bool) {
     if let Ok(Some(storage)) = window().session_storage() {
-        // Where nothing is stored, a bad start is simply tried again.
+        // Without storage, a bad start is simply tried again.
         let _ = if troubled {
             storage.set_item(TROUBLED, "1")
         } else {

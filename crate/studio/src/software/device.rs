@@ -20,7 +20,7 @@ const MAX_TEXTURE_SIDE: u32 = 8192;
 /// A setup for eframe that draws nothing.
 ///
 /// # Errors
-/// What wgpu says when it cannot make its stand-in device.
+/// wgpu's message when it cannot make its stand-in device.
 pub async fn setup() -> Result<WgpuSetup, String> {
     let noop = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::NOOP,

@@ -20,7 +20,7 @@ pub const MAX_BYTES: usize = 64 << 20;
 /// Most results.
 pub const MAX_RESULTS: usize = 256;
 
-/// What the jobs of one run have written.
+/// Files written by the jobs of one run.
 #[derive(Default)]
 struct Made {
     files: BTreeMap<String, Arc<[u8]>>,

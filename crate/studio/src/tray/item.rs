@@ -1,4 +1,4 @@
-//! What lies on the tray: a result, or the sentence that says why there is none.
+//! An entry of the tray: a result, or the reason why there is none.
 
 use crate::asset;
 use ::picture::animation::{self, Frames};
@@ -18,13 +18,13 @@ pub struct Item {
     pub job: usize,
     /// The command that made it.
     pub command: &'static str,
-    /// What the job says.
+    /// Message of the job.
     pub said: String,
-    /// What is to be seen.
+    /// Visible content.
     pub content: Content,
 }
 
-/// What is to be seen.
+/// Visible content.
 pub enum Content {
     /// A picture or an animation.
     File(Film),
@@ -40,11 +40,11 @@ pub struct Film {
     pub name: String,
     /// Its bytes.
     pub bytes: Arc<[u8]>,
-    /// What it looks like, once that was looked at; none if it is damaged.
+    /// Its decoded look, once it was needed; none if it is damaged.
     pub look: Option<Option<Look>>,
 }
 
-/// What a picture looks like.
+/// Decoded look of a picture.
 #[derive(Clone)]
 pub struct Look {
     /// Width and height, pixels.
@@ -71,7 +71,7 @@ impl Item {
         matches!(self.content, Content::Refused)
     }
 
-    /// What it is called: the file's name, or the command's.
+    /// Its title: the file's name, or the command's.
     #[must_use]
     pub fn title(&self) -> &str {
         self.film().map_or(self.command, |film| &film.name)
@@ -84,7 +84,7 @@ impl Film {
         Format::of(Path::new(&self.name))
     }
 
-    /// What kind of file it is, for the browser.
+    /// MIME type of the file.
     #[must_use]
     pub fn mime(&self) -> &'static str {
         match self.format() {

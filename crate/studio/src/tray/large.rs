@@ -116,7 +116,7 @@ impl Large {
         now: f64,
         commands: &mut Vec<Command>,
     ) {
-        // What is on the tray may have changed meanwhile.
+        // The tray may have changed meanwhile.
         let Some(item) = items.get(self.open) else {
             commands.push(Command::Close);
             return;

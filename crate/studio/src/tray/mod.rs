@@ -12,7 +12,6 @@ pub mod strip;
 use crate::asset::Asset;
 use crate::command::Command;
 use crate::picture::Image;
-use crate::platform;
 use crate::session::Session;
 use darkroom::{Bench, Done, Step};
 use desk::Desk;
@@ -28,7 +27,7 @@ const QUIET: f64 = 0.3;
 /// Seconds of work in one frame of the page, after which what was begun is still finished.
 const SPELL: f64 = 0.008;
 
-/// What the jobs depend on, besides the traced picture.
+/// Inputs of the jobs besides the traced picture.
 #[derive(Clone, Default, PartialEq)]
 struct Order {
     tools: Vec<Tool>,
@@ -103,7 +102,7 @@ impl Tray {
         !self.order.tools.is_empty()
     }
 
-    /// What lies on the tray. Results of the first run appear one by one.
+    /// The results. Those of the first run appear one by one.
     #[must_use]
     pub fn items(&self) -> &[Item] {
         match &self.run {
@@ -134,13 +133,13 @@ impl Tray {
         self.large.show(ui, size, items, kept, now, commands);
     }
 
-    /// Where the command stands that made a result, if the text is still the one that it was made of.
+    /// Place of the command that made a result, if the text is still the same.
     #[must_use]
     pub fn place_of(&self, index: usize, session: &Session) -> Option<(usize, Range<usize>)> {
         let compiled = session.compiled();
         let item = self.items().get(index)?;
         let origin = compiled.tool_origins.get(item.job)?;
-        // What lies there while others are made may be of an older text.
+        // Results shown while new ones are made may be of an older text.
         let present = self.run.is_none() || self.items.is_empty();
         let same = session.is_compiled() && compiled.tools == self.order.tools;
         (present && same).then_some((
@@ -149,7 +148,7 @@ impl Tray {
         ))
     }
 
-    /// What goes on, in a few words; empty when all is done.
+    /// Progress in a few words; empty when all is done.
     #[must_use]
     pub fn state(&self) -> String {
         match &self.run {
@@ -245,7 +244,7 @@ impl Tray {
 impl Run {
     /// Works for a short while. Gives whether there is more to do.
     fn go_on(&mut self, ctx: &Context) -> bool {
-        let start = platform::stopwatch();
+        let start = crate::clock::stopwatch();
         self.waits = false;
         loop {
             let looked = self.items.iter_mut().any(|item| match &mut item.content {
@@ -265,7 +264,7 @@ impl Run {
                     self.take(job, command, finished);
                 }
             }
-            if platform::stopwatch() - start > SPELL {
+            if crate::clock::stopwatch() - start > SPELL {
                 return true;
             }
         }
@@ -293,7 +292,7 @@ impl Run {
                         item.film()
                             .is_some_and(|old| old.name == name && Arc::ptr_eq(&old.bytes, &bytes))
                     };
-                    // What was made and is shown after that lies on the tray once.
+                    // A picture that is written and shown after that is listed once.
                     if self.items.iter().any(known) {
                         continue;
                     }

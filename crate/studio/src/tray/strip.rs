@@ -19,7 +19,7 @@ const HEAD: f32 = 32.0;
 struct Measures {
     /// The thumbnail.
     picture: Vec2,
-    /// What stands below it.
+    /// Caption.
     words: f32,
     /// How wide a sentence is.
     sentence: f32,

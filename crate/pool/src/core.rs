@@ -1,25 +1,17 @@
-//! What the pools of web workers and of threads share: the scheduler, the scene, finished tiles.
+//! The part of a pool that is the same for web workers and threads: scheduler, packed scene, finished tiles.
 
-use super::hearsay::Hearsay;
-use super::run::Plan;
-use super::scheduler::{Command, Scheduler};
-use super::{Job, Progress, TILE, TileDone};
+use crate::job::{Job, TILE, TileDone};
+use crate::progress::Progress;
+use crate::run::Plan;
+use crate::scheduler::{Command, Scheduler};
+use crate::shared_samples::SharedSamples;
+use crate::workers::Workers;
 use tracer::{Known, Pass};
 use worker::engine::KEPT;
 use worker::message::pack;
 use worker::{Answer, Kind, Request};
 
-/// Something that runs workers. What they answer goes to [`Core::answers`], together with the index.
-pub trait Workers {
-    /// Starts a worker, ending the one that had this index. Nothing may be heard of that one again.
-    fn restart(&mut self, index: usize) -> Result<(), String>;
-    /// Ends a worker.
-    fn end(&mut self, index: usize);
-    /// Sends a packed [`Request`] to a worker that runs.
-    fn send(&mut self, index: usize, request: &[u8]);
-}
-
-/// A pool, but for the workers.
+/// A pool without its workers.
 pub struct Core<W> {
     pub scheduler: Scheduler,
     pub workers: W,
@@ -27,7 +19,7 @@ pub struct Core<W> {
     /// The packed request that begins the present picture.
     begin: Vec<u8>,
     done: Vec<TileDone>,
-    pub(super) hearsay: Hearsay,
+    pub(super) shared_samples: SharedSamples,
 }
 
 impl<W: Workers> Core<W> {
@@ -38,7 +30,7 @@ impl<W: Workers> Core<W> {
             count,
             begin: Vec::new(),
             done: Vec::new(),
-            hearsay: Hearsay::default(),
+            shared_samples: SharedSamples::default(),
         }
     }
 
@@ -49,10 +41,10 @@ impl<W: Workers> Core<W> {
             .map(|side| side.div_ceil(TILE) as usize)
             .iter()
             .product();
-        // Of more the page would have to keep too much.
+        // The page keeps shared samples in memory, so larger pictures do not share them.
         let kept = tiles <= KEPT && job.kind == Kind::Colours;
         let shared = kept && !job.small && job.scene.settings.samples > 1 && self.count > 1;
-        self.hearsay.begin(job.size, shared);
+        self.shared_samples.begin(job.size, shared);
         let plan = Plan {
             generation: job.generation,
             size: job.size,
@@ -90,7 +82,7 @@ impl<W: Workers> Core<W> {
         self.carry_out(now);
     }
 
-    /// A worker has answered. Says whether something can now be seen that could not be before.
+    /// Takes a worker's answers. Returns whether a pass was completed or a worker failed, so that the app should draw.
     pub fn answers(&mut self, index: usize, answers: Vec<Answer>, now: f64) -> bool {
         let mut news = false;
         for answer in answers {
@@ -115,11 +107,11 @@ impl<W: Workers> Core<W> {
                 let complete = self.scheduler.complete_passes();
                 let wanted = self.scheduler.traced(index, order, &stats, seconds, now);
                 if order.pass == Pass::Smooth {
-                    self.hearsay.smoothed(index, order.tile);
+                    self.shared_samples.completed(index, order.tile);
                 }
                 if let (true, Some(known)) = (wanted, known) {
-                    for (other, known) in self.hearsay.hear(index, &order, known) {
-                        self.teach(other, vec![known]);
+                    for (other, known) in self.shared_samples.receive(index, &order, known) {
+                        self.send_samples(other, vec![known]);
                     }
                 }
                 if let (true, Some(generation)) = (wanted, self.scheduler.generation()) {
@@ -140,7 +132,7 @@ impl<W: Workers> Core<W> {
         false
     }
 
-    /// The tiles finished since the last call.
+    /// Returns the tiles finished since the last call.
     pub fn take(&mut self) -> Vec<TileDone> {
         std::mem::take(&mut self.done)
     }
@@ -149,8 +141,8 @@ impl<W: Workers> Core<W> {
         self.scheduler.progress(now)
     }
 
-    /// Does what the scheduler decided. A worker that cannot be started changes its mind, so this
-    /// goes on until there is nothing left to do; the scheduler gives up after some attempts.
+    /// Carries out the scheduler's commands. A worker that cannot be started leads to new commands, so this repeats until
+    /// there are none; the scheduler gives up after some attempts.
     fn carry_out(&mut self, now: f64) {
         loop {
             let commands = self.scheduler.commands();
@@ -160,22 +152,22 @@ impl<W: Workers> Core<W> {
             for command in commands {
                 match command {
                     Command::Restart(index) => {
-                        self.hearsay.forget(index);
+                        self.shared_samples.forget_worker(index);
                         if let Err(reason) = self.workers.restart(index) {
                             self.scheduler.died(index, &reason, now);
                         }
                     }
                     Command::End(index) => {
-                        self.hearsay.forget(index);
+                        self.shared_samples.forget_worker(index);
                         self.workers.end(index);
                     }
                     Command::Begin(index) => self.workers.send(index, &self.begin),
                     Command::Trace(index, orders) => {
                         let smooth = orders.iter().filter(|order| order.pass == Pass::Smooth);
                         let known = smooth
-                            .flat_map(|order| self.hearsay.order(index, order.tile))
+                            .flat_map(|order| self.shared_samples.assign(index, order.tile))
                             .collect();
-                        self.teach(index, known);
+                        self.send_samples(index, known);
                         self.send(index, &Request::Trace(orders));
                     }
                     Command::Stop(index) => {
@@ -186,12 +178,12 @@ impl<W: Workers> Core<W> {
             }
         }
         if self.scheduler.is_over() {
-            self.hearsay = Hearsay::default();
+            self.shared_samples = SharedSamples::default();
         }
     }
 
-    /// Tells a worker first samples that it did not take.
-    fn teach(&mut self, index: usize, known: Vec<Known>) {
+    /// Sends a worker first samples that it has not taken itself.
+    fn send_samples(&mut self, index: usize, known: Vec<Known>) {
         if !known.is_empty() {
             let generation = self.scheduler.number();
             self.send(index, &Request::Learn { generation, known });

@@ -1,37 +1,38 @@
-//! Which task a worker is given next.
+//! Choice of the next task of a worker.
 //!
-//! A tile is done in each pass by the worker that keeps its samples, as far as that is known: from the full pass on each
-//! has its part of the picture ([`shares`]). What a tile costs is foretold by what the passes before came to. A worker is
-//! given work ahead, as a page that draws takes its time to answer, but not so much that the others have nothing left to
+//! A tile is traced in each pass by the worker that keeps its samples, as far as that is known: from the full pass on each
+//! worker has its part of the picture ([`partition`]). The cost of a tile is predicted from the passes before. A worker is
+//! given work ahead, because a page that is drawing answers late, but not so much that the others have nothing left to
 //! help with.
 
-use super::run::Run;
-use super::share::shares;
+use crate::partition::partition;
+use crate::run::Run;
 use std::collections::VecDeque;
 use tracer::{Pass, Tile};
 
-/// Seconds of work a worker is given ahead.
+/// Seconds of work that a worker is given ahead.
 pub const AHEAD: f64 = 0.25;
-/// The same of the full pass, as long as it is not known who should have what.
+/// The same for the full pass until the partition is known.
 const EARLY: f64 = 0.05;
 /// Most tiles a worker is given ahead.
 pub const MOST_AHEAD: usize = 64;
-/// Among so many of its tiles a worker looks for the one that takes longest: a picture may have very many.
-const LOOKED_AT: usize = 256;
-/// A pixel that gets more rays takes so many times longer for each than a typical one of its tile: edges are dear. Measured
-/// over all of seahorse, cowrie and sphereflake: 2.2, 1.9 and 1.0.
+/// Number of its tiles among which a worker looks for the most expensive one; a picture may have very many.
+const CANDIDATES: usize = 256;
+/// Time of an additional ray at an edge pixel relative to a typical ray of its tile. Measured over all of seahorse, cowrie
+/// and sphereflake: 2.2, 1.9 and 1.0.
 const EDGE_RAY: f64 = 1.5;
-/// Seconds that the picture must be done earlier by, for each second that help costs.
-const WORTH: f64 = 0.25;
+/// Seconds by which the picture must be finished earlier for each second that help costs.
+const HELP_GAIN: f64 = 0.25;
 
 impl Run {
-    /// The next task of a worker, from those never handed out or from those to be done again.
+    /// Returns the next task of a worker, from those never assigned or, with `again`, from those to be repeated. `None` if
+    /// there is none for it.
     pub fn take(&mut self, worker: usize, idle: bool, again: bool) -> Option<usize> {
         loop {
             let task = if again {
                 self.again.pop()?
             } else {
-                self.draw(worker, idle)?
+                self.next_new(worker, idle)?
             };
             let (pass, tile) = (task / self.tiles.len(), task % self.tiles.len());
             // A tile that was given up is not tried in later passes.
@@ -45,27 +46,27 @@ impl Run {
         }
     }
 
-    /// Says who should have each tile, by what is known of them: little when the first tiles of the full pass are handed out,
-    /// all when the coarse pass is complete.
-    pub(super) fn part(&mut self) {
+    /// Recomputes the partition from the known costs: few are known when the first tiles of the full pass are assigned, all
+    /// when the coarse pass is complete.
+    pub(super) fn repartition(&mut self) {
         let known = self.effort.iter().copied().filter(|effort| *effort > 0);
         let least = known.min().unwrap_or(1);
         let cost = |effort: &u64| (*effort).max(least) as f64;
         let costs: Vec<f64> = self.effort.iter().map(cost).collect();
-        self.home = shares(&self.tiles, &costs, self.awake.len());
+        self.home = partition(&self.tiles, &costs, self.awake.len());
     }
 
-    /// A task never handed out, of the first pass that has one for this worker. Each has its tiles, and makes smooth what it
-    /// has sampled, as it keeps most samples that it needs for that. When it is idle soon it helps the others, if that is
-    /// worth it.
-    fn draw(&mut self, worker: usize, idle: bool) -> Option<usize> {
+    /// Returns a task never assigned, of the first pass that has one for this worker. Each worker has its own tiles and makes
+    /// smooth those it has sampled, as it keeps most samples needed for that. A worker that is about to become idle helps
+    /// the others if that pays.
+    fn next_new(&mut self, worker: usize, idle: bool) -> Option<usize> {
         for pass in 0..self.passes.len() {
             let left = self.left[pass].len();
             if self.passes[pass] == Pass::Full && left == self.tiles.len() {
-                self.part();
+                self.repartition();
             }
             let place = self.own(pass, worker);
-            let place = place.or_else(|| idle.then(|| self.worth_taking(pass, worker))?);
+            let place = place.or_else(|| idle.then(|| self.tile_to_help_with(pass, worker))?);
             if let Some(tile) = place.and_then(|place| self.left[pass].remove(place)) {
                 return Some(pass * self.tiles.len() + tile);
             }
@@ -73,7 +74,8 @@ impl Run {
         None
     }
 
-    /// The place among those of a pass never handed out of the tile that a worker should do next: its own, or nobody's.
+    /// Index, among the unassigned tiles of a pass, of the tile that a worker should do next: one of its own, or one without
+    /// a keeper.
     fn own(&self, pass: usize, worker: usize) -> Option<usize> {
         let places = self.left[pass].iter().enumerate();
         if self.passes[pass] != Pass::Smooth {
@@ -84,7 +86,7 @@ impl Run {
             };
             return places.position(|(_, tile)| mine(*tile));
         }
-        // What takes long comes first, so that all are done at about the same time.
+        // Expensive tiles come first, so that all workers finish at about the same time.
         let sampled = self.left[..pass].iter().all(VecDeque::is_empty);
         let mine = |tile| match self.keeper(pass, tile) {
             Some(keeper) => keeper == worker,
@@ -92,14 +94,14 @@ impl Run {
         };
         places
             .filter(|(_, tile)| mine(**tile))
-            .take(LOOKED_AT)
+            .take(CANDIDATES)
             .map(|(place, tile)| (place, self.cost(pass, *tile).0))
             // The first of equals.
             .min_by(|a, b| b.1.total_cmp(&a.1))
             .map(|(place, _)| place)
     }
 
-    /// Who should do a tile in a pass; `None` if it is as good as any other.
+    /// The worker that should do a tile in a pass; `None` if any will do.
     fn keeper(&self, pass: usize, tile: usize) -> Option<usize> {
         let keeper = match self.passes[pass] {
             Pass::Coarse => None,
@@ -109,7 +111,7 @@ impl Run {
         keeper.filter(|worker| self.awake[*worker])
     }
 
-    /// About how many seconds a tile takes in a pass the worker that should do it, and any other.
+    /// Expected seconds of a tile in a pass: for the worker that should do it, and for any other.
     fn cost(&self, pass: usize, tile: usize) -> (f64, f64) {
         let usual = self.costs.expected(pass);
         match self.passes[pass] {
@@ -120,7 +122,7 @@ impl Run {
                 let share = known.map_or(1.0, |effort| effort as f64 * count as f64 / sum as f64);
                 (usual * share, usual * share)
             }
-            // Another one takes the first samples again unless it hears of them.
+            // Another worker takes the first samples again unless they are shared.
             Pass::Smooth => {
                 let Some((seconds, edges)) = self.full[tile] else {
                     return (usual, 2.0 * usual);
@@ -135,9 +137,9 @@ impl Run {
         }
     }
 
-    /// The place among those of a pass never handed out of a tile of another worker that one without work should do: of the
-    /// one that has most to do, the tile with which both are done earliest; none if that one is done earlier without help.
-    fn worth_taking(&self, pass: usize, worker: usize) -> Option<usize> {
+    /// Index, among the unassigned tiles of a pass, of another worker's tile that an idle worker should do: of the worker with
+    /// the most left to do, the tile with which both finish earliest. `None` if helping does not finish earlier.
+    fn tile_to_help_with(&self, pass: usize, worker: usize) -> Option<usize> {
         let first = pass * self.tiles.len();
         let mut load = vec![0.0; self.awake.len()];
         for tile in (0..self.tiles.len()).filter(|tile| !self.over[first + tile]) {
@@ -153,21 +155,21 @@ impl Run {
             .clone()
             .max_by(|a, b| load[a.2].total_cmp(&load[b.2]))?;
         let gain = |tile: usize| {
-            let (own, strange) = self.cost(pass, tile);
-            let done = (load[worker] + strange).max(load[most] - own);
-            (load[most] - done, strange)
+            let (own, other) = self.cost(pass, tile);
+            let done = (load[worker] + other).max(load[most] - own);
+            (load[most] - done, other)
         };
         others
             .filter(|(.., keeper)| *keeper == most)
             .map(|(place, tile, _)| (place, gain(tile)))
-            .filter(|(_, (gained, cost))| *gained > WORTH * cost)
+            .filter(|(_, (gained, cost))| *gained > HELP_GAIN * cost)
             .max_by(|a, b| a.1.0.total_cmp(&b.1.0))
             .map(|(place, _)| place)
     }
 
-    /// Whether a worker, one of so many, that holds these tasks should be given one more: so that it need not wait for the
-    /// page, but that in the end none has much more than the others.
-    pub fn is_too_little(&self, holds: &VecDeque<usize>, workers: usize) -> bool {
+    /// Whether a worker that holds these tasks should be given one more: enough not to wait for the page, but not so much
+    /// that it ends with much more than the other `workers`.
+    pub fn needs_more(&self, holds: &VecDeque<usize>, workers: usize) -> bool {
         let untaken: usize = self.left.iter().map(VecDeque::len).sum();
         if untaken == 0 || holds.len() >= MOST_AHEAD {
             return false;
@@ -179,11 +181,11 @@ impl Run {
         let tiles = self.tiles.len();
         let seconds = |task: &usize| self.cost(task / tiles, task % tiles).0;
         let held: f64 = holds.iter().map(seconds).sum();
-        let coarse = self.settled[0] < tiles && self.left[0].is_empty();
+        let coarse = self.completed[0] < tiles && self.left[0].is_empty();
         if held >= if coarse { EARLY } else { AHEAD } {
             return false;
         }
-        // No more is added up than it takes to know, as a picture may have very many tiles.
+        // Stops adding as soon as the answer is known, as a picture may have very many tiles.
         let enough = held * (2 * workers.max(1)) as f64;
         let mut left = 0.0;
         for pass in 0..self.passes.len() {
@@ -197,7 +199,7 @@ impl Run {
         false
     }
 
-    /// Whether tiles of the coarse pass were never handed out.
+    /// Whether tiles of the coarse pass are still unassigned.
     pub fn is_coarse(&self) -> bool {
         self.passes[0] == Pass::Coarse && !self.left[0].is_empty()
     }
@@ -206,7 +208,7 @@ impl Run {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pool::run::Plan;
+    use crate::run::Plan;
     use tracer::Stats;
 
     /// A picture of so many pixels for so many workers, all awake.
@@ -224,8 +226,8 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_as_large_as_the_coarse_pass_says_that_they_take_equally_long() {
-        // The tiles on the left are dear.
+    fn parts_take_equally_long_by_the_costs_of_the_coarse_pass() {
+        // The tiles on the left are expensive.
         let effort = |tile: &Tile| if tile.x < 128 { 100 } else { 1 };
         for workers in [2, 3, 5] {
             for early in [0, 7] {
@@ -243,7 +245,7 @@ mod tests {
                 for task in 0..tiles.len() {
                     assert_eq!(run.take(0, false, false), Some(task));
                 }
-                // Some of the full pass are handed out before more is known than this.
+                // Some tiles of the full pass are assigned while only these costs are known.
                 coarse(&mut run, 0..10);
                 let mut full = vec![0; workers];
                 let mut take = |run: &mut Run, worker: usize| {
@@ -274,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn who_would_not_speed_up_a_pass_goes_on_with_his_own_tiles_of_the_next() {
+    fn idle_worker_starts_the_next_pass() {
         let mut run = run([128, 128], 2);
         let stats = Stats {
             field_evaluations: 10,
@@ -293,21 +295,21 @@ mod tests {
         let full: Vec<usize> = (0..2).map(|_| run.take(1, false, false).unwrap()).collect();
         let first = run.take(0, false, false).unwrap();
         assert!(full.iter().chain([&first]).all(|task| task / tiles == 1));
-        // Each has two tiles of the full pass left, one of the first worker's was never handed out.
+        // Each has two tiles of the full pass left, one of the first worker's is unassigned.
         let next = run.take(1, true, false).unwrap();
         assert_eq!(next / tiles, 2, "its own of the smooth pass");
         assert!(full.contains(&(next - tiles)));
         for task in full {
             finish(&mut run, task);
         }
-        // Now help is worth it.
+        // Now helping pays.
         let next = run.take(1, true, false).unwrap();
         assert_eq!(next / tiles, 1);
         assert_eq!(run.take(0, true, false).map(|task| task / tiles), Some(2));
     }
 
     #[test]
-    fn help_to_make_smooth_is_worth_more_where_samples_are_told() {
+    fn helping_pays_more_where_samples_are_shared() {
         for shared in [false, true] {
             let mut run = run([128, 64], 2);
             run.plan.shared = shared;
@@ -324,20 +326,20 @@ mod tests {
                 run.done(task, &stats, 1e-3, 0.0);
             }
             run.awake[1] = true;
-            let (own, strange) = run.cost(2, 0);
+            let (own, other) = run.cost(2, 0);
             assert!((own - 1e-3).abs() < 1e-4, "{own}");
-            assert!((strange - if shared { own } else { own + 1e-3 }).abs() < 1e-9);
+            assert!((other - if shared { own } else { own + 1e-3 }).abs() < 1e-9);
             // With samples taken again both would be done no earlier.
             assert_eq!(run.take(1, true, false).is_some(), shared);
         }
     }
 
     #[test]
-    fn a_worker_holds_little_as_long_as_it_is_not_known_who_should_have_what() {
+    fn worker_holds_few_tiles_until_the_partition_is_known() {
         let mut run = run([1024, 768], 2);
         let fill = |run: &mut Run| {
             let mut holds = VecDeque::new();
-            while run.is_too_little(&holds, 2) {
+            while run.needs_more(&holds, 2) {
                 let task = run.take(0, false, false);
                 holds.extend(task);
                 if task.is_none() {
@@ -358,7 +360,7 @@ mod tests {
         for task in coarse {
             run.done(task, &stats, 1e-4, 0.0);
         }
-        // 3 ms each, as far as can be foretold.
+        // Predicted to take 3 ms each.
         let early = fill(&mut run).len();
         assert!((10..=18).contains(&early), "{early}");
         run.done(last[0], &stats, 1e-4, 0.0);

@@ -1,8 +1,8 @@
 //! The scheduler against a crowd of imagined workers and an imagined clock.
 
 use super::*;
-use crate::pool::deal::MOST_AHEAD;
-use crate::pool::run::{LONGEST_LIMIT, RETRY, SLACK, TILE_LIMIT};
+use crate::assign::MOST_AHEAD;
+use crate::run::{LONGEST_LIMIT, RETRY, SLACK, TILE_LIMIT};
 use std::collections::{HashMap, HashSet, VecDeque};
 use tracer::{Pass, Tile};
 
@@ -98,7 +98,7 @@ impl Crowd {
         self.obey();
     }
 
-    /// Every worker does one job, which takes a millisecond. Says whether anyone had one.
+    /// Every worker does one job, which takes a millisecond. Returns whether anyone had one.
     fn work(&mut self) -> bool {
         let mut any = false;
         self.now += 1e-3;
@@ -158,7 +158,7 @@ impl Crowd {
 }
 
 #[test]
-fn every_tile_is_done_once_in_each_pass_the_centre_first() {
+fn each_tile_is_traced_once_per_pass_from_the_centre() {
     let mut crowd = Crowd::new(3);
     crowd.start(7);
     let mut fraction = 0.0;
@@ -167,7 +167,7 @@ fn every_tile_is_done_once_in_each_pass_the_centre_first() {
         assert!(progress.fraction >= fraction, "the bar fell");
         fraction = progress.fraction;
     }
-    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
+    let tiles = tracer::tile::tiles(256, 192, crate::job::TILE);
     assert_eq!(crowd.done.len(), 3 * tiles.len());
     assert_eq!(
         crowd.done.iter().collect::<HashSet<_>>().len(),
@@ -190,11 +190,11 @@ fn every_tile_is_done_once_in_each_pass_the_centre_first() {
 }
 
 #[test]
-fn the_coarse_pass_is_handed_out_at_once_in_turn() {
+fn coarse_pass_is_assigned_round_robin() {
     let mut crowd = Crowd::new(3);
     crowd.work();
     crowd.scheduler.start(plan(1), 0.0);
-    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
+    let tiles = tracer::tile::tiles(256, 192, crate::job::TILE);
     let mut dealt = vec![None; tiles.len()];
     for command in crowd.scheduler.commands() {
         let Command::Trace(worker, orders) = command else {
@@ -211,7 +211,7 @@ fn the_coarse_pass_is_handed_out_at_once_in_turn() {
 }
 
 #[test]
-fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
+fn worker_smooths_its_own_tiles_then_helps() {
     let size = [1024, 768];
     let run = |workers: usize, slow: Option<usize>| {
         let mut crowd = Crowd::new(workers);
@@ -234,10 +234,10 @@ fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
         }
         by
     };
-    let tiles = tracer::tile::tiles(size[0], size[1], crate::pool::TILE);
+    let tiles = tracer::tile::tiles(size[0], size[1], crate::job::TILE);
     for workers in [1, 2, 3] {
         let by = run(workers, None);
-        // But for the last ones, with which one helps who is not done.
+        // Only the last tiles, with which a finished worker helps, change hands.
         let moved = |tile: &&Tile| by[&(**tile, Pass::Full)] != by[&(**tile, Pass::Smooth)];
         let moved = tiles.iter().filter(moved).count();
         assert!(
@@ -245,7 +245,7 @@ fn a_worker_makes_smooth_what_it_has_sampled_and_helps_when_that_is_done() {
             "{moved}"
         );
     }
-    // What lies together goes to one worker.
+    // Adjacent tiles go to one worker.
     let by = run(2, None);
     let parted = tiles.iter().filter(|tile| {
         let right = tiles
@@ -275,7 +275,7 @@ fn helped(edges: fn(&Tile) -> u64) -> usize {
     while !crowd.progress().finished {
         crowd.now += 1e-3;
         for (worker, busy) in busy.iter_mut().enumerate() {
-            // What has no edges is smooth at once, the other tiles take as long as the scheduler thinks.
+            // Tiles without edges take no time, the others as long as the scheduler predicts.
             if *busy > 0 {
                 *busy -= 1;
                 continue;
@@ -295,7 +295,7 @@ fn helped(edges: fn(&Tile) -> u64) -> usize {
 }
 
 #[test]
-fn a_worker_without_work_helps_only_where_that_is_worth_taking_samples_again() {
+fn idle_worker_helps_only_where_it_pays() {
     // Nothing would be gained with tiles that take a tenth of the time of their samples, …
     assert_eq!(helped(|tile| if tile.x < 256 { 15 } else { 0 }), 0);
     // … but much with those that take ten times as long.
@@ -304,7 +304,7 @@ fn a_worker_without_work_helps_only_where_that_is_worth_taking_samples_again() {
 }
 
 #[test]
-fn tiles_of_a_worker_that_cannot_go_on_are_done_by_the_others() {
+fn tiles_of_a_lost_worker_go_to_the_others() {
     for edges in [|_: &Tile| 0, |_: &Tile| 1500] {
         // Whenever it dies.
         for after in 0..60 {
@@ -327,7 +327,7 @@ fn tiles_of_a_worker_that_cannot_go_on_are_done_by_the_others() {
 }
 
 #[test]
-fn what_takes_long_is_made_smooth_first() {
+fn expensive_tiles_are_smoothed_first() {
     // Neither the first nor the last of the first worker's, in the order of the tiles.
     fn is_dear(tile: &Tile) -> bool {
         [(64, 0), (0, 64)].contains(&(tile.x, tile.y))
@@ -345,7 +345,7 @@ fn what_takes_long_is_made_smooth_first() {
 }
 
 #[test]
-fn a_worker_that_had_nothing_to_do_is_asked_again_when_more_is_known() {
+fn idle_worker_is_reconsidered_when_costs_are_known() {
     let mut crowd = Crowd::new(2);
     crowd.edges = |tile| if tile.x == 0 { 1500 } else { 0 };
     crowd.work();
@@ -367,7 +367,7 @@ fn a_worker_that_had_nothing_to_do_is_asked_again_when_more_is_known() {
 }
 
 #[test]
-fn whatever_happens_a_picture_ends() {
+fn every_picture_ends() {
     const EDGES: [fn(&Tile) -> u64; 3] = [|_| 0, |tile| 9 * tile.x as u64, |_| 2000];
     let mut seed = 1_u64;
     let mut random = |below: u64| {
@@ -395,7 +395,7 @@ fn whatever_happens_a_picture_ends() {
         }
         crowd.scheduler.start(plan, crowd.now);
         crowd.obey();
-        let tiles = tracer::tile::tiles(size[0], size[1], crate::pool::TILE);
+        let tiles = tracer::tile::tiles(size[0], size[1], crate::job::TILE);
         for tile in tiles {
             for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
                 if random(12) == 0 {
@@ -431,7 +431,7 @@ fn whatever_happens_a_picture_ends() {
 }
 
 #[test]
-fn one_ray_a_pixel_needs_no_third_pass() {
+fn one_ray_per_pixel_has_no_smooth_pass() {
     let mut crowd = Crowd::new(2);
     let samples = 1;
     crowd.scheduler.start(Plan { samples, ..plan(1) }, 0.0);
@@ -442,7 +442,7 @@ fn one_ray_a_pixel_needs_no_third_pass() {
 }
 
 #[test]
-fn a_small_picture_has_the_last_pass_alone_and_is_seen_when_it_is_finished() {
+fn small_picture_has_only_the_last_pass() {
     let mut crowd = Crowd::new(2);
     let small = true;
     crowd.scheduler.start(Plan { small, ..plan(1) }, 0.0);
@@ -456,7 +456,7 @@ fn a_small_picture_has_the_last_pass_alone_and_is_seen_when_it_is_finished() {
 }
 
 #[test]
-fn an_empty_picture_is_finished_at_once() {
+fn empty_picture_is_finished_at_once() {
     let mut crowd = Crowd::new(2);
     let size = [0, 96];
     crowd.scheduler.start(Plan { size, ..plan(1) }, 0.0);
@@ -464,7 +464,7 @@ fn an_empty_picture_is_finished_at_once() {
 }
 
 #[test]
-fn time_left_is_told_once_measured() {
+fn remaining_time_is_known_once_measured() {
     let mut crowd = Crowd::new(2);
     crowd.start(1);
     assert_eq!(crowd.progress().remaining_seconds, None);
@@ -477,7 +477,7 @@ fn time_left_is_told_once_measured() {
 }
 
 #[test]
-fn a_new_picture_takes_the_place_of_the_old_one() {
+fn new_picture_replaces_the_old_one() {
     let mut crowd = Crowd::new(2);
     crowd.start(1);
     for _ in 0..6 {
@@ -487,13 +487,13 @@ fn a_new_picture_takes_the_place_of_the_old_one() {
     assert!(before > 0);
     crowd.start(1); // the same number again: tiles of the first run must not be mixed in
     crowd.work_off();
-    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE).len();
+    let tiles = tracer::tile::tiles(256, 192, crate::job::TILE).len();
     assert_eq!(crowd.done.len(), before + 3 * tiles);
     assert!(crowd.progress().finished);
 }
 
 #[test]
-fn a_worker_still_at_the_old_picture_is_replaced_without_blame() {
+fn worker_at_an_old_picture_is_replaced_without_blame() {
     let mut crowd = Crowd::new(2);
     crowd.start(1);
     for _ in 0..6 {
@@ -512,7 +512,7 @@ fn a_worker_still_at_the_old_picture_is_replaced_without_blame() {
 }
 
 #[test]
-fn an_answer_that_waited_for_a_busy_page_saves_the_worker() {
+fn late_answer_saves_a_suspected_worker() {
     let mut crowd = Crowd::new(1);
     crowd.start(1);
     crowd.work();
@@ -549,7 +549,7 @@ fn cancel_ends_everything() {
 }
 
 #[test]
-fn a_worker_that_dies_is_replaced_and_its_tiles_done_again() {
+fn dead_worker_is_replaced_and_its_tiles_repeated() {
     let mut crowd = Crowd::new(3);
     crowd.start(1);
     for _ in 0..8 {
@@ -564,12 +564,12 @@ fn a_worker_that_dies_is_replaced_and_its_tiles_done_again() {
     assert_eq!((progress.restarted, progress.failed_tiles), (1, 0));
     assert_eq!(
         crowd.done.iter().collect::<HashSet<_>>().len(),
-        3 * tracer::tile::tiles(256, 192, crate::pool::TILE).len()
+        3 * tracer::tile::tiles(256, 192, crate::job::TILE).len()
     );
 }
 
 #[test]
-fn a_worker_that_hangs_is_replaced_in_the_end() {
+fn hanging_worker_is_replaced() {
     let mut crowd = Crowd::new(2);
     crowd.start(1);
     for _ in 0..6 {
@@ -613,8 +613,8 @@ fn slow_tiles_get_more_time() {
 }
 
 #[test]
-fn a_deadly_tile_is_given_up_and_reported() {
-    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
+fn fatal_tile_is_given_up_and_reported() {
+    let tiles = tracer::tile::tiles(256, 192, crate::job::TILE);
     for workers in [1, 4] {
         let mut crowd = Crowd::new(workers);
         crowd.start(1); // the first picture has the number 1
@@ -641,11 +641,11 @@ fn a_deadly_tile_is_given_up_and_reported() {
 }
 
 #[test]
-fn nothing_is_tried_forever() {
+fn attempts_are_limited() {
     // Every tile kills.
     let mut crowd = Crowd::new(2);
     crowd.start(1);
-    let tiles = tracer::tile::tiles(256, 192, crate::pool::TILE);
+    let tiles = tracer::tile::tiles(256, 192, crate::job::TILE);
     for &tile in &tiles {
         for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
             crowd.deadly.insert(Order {

@@ -1,11 +1,15 @@
 //! The pool of threads, with real pictures.
 
-use super::core::{Core, Workers};
-use super::*;
+use crate::Pool;
+use crate::core::Core;
+use crate::job::{Job, MAX_WORKERS, TILE, TileDone};
+use crate::workers::Workers;
+use scene::Scene;
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
+use tracer::{Pass, Tile};
 use worker::message::unpack;
-use worker::{Answer, Engine, Request, Step};
+use worker::{Answer, Engine, Kind, Request, Step};
 
 fn finish(pool: &mut Pool) -> Vec<TileDone> {
     let deadline = Instant::now() + Duration::from_secs(120);
@@ -28,7 +32,7 @@ fn scene() -> Scene {
 }
 
 #[test]
-fn a_picture_comes_complete_and_a_new_one_replaces_it() {
+fn picture_is_complete_and_replaced_by_a_new_one() {
     let mut pool = Pool::new(|| {});
     let scene = scene();
     let job = |generation| Job {
@@ -57,7 +61,7 @@ fn a_picture_comes_complete_and_a_new_one_replaces_it() {
 }
 
 #[test]
-fn a_killed_worker_is_missed_and_the_picture_still_completes() {
+fn picture_completes_without_a_killed_worker() {
     let mut pool = Pool::new(|| {});
     assert!(!pool.kill_worker(MAX_WORKERS + 1));
     assert!(pool.kill_worker(0));
@@ -168,7 +172,7 @@ fn taking_turns(
 }
 
 #[test]
-fn several_workers_hardly_take_more_samples_than_one() {
+fn several_workers_share_samples() {
     // Most of the edges are on one side.
     let scene = balls(["<-0.9 0.3 0>", "<-0.8 -0.6 0>"]);
     let (pixels, rays) = taking_turns(&scene, 1, true, false);
@@ -178,12 +182,12 @@ fn several_workers_hardly_take_more_samples_than_one() {
             assert!(same == pixels, "{workers}");
             its - rays
         };
-        // Who is at a tile before its neighbour's samples come takes them again.
+        // A worker that starts a tile before its neighbour's samples arrive takes them again.
         let (told, untold) = (more(true), more(false));
         assert!(2 * told < untold, "{workers}: {told} {untold}");
         let (same, its) = taking_turns(&scene, workers, true, true);
         assert!(same == pixels, "{workers}, one of which fails");
-        // The one in its place is told what that one knew.
+        // The worker in its place is sent the samples that the failed one had.
         assert!(its - rays <= told + 4096, "{workers}: {its} {rays} {told}");
     }
 }
@@ -208,7 +212,7 @@ fn balls(at: [&str; 2]) -> Scene {
 /// Pictures of two scenes follow each other while answers of the one before are on their way: each shows its own, and of none
 /// anything is known when it is over, however it ends.
 #[test]
-fn a_picture_shows_nothing_of_the_one_before() {
+fn picture_shows_nothing_of_an_older_one() {
     let size = [260, 200];
     // One is full of edges, also where squares meet.
     let mut scenes = [
@@ -258,23 +262,23 @@ fn a_picture_shows_nothing_of_the_one_before() {
                     core.answers(index, vec![Answer::Started], now);
                 }
                 core.cancel(now);
-                assert!(core.hearsay.is_empty());
+                assert!(core.shared_samples.is_empty());
             }
             let mut steps = 0;
             while !core.progress(now).finished && breaks.is_none_or(|breaks| steps < breaks) {
                 steps += 1;
                 for (index, late) in late.iter_mut().enumerate() {
                     now += 1e-4;
-                    // What it said before arrives now.
+                    // Its earlier answers arrive now.
                     for answer in late.drain(..) {
                         let present = core.scheduler.number();
                         let stale = matches!(&answer, Answer::Traced { order, known, .. }
                             if order.generation != present && known.is_some());
-                        let nothing = core.hearsay.is_empty();
+                        let nothing = core.shared_samples.is_empty();
                         core.answers(index, vec![answer], now);
                         if stale && nothing {
                             lost += 1;
-                            assert!(core.hearsay.is_empty(), "what is stale was heard");
+                            assert!(core.shared_samples.is_empty(), "a stale answer was taken");
                         }
                     }
                     let time = std::cell::Cell::new(0.0);
@@ -283,17 +287,17 @@ fn a_picture_shows_nothing_of_the_one_before() {
                         late.push(answer);
                     }
                 }
-                waiting = waiting.max(core.hearsay.waiting());
+                waiting = waiting.max(core.shared_samples.waiting());
                 assert!(now < 100.0, "endless");
             }
-            told += usize::from(!core.hearsay.is_empty());
+            told += usize::from(!core.shared_samples.is_empty());
             let done = core.take().into_iter();
             let mine = |done: &TileDone| done.generation == picture as u64;
             let smooth = done.filter(|done| mine(done) && done.pass == Pass::Smooth);
             let seen: HashMap<_, _> = smooth.map(|done| (done.tile, done.pixels)).collect();
             if breaks.is_none() {
                 assert!(seen == truth[which], "{workers} workers, picture {picture}");
-                assert!(core.hearsay.is_empty());
+                assert!(core.shared_samples.is_empty());
             }
         }
     }
@@ -324,9 +328,9 @@ impl Workers for Stuck {
     }
 }
 
-/// What is left of a picture that ends while nobody answers is forgotten, too.
+/// Samples are dropped too if a picture ends because no worker answers.
 #[test]
-fn a_picture_that_is_given_up_leaves_nothing() {
+fn samples_of_a_failed_picture_are_dropped() {
     let scene = balls(["<-0.9 0.3 0>", "<-0.8 -0.6 0>"]);
     let desks = Desks((0..2).map(|_| Engine::default()).collect());
     let tile = tracer::tiles(260, 200, TILE)[0];
@@ -354,18 +358,18 @@ fn a_picture_that_is_given_up_leaves_nothing() {
                 core.answers(index, vec![answer], now);
             }
         }
-        heard |= !core.hearsay.is_empty();
+        heard |= !core.shared_samples.is_empty();
         if core.workers.0.0.iter().all(Engine::is_idle) {
             now += 30.0;
             core.tick(now);
         }
         assert!(now < 1e5, "endless");
     }
-    assert!(heard && core.hearsay.is_empty());
+    assert!(heard && core.shared_samples.is_empty());
 }
 
 #[test]
-fn workers_tell_only_what_others_can_use() {
+fn samples_are_shared_only_where_useful() {
     let mut scene = scene();
     let mut shared = |workers, change: fn(&mut Scene, &mut Job<'_>)| {
         scene.settings.samples = 2;
@@ -395,14 +399,4 @@ fn workers_tell_only_what_others_can_use() {
     assert!(!shared(2, |_, job| job.kind = Kind::Errors));
     assert!(!shared(2, |_, job| job.small = true));
     assert!(!shared(2, |_, job| job.size = [64, 64 * 321]));
-    // Whatever fits a screen.
-    for aspect in 1..=16 {
-        let aspect = f64::from(aspect);
-        let high = (crate::size::FIT_PIXELS / aspect).sqrt();
-        let tiles = |side: f64| (side as usize).div_ceil(TILE as usize);
-        assert!(
-            tiles(high) * tiles(aspect * high) <= worker::engine::KEPT,
-            "{aspect}"
-        );
-    }
 }

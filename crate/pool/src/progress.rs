@@ -1,4 +1,4 @@
-//! How far a picture has come.
+//! Progress of a picture, and the costs of its tiles from which the remaining time is predicted.
 
 use tracer::{Pass, Stats};
 
@@ -27,13 +27,13 @@ pub struct Progress {
     pub failed_tiles: u32,
     /// The work done for this picture.
     pub stats: Stats,
-    /// What went wrong, if anything did, in words for the user.
+    /// Error message for the user, if there was an error.
     pub error: Option<String>,
 }
 
 /// Typical cost of a tile in the passes, in units of the coarse one; used until it is measured.
 const TYPICAL: [f64; 3] = [1.0, 30.0, 20.0];
-/// Tiles that must have been measured before a time is foretold.
+/// Tiles that must have been measured before a remaining time is predicted.
 const ENOUGH: u32 = 4;
 
 /// Measured time of the tiles of one pass.
@@ -44,9 +44,9 @@ struct Measured {
     slowest: f64,
 }
 
-/// What the tiles of a picture cost: measured where possible, else guessed from other passes.
+/// Costs of the tiles of a picture: measured where possible, else scaled from other passes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Costs {
+pub(crate) struct Costs {
     passes: [Measured; 3],
 }
 
@@ -77,7 +77,7 @@ impl Costs {
         self.passes[pass].slowest
     }
 
-    /// Whether enough was measured to foretell a time.
+    /// Whether enough was measured to predict a time.
     pub fn enough(&self) -> bool {
         self.passes.iter().map(|pass| pass.tiles).sum::<u32>() >= ENOUGH
     }

@@ -1,21 +1,22 @@
-//! Which tiles of a picture each worker should trace.
+//! Partition of a picture's tiles among the workers.
 //!
-//! Each gets one part, nearly always a connected one: what lies on a border between two parts both need when the
-//! picture is made smooth, so that it has to be sampled twice or sent. The parts are not equally large but take equally long, as far as the coarse pass tells.
+//! Each worker gets one part, nearly always a connected one: samples on a border between two parts are needed by both
+//! workers in the smooth pass and must be taken twice or sent. Parts differ in area but take about equally long, as far
+//! as the coarse pass predicts.
 
 use tracer::Tile;
 
-/// For each tile, of which `costs` tells in any unit how long it takes, the number of the worker that should have it. All
-/// costs must be positive.
+/// Returns for each tile the number of the worker that should trace it. `costs` are the tiles' times in any unit, all
+/// positive.
 #[must_use]
-pub fn shares(tiles: &[Tile], costs: &[f64], workers: usize) -> Vec<usize> {
+pub fn partition(tiles: &[Tile], costs: &[f64], workers: usize) -> Vec<usize> {
     let mut owner = vec![0; tiles.len()];
     let mut all: Vec<usize> = (0..tiles.len()).collect();
     halve(tiles, costs, &mut all, 0, workers, &mut owner);
     owner
 }
 
-/// Gives some tiles, by their numbers, to the workers from `first` on, so many: the longer side is cut, and so on.
+/// Assigns the tiles `some` to `workers` workers from `first` on, by cutting the longer side recursively.
 fn halve(
     tiles: &[Tile],
     costs: &[f64],
@@ -43,7 +44,7 @@ fn halve(
     let whole: f64 = some.iter().map(|tile| costs[*tile]).sum();
     let wanted = whole * before as f64 / workers as f64;
     let mut sum = 0.0;
-    // A tile that the cut goes through goes where more of it lies.
+    // A tile on the cut goes to the side that has more of it.
     let in_the_first = |tile: &&usize| {
         let middle = sum + 0.5 * costs[**tile];
         sum += costs[**tile];
@@ -59,7 +60,7 @@ fn halve(
 mod tests {
     use super::*;
 
-    /// Tiles of which another of the same worker lies on one of the four sides, and those without one.
+    /// Number of tiles with a neighbour of the same worker on one of the four sides, and number of those without.
     fn neighbours(tiles: &[Tile], owner: &[usize]) -> (usize, usize) {
         let mut count = (0, 0);
         for (tile, worker) in tiles.iter().zip(owner) {
@@ -76,9 +77,9 @@ mod tests {
     }
 
     #[test]
-    fn parts_take_equally_long_and_no_tile_is_alone() {
+    fn parts_have_equal_cost_and_are_connected() {
         let tiles = tracer::tile::tiles(512, 384, 64);
-        // What takes long lies on a diagonal, at one end more of it.
+        // Expensive tiles lie on a diagonal and get more expensive along it.
         let cost = |tile: &Tile| {
             let near = tile.x.abs_diff(tile.y) < 100;
             1.0 + if near {
@@ -90,7 +91,7 @@ mod tests {
         let costs: Vec<f64> = tiles.iter().map(cost).collect();
         let dearest = costs.iter().copied().fold(0.0, f64::max);
         for workers in [1, 2, 3, 4, 7, 16] {
-            let owner = shares(&tiles, &costs, workers);
+            let owner = partition(&tiles, &costs, workers);
             let of = |worker| -> f64 {
                 let mine = owner.iter().zip(&costs).filter(|(by, _)| **by == worker);
                 mine.map(|(_, cost)| cost).sum()
@@ -111,11 +112,11 @@ mod tests {
     }
 
     #[test]
-    fn more_workers_than_tiles_leave_some_without() {
+    fn more_workers_than_tiles() {
         let tiles = tracer::tile::tiles(128, 64, 64);
-        let owner = shares(&tiles, &[1.0, 1.0], 16);
+        let owner = partition(&tiles, &[1.0, 1.0], 16);
         assert_eq!(owner.len(), 2);
         assert!(owner.iter().all(|worker| *worker < 16) && owner[0] != owner[1]);
-        assert_eq!(shares(&[], &[], 3), [0; 0]);
+        assert_eq!(partition(&[], &[], 3), [0; 0]);
     }
 }

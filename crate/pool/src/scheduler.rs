@@ -1,11 +1,10 @@
-//! Who traces what: the pool's decisions, as a state machine without workers or clocks.
+//! The pool's decisions as a state machine without workers or clocks.
 //!
 //! Events go in (a worker started, answered, died; time passed), [`Command`]s come out. Rules:
 //!
-//! - Tiles are handed out pass by pass, the coarse pass to all in turn. From then on each worker has its part of the picture
-//!   ([`shares`](super::share::shares)) and makes smooth what it has sampled; one without work helps the others where that
-//!   is worth it, and else goes on with its own tiles of the next pass. A worker
-//!   holds the tile it traces and some more, about [`AHEAD`](super::deal::AHEAD) seconds of work, so that it need not wait
+//! - Tiles are assigned pass by pass, the coarse pass to all in turn. From then on each worker has its part of the picture
+//!   ([`partition`](crate::partition::partition)) and makes smooth what it has sampled; an idle worker helps the others where that
+//!   pays, and else starts its own tiles of the next pass. A worker holds the tile it traces and some more, about [`AHEAD`](crate::assign::AHEAD) seconds of work, so that it need not wait
 //!   for a page that is busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
 //!   replaced, so a slow tile never delays the new picture.
@@ -14,14 +13,12 @@
 //!   [`ATTEMPTS`] workers failed is given up, so nothing is tried forever. The same holds for
 //!   preparing a scene and for starting a worker.
 
-use super::progress::Progress;
-use super::run::{Plan, Run};
+use crate::progress::Progress;
+use crate::run::{ATTEMPTS, Plan, Run};
 use std::collections::VecDeque;
 use tracer::Stats;
 use worker::Order;
 
-/// Failures after which a tile, a scene or a worker is given up.
-pub const ATTEMPTS: u32 = 3;
 /// Seconds after which a worker that is still at an older picture is replaced.
 pub const PATIENCE: f64 = 0.25;
 /// Times in a row a worker may die without having finished a tile.
@@ -30,7 +27,8 @@ pub const DEATHS: u32 = 10;
 pub const START_LIMIT: f64 = 30.0;
 /// Seconds a worker may take to prepare a scene.
 pub const PREPARE_LIMIT: f64 = 60.0;
-/// What the pool must do. Workers are numbered from 0.
+
+/// An action of the pool. Workers are numbered from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// End this worker if it runs, and start a new one in its place.
@@ -60,7 +58,7 @@ enum Life {
 #[derive(Clone, Debug)]
 struct Slot {
     life: Life,
-    /// The tiles it holds, as numbers of tasks; the first is the one it traces.
+    /// Tasks it holds; the first is being traced.
     holds: VecDeque<usize>,
     /// Whether it was sent the present scene, and whether it has prepared it.
     begun: bool,
@@ -83,7 +81,7 @@ impl Slot {
     }
 
     /// Takes its work away.
-    fn put_down(&mut self) {
+    fn clear_work(&mut self) {
         self.holds.clear();
         self.begun = false;
         self.prepared = false;
@@ -95,7 +93,7 @@ impl Slot {
 enum Late {
     /// It is still at an older picture.
     Stale,
-    /// It gives no sign of life; what that means.
+    /// It gives no sign of life, with the reason to report.
     Hanging(&'static str),
 }
 
@@ -114,7 +112,7 @@ pub struct Scheduler {
 }
 
 impl Scheduler {
-    /// A pool of so many workers, none of which runs before [`Scheduler::launch`].
+    /// Creates a pool of `workers` workers, none of which runs before [`Scheduler::launch`].
     #[must_use]
     pub fn new(workers: usize) -> Self {
         let slot = Slot {
@@ -139,12 +137,12 @@ impl Scheduler {
         }
     }
 
-    /// What is to be done now, in this order.
+    /// Takes the commands to carry out now, in this order.
     pub fn commands(&mut self) -> Vec<Command> {
         std::mem::take(&mut self.commands)
     }
 
-    /// The number by which the workers know the present picture.
+    /// Number of the present picture in the messages of the workers.
     #[must_use]
     pub fn number(&self) -> u64 {
         self.number
@@ -156,8 +154,8 @@ impl Scheduler {
         self.run.as_ref().map(|run| run.plan.generation)
     }
 
-    /// How many passes of the present picture are complete. Only then is it worth a look at once: tiles are
-    /// looked at when the app draws anyway.
+    /// Number of complete passes of the present picture. The app is woken when it rises; single tiles are shown when the app
+    /// draws anyway.
     #[must_use]
     pub fn complete_passes(&self) -> usize {
         self.run.as_ref().map_or(0, Run::complete_passes)
@@ -182,7 +180,7 @@ impl Scheduler {
 
     /// Begins a picture; the present one is forgotten.
     pub fn start(&mut self, plan: Plan, now: f64) {
-        self.put_down(now);
+        self.clear_work(now);
         self.number += 1;
         self.error = None;
         self.run = Some(Run::new(plan, self.slots.len(), now));
@@ -193,8 +191,8 @@ impl Scheduler {
         self.deal(now);
     }
 
-    /// Hands out the whole coarse pass, a tile to each worker in turn: tracing it takes less time than
-    /// asking a page that is busy drawing for more. Not before all are awake: the first would get all of it.
+    /// Assigns the whole coarse pass, a tile to each worker in turn: tracing it takes less time than asking a page that is
+    /// busy drawing for more. Waits until all workers are awake, as the first would get all of it.
     fn deal(&mut self, now: f64) {
         if self.slots.iter().any(|slot| slot.life != Life::Awake) {
             return;
@@ -204,7 +202,7 @@ impl Scheduler {
             enough += 1;
             let before = self.held();
             for index in 0..self.slots.len() {
-                // Who should have which tile of the next pass is not known yet.
+                // The partition for the next pass is not known yet.
                 if self.run.as_ref().is_some_and(Run::is_coarse) {
                     self.give(index, Some(enough), false, now);
                 }
@@ -222,7 +220,7 @@ impl Scheduler {
 
     /// Ends the present picture.
     pub fn cancel(&mut self, now: f64) {
-        self.put_down(now);
+        self.clear_work(now);
         self.number += 1;
         for (index, slot) in self.slots.iter().enumerate() {
             if slot.life == Life::Awake {
@@ -262,7 +260,7 @@ impl Scheduler {
         }
     }
 
-    /// A worker has traced a tile. Says whether the tile is wanted.
+    /// A worker has traced a tile. Returns whether the tile is wanted.
     pub fn traced(
         &mut self,
         index: usize,
@@ -289,7 +287,7 @@ impl Scheduler {
         let news = run.complete_passes() > complete;
         self.fill(index, now);
         for other in 0..self.slots.len() {
-            // More is known with each pass; and who had nothing to do may be worth its help now.
+            // Each pass gives better costs, by which an idle worker may now help.
             if self.slots[other].prepared && (news || self.slots[other].holds.is_empty()) {
                 self.fill(other, now);
             }
@@ -347,7 +345,7 @@ impl Scheduler {
             }
         }
         run.again.extend(held.into_iter().rev());
-        run.settle(now);
+        run.update(now);
     }
 
     /// Time has passed: replaces workers that hang or are too long at an older picture.
@@ -397,7 +395,7 @@ impl Scheduler {
         }
     }
 
-    /// Whether time matters: something is on its way.
+    /// Whether [`Scheduler::tick`] must be called: a worker is starting, busy or at an older picture.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         self.slots
@@ -420,7 +418,7 @@ impl Scheduler {
             ..Progress::default()
         };
         if let Some(run) = &self.run {
-            run.tell(&mut progress, now);
+            run.report(&mut progress, now);
         }
         progress
     }
@@ -448,7 +446,7 @@ impl Scheduler {
     /// Starts a worker, in the place of the old one if there is one.
     fn restart(&mut self, index: usize, now: f64) {
         let slot = &mut self.slots[index];
-        slot.put_down();
+        slot.clear_work();
         slot.stale = None;
         slot.suspected = false;
         slot.life = Life::Starting;
@@ -459,7 +457,7 @@ impl Scheduler {
     /// Ends a worker for now.
     fn end(&mut self, index: usize, life: Life) {
         let slot = &mut self.slots[index];
-        slot.put_down();
+        slot.clear_work();
         slot.stale = None;
         slot.life = life;
         self.commands.push(Command::End(index));
@@ -472,19 +470,19 @@ impl Scheduler {
     }
 
     /// Takes all work from all workers.
-    fn put_down(&mut self, now: f64) {
+    fn clear_work(&mut self, now: f64) {
         for slot in &mut self.slots {
             if slot.life == Life::Awake && slot.is_busy() {
                 slot.stale.get_or_insert(now);
             }
-            slot.put_down();
+            slot.clear_work();
         }
         if let Some(run) = &mut self.run {
             run.abandon();
         }
     }
 
-    /// A sign of life.
+    /// Notes a sign of life.
     fn heard(&mut self, index: usize, now: f64) {
         let slot = &mut self.slots[index];
         slot.suspected = false;
@@ -513,14 +511,14 @@ impl Scheduler {
     fn fill(&mut self, index: usize, now: f64) {
         let Some(run) = &self.run else { return };
         let again = !run.again.is_empty();
-        // What is done again is done alone, so let the worker first finish what it has.
+        // A repeated tile is traced alone, so the worker first finishes the tiles it holds.
         let enough = (again || !self.slots[index].prepared).then_some(1);
         let complete = run.complete_passes();
         self.give(index, enough, again, now);
         let (Some(run), slot) = (&self.run, &self.slots[index]) else {
             return;
         };
-        // What had been given up may have been the last of a pass, or the last to be done again.
+        // A tile that was given up may have been the last of a pass, or the last to be repeated.
         if run.complete_passes() > complete {
             self.fill_all(now);
         } else if again && run.again.is_empty() && slot.holds.is_empty() {
@@ -528,8 +526,8 @@ impl Scheduler {
         }
     }
 
-    /// Gives a worker tiles until it has so many, or else enough, from those never handed out or from those to be done
-    /// again.
+    /// Gives a worker tiles until it holds `enough`, or by [`Run::needs_more`], from those never assigned or, with `again`,
+    /// from those to be repeated.
     fn give(&mut self, index: usize, enough: Option<usize>, again: bool, now: f64) {
         let (Some(run), slot) = (&mut self.run, &self.slots[index]) else {
             return;
@@ -546,7 +544,7 @@ impl Scheduler {
         let mut orders = Vec::new();
         let workers = run.awake.iter().filter(|awake| **awake).count();
         while enough.map_or_else(
-            || run.is_too_little(&slot.holds, workers),
+            || run.needs_more(&slot.holds, workers),
             |enough| slot.holds.len() < enough,
         ) {
             let Some(task) = run.take(index, slot.holds.len() < 2, again) else {
@@ -559,7 +557,7 @@ impl Scheduler {
             orders.push(run.order(task, self.number));
         }
         // Tiles given up in an earlier pass may have been the last ones.
-        run.settle(now);
+        run.update(now);
         if orders.is_empty() {
             return;
         }

@@ -1,19 +1,22 @@
-//! The picture being traced: which tiles in which passes are to be done, are done, or were given up.
+//! State of the picture being traced: which tiles are done, left or given up in each pass.
 
-use super::progress::{Costs, Progress};
-use super::scheduler::ATTEMPTS;
+use crate::job::{SMALL_TILE, TILE};
+use crate::progress::{Costs, Progress};
 use std::collections::{HashMap, HashSet, VecDeque};
 use tracer::{Pass, Stats, Tile};
 use worker::Order;
 
-/// Least seconds a tile may take.
+/// Failures after which a tile, a scene or a worker is given up.
+pub const ATTEMPTS: u32 = 3;
+/// Least time limit of a tile, seconds.
 pub const TILE_LIMIT: f64 = 20.0;
-/// A tile may take so many times longer than the slowest of its pass so far, …
+/// Time limit of a tile as a multiple of the slowest tile of its pass so far.
 pub const SLACK: f64 = 20.0;
-/// … and so many times longer again after each failure, …
+/// Factor on the time limit after each failure.
 pub const RETRY: f64 = 4.0;
-/// … but never longer than so many seconds.
+/// Most seconds of any time limit.
 pub const LONGEST_LIMIT: f64 = 600.0;
+
 /// A picture as the scheduler sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
@@ -25,7 +28,7 @@ pub struct Plan {
     pub samples: u32,
     /// Whether only the last pass is wanted, in one go.
     pub small: bool,
-    /// Whether workers hear of each other's first samples.
+    /// Whether workers share first samples.
     pub shared: bool,
 }
 
@@ -35,28 +38,31 @@ pub struct Run {
     pub plan: Plan,
     pub(super) tiles: Vec<Tile>,
     pub(super) passes: &'static [Pass],
-    /// For each pass its tiles that were never handed out, in the order of the tiles. A task is a tile in a pass: pass ·
-    /// number of tiles + tile.
+    /// For each pass the tiles never assigned, in the order of the tiles. A task is a tile in a pass, numbered pass · number
+    /// of tiles + tile.
     pub(super) left: Vec<VecDeque<usize>>,
-    /// What the coarse pass did at each tile, 0 as long as nothing is known, and the sum of what is and at how many.
+    /// Work of the coarse pass at each tile (rays and field evaluations), 0 while unknown.
     pub(super) effort: Vec<u64>,
+    /// Sum of the known efforts, and their number.
     pub(super) known_effort: (u64, u64),
-    /// What the full pass came to at each tile, if it is known: seconds, and [`Stats::edges`].
+    /// Seconds and [`Stats::edges`] of the full pass at each tile, where known.
     pub(super) full: Vec<Option<(f64, u64)>>,
     /// Which workers take requests at present.
     pub awake: Vec<bool>,
-    /// Who should have each tile in the full pass, …
+    /// Worker that should trace each tile in the full pass.
     pub(super) home: Vec<usize>,
-    /// … and who was given it last, but for the coarse pass, and so has its first samples if it was not restarted since.
+    /// Worker that was given each tile last, other than in the coarse pass: it has the tile's first samples unless it was
+    /// restarted.
     pub(super) holder: Vec<Option<usize>>,
-    /// Tasks handed out before, to be done again, each alone.
+    /// Tasks of workers that failed, to be repeated, each alone.
     pub again: Vec<usize>,
     failures: HashMap<usize, u32>,
     pub(super) failed_tiles: HashSet<usize>,
     pub failed_preparations: u32,
-    /// Which tasks are done or given up, and how many of each pass.
+    /// For each task whether it is done or given up.
     pub(super) over: Vec<bool>,
-    pub(super) settled: [usize; 3],
+    /// Number of those tasks in each pass.
+    pub(super) completed: [usize; 3],
     pass_seconds: [Option<f64>; 3],
     pub(super) costs: Costs,
     begun: f64,
@@ -66,7 +72,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Cuts a picture into tasks for so many workers. One without pixels is finished at once.
+    /// Cuts a picture into tasks for `workers` workers. A picture without pixels is finished at once.
     pub fn new(plan: Plan, workers: usize, now: f64) -> Self {
         let passes: &'static [Pass] = if plan.samples > 1 {
             &[Pass::Coarse, Pass::Full, Pass::Smooth]
@@ -74,9 +80,9 @@ impl Run {
             &[Pass::Coarse, Pass::Full]
         };
         let (passes, side) = if plan.small {
-            (&passes[passes.len() - 1..], super::SMALL_TILE)
+            (&passes[passes.len() - 1..], SMALL_TILE)
         } else {
-            (passes, super::TILE)
+            (passes, TILE)
         };
         let tiles = tracer::tile::tiles(plan.size[0], plan.size[1], side);
         let mut run = Self {
@@ -95,7 +101,7 @@ impl Run {
             failures: HashMap::new(),
             failed_tiles: HashSet::new(),
             failed_preparations: 0,
-            settled: [0; 3],
+            completed: [0; 3],
             pass_seconds: [None; 3],
             costs: Costs::default(),
             begun: now,
@@ -103,8 +109,8 @@ impl Run {
             fraction: 0.0,
             stats: Stats::default(),
         };
-        run.part();
-        run.settle(now);
+        run.repartition();
+        run.update(now);
         run
     }
 
@@ -119,16 +125,15 @@ impl Run {
     /// Notes that nothing more will be done for a task.
     pub(super) fn close(&mut self, task: usize) {
         self.over[task] = true;
-        self.settled[task / self.tiles.len()] += 1;
+        self.completed[task / self.tiles.len()] += 1;
     }
 
-    /// How many passes are complete.
+    /// Number of complete passes.
     pub fn complete_passes(&self) -> usize {
         self.pass_seconds.iter().flatten().count()
     }
 
-    /// Seconds a task may take. After each failure it gets more, as a tile may be slow for good
-    /// reasons.
+    /// Time limit of a task, seconds. It grows with each failure, as a tile may be slow for good reasons.
     pub fn limit(&self, task: usize) -> f64 {
         let pass = task / self.tiles.len();
         let failures = self.failures.get(&task).copied().unwrap_or(0);
@@ -142,19 +147,19 @@ impl Run {
         for pass in 0..self.passes.len() {
             let cost = self.costs.expected(pass);
             all += cost * self.tiles.len() as f64;
-            left += cost * (self.tiles.len() - self.settled[pass]) as f64;
+            left += cost * (self.tiles.len() - self.completed[pass]) as f64;
         }
         (all, left)
     }
 
-    /// Notes which passes are complete, and the end of the picture.
-    pub fn settle(&mut self, now: f64) {
-        let complete = |pass: usize| self.settled[pass] == self.tiles.len();
-        let mut parted = false;
+    /// Notes complete passes and the end of the picture.
+    pub fn update(&mut self, now: f64) {
+        let complete = |pass: usize| self.completed[pass] == self.tiles.len();
+        let mut coarse_is_complete = false;
         for pass in 0..self.passes.len() {
             if complete(pass) && self.pass_seconds[pass].is_none() {
                 self.pass_seconds[pass] = Some(now - self.begun);
-                parted |= self.passes[pass] == Pass::Coarse;
+                coarse_is_complete |= self.passes[pass] == Pass::Coarse;
             }
         }
         let (all, left) = self.expected();
@@ -165,12 +170,12 @@ impl Run {
             self.ended.get_or_insert(now);
             self.fraction = 1.0;
         }
-        if parted {
-            self.part();
+        if coarse_is_complete {
+            self.repartition();
         }
     }
 
-    /// A task is done.
+    /// Notes that a task is done.
     pub fn done(&mut self, task: usize, stats: &Stats, seconds: f64, now: f64) {
         let pass = task / self.tiles.len();
         let tile = task % self.tiles.len();
@@ -187,10 +192,10 @@ impl Run {
         }
         self.costs.add(pass, seconds.max(0.0));
         self.stats += *stats;
-        self.settle(now);
+        self.update(now);
     }
 
-    /// A worker died or hung while it held a task. Says whether the task is given up.
+    /// Notes that a worker died or hung while it held a task. Returns whether the task is given up.
     pub fn failed(&mut self, task: usize) -> bool {
         let failures = self.failures.entry(task).or_insert(0);
         *failures += 1;
@@ -202,15 +207,15 @@ impl Run {
         give_up
     }
 
-    /// Hands out nothing more.
+    /// Drops all tasks that are left.
     pub fn abandon(&mut self) {
         self.again.clear();
         self.left.iter_mut().for_each(VecDeque::clear);
     }
 
-    /// Writes down how far the picture has come. The number of workers must be there already.
-    pub fn tell(&self, progress: &mut Progress, now: f64) {
-        let complete = |pass: usize| self.settled[pass] == self.tiles.len();
+    /// Writes the picture's state into `progress`, whose number of workers must be set.
+    pub fn report(&self, progress: &mut Progress, now: f64) {
+        let complete = |pass: usize| self.completed[pass] == self.tiles.len();
         progress.generation = Some(self.plan.generation);
         progress.fraction = self.fraction;
         progress.finished = (0..self.passes.len()).all(complete);

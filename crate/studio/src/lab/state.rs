@@ -1,0 +1,131 @@
+//! State of the lab: the open lesson and the numbers of all lessons.
+
+use super::pictures::Pictures;
+use super::{chart, convolution, grid, kernels, profiles, slice, spans, superposition};
+use crate::lesson::Lesson;
+use pool::Pool;
+use serde::Serialize;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// State of the lab for scripts.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Report {
+    /// The word of the open lesson.
+    pub lesson: &'static str,
+    /// Its title.
+    pub title: &'static str,
+    /// Small pictures still to be traced.
+    pub waiting: usize,
+    /// Small pictures that are there.
+    pub drawn: usize,
+    /// Texts that the language does not draw (yet).
+    pub refused: usize,
+    /// Numbers that the lesson shows.
+    pub readings: BTreeMap<&'static str, f64>,
+}
+
+/// The lab.
+pub struct Lab {
+    open: bool,
+    pub(super) lesson: Lesson,
+    /// The fragment of the address before the lab was entered.
+    came_from: String,
+    /// A message about the last action, and until when it is shown.
+    pub(super) said: Option<(&'static str, f64)>,
+    /// Small traced pictures.
+    pub pictures: Pictures,
+    pub(super) readings: BTreeMap<&'static str, f64>,
+    pub(super) kernels: kernels::Kernels,
+    pub(super) convolution: convolution::Convolution,
+    pub(super) slice: slice::Slice,
+    pub(super) grid: grid::Grid,
+    pub(super) profiles: profiles::Profiles,
+    pub(super) chart: chart::Chart,
+    pub(super) superposition: superposition::Superposition,
+    pub(super) spans: spans::Spans,
+}
+
+impl Lab {
+    /// The lab, open at a lesson or closed.
+    #[must_use]
+    pub fn new(pool: Rc<RefCell<Pool>>, lesson: Option<Lesson>) -> Self {
+        Self {
+            open: lesson.is_some(),
+            lesson: lesson.unwrap_or_default(),
+            came_from: String::new(),
+            said: None,
+            pictures: Pictures::new(pool),
+            readings: BTreeMap::new(),
+            kernels: kernels::Kernels::default(),
+            convolution: convolution::Convolution::default(),
+            slice: slice::Slice::default(),
+            grid: grid::Grid::default(),
+            profiles: profiles::Profiles::default(),
+            chart: chart::Chart::default(),
+            superposition: superposition::Superposition::default(),
+            spans: spans::Spans::default(),
+        }
+    }
+
+    /// Whether the lab stands in place of the editor.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// The lesson that is open, or was last.
+    #[must_use]
+    pub fn lesson(&self) -> Lesson {
+        self.lesson
+    }
+
+    /// The title for the browser's tab, while the lab is open.
+    #[must_use]
+    pub fn title(&self) -> Option<&'static str> {
+        self.open.then(|| self.lesson.title())
+    }
+
+    /// Goes to a lesson. `address` is the fragment before, to which leaving the lab leads back.
+    pub fn open(&mut self, lesson: Lesson, address: &str) {
+        if !self.open {
+            address.clone_into(&mut self.came_from);
+        }
+        self.open = true;
+        self.lesson = lesson;
+        self.readings.clear();
+        self.said = None;
+    }
+
+    /// The fragment that leads back.
+    #[must_use]
+    pub fn came_from(&self) -> &str {
+        &self.came_from
+    }
+
+    /// Leaves the lab. The lessons keep their numbers.
+    pub fn close(&mut self) {
+        self.open = false;
+        self.came_from.clear();
+    }
+
+    /// Shows a message about an action for a while.
+    pub fn say(&mut self, text: &'static str, now: f64) {
+        self.said = Some((text, now + 4.0));
+    }
+
+    /// The state for scripts, while the lab is open.
+    #[must_use]
+    pub fn report(&self) -> Option<Report> {
+        self.open.then(|| Report {
+            lesson: self.lesson.word(),
+            title: self.lesson.title(),
+            waiting: self.pictures.waiting(),
+            drawn: self.pictures.drawn(),
+            refused: self.pictures.refused(),
+            readings: self.readings.clone(),
+        })
+    }
+}

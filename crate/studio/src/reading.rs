@@ -1,0 +1,193 @@
+//! Reading the large meshes of a work apart from the page's thread.
+//!
+//! A large mesh file goes to the tools worker; its mesh, or the reader's error message, is kept for
+//! compiling by [`rats::keep_mesh`]. Until then the session does not compile texts that name it and the
+//! last good picture stays.
+
+use crate::asset::Asset;
+use crate::session::Session;
+use pool::{ToolEvent, Tools};
+use std::sync::Arc;
+use tools::{Job, Output};
+
+/// A file that is being read.
+struct Reading {
+    id: u64,
+    asset: Asset,
+    fraction: f32,
+}
+
+impl Reading {
+    fn is_of(&self, asset: &Asset) -> bool {
+        self.asset.name == asset.name && Arc::ptr_eq(&self.asset.bytes, &asset.bytes)
+    }
+}
+
+/// The files that are being read.
+pub struct MeshReading {
+    tools: Tools,
+    files: Vec<Reading>,
+}
+
+impl MeshReading {
+    /// Reads nothing yet; the worker is started for the first file. `repaint` is called when
+    /// [`MeshReading::tick`] has something to do.
+    #[must_use]
+    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
+        Self {
+            tools: Tools::new(repaint),
+            files: Vec::new(),
+        }
+    }
+
+    /// Starts reading the meshes that the session waits for, gives up those it does not want any more,
+    /// and keeps those that are read. Returns whether one is, so that the session may compile.
+    pub fn tick(&mut self, session: &Session) -> bool {
+        let events = self.tools.poll();
+        let mut any_read = false;
+        for (id, event) in events {
+            let Some(index) = self.files.iter().position(|file| file.id == id) else {
+                continue;
+            };
+            match event {
+                ToolEvent::Progress(fraction) => self.files[index].fraction = fraction,
+                ToolEvent::Done(result) => {
+                    let mesh = result.map(|Output::Mesh(mesh)| mesh.into());
+                    rats::keep_mesh(&self.files.remove(index).asset, mesh);
+                    any_read = true;
+                }
+            }
+        }
+        let wanted: Vec<Asset> = if session.enabled() {
+            session.unread_meshes().cloned().collect()
+        } else {
+            Vec::new()
+        };
+        let Self { tools, files } = self;
+        files.retain(|file| {
+            let is_wanted = wanted.iter().any(|asset| file.is_of(asset));
+            if !is_wanted {
+                tools.cancel(file.id);
+            }
+            is_wanted
+        });
+        for asset in wanted {
+            if !files.iter().any(|file| file.is_of(&asset)) {
+                let job = Job::ReadMesh {
+                    name: asset.name.clone(),
+                    bytes: asset.bytes.to_vec(),
+                };
+                let id = tools.submit(job);
+                files.push(Reading {
+                    id,
+                    asset,
+                    fraction: 0.0,
+                });
+            }
+        }
+        any_read
+    }
+
+    /// The name of the file that is being read, with the fraction done, 0 … 1.
+    #[must_use]
+    pub fn current(&self) -> Option<(&str, f32)> {
+        let file = self.files.first()?;
+        Some((&file.asset.name, file.fraction))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::asset::LARGE_MESH;
+    use crate::session::Kept;
+    use rats::{File, Project};
+    use std::time::{Duration, Instant};
+
+    /// A mesh file of more than [`LARGE_MESH`] bytes with one triangle.
+    fn large(name: &str, face: &str) -> Asset {
+        let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+        while text.len() <= LARGE_MESH {
+            text.push_str("# a remark that makes the file large\n");
+        }
+        text.push_str(face);
+        Asset {
+            name: name.to_owned(),
+            bytes: text.into_bytes().into(),
+        }
+    }
+
+    fn session(text: &str, assets: Vec<Asset>) -> Session {
+        let file = File {
+            name: String::from("main.rat"),
+            text: text.to_owned(),
+        };
+        let kept = Kept {
+            project: Project { files: vec![file] },
+            assets,
+            ..Kept::default()
+        };
+        Session::new(kept, true)
+    }
+
+    fn read_all(reading: &mut MeshReading, session: &Session) {
+        let deadline = Instant::now() + Duration::from_secs(60);
+        while !reading.tick(session) || reading.current().is_some() {
+            assert!(Instant::now() < deadline);
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    const TEXT: &str = "surface a, diffuse Red\nmesh a big.obj\n";
+
+    #[test]
+    fn session_compiles_once_its_mesh_is_read() {
+        let mut session = session(TEXT, vec![large("big.obj", "f 1 2 3\n")]);
+        session.compile();
+        assert!(!session.is_compiled() && session.scene().is_none());
+        let mut reading = MeshReading::new(|| {});
+        assert!(!reading.tick(&session));
+        assert_eq!(reading.current(), Some(("big.obj", 0.0)));
+        read_all(&mut reading, &session);
+        session.compile();
+        assert!(session.is_compiled());
+        assert_eq!(session.diagnostics(), []);
+        assert_eq!(session.compiled().scene.elements.len(), 1);
+    }
+
+    #[test]
+    fn last_good_picture_stays_while_a_mesh_is_read_and_an_error_is_a_diagnostic() {
+        let mut session = session("surface a, diffuse Red\nsphere a 1, 0 0 0\n", Vec::new());
+        session.compile();
+        let generation = session.generation();
+        session
+            .put_assets(vec![large("big.obj", "f 1 2 9\n")])
+            .unwrap();
+        session.compile();
+        assert!(session.is_compiled(), "the text does not name it");
+        session.set_text(0, TEXT.to_owned(), 0.0).unwrap();
+        session.compile();
+        assert!(!session.is_compiled());
+        assert_eq!((session.errors(), session.generation()), (0, generation));
+        let mut reading = MeshReading::new(|| {});
+        read_all(&mut reading, &session);
+        session.compile();
+        assert!(session.is_compiled());
+        assert_eq!(session.errors(), 1);
+        assert!(session.diagnostics()[0].message.contains("corner"));
+        assert_eq!(session.generation(), generation);
+    }
+
+    #[test]
+    fn removed_mesh_is_not_read() {
+        let mut session = session(TEXT, vec![large("big.obj", "f 1 2 3\n")]);
+        let mut reading = MeshReading::new(|| {});
+        reading.tick(&session);
+        session.remove_asset("big.obj");
+        assert!(!reading.tick(&session));
+        assert_eq!(reading.current(), None);
+        session.compile();
+        assert!(session.is_compiled());
+        assert_eq!(session.errors(), 1, "there is no such file");
+    }
+}

@@ -1,0 +1,26 @@
+//! Jobs of the tools worker, which take long and draw nothing: today reading a mesh from a file.
+//!
+//! The page sends a [`Request`] with the job's number; the worker runs it with [`run`] and sends
+//! [`Answer`]s: progress, and in the end the result. A job is a function of its request alone, so
+//! that it can be repeated by another worker. Native builds run the same code on a thread. The part
+//! for web workers is in `entry`, which is compiled only into the worker's own wasm (feature `entry`).
+//!
+//! ```
+//! use tools::{Job, Output, Progress};
+//! let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+//! let job = Job::ReadMesh {
+//!     name: "triangle.obj".into(),
+//!     bytes: text.into(),
+//! };
+//! let Output::Mesh(mesh) = tools::run(job, &mut Progress::silent())?;
+//! assert_eq!(mesh.triangles, [[0, 1, 2]]);
+//! # Ok::<(), String>(())
+//! ```
+
+#[cfg(all(target_arch = "wasm32", feature = "entry"))]
+mod entry;
+mod job;
+pub mod message;
+
+pub use job::{Progress, run};
+pub use message::{Answer, Job, MeshData, Output, Request};

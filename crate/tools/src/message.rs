@@ -1,0 +1,134 @@
+//! Messages between the page and the tools worker: plain data, packed as bytes.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+
+/// Work for the tools worker.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Job {
+    /// Read a mesh from an OBJ, PLY, STL or GLB file.
+    ReadMesh {
+        /// The file's name, whose ending says the format where the content does not.
+        name: String,
+        /// The file's content.
+        // Copied as a whole, not byte by byte.
+        #[serde(with = "serde_bytes")]
+        bytes: Vec<u8>,
+    },
+}
+
+/// Result of a [`Job`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Output {
+    /// Of [`Job::ReadMesh`].
+    Mesh(MeshData),
+}
+
+/// A triangle mesh as it is sent. The fields are those of [`mesh::Mesh`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MeshData {
+    /// Corners.
+    pub positions: Vec<DVec3>,
+    /// Normals at the corners, if the file has any.
+    pub normals: Option<Vec<DVec3>>,
+    /// Indices of three corners each.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl From<mesh::Mesh> for MeshData {
+    fn from(mesh: mesh::Mesh) -> Self {
+        Self {
+            positions: mesh.positions,
+            normals: mesh.normals,
+            triangles: mesh.triangles,
+        }
+    }
+}
+
+impl From<MeshData> for mesh::Mesh {
+    fn from(mesh: MeshData) -> Self {
+        Self {
+            positions: mesh.positions,
+            normals: mesh.normals,
+            triangles: mesh.triangles,
+        }
+    }
+}
+
+/// A message to the worker. Jobs run one after the other, in the order of their messages; the page
+/// cancels a running one by ending the worker.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Request {
+    /// Number of the job, given back with its answers.
+    pub id: u64,
+    /// The job.
+    pub job: Job,
+}
+
+/// A message from the worker.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Answer {
+    /// The worker runs and takes requests. Sent once.
+    Started,
+    /// A job is being worked at. Also a sign of life: a worker that is silent for long is replaced.
+    Progress {
+        /// Number of the job.
+        id: u64,
+        /// Fraction done, 0 … 1.
+        fraction: f32,
+    },
+    /// A job is over.
+    Done {
+        /// Number of the job.
+        id: u64,
+        /// Its result, or an error message for the user.
+        result: Result<Output, String>,
+    },
+    /// The worker cannot continue, for this reason. The page replaces it.
+    Failed(String),
+}
+
+/// Packs a message.
+///
+/// # Errors
+/// Only if memory runs out while writing.
+pub fn pack<T: Serialize>(message: &T) -> Result<Vec<u8>, postcard::Error> {
+    postcard::to_allocvec(message)
+}
+
+/// Unpacks a message of the same build.
+///
+/// # Errors
+/// If the bytes are not such a message, as happens when page and worker are of different builds.
+pub fn unpack<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, postcard::Error> {
+    postcard::from_bytes(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_survive_packing_and_other_bytes_are_refused() {
+        let request = Request {
+            id: 7,
+            job: Job::ReadMesh {
+                name: String::from("a.obj"),
+                bytes: vec![1, 2, 3],
+            },
+        };
+        assert_eq!(unpack(&pack(&request).unwrap()), Ok(request));
+        let mesh = MeshData {
+            positions: vec![DVec3::new(0.1, -2.0, 1e12), DVec3::ZERO],
+            normals: Some(vec![DVec3::X, DVec3::NEG_Z]),
+            triangles: vec![[0, 1, 200_000]],
+        };
+        let answer = Answer::Done {
+            id: 7,
+            result: Ok(Output::Mesh(mesh)),
+        };
+        assert_eq!(unpack(&pack(&answer).unwrap()), Ok(answer));
+        assert!(unpack::<Request>(&[9, 9, 9]).is_err());
+        assert!(unpack::<Answer>(&[]).is_err());
+    }
+}
