@@ -3,7 +3,8 @@
 
 use crate::project::Asset;
 use glam::DVec3;
-use mesh::{Error, Mesh};
+use mesh::{Error, TriangleMesh};
+use scene::Shape;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::{Arc, Weak};
@@ -11,7 +12,7 @@ use std::sync::{Arc, Weak};
 /// How many are kept.
 const KEPT: usize = 8;
 
-type Made = Result<Rc<Mesh>, Error>;
+type Made = Result<Rc<TriangleMesh>, Error>;
 
 /// What was made of some bytes, and how.
 struct Kept {
@@ -44,6 +45,23 @@ pub fn terra(asset: &Asset, size: DVec3) -> Made {
     })
 }
 
+/// The triangles as shapes: patches where the mesh has normals, else flat ones.
+pub fn shapes(mesh: &TriangleMesh) -> impl Iterator<Item = Shape> {
+    mesh.triangles.iter().map(|triangle| {
+        let corners = triangle.map(|i| mesh.positions[i as usize]);
+        match &mesh.normals {
+            Some(normals) => Shape::Patch {
+                corners,
+                normals: triangle.map(|i| normals[i as usize]),
+            },
+            None => Shape::Triangle {
+                corners,
+                radius: 0.0,
+            },
+        }
+    })
+}
+
 /// What making something of a file costs in steps. It may have been made before, but what a text means
 /// must not depend on that.
 #[must_use]
@@ -67,7 +85,7 @@ pub fn cost(asset: &Asset) -> u64 {
 fn make(
     asset: &Asset,
     how: (String, Option<DVec3>),
-    read: impl FnOnce(&[u8]) -> Result<Mesh, Error>,
+    read: impl FnOnce(&[u8]) -> Result<TriangleMesh, Error>,
 ) -> Made {
     let is_it = |kept: &Kept| {
         kept.how == how
