@@ -114,7 +114,7 @@ fn each_edit_does_what_it_says() {
     assert_eq!(mesh.split_face(a, mesh.next(a)), Err(EditError::DoubleEdge));
 
     let v = mesh.poke_face(f, DVec3::splat(0.3)).unwrap();
-    assert_eq!(mesh.degree(v), 3);
+    assert_eq!(mesh.degree(v), 4);
     let spoke = mesh.outgoing(v);
     mesh.collapse_edge(spoke, mesh.position(mesh.target(spoke)))
         .unwrap();
@@ -224,11 +224,16 @@ fn boundaries_are_welded() {
     mesh.weld(a, b).unwrap();
     assert_eq!(counts(&mesh), [5, 8, 4]);
     assert_eq!(mesh.degree(VertexId(0)), 4);
-    // Of three triangles: the seam's end vertices would share a neighbour.
+    // Of two triangles both seams close at once: they become the two sides of one.
     let mut mesh = HalfEdgeMesh::from_polygons(&soup(4, &[&[0, 1, 2], &[0, 2, 3]])).unwrap();
     let (a, b) = (edge(&mesh, 1, 0), edge(&mesh, 0, 3));
+    mesh.weld(a, b).unwrap();
+    assert_eq!(counts(&mesh), [3, 3, 2]);
+    // Two sides of a triangle have no place for each other.
+    let mut mesh = HalfEdgeMesh::from_polygons(&soup(3, &[&[0, 1, 2]])).unwrap();
+    let (a, b) = (edge(&mesh, 1, 0), edge(&mesh, 0, 2));
     assert_eq!(mesh.weld(a, b), Err(EditError::DoubleEdge));
-    assert_eq!(counts(&mesh), [4, 5, 2]);
+    assert_eq!(counts(&mesh), [3, 3, 1]);
     // A hole of four edges closes in one go.
     let mut mesh = HalfEdgeMesh::from_triangles(&sphere(4)).unwrap();
     let v = mesh.vertices().find(|v| mesh.degree(*v) == 4).unwrap();

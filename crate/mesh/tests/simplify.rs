@@ -43,7 +43,10 @@ fn levels_keep_topology_and_tell_their_error() {
             assert_eq!(own.normals.as_ref().unwrap().len(), own.positions.len());
             for (p, c) in own.positions.iter().zip(own.colors.as_ref().unwrap()) {
                 let expected = p.x.abs() as f32 / 2.0;
-                assert!((c[0] - expected).abs() < 0.12, "{p} {c:?}");
+                assert!(
+                    f64::from((c[0] - expected).abs()) < 0.01 + level.error,
+                    "{p} {c:?}"
+                );
             }
         }
         // A quarter of the triangles of a fine mesh is still near.
@@ -54,9 +57,8 @@ fn levels_keep_topology_and_tell_their_error() {
 
 #[test]
 fn flat_parts_vanish_and_edges_stay() {
-    // A cube's faces as grids: hardly anything is lost down to twelve triangles.
-    let mut soup = solids::cube();
-    let mut cube = HalfEdgeMesh::from_polygons(&soup).unwrap();
+    // A cube's faces as grids: nothing is lost down to forty triangles.
+    let mut cube = HalfEdgeMesh::from_polygons(&solids::cube()).unwrap();
     for _ in 0..3 {
         cube.triangulate().unwrap();
         for h in cube.edges().collect::<Vec<_>>() {
@@ -66,16 +68,15 @@ fn flat_parts_vanish_and_edges_stay() {
     }
     cube.triangulate().unwrap();
     assert!(cube.face_count() > 500);
-    simplify(&mut cube, 12);
+    simplify(&mut cube, 40);
     cube.validate().unwrap();
     let mesh = cube.to_triangles().unwrap();
-    assert!(mesh.triangles.len() <= 60, "{}", mesh.triangles.len());
+    assert!(mesh.triangles.len() <= 40, "{}", mesh.triangles.len());
     assert!(
         (mesh.signed_volume() - 1.0).abs() < 1e-6,
         "{}",
         mesh.signed_volume()
     );
-    soup.positions.clear();
     // A tetrahedron cannot be simplified.
     let mut least = HalfEdgeMesh::from_triangles(&sphere(1)).unwrap();
     simplify(&mut least, 0);

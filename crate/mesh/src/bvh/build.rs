@@ -145,10 +145,10 @@ fn split_by_area(range: &mut [u32], boxes: &[Aabb], centers: &[DVec3]) -> Option
     }
     let (mut bounds, mut count) = (Aabb::EMPTY, 0);
     let mut best: Option<(f64, usize)> = None;
-    for k in 1..BINS {
+    for (k, above) in above.iter().enumerate().skip(1) {
         bounds = bounds.union(&bins[k - 1].0);
         count += bins[k - 1].1;
-        let cost = bounds.half_area() * count as f64 + above[k];
+        let cost = bounds.half_area() * count as f64 + above;
         let is_split = count > 0 && count < range.len();
         if is_split && best.is_none_or(|(least, _)| cost < least) {
             best = Some((cost, k));

@@ -158,11 +158,11 @@ impl Bvh {
         let mut stack = Stack::new(self);
         while let Some(node) = stack.pop() {
             let node = &self.nodes[node as usize];
-            if !(bound(&node.bounds) <= reach) {
+            if bound(&node.bounds) > reach {
                 continue;
             }
             for i in self.primitives(node) {
-                if !(bound(&self.boxes[*i as usize]) <= reach) {
+                if bound(&self.boxes[*i as usize]) > reach {
                     continue;
                 }
                 let found = distance_squared(*i);

@@ -281,28 +281,24 @@ impl Model {
             }
             group = group.or(Some((material, start)));
             let mut triangle = [0; 3];
-            for k in 0..3 {
-                let property = properties[k].filter(|(id, _)| self.colors.contains_key(id));
-                triangle[k] = match vertices.get(&(corners[k], property)) {
-                    Some(known) => *known,
-                    None => {
-                        let position = object.positions.get(corners[k] as usize);
-                        let Some(position) = position else {
-                            return fail(format!(
-                                "a triangle of this 3MF file has vertex {} (from 0) of {}",
-                                corners[k],
-                                object.positions.len()
-                            ));
-                        };
-                        let vertex =
-                            mesh.add_vertex(place.transform_point3(*position) * self.scale)?;
-                        if let Some(colors) = &mut mesh.colors {
-                            colors.push(self.color_of(property, material));
-                        }
-                        vertices.insert((corners[k], property), vertex);
-                        vertex
-                    }
+            for (own, (corner, property)) in triangle.iter_mut().zip(corners.iter().zip(properties))
+            {
+                let property = property.filter(|(id, _)| self.colors.contains_key(id));
+                if let Some(known) = vertices.get(&(*corner, property)) {
+                    *own = *known;
+                    continue;
+                }
+                let Some(position) = object.positions.get(*corner as usize) else {
+                    return fail(format!(
+                        "a triangle of this 3MF file has vertex {corner} (from 0) of {}",
+                        object.positions.len()
+                    ));
                 };
+                *own = mesh.add_vertex(place.transform_point3(*position) * self.scale)?;
+                if let Some(colors) = &mut mesh.colors {
+                    colors.push(self.color_of(property, material));
+                }
+                vertices.insert((*corner, property), *own);
             }
             if is_mirrored {
                 triangle.swap(1, 2);

@@ -10,6 +10,8 @@ use std::fmt::Write;
 pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> (Vec<u8>, Option<Vec<u8>>) {
     let materials = materials(export);
     let names = unique_names(&materials);
+    // Some readers want a colour for every vertex or for none.
+    let has_colors = parts.iter().any(|part| part.mesh.colors.is_some());
     let mut text = String::from("# millimetres\n");
     if !materials.is_empty() {
         line(
@@ -25,10 +27,15 @@ pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> (Vec<u8>, Option
             &mut text,
             format_args!("o {}", line_name(part.name, &other)),
         );
+        let colors = if has_colors {
+            part.colors(&materials)
+        } else {
+            Vec::new()
+        };
         for (i, [x, y, z]) in part.positions.iter().enumerate() {
-            match &part.mesh.colors {
-                Some(colors) => {
-                    let [r, g, b] = colors[i].map(encode);
+            match colors.get(i) {
+                Some(color) => {
+                    let [r, g, b] = color.map(encode);
                     line(
                         &mut text,
                         format_args!("v {x} {y} {z} {r:.4} {g:.4} {b:.4}"),
