@@ -7,10 +7,10 @@ fuzz_target!(|bytes: &[u8]| {
     let Some((choice, bytes)) = bytes.split_first() else {
         return;
     };
-    match choice % 5 {
+    match choice % 6 {
         0 => drop(mesh::heights(bytes)),
         kind => {
-            let name = ["m.obj", "m.ply", "m.stl", "m.glb"][usize::from(kind) - 1];
+            let name = ["m.obj", "m.ply", "m.stl", "m.glb", "m.3mf"][usize::from(kind) - 1];
             drop(mesh::read(name, bytes));
         }
     }

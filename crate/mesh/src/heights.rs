@@ -1,7 +1,7 @@
 //! Heights out of a picture: a PNG file, dark is low and bright is high.
 
+use crate::error::{Error, fail};
 use crate::limits::{MAX_BYTES, MAX_PIXELS};
-use crate::{Error, fail};
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 use std::io::Cursor;
 

@@ -12,3 +12,11 @@ pub const MAX_JSON: usize = 4 * 1024 * 1024;
 pub const MAX_PIXELS: usize = 4096 * 4096;
 /// Triangles of a height field. A larger picture is averaged to a smaller grid.
 pub const MAX_TERRA: usize = 2 * 256 * 256;
+/// Half-edges of a half-edge mesh, free slots included: enough for 10,000,000 triangles.
+pub const MAX_HALF_EDGES: usize = 60_000_000;
+/// Materials in an MTL or 3MF file, and groups of a mesh.
+pub const MAX_MATERIALS: usize = 10_000;
+/// Bytes of the description in a 3MF file, unpacked.
+pub const MAX_XML: usize = 64 * 1024 * 1024;
+/// Triangles of a file that is written.
+pub const MAX_EXPORT_TRIANGLES: usize = 4_000_000;

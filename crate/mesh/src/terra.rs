@@ -1,7 +1,9 @@
 //! A height field: a grid of heights as a smooth surface.
 
+use crate::error::{Error, fail};
+use crate::heights::Heights;
 use crate::limits::MAX_TERRA;
-use crate::{Error, Heights, Mesh, fail};
+use crate::triangle_mesh::TriangleMesh;
 use glam::DVec3;
 
 /// The surface over the rectangle from the origin to `size.x`, `size.y`, with heights from 0 to
@@ -13,7 +15,7 @@ use glam::DVec3;
 ///
 /// # Errors
 /// If the picture has a single row or column, or a size is not a positive number.
-pub fn terra(heights: &Heights, size: DVec3) -> Result<Mesh, Error> {
+pub fn terra(heights: &Heights, size: DVec3) -> Result<TriangleMesh, Error> {
     if !size.is_finite() || size.min_element() <= 0.0 {
         return fail("a height field needs a size above 0 in all three directions");
     }
@@ -28,11 +30,11 @@ pub fn terra(heights: &Heights, size: DVec3) -> Result<Mesh, Error> {
         size,
         values: averaged(heights, across, down),
     };
-    let mut mesh = Mesh::default();
+    let mut mesh = TriangleMesh::default();
     let mut normals = Vec::with_capacity(grid.values.len());
     for j in 0..=down {
         for i in 0..=across {
-            mesh.corner(grid.place(i, j))?;
+            mesh.add_vertex(grid.place(i, j))?;
             normals.push(grid.normal(i, j));
         }
     }
@@ -42,8 +44,8 @@ pub fn terra(heights: &Heights, size: DVec3) -> Result<Mesh, Error> {
         for i in 0..across {
             let [a, b] = [corner(i, j), corner(i + 1, j)];
             let [c, d] = [corner(i + 1, j + 1), corner(i, j + 1)];
-            mesh.triangle([a, d, b])?;
-            mesh.triangle([b, d, c])?;
+            mesh.add_triangle([a, d, b])?;
+            mesh.add_triangle([b, d, c])?;
         }
     }
     Ok(mesh)

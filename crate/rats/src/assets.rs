@@ -3,7 +3,8 @@
 
 use crate::project::Asset;
 use glam::DVec3;
-use mesh::{Error, Mesh};
+use mesh::{Error, TriangleMesh};
+use scene::Shape;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::{Arc, Weak};
@@ -11,7 +12,7 @@ use std::sync::{Arc, Weak};
 /// How many are kept: more than a work has files.
 const KEPT: usize = 24;
 
-type Made = Result<Rc<Mesh>, Error>;
+type Made = Result<Rc<TriangleMesh>, Error>;
 /// The file's name, and the size of a height field.
 type How = (String, Option<DVec3>);
 
@@ -53,6 +54,23 @@ pub fn terra(asset: &Asset, size: DVec3) -> Made {
     })
 }
 
+/// The triangles as shapes: patches where the mesh has normals, else flat ones.
+pub fn shapes(mesh: &TriangleMesh) -> impl Iterator<Item = Shape> {
+    mesh.triangles.iter().map(|triangle| {
+        let corners = triangle.map(|i| mesh.positions[i as usize]);
+        match &mesh.normals {
+            Some(normals) => Shape::Patch {
+                corners,
+                normals: triangle.map(|i| normals[i as usize]),
+            },
+            None => Shape::Triangle {
+                corners,
+                radius: 0.0,
+            },
+        }
+    })
+}
+
 /// What making something of a file costs in steps. It may have been made before, but what a text means
 /// must not depend on that.
 #[must_use]
@@ -82,13 +100,13 @@ pub fn is_mesh_read(asset: &Asset) -> bool {
 
 /// Keeps the mesh of a file that was read elsewhere, or the error message of its reader, for all
 /// compilations by this thread while the file's bytes are kept. It must be what [`mesh::read`] gives.
-pub fn keep_mesh(asset: &Asset, mesh: Result<Mesh, String>) {
+pub fn keep_mesh(asset: &Asset, mesh: Result<TriangleMesh, String>) {
     let how = (asset.name.clone(), None);
     CACHE.with_borrow_mut(|cache| cache.retain(|kept| !kept.is_of(asset, &how)));
     keep(asset, how, mesh.map(Rc::new).map_err(Error));
 }
 
-fn make(asset: &Asset, how: How, read: impl FnOnce(&[u8]) -> Result<Mesh, Error>) -> Made {
+fn make(asset: &Asset, how: How, read: impl FnOnce(&[u8]) -> Result<TriangleMesh, Error>) -> Made {
     find(asset, &how).unwrap_or_else(|| {
         let made = read(&asset.bytes).map(Rc::new);
         keep(asset, how, made.clone());

@@ -52,7 +52,7 @@ impl MeshReading {
             match event {
                 ToolEvent::Progress(fraction) => self.files[index].fraction = fraction,
                 ToolEvent::Done(result) => {
-                    let mesh = result.map(|Output::Mesh(mesh)| mesh.into());
+                    let mesh = result.map(|Output::Mesh(mesh)| mesh);
                     rats::keep_mesh(&self.files.remove(index).asset, mesh);
                     any_read = true;
                 }

@@ -40,7 +40,7 @@ pub fn run(job: Job, progress: &mut Progress<'_>) -> Result<Output, String> {
         Job::ReadMesh { name, bytes } => {
             let mesh = mesh::read(&name, &bytes).map_err(|error| error.to_string())?;
             progress.report(0.9);
-            Ok(Output::Mesh(mesh.into()))
+            Ok(Output::Mesh(mesh))
         }
     }
 }
@@ -67,7 +67,7 @@ mod tests {
             panic!("{output:?}");
         };
         let direct = mesh::read("a.obj", SQUARE.as_bytes()).unwrap();
-        assert_eq!(mesh::Mesh::from(data), direct);
+        assert_eq!(data, direct);
         assert!(fractions.is_sorted() && fractions[0] == 0.0);
     }
 

@@ -23,4 +23,4 @@ mod job;
 pub mod message;
 
 pub use job::{Progress, run};
-pub use message::{Answer, Job, MeshData, Output, Request};
+pub use message::{Answer, Job, Output, Request};

@@ -1,6 +1,6 @@
 //! Messages between the page and the tools worker: plain data, packed as bytes.
 
-use glam::DVec3;
+use mesh::TriangleMesh;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 /// Work for the tools worker.
@@ -21,38 +21,7 @@ pub enum Job {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Output {
     /// Of [`Job::ReadMesh`].
-    Mesh(MeshData),
-}
-
-/// A triangle mesh as it is sent. The fields are those of [`mesh::Mesh`].
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct MeshData {
-    /// Corners.
-    pub positions: Vec<DVec3>,
-    /// Normals at the corners, if the file has any.
-    pub normals: Option<Vec<DVec3>>,
-    /// Indices of three corners each.
-    pub triangles: Vec<[u32; 3]>,
-}
-
-impl From<mesh::Mesh> for MeshData {
-    fn from(mesh: mesh::Mesh) -> Self {
-        Self {
-            positions: mesh.positions,
-            normals: mesh.normals,
-            triangles: mesh.triangles,
-        }
-    }
-}
-
-impl From<MeshData> for mesh::Mesh {
-    fn from(mesh: MeshData) -> Self {
-        Self {
-            positions: mesh.positions,
-            normals: mesh.normals,
-            triangles: mesh.triangles,
-        }
-    }
+    Mesh(TriangleMesh),
 }
 
 /// A message to the worker. Jobs run one after the other, in the order of their messages; the page
@@ -107,6 +76,7 @@ pub fn unpack<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, postcard::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
 
     #[test]
     fn messages_survive_packing_and_other_bytes_are_refused() {
@@ -118,10 +88,11 @@ mod tests {
             },
         };
         assert_eq!(unpack(&pack(&request).unwrap()), Ok(request));
-        let mesh = MeshData {
+        let mesh = TriangleMesh {
             positions: vec![DVec3::new(0.1, -2.0, 1e12), DVec3::ZERO],
             normals: Some(vec![DVec3::X, DVec3::NEG_Z]),
             triangles: vec![[0, 1, 200_000]],
+            ..TriangleMesh::default()
         };
         let answer = Answer::Done {
             id: 7,

@@ -12,7 +12,7 @@ use crate::reader::Name;
 use crate::syntax::Command;
 use field::Kernel;
 use glam::{DMat3, DVec3};
-use mesh::Mesh;
+use mesh::TriangleMesh;
 use scene::{Element, Quadric, Shape};
 
 /// The operands, and the material's name: the chain's inside a chain, where shapes leave it out.
@@ -434,7 +434,7 @@ fn add_mesh<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
     name: &Name<'a>,
-    mesh: &Mesh,
+    mesh: &TriangleMesh,
     transform: Option<&Transform>,
 ) -> Outcome<Flow> {
     let material = run.material(name)?;
@@ -444,7 +444,7 @@ fn add_mesh<'a>(
     // Each triangle is one of many from here.
     run.repeating += 1;
     let mut result = Ok(());
-    for shape in mesh.shapes() {
+    for shape in assets::shapes(mesh) {
         let shape = match transform {
             Some(transform) => transform.apply(&shape),
             None => shape,

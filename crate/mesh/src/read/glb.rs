@@ -1,12 +1,13 @@
 //! GLB: a scene of nodes that place meshes, described in JSON, followed by one block of numbers.
 //!
-//! All triangles of the scene are read, each where its node puts it; cameras, materials, skins and
-//! animations are passed over. What the file says must be understood to read it (compression above
+//! All triangles of the scene are read, each where its node puts it, with vertex colours, and of the
+//! materials name, base colour and roughness; textures, cameras, skins and animations are passed over. What the file says must be understood to read it (compression above
 //! all) is refused by name.
 
-use crate::cursor::Cursor;
-use crate::limits::{MAX_JSON, MAX_TRIANGLES, MAX_VERTICES};
-use crate::{Error, Mesh, fail};
+use super::cursor::Cursor;
+use crate::error::{Error, fail};
+use crate::limits::{MAX_JSON, MAX_MATERIALS, MAX_TRIANGLES, MAX_VERTICES};
+use crate::triangle_mesh::{Group, Material, TriangleMesh};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
 
@@ -19,6 +20,7 @@ struct File {
     scenes: Vec<Scene>,
     nodes: Vec<Node>,
     meshes: Vec<Model>,
+    materials: Vec<Surface>,
     accessors: Vec<Accessor>,
     buffer_views: Vec<View>,
     buffers: Vec<Buffer>,
@@ -33,6 +35,7 @@ struct Scene {
 #[derive(Deserialize, Default)]
 #[serde(default)]
 struct Node {
+    name: String,
     children: Vec<usize>,
     mesh: Option<usize>,
     matrix: Option<Box<[f64; 16]>>,
@@ -44,6 +47,7 @@ struct Node {
 #[derive(Deserialize, Default)]
 #[serde(default)]
 struct Model {
+    name: String,
     primitives: Vec<Primitive>,
 }
 
@@ -53,6 +57,7 @@ struct Primitive {
     attributes: Attributes,
     indices: Option<usize>,
     mode: Option<u32>,
+    material: Option<usize>,
 }
 
 #[derive(Deserialize, Default)]
@@ -60,6 +65,31 @@ struct Primitive {
 struct Attributes {
     position: Option<usize>,
     normal: Option<usize>,
+    #[serde(rename = "COLOR_0")]
+    color: Option<usize>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+struct Surface {
+    name: String,
+    pbr_metallic_roughness: Reflection,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+struct Reflection {
+    base_color_factor: [f32; 4],
+    roughness_factor: f32,
+}
+
+impl Default for Reflection {
+    fn default() -> Self {
+        Self {
+            base_color_factor: [1.0; 4],
+            roughness_factor: 1.0,
+        }
+    }
 }
 
 #[derive(Deserialize, Default)]
@@ -102,7 +132,7 @@ fn is_harmless(extension: &str) -> bool {
         || matches!(extension, "KHR_texture_transform" | "KHR_texture_basisu")
 }
 
-pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
+pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     let (json, numbers) = chunks(bytes)?;
     let file: File = serde_json::from_slice(json)
         .map_err(|error| Error(format!("the description in this GLB is broken: {error}")))?;
@@ -113,9 +143,9 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
         ));
     }
     let reader = Reader { file, numbers };
-    let mut mesh = Mesh {
+    let mut mesh = TriangleMesh {
         normals: Some(Vec::new()),
-        ..Mesh::default()
+        ..TriangleMesh::default()
     };
     let mut tally = 0;
     for (node, place) in reader.placed()? {
@@ -129,10 +159,42 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
             if tally > MAX_TRIANGLES {
                 return fail(format!("this GLB has more than {MAX_TRIANGLES} parts"));
             }
+            let start = mesh.triangles.len() as u32;
             reader.primitive(primitive, &place, &mut mesh)?;
+            let node = &reader.file.nodes[node].name;
+            let name = if node.is_empty() { &model.name } else { node };
+            let material = match primitive.material {
+                Some(i) => Some(material(get(&reader.file.materials, i, "material")?)),
+                None => None,
+            };
+            let group = Group {
+                name: name.clone(),
+                material,
+                triangles: start..mesh.triangles.len() as u32,
+            };
+            // Without a name and a material there is nothing to tell.
+            let is_told = !group.name.is_empty() || group.material.is_some();
+            if is_told && !group.triangles.is_empty() {
+                if mesh.groups.len() == MAX_MATERIALS {
+                    return fail(format!("this GLB has more than {MAX_MATERIALS} groups"));
+                }
+                mesh.groups.push(group);
+            }
         }
     }
     Ok(mesh)
+}
+
+fn material(surface: &Surface) -> Material {
+    let [r, g, b, _] = surface.pbr_metallic_roughness.base_color_factor;
+    Material {
+        name: surface.name.clone(),
+        color: [r, g, b].map(|x| x.clamp(0.0, 1.0)),
+        roughness: surface
+            .pbr_metallic_roughness
+            .roughness_factor
+            .clamp(0.0, 1.0),
+    }
 }
 
 /// The description and the numbers.
@@ -238,7 +300,7 @@ impl Reader<'_> {
         &self,
         primitive: &Primitive,
         place: &DAffine3,
-        mesh: &mut Mesh,
+        mesh: &mut TriangleMesh,
     ) -> Result<(), Error> {
         let mode = primitive.mode.unwrap_or(4);
         let Some(position) = primitive.attributes.position else {
@@ -252,7 +314,7 @@ impl Reader<'_> {
         let positions = self.vectors(position)?;
         let count = positions.len() as u32;
         for position in positions {
-            mesh.corner(place.transform_point3(position))?;
+            mesh.add_vertex(place.transform_point3(position))?;
         }
         let normals = primitive.attributes.normal;
         match (&mut mesh.normals, normals) {
@@ -265,6 +327,21 @@ impl Reader<'_> {
                 all.extend(normals.into_iter().map(|n| (turn * n).normalize_or_zero()));
             }
             (all, _) => *all = None,
+        }
+        match (&mut mesh.colors, primitive.attributes.color) {
+            (None, None) => {}
+            (colors, color) => {
+                // Parts without colours beside others with are white.
+                let colors = colors.get_or_insert_default();
+                colors.resize(start as usize, [1.0; 3]);
+                if let Some(color) = color {
+                    colors.extend(self.colors(color)?);
+                }
+                if colors.len() > mesh.positions.len() {
+                    return fail("a part of this GLB has more colours than corners");
+                }
+                colors.resize(mesh.positions.len(), [1.0; 3]);
+            }
         }
         let corners: Vec<u32> = match primitive.indices {
             Some(indices) => self.indices(indices)?,
@@ -279,7 +356,7 @@ impl Reader<'_> {
         let is_mirrored = place.matrix3.determinant() < 0.0;
         let mut add = |[a, b, c]: [u32; 3]| {
             let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
-            mesh.triangle([a, b, c].map(|i| start + i))
+            mesh.add_triangle([a, b, c].map(|i| start + i))
         };
         if mode == 4 {
             for triangle in corners.chunks_exact(3) {
@@ -358,6 +435,35 @@ impl Reader<'_> {
             DVec3::new(next(), next(), next())
         };
         Ok((0..count).map(vector).collect())
+    }
+
+    /// Linear colours, as floats or as shares of the largest whole number.
+    fn colors(&self, i: usize) -> Result<Vec<[f32; 3]>, Error> {
+        let accessor = get(&self.file.accessors, i, "accessor")?;
+        let channels = match accessor.shape.as_str() {
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => 0,
+        };
+        let size = match accessor.component_type {
+            U8 => 1,
+            U16 => 2,
+            F32 => 4,
+            _ => 0,
+        };
+        if channels * size == 0 {
+            return fail(format!(
+                "accessor {i} (from 0) of this GLB is no list of colours"
+            ));
+        }
+        let (bytes, count, stride) = self.values(i, channels * size)?;
+        let channel = |at: usize| match size {
+            1 => f32::from(bytes[at]) / 255.0,
+            2 => f32::from(u16::from_le_bytes([bytes[at], bytes[at + 1]])) / 65_535.0,
+            _ => f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]),
+        };
+        let color = |k: usize| [0, 1, 2].map(|c| channel(k * stride + c * size));
+        Ok((0..count).map(color).collect())
     }
 
     fn indices(&self, i: usize) -> Result<Vec<u32>, Error> {

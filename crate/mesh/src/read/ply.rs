@@ -1,12 +1,14 @@
 //! PLY: a heading that lists elements with their properties, then rows of values, as text or as
 //! numbers.
 //!
-//! Of the element `vertex` the properties x, y, z and nx, ny, nz are read, of `face` the list
+//! Of the element `vertex` the properties x, y, z, nx, ny, nz and red, green, blue are read, of `face` the list
 //! `vertex_indices` (or `vertex_index`).
 
-use crate::cursor::Cursor;
+use super::cursor::Cursor;
+use crate::color::decode;
+use crate::error::{Error, fail};
 use crate::limits::{MAX_TRIANGLES, MAX_VERTICES};
-use crate::{Error, Mesh, fail};
+use crate::triangle_mesh::TriangleMesh;
 use glam::DVec3;
 
 /// The longest heading, bytes.
@@ -22,6 +24,22 @@ enum Kind {
     U32,
     F32,
     F64,
+}
+
+impl Kind {
+    /// A colour's channel, 0 … 1: whole numbers count to the largest of their type.
+    fn share(self, value: f64) -> f64 {
+        value
+            / match self {
+                Self::I8 => 127.0,
+                Self::U8 => 255.0,
+                Self::I16 => 32_767.0,
+                Self::U16 => 65_535.0,
+                Self::I32 => f64::from(i32::MAX),
+                Self::U32 => f64::from(u32::MAX),
+                Self::F32 | Self::F64 => 1.0,
+            }
+    }
 }
 
 struct Property<'a> {
@@ -62,7 +80,7 @@ impl Source<'_> {
     }
 }
 
-pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
+pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     let (heading, body) = split(bytes)?;
     let heading = core::str::from_utf8(heading)
         .map_err(|_| Error("the heading of this PLY file is no text".into()))?;
@@ -82,7 +100,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
             );
         }
     };
-    let mut mesh = Mesh::default();
+    let mut mesh = TriangleMesh::default();
     for element in &elements {
         let most = match element.name {
             "vertex" => MAX_VERTICES,
@@ -177,16 +195,22 @@ fn kind_of(name: &str) -> Option<Kind> {
 }
 
 /// Reads all rows of an element.
-fn rows(element: &Element<'_>, source: &mut Source<'_>, mesh: &mut Mesh) -> Result<(), Error> {
+fn rows(
+    element: &Element<'_>,
+    source: &mut Source<'_>,
+    mesh: &mut TriangleMesh,
+) -> Result<(), Error> {
     let is_vertex = element.name == "vertex";
     let is_face = element.name == "face";
     let normals = ["nx", "ny", "nz"];
     let has = |name: &&str| element.properties.iter().any(|p| p.name == *name);
     let has_normals = is_vertex && normals.iter().all(has);
+    let has_colors = is_vertex && ["red", "green", "blue"].iter().all(has);
     for row in 0..element.count {
         let wrong = |what: &str| Error(format!("`{}` {row} (from 0): {what}", element.name));
         let ended = || wrong("a number is missing or cannot be read");
         let (mut position, mut normal) = (DVec3::NAN, DVec3::ZERO);
+        let mut color = [0.0; 3];
         for property in &element.properties {
             let Some(length) = property.length else {
                 let value = source.next(property.kind).ok_or_else(ended)?;
@@ -197,6 +221,9 @@ fn rows(element: &Element<'_>, source: &mut Source<'_>, mesh: &mut Mesh) -> Resu
                     "nx" => normal.x = value,
                     "ny" => normal.y = value,
                     "nz" => normal.z = value,
+                    "red" => color[0] = property.kind.share(value),
+                    "green" => color[1] = property.kind.share(value),
+                    "blue" => color[2] = property.kind.share(value),
                     _ => {}
                 }
                 continue;
@@ -219,7 +246,7 @@ fn rows(element: &Element<'_>, source: &mut Source<'_>, mesh: &mut Mesh) -> Resu
                 match i {
                     0 => first = corner,
                     1 => {}
-                    _ => mesh.triangle([first, last, corner])?,
+                    _ => mesh.add_triangle([first, last, corner])?,
                 }
                 last = corner;
             }
@@ -228,9 +255,13 @@ fn rows(element: &Element<'_>, source: &mut Source<'_>, mesh: &mut Mesh) -> Resu
             if position.is_nan() {
                 return Err(wrong("it has no x, y and z that are numbers"));
             }
-            mesh.corner(position)?;
+            mesh.add_vertex(position)?;
             if has_normals {
                 mesh.normals.get_or_insert_default().push(normal);
+            }
+            if has_colors {
+                let linear = color.map(|x: f64| decode(x.clamp(0.0, 1.0)));
+                mesh.colors.get_or_insert_default().push(linear);
             }
         }
     }

@@ -2,8 +2,9 @@
 //!
 //! The normals that it gives are those of the flat triangles, so they are passed over.
 
-use crate::cursor::Cursor;
-use crate::{Error, Mesh, fail};
+use super::cursor::Cursor;
+use crate::error::{Error, fail};
+use crate::triangle_mesh::TriangleMesh;
 use glam::DVec3;
 
 /// Bytes before the first triangle: a comment and the count.
@@ -11,7 +12,7 @@ const HEAD: usize = 84;
 /// Bytes of a triangle.
 const TRIANGLE: usize = 50;
 
-pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
+pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     // Some binary files begin with `solid` too: the size tells.
     let count = Cursor::new(bytes.get(80..).unwrap_or_default(), false)
         .take()
@@ -38,13 +39,13 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
     }
 }
 
-fn add(mesh: &mut Mesh, corners: [DVec3; 3]) -> Result<(), Error> {
-    let [a, b, c] = corners.map(|corner| mesh.corner(corner));
-    mesh.triangle([a?, b?, c?])
+fn add(mesh: &mut TriangleMesh, corners: [DVec3; 3]) -> Result<(), Error> {
+    let [a, b, c] = corners.map(|corner| mesh.add_vertex(corner));
+    mesh.add_triangle([a?, b?, c?])
 }
 
-fn numbers(bytes: &[u8]) -> Result<Mesh, Error> {
-    let mut mesh = Mesh::default();
+fn numbers(bytes: &[u8]) -> Result<TriangleMesh, Error> {
+    let mut mesh = TriangleMesh::default();
     for triangle in bytes.chunks_exact(TRIANGLE) {
         // After the normal.
         let mut at = Cursor::new(&triangle[12..], false);
@@ -55,8 +56,8 @@ fn numbers(bytes: &[u8]) -> Result<Mesh, Error> {
     Ok(mesh)
 }
 
-fn lines(text: &str) -> Result<Mesh, Error> {
-    let mut mesh = Mesh::default();
+fn lines(text: &str) -> Result<TriangleMesh, Error> {
+    let mut mesh = TriangleMesh::default();
     let mut corners: Vec<DVec3> = Vec::new();
     for (line, number) in text.lines().zip(1..) {
         let mut words = line.split_ascii_whitespace();

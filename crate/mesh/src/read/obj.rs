@@ -1,7 +1,10 @@
-//! OBJ: lines of text, of which `v`, `vn` and `f` are read.
+//! OBJ: lines of text, of which `v` (with or without a colour), `vn`, `f`, and the names in `o`, `g` and
+//! `usemtl` are read.
 
-use crate::limits::MAX_VERTICES;
-use crate::{Error, Mesh, fail};
+use crate::color::decode;
+use crate::error::{Error, fail};
+use crate::limits::{MAX_MATERIALS, MAX_VERTICES};
+use crate::triangle_mesh::{Group, Material, TriangleMesh};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -10,16 +13,25 @@ type Corner = (u32, Option<u32>);
 
 #[derive(Default)]
 struct Reader {
-    mesh: Mesh,
+    mesh: TriangleMesh,
     positions: Vec<DVec3>,
     normals: Vec<DVec3>,
     /// Which corner of the mesh a position with a normal became.
     corners: HashMap<Corner, u32>,
     /// The normal of each corner of the mesh.
     chosen: Vec<Option<u32>>,
+    /// The colour of each position, as far as there are any.
+    colors: Vec<[f32; 3]>,
+    /// The position of each corner of the mesh.
+    sources: Vec<u32>,
+    /// The names that `o` or `g`, and `usemtl` gave last.
+    name: String,
+    material: Option<String>,
+    /// The first triangle with these.
+    start: u32,
 }
 
-pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
+pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     let text = String::from_utf8_lossy(bytes);
     let mut reader = Reader::default();
     // A backslash at its end continues a line.
@@ -39,7 +51,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Mesh, Error> {
             return fail(format!("line {number}: {text}"));
         }
     }
-    Ok(reader.finish())
+    reader.finish()
 }
 
 impl Reader {
@@ -47,12 +59,58 @@ impl Reader {
         let line = line.split_once('#').map_or(line, |(line, _)| line);
         let mut words = line.split_ascii_whitespace();
         match words.next() {
-            Some("v") => triple(&mut self.positions, words),
+            Some("v") => {
+                let mut numbers = words.clone();
+                triple(&mut self.positions, words)?;
+                // Three more numbers are a colour, one more is a weight.
+                let mut next = || {
+                    let number = numbers.next().and_then(|word| word.parse::<f64>().ok());
+                    number.map(|x| decode(x.clamp(0.0, 1.0)))
+                };
+                let colour = [next(), next(), next(), next(), next(), next()];
+                if let [.., Some(r), Some(g), Some(b)] = colour {
+                    self.colors.resize(self.positions.len() - 1, [1.0; 3]);
+                    self.colors.push([r, g, b]);
+                }
+                Ok(())
+            }
             Some("vn") => triple(&mut self.normals, words),
             Some("f") => self.face(words),
-            // Texture coordinates, groups, materials, lines, …
+            Some("o" | "g") => {
+                self.end_group()?;
+                self.name = words.collect::<Vec<_>>().join(" ");
+                Ok(())
+            }
+            Some("usemtl") => {
+                self.end_group()?;
+                self.material = Some(words.collect::<Vec<_>>().join(" "));
+                Ok(())
+            }
+            // Texture coordinates, lines, …
             _ => Ok(()),
         }
+    }
+
+    /// Ends the group of the triangles since the last name, if they have a name.
+    fn end_group(&mut self) -> Result<(), Error> {
+        let triangles = self.start..self.mesh.triangles.len() as u32;
+        self.start = triangles.end;
+        if triangles.is_empty() || (self.name.is_empty() && self.material.is_none()) {
+            return Ok(());
+        }
+        if self.mesh.groups.len() == MAX_MATERIALS {
+            return fail(format!("more than {MAX_MATERIALS} groups"));
+        }
+        let material = self.material.clone().map(|name| Material {
+            name,
+            ..Material::default()
+        });
+        self.mesh.groups.push(Group {
+            name: self.name.clone(),
+            material,
+            triangles,
+        });
+        Ok(())
     }
 
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<(), Error> {
@@ -65,7 +123,7 @@ impl Reader {
                 None => Some((corner, None)),
                 Some((first, None)) => Some((first, Some(corner))),
                 Some((first, Some(last))) => {
-                    self.mesh.triangle([first, last, corner])?;
+                    self.mesh.add_triangle([first, last, corner])?;
                     Some((first, Some(corner)))
                 }
             };
@@ -88,18 +146,24 @@ impl Reader {
         if let Some(&known) = self.corners.get(&(position, normal)) {
             return Ok(known);
         }
-        let corner = self.mesh.corner(self.positions[position as usize])?;
+        let corner = self.mesh.add_vertex(self.positions[position as usize])?;
         self.corners.insert((position, normal), corner);
         self.chosen.push(normal);
+        self.sources.push(position);
         Ok(corner)
     }
 
-    fn finish(mut self) -> Mesh {
+    fn finish(mut self) -> Result<TriangleMesh, Error> {
+        self.end_group()?;
         let normals = self.chosen.iter();
         self.mesh.normals = normals
             .map(|chosen| chosen.map(|i| self.normals[i as usize]))
             .collect();
-        self.mesh
+        if !self.colors.is_empty() {
+            let color = |i: &u32| self.colors.get(*i as usize).copied().unwrap_or([1.0; 3]);
+            self.mesh.colors = Some(self.sources.iter().map(color).collect());
+        }
+        Ok(self.mesh)
     }
 }
 

@@ -1,0 +1,49 @@
+//! The reader of any format.
+
+use super::{glb, obj, ply, stl, three_mf};
+use crate::error::{Error, fail};
+use crate::limits;
+use crate::triangle_mesh::TriangleMesh;
+
+/// Reads a mesh. The format follows from the first bytes, where they tell, else from the ending of
+/// the file's name (`.obj`, `.ply`, `.stl`, `.glb`, `.3mf`, in any case).
+///
+/// Positions are in the file's units, but those of 3MF files in millimetres (GLB's unit is the metre).
+/// Colours become linear: vertex colours of GLB are, those of PLY, OBJ and 3MF are taken for sRGB.
+///
+/// Polygons are cut into triangles that all start at their first corner, which is right for convex
+/// ones. Triangles without an area are left out. A file in which some triangles have no normals is
+/// read as if none had.
+///
+/// # Errors
+/// If the file is of none of these formats, is broken, asks for what cannot be read, has no
+/// triangles or is over one of the [`limits`].
+pub fn read(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Error> {
+    if bytes.len() > limits::MAX_BYTES {
+        return fail(format!(
+            "this file has {} MB, more than the {} MB that are taken",
+            bytes.len() / 1_000_000,
+            limits::MAX_BYTES / 1_000_000
+        ));
+    }
+    let name = name.to_ascii_lowercase();
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+    let mesh = if bytes.starts_with(b"glTF") {
+        glb::read(bytes)
+    } else if bytes.starts_with(b"PK\x03\x04") {
+        three_mf::read(bytes)
+    } else if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
+        ply::read(bytes)
+    } else {
+        match ending {
+            "obj" => obj::read(bytes),
+            "stl" => stl::read(bytes),
+            "ply" => fail("this is no PLY file: it does not begin with `ply`"),
+            "glb" => fail("this is no GLB file: it does not begin with `glTF`"),
+            "gltf" => fail("a .gltf file needs others beside it; save it as .glb"),
+            "3mf" => fail("this is no 3MF file: it does not begin as a zip archive does"),
+            _ => fail("meshes are read from .obj, .ply, .stl, .glb and .3mf files"),
+        }
+    }?;
+    mesh.checked()
+}

@@ -1,0 +1,15 @@
+//! Readers of mesh files.
+
+mod any;
+mod cursor;
+mod glb;
+mod mtl;
+mod obj;
+mod ply;
+mod stl;
+mod three_mf;
+mod xml;
+mod zip;
+
+pub use any::read;
+pub use mtl::read_mtl;

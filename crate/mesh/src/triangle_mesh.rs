@@ -1,0 +1,176 @@
+//! Triangle meshes: positions, triangles between them, and what a file may say beside.
+
+use crate::error::{Error, fail};
+use crate::limits::{MAX_TRIANGLES, MAX_VERTICES};
+use core::ops::Range;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// Triangles that share vertices by index.
+///
+/// ```
+/// use glam::DVec3;
+/// use mesh::TriangleMesh;
+///
+/// let mesh = TriangleMesh::new(
+///     vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
+///     vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+/// );
+/// assert_eq!(mesh.corners(3), [DVec3::X, DVec3::Y, DVec3::Z]);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TriangleMesh {
+    /// Vertex positions. Those of a mesh that was read are finite.
+    pub positions: Vec<DVec3>,
+    /// Vertex normals, one for each position, of any length. A normal of length 0 stands for the
+    /// triangle's own. `None` if the triangles are flat.
+    pub normals: Option<Vec<DVec3>>,
+    /// Vertex colours, one for each position: linear RGB with Rec. 709's primaries, 0 … 1.
+    pub colors: Option<Vec<[f32; 3]>>,
+    /// Three indices into `positions` each, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Ranges of triangles that belong together, in ascending order and without overlap. Triangles
+    /// outside all of them belong to no group.
+    pub groups: Vec<Group>,
+}
+
+/// A named range of a mesh's triangles.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Group {
+    /// Name; may be empty.
+    pub name: String,
+    /// Material of all triangles of the group.
+    pub material: Option<Material>,
+    /// Indices into [`TriangleMesh::triangles`].
+    pub triangles: Range<u32>,
+}
+
+/// A surface material: what GLB, 3MF and MTL can all say.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    /// Name; may be empty.
+    pub name: String,
+    /// Base colour: linear RGB with Rec. 709's primaries, 0 … 1.
+    pub color: [f32; 3],
+    /// Perceptual roughness of glTF's microfacet model, 0 (mirror) … 1 (matt).
+    pub roughness: f32,
+}
+
+impl Default for Material {
+    /// White and matt, without a name.
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            color: [1.0; 3],
+            roughness: 1.0,
+        }
+    }
+}
+
+impl TriangleMesh {
+    /// A mesh without normals, colours and groups.
+    #[must_use]
+    pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
+        Self {
+            positions,
+            triangles,
+            ..Self::default()
+        }
+    }
+
+    /// Positions of the three vertices of a triangle.
+    ///
+    /// # Panics
+    /// If there is no such triangle, or it has a vertex that does not exist.
+    #[must_use]
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|i| self.positions[i as usize])
+    }
+
+    /// Adds a vertex.
+    pub(crate) fn add_vertex(&mut self, position: DVec3) -> Result<u32, Error> {
+        if self.positions.len() == MAX_VERTICES {
+            return fail(format!("more than {MAX_VERTICES} corners"));
+        }
+        self.positions.push(position);
+        Ok(self.positions.len() as u32 - 1)
+    }
+
+    /// Adds a triangle; its vertices may still be to come.
+    pub(crate) fn add_triangle(&mut self, vertices: [u32; 3]) -> Result<(), Error> {
+        if self.triangles.len() == MAX_TRIANGLES {
+            return fail(format!(
+                "more than {MAX_TRIANGLES} triangles; simplify the mesh first"
+            ));
+        }
+        self.triangles.push(vertices);
+        Ok(())
+    }
+
+    /// Checks indices and positions, and removes triangles without area.
+    pub(crate) fn checked(mut self) -> Result<Self, Error> {
+        let count = self.positions.len();
+        let last = self.triangles.iter().flatten().max();
+        if let Some(last) = last.filter(|i| **i as usize >= count) {
+            return fail(format!(
+                "a triangle has corner {last} (from 0), but there are {count} corners"
+            ));
+        }
+        // A mesh far from everything would come out as nothing.
+        let far = |p: &DVec3| !p.is_finite() || p.abs().max_element() > 1e12;
+        if let Some(i) = self.positions.iter().position(far) {
+            return fail(format!("corner {i} (from 0) is not at a place within 1e12"));
+        }
+        self.remove_flat_triangles();
+        if self.triangles.is_empty() {
+            return fail("there are no triangles in this file");
+        }
+        match &mut self.normals {
+            Some(normals) if normals.len() == count => {
+                for normal in normals.iter_mut().filter(|n| !n.is_finite()) {
+                    *normal = DVec3::ZERO;
+                }
+            }
+            other => *other = None,
+        }
+        match &mut self.colors {
+            Some(colors) if colors.len() == count => {
+                for channel in colors.iter_mut().flatten() {
+                    *channel = if channel.is_nan() {
+                        0.0
+                    } else {
+                        channel.clamp(0.0, 1.0)
+                    };
+                }
+            }
+            other => *other = None,
+        }
+        Ok(self)
+    }
+
+    /// Removes triangles without area, and moves the ranges of the groups.
+    fn remove_flat_triangles(&mut self) {
+        let positions = &self.positions;
+        let has_area = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|i| positions[i as usize]);
+            let (ab, ac) = (b - a, c - a);
+            ab.cross(ac).length() > 1e-12 * ab.length() * ac.length()
+        };
+        // How many triangles remain of the first i.
+        let mut remaining = vec![0];
+        for triangle in &self.triangles {
+            let last = remaining[remaining.len() - 1];
+            remaining.push(last + u32::from(has_area(triangle)));
+        }
+        for group in &mut self.groups {
+            let Range { start, end } = group.triangles;
+            group.triangles = remaining[start as usize]..remaining[end as usize];
+        }
+        self.groups.retain(|group| !group.triangles.is_empty());
+        let mut triangle = 0;
+        self.triangles.retain(|_| {
+            triangle += 1;
+            remaining[triangle] > remaining[triangle - 1]
+        });
+    }
+}

@@ -1,0 +1,107 @@
+//! What can be written.
+
+use crate::triangle_mesh::TriangleMesh;
+
+/// Meshes to be written to a file, with their size.
+///
+/// All formats but GLB are written in millimetres. GLB's unit is the metre: its positions are the same
+/// numbers, below a node that scales them by 0.001. So every format has the same coordinates, rounded
+/// to 32 bits once, and what was proved of [`Export::rounded`] holds for each.
+///
+/// Colours are linear in GLB, and sRGB in PLY, OBJ, MTL and 3MF. STL has no colours. Vertex colours
+/// replace the colours of materials: in GLB, where both are multiplied, the materials of a mesh with
+/// vertex colours are white.
+///
+/// ```
+/// use glam::DVec3;
+/// use mesh::{Export, Format, Part, TriangleMesh};
+///
+/// let mesh = TriangleMesh::new(
+///     vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
+///     vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+/// );
+/// let export = Export {
+///     name: "corner".into(),
+///     parts: vec![Part { name: "only".into(), mesh }],
+///     millimetres: 50.0,
+/// };
+/// let files = export.write(Format::ThreeMf)?;
+/// assert_eq!(files[0].name, "corner.3mf");
+/// let again = mesh::read(&files[0].name, &files[0].bytes)?;
+/// assert_eq!(again.positions[1], DVec3::new(50.0, 0.0, 0.0));
+/// assert_eq!(again.groups[0].name, "only");
+/// # Ok::<(), mesh::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Export {
+    /// Name of the file without its ending.
+    pub name: String,
+    /// The parts: one for each body.
+    pub parts: Vec<Part>,
+    /// Length of the meshes' unit, millimetres.
+    pub millimetres: f64,
+}
+
+/// A named mesh of an [`Export`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// Name; may be empty.
+    pub name: String,
+    /// The mesh. Each of its groups may have a material.
+    pub mesh: TriangleMesh,
+}
+
+/// A file format that can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Binary glTF: parts, groups, normals, colours, materials; metres.
+    Glb,
+    /// 3D Manufacturing Format: parts, colours, materials; millimetres.
+    ThreeMf,
+    /// Binary STL: triangles only; millimetres.
+    Stl,
+    /// Wavefront OBJ with an MTL file: parts, groups, normals, colours, materials; millimetres.
+    Obj,
+    /// Binary PLY: normals and colours; millimetres.
+    Ply,
+}
+
+/// A file as bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExportedFile {
+    /// Name with ending.
+    pub name: String,
+    /// Contents.
+    pub bytes: Vec<u8>,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 5] = [Self::Glb, Self::ThreeMf, Self::Stl, Self::Obj, Self::Ply];
+
+    /// The ending of file names, without the dot.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::ThreeMf => "3mf",
+            Self::Stl => "stl",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+        }
+    }
+
+    /// The format of a file name's ending, in any case; `None` for others.
+    ///
+    /// ```
+    /// assert_eq!(mesh::Format::of_name("a.STL"), Some(mesh::Format::Stl));
+    /// assert_eq!(mesh::Format::of_name("stl"), None);
+    /// ```
+    #[must_use]
+    pub fn of_name(name: &str) -> Option<Self> {
+        let (_, ending) = name.rsplit_once('.')?;
+        Self::ALL
+            .into_iter()
+            .find(|format| ending.eq_ignore_ascii_case(format.extension()))
+    }
+}

@@ -1,0 +1,13 @@
+//! Writers of mesh files.
+
+mod any;
+mod export;
+mod glb;
+mod obj;
+mod ply;
+mod prepared;
+mod stl;
+mod three_mf;
+mod zip;
+
+pub use export::{Export, ExportedFile, Format, Part};
