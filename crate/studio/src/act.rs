@@ -88,6 +88,60 @@ impl App {
             }
             Command::Jump { file, range } => self.jump(file, range),
             Command::ShowPlace { file, byte } => self.editor.show_place(file, byte),
+            Command::SetCamera(_)
+            | Command::ShowAll
+            | Command::Cancel
+            | Command::Again
+            | Command::SetShow(_)
+            | Command::SetSize(_)
+            | Command::SetTheme(_)
+            | Command::Play
+            | Command::SetFilmFrame(_)
+            | Command::SetFilmLength(_)
+            | Command::SaveFilm
+            | Command::StopFilm => self.carry_out_on_picture(ctx, command, now),
+            Command::ShowResult(_)
+            | Command::SaveResult(_)
+            | Command::KeepResult(_)
+            | Command::FindResult(_)
+            | Command::FoldTray(_) => self.carry_out_in_tray(ctx, command, now),
+            Command::SavePng => self.save_png(now),
+            Command::Share => self.share(ctx, now),
+            Command::OpenExample(_)
+            | Command::OpenSaved(_)
+            | Command::OpenText { .. }
+            | Command::New
+            | Command::GoBack
+            | Command::Rename(_)
+            | Command::Delete(_) => self.carry_out_on_works(ctx, command, now),
+            Command::OpenLab(_) | Command::ShowLab | Command::CloseLab | Command::ShareLab => {
+                self.carry_out_in_lab(ctx, command, now);
+            }
+            Command::Enable => {
+                self.notice = None;
+                session.enable();
+            }
+            Command::ShowGallery => self.show_gallery(),
+            Command::ShowHelp => {
+                self.help.turn_to_words();
+                self.dialog = Some(Dialog::Help);
+            }
+            Command::ShowManual(name) => {
+                self.help.turn_to(&name);
+                self.dialog = Some(Dialog::Help);
+            }
+            Command::Close => {
+                if self.dialog.take().is_none() {
+                    self.notice = None;
+                }
+            }
+        }
+    }
+
+    /// Commands about the view, the picture and the film. Others do nothing.
+    fn carry_out_on_picture(&mut self, ctx: &Context, command: Command, now: f64) {
+        let session = &mut self.work.session;
+        match command {
             Command::SetCamera(camera) => {
                 session.set_camera(camera);
                 self.settings.turned = true;
@@ -117,20 +171,13 @@ impl App {
             Command::SetFilmLength(count) => self.player.count = count,
             Command::SaveFilm => self.begin_film(ctx),
             Command::StopFilm => self.stop_film("You stopped it."),
-            Command::ShowResult(_)
-            | Command::SaveResult(_)
-            | Command::KeepResult(_)
-            | Command::FindResult(_)
-            | Command::FoldTray(_) => self.carry_out_in_tray(ctx, command, now),
-            Command::SavePng => self.save_png(now),
-            Command::Share => self.share(ctx, now),
-            Command::OpenExample(_)
-            | Command::OpenSaved(_)
-            | Command::OpenText { .. }
-            | Command::New
-            | Command::GoBack
-            | Command::Rename(_)
-            | Command::Delete(_) => self.carry_out_on_works(ctx, command, now),
+            _ => {}
+        }
+    }
+
+    /// Commands about the lab. Others do nothing.
+    fn carry_out_in_lab(&mut self, ctx: &Context, command: Command, now: f64) {
+        match command {
             Command::OpenLab(lesson) => self.open_lab(lesson),
             Command::ShowLab => self.open_lab(self.lab.lesson()),
             Command::CloseLab => {
@@ -142,24 +189,7 @@ impl App {
                 ctx.copy_text(format!("{}{}", platform::page(), self.lab.lesson().hash()));
                 self.lab.say(text, now);
             }
-            Command::Enable => {
-                self.notice = None;
-                session.enable();
-            }
-            Command::ShowGallery => self.show_gallery(),
-            Command::ShowHelp => {
-                self.help.turn_to_words();
-                self.dialog = Some(Dialog::Help);
-            }
-            Command::ShowManual(name) => {
-                self.help.turn_to(&name);
-                self.dialog = Some(Dialog::Help);
-            }
-            Command::Close => {
-                if self.dialog.take().is_none() {
-                    self.notice = None;
-                }
-            }
+            _ => {}
         }
     }
 

@@ -551,7 +551,11 @@ impl Session {
     /// for each, [`Session::compile`] waits.
     pub fn unread_meshes(&self) -> impl Iterator<Item = &Asset> {
         let files = &self.project.files;
-        let is_named = |asset: &Asset| files.iter().any(|file| file.text.contains(&asset.name));
+        // A text in the same folder may leave the folder out.
+        let is_named = |asset: &Asset| {
+            let name = asset.name.rsplit('/').next().unwrap_or_default();
+            files.iter().any(|file| file.text.contains(name))
+        };
         self.assets.iter().filter(move |asset| {
             asset::is_large_mesh(asset) && is_named(asset) && !rats::is_mesh_read(asset)
         })
