@@ -40,7 +40,7 @@ impl<R: Real> Ends<R> {
         let beside = both.lt(zero);
         // Of an end that is at the foot, too, one of the two terms is 0.
         let cross = t1.abs() * rho0 + t0.abs() * rho1;
-        let apart = k2 * (length * ((t0 + t1).abs() / cross.max(R::splat(1e-30))));
+        let apart = k2 * (length * ((t0 + t1).abs() / cross.max(R::splat(1e-37))));
         let span = R::select(beside, cross, apart);
         let larger = product + both.abs();
         let smaller = k2 * ((k2 + tt0 + tt1) / larger);

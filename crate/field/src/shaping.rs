@@ -151,6 +151,8 @@ impl Shaping {
     /// distance R, times the strength. Where infinite ones have no finite field (inverse lines,
     /// inverse and squared planes), finite ones of half-length 10·R stand for them.
     ///
+    /// Of the cubed kernel 1/d³ that is R³ for points, R²/2 for lines and R/2π for planes, in units of length.
+    ///
     /// It depends on the skeleton's dimension only, not on its size. So cutting a segment, an arc
     /// or a triangle in two changes nothing, which is what keeps joints free of bulges.
     #[must_use]

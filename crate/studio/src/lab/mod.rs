@@ -37,7 +37,7 @@ use std::rc::Rc;
 /// One lesson.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Lesson {
-    /// The eight kernels.
+    /// The nine kernels.
     #[default]
     Kernels,
     /// Geometry times kernel, in one dimension.

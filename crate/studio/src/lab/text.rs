@@ -59,7 +59,7 @@ pub fn of(lesson: Lesson) -> Words {
         },
         Lesson::Chart => Words {
             title: "The chart",
-            about: "eight kernels × seven primitives",
+            about: "nine kernels × seven primitives",
             sentences: "Every kernel can be convolved with every primitive; this is the whole table, \
                         traced just now. Some cells have a closed formula, some need an elliptic \
                         integral, some a small numerical one, and that shows in the time they take. \
