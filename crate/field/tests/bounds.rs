@@ -2,7 +2,7 @@
 //! spheres, Hermite spans, slopes.
 mod common;
 
-use common::{KINDS, Kind, Random, jet, primitive, shaping};
+use common::{KINDS, Kind, Random, jet, primitive, sensitivity, shaping};
 use core::f64::consts::TAU;
 use field::{Kernel, Primitive, Profile, Shaping, Skeleton, THRESHOLD, Wave};
 use glam::DVec3;
@@ -47,7 +47,9 @@ tests! {
                     let distance = primitive.skeleton.distance(point);
                     let value = jet::<f64>(&primitive, point).0.abs();
                     let bound = primitive.bound_at(distance);
-                    assert!(value <= bound * (1.0 + 1e-12), "{value} > {bound}: {primitive:?} at {point:?}");
+                    // Next to a pole the distance's rounding counts.
+                    let slack = 4.0 * f64::EPSILON * sensitivity(&primitive, point);
+                    assert!(value <= bound * (1.0 + 1e-12) + slack, "{value} > {bound}: {primitive:?} at {point:?}");
                     assert!(primitive.bound_at(1.1 * distance) <= bound * (1.0 + 1e-12), "{primitive:?} at {distance}");
                 }
             }

@@ -4,7 +4,9 @@ mod common;
 
 use common::{KINDS, Kind, Random, jet, primitive, sensitivity, shaping, single};
 use core::f64::consts::TAU;
-use field::{BlobScale, Field, Kernel, Primitive, Profile, Shaping, Skeleton, THRESHOLD, Wave, quadrature};
+use field::{
+    BlobScale, Field, Kernel, Primitive, Profile, Shaping, Skeleton, THRESHOLD, Wave, quadrature,
+};
 use glam::{DQuat, DVec3};
 use wide::f32x8;
 

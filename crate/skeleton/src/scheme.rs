@@ -66,9 +66,11 @@ pub fn refine(
         }
         Scheme::Chaikin => chaikin(ring, levels, last, closed, &fixed),
     };
-    let (least, most) = own.iter().fold((f64::INFINITY, 0.0f64), |(least, most), p| {
-        (least.min(p.w), most.max(p.w))
-    });
+    let (least, most) = own
+        .iter()
+        .fold((f64::INFINITY, 0.0f64), |(least, most), p| {
+            (least.min(p.w), most.max(p.w))
+        });
     for point in &mut refined.points {
         point.w = point.w.clamp(least, most);
     }
@@ -93,7 +95,9 @@ fn stepped(
         points.push(points[0]);
     }
     Refined {
-        at_nodes: (0..=last).map(|i| passed(i).then_some(i << levels)).collect(),
+        at_nodes: (0..=last)
+            .map(|i| passed(i).then_some(i << levels))
+            .collect(),
         spans: (0..points.len() - 1).map(|i| i >> levels).collect(),
         points,
     }
@@ -119,7 +123,11 @@ fn neighbours(points: &[DVec4], i: usize, closed: bool) -> [DVec4; 2] {
 /// `Q = (6B − P − R)/4`, by Gauss–Seidel iteration.
 fn interpolating(nodes: &[DVec4], fixed: &dyn Fn(usize) -> bool, closed: bool) -> Vec<DVec4> {
     let mut control = nodes.to_vec();
-    let inner = if closed { 0..nodes.len() } else { 1..nodes.len() - 1 };
+    let inner = if closed {
+        0..nodes.len()
+    } else {
+        1..nodes.len() - 1
+    };
     let passed: Vec<usize> = inner.filter(|&i| fixed(i)).collect();
     for _ in 0..SWEEPS {
         for &i in &passed {
@@ -174,8 +182,8 @@ fn split_four_point(points: &[DVec4], closed: bool) -> Vec<DVec4> {
         }
     };
     let mut split = Vec::with_capacity(2 * n);
-    for i in 0..n {
-        split.push(points[i]);
+    for (i, &point) in points.iter().enumerate() {
+        split.push(point);
         if closed || i + 1 < n {
             split.push(between(i));
         }
@@ -205,7 +213,11 @@ fn chaikin(
         halves.push(2 * control.len());
         let [before, after] = neighbours(nodes, i, closed);
         let end = !closed && (i == 0 || i == last);
-        let reach = if end { DVec4::ZERO } else { (after - before) * 0.125 };
+        let reach = if end {
+            DVec4::ZERO
+        } else {
+            (after - before) * 0.125
+        };
         control.extend([node - reach, node + reach]);
     }
     if closed {
@@ -215,7 +227,11 @@ fn chaikin(
     for _ in 0..levels {
         control = cut_corners(&control, closed);
     }
-    let sides = if closed { control.len() } else { control.len() - 1 };
+    let sides = if closed {
+        control.len()
+    } else {
+        control.len() - 1
+    };
     let mut points: Vec<DVec4> = (0..sides)
         .map(|i| (control[i] + control[(i + 1) % control.len()]) * 0.5)
         .collect();

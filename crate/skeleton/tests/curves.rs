@@ -30,12 +30,7 @@ impl Random {
     }
 }
 
-fn polyline(
-    nodes: &[Node],
-    curves: &[&[usize]],
-    scheme: Scheme,
-    levels: u32,
-) -> Polyline {
+fn polyline(nodes: &[Node], curves: &[&[usize]], scheme: Scheme, levels: u32) -> Polyline {
     let skeleton = Skeleton {
         nodes: nodes.to_vec(),
         curves: curves.iter().map(|curve| curve.to_vec()).collect(),
@@ -45,7 +40,11 @@ fn polyline(
 
 /// The points of a curve, in order.
 fn points(polyline: &Polyline, curve: usize) -> Vec<DVec4> {
-    let own: Vec<_> = polyline.segments.iter().filter(|s| s.curve == curve).collect();
+    let own: Vec<_> = polyline
+        .segments
+        .iter()
+        .filter(|s| s.curve == curve)
+        .collect();
     let at = |vertex: usize| {
         let vertex = polyline.vertices[vertex];
         vertex.position.extend(vertex.radius)
@@ -97,7 +96,10 @@ fn cubic_is_the_cubic_b_spline() {
             for (i, &point) in points.iter().enumerate().take(points.len() - 1) {
                 let want = spline(3, &control, i as f64 / f64::from(1 << levels));
                 // Radii of mirrored ends may leave the nodes' range, where they are held.
-                assert!((point - want).truncate().length() < 1e-12, "{count} {levels} {i}");
+                assert!(
+                    (point - want).truncate().length() < 1e-12,
+                    "{count} {levels} {i}"
+                );
                 let [low, high] = [f64::min, f64::max]
                     .map(|f| nodes.iter().map(|n| n.radius).reduce(f).expect("nodes"));
                 assert!((point.w - want.w.clamp(low, high)).abs() < 1e-12);
@@ -168,7 +170,10 @@ fn levels_have_the_points_of_those_before() {
             for curve in 0..3 {
                 let (coarse, fine) = (points(&coarse, curve), points(&fine, curve));
                 for (i, point) in coarse.iter().enumerate() {
-                    assert!(close(*point, fine[2 * i]), "{scheme:?} {levels} {curve} {i}");
+                    assert!(
+                        close(*point, fine[2 * i]),
+                        "{scheme:?} {levels} {curve} {i}"
+                    );
                 }
             }
             let (a, b) = (coarse.lengths[0], fine.lengths[0]);
@@ -209,7 +214,10 @@ fn curves_pass_smoothly_through_branches() {
             };
             for (curve, node) in [(0, 1), (0, 2), (0, 3), (2, 3), (3, 1), (3, 8)] {
                 let [a, b] = [5, 6].map(|levels| corner(levels, curve, node));
-                assert!(b < 0.75 * a + 1e-9 && b < 1.2, "{scheme:?} {curve} {node}: {a} {b}");
+                assert!(
+                    b < 0.75 * a + 1e-9 && b < 1.2,
+                    "{scheme:?} {curve} {node}: {a} {b}"
+                );
             }
         }
     }
@@ -251,7 +259,9 @@ fn graphs_know_their_lengths_and_neighbours() {
             graph.around(vertex.expect("a vertex")).len()
         };
         assert_eq!([0, 1, 2, 4, 5].map(valence), [1, 3, 1, 2, 1]);
-        let total: usize = (0..graph.vertices.len()).map(|v| graph.around(v).len()).sum();
+        let total: usize = (0..graph.vertices.len())
+            .map(|v| graph.around(v).len())
+            .sum();
         assert_eq!(total, 2 * graph.segments.len());
     }
 }
@@ -264,7 +274,13 @@ fn degenerate_skeletons_have_no_nan() {
         position: DVec3::new(x, 0.0, 0.0),
         radius,
     };
-    let nodes = [at(0.0, 0.0), at(1.0, 1.0), at(1.0, 0.5), at(1e100, 1e100), at(-1e100, 0.0)];
+    let nodes = [
+        at(0.0, 0.0),
+        at(1.0, 1.0),
+        at(1.0, 0.5),
+        at(1e100, 1e100),
+        at(-1e100, 0.0),
+    ];
     let curves: [&[usize]; 12] = [
         &[0, 1],
         &[1, 2],
@@ -299,13 +315,24 @@ fn degenerate_skeletons_have_no_nan() {
     // A straight curve stays straight.
     for scheme in SCHEMES {
         let graph = polyline(&nodes, &[&[0, 1]], scheme, 2);
-        assert!(graph.vertices.iter().all(|v| v.position.y == 0.0 && (0.0..=1.0).contains(&v.position.x)));
+        assert!(
+            graph
+                .vertices
+                .iter()
+                .all(|v| v.position.y == 0.0 && (0.0..=1.0).contains(&v.position.x))
+        );
         assert_eq!(graph.lengths, [1.0]);
     }
-    let empty = Skeleton::default().polyline(Scheme::Cubic, 3).expect("nothing");
+    let empty = Skeleton::default()
+        .polyline(Scheme::Cubic, 3)
+        .expect("nothing");
     assert!(empty.vertices.is_empty() && empty.segments.is_empty());
     // A curve that stays at one node has no segments.
-    assert!(polyline(&nodes, &[&[0, 0]], Scheme::FourPoint, 0).segments.is_empty());
+    assert!(
+        polyline(&nodes, &[&[0, 0]], Scheme::FourPoint, 0)
+            .segments
+            .is_empty()
+    );
 }
 
 #[test]
@@ -317,30 +344,49 @@ fn mistakes_are_told_and_limits_hold() {
     let of = |nodes: Vec<Node>, curves: Vec<Vec<usize>>| Skeleton { nodes, curves };
     let two = || vec![node; 2];
     let told = |skeleton: Skeleton, levels: u32| {
-        let error = skeleton.polyline(Scheme::Cubic, levels).expect_err("a mistake");
+        let error = skeleton
+            .polyline(Scheme::Cubic, levels)
+            .expect_err("a mistake");
         assert!(!error.to_string().is_empty());
         error
     };
     assert_eq!(told(of(two(), vec![vec![0]]), 3), Error::Short(0));
-    assert_eq!(told(of(two(), vec![vec![0, 1], vec![]]), 3), Error::Short(1));
+    assert_eq!(
+        told(of(two(), vec![vec![0, 1], vec![]]), 3),
+        Error::Short(1)
+    );
     assert_eq!(told(of(two(), vec![vec![0, 2]]), 3), Error::Unknown(0));
     assert_eq!(told(of(two(), vec![vec![0, 1]]), 7), Error::Levels(7));
-    assert_eq!(told(of(vec![node; 10_001], vec![]), 3), Error::Nodes(10_001));
-    assert_eq!(told(of(two(), vec![vec![0, 1]; 10_001]), 3), Error::Curves(10_001));
+    assert_eq!(
+        told(of(vec![node; 10_001], vec![]), 3),
+        Error::Nodes(10_001)
+    );
+    assert_eq!(
+        told(of(two(), vec![vec![0, 1]; 10_001]), 3),
+        Error::Curves(10_001)
+    );
     for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e101] {
         let position = DVec3::new(0.0, bad, 0.0);
         let nodes = vec![node, Node { position, ..node }];
         assert_eq!(told(of(nodes, vec![vec![0, 1]]), 3), Error::Node(1));
-        let nodes = vec![Node { radius: bad, ..node }];
+        let nodes = vec![Node {
+            radius: bad,
+            ..node
+        }];
         assert_eq!(told(of(nodes, vec![]), 3), Error::Node(0));
     }
-    let negative = vec![Node { radius: -1.0, ..node }];
+    let negative = vec![Node {
+        radius: -1.0,
+        ..node
+    }];
     assert_eq!(told(of(negative, vec![]), 3), Error::Node(0));
     // As many segments as there may be, and one more curve.
     let long: Vec<usize> = (0..=MOST_SEGMENTS / 64).map(|i| i % 2).collect();
     assert_eq!(long.len() - 1, MOST_SEGMENTS / 64);
     let whole = of(two(), vec![long.clone()]);
-    let graph = whole.polyline(Scheme::FourPoint, 6).expect("within the limits");
+    let graph = whole
+        .polyline(Scheme::FourPoint, 6)
+        .expect("within the limits");
     assert_eq!(graph.segments.len(), MOST_SEGMENTS);
     assert_eq!(told(of(two(), vec![long, vec![0, 1]]), 6), Error::Segments);
 }
