@@ -81,6 +81,15 @@ pub fn angle<R: Real>(sine: R, cosine: R) -> Angle<R> {
     }
 }
 
+/// `(w − arctan w)/w³` for w ≥ 0, given arctan w; ⅓ at w = 0.
+#[inline(always)]
+pub fn arctangent_shortfall<R: Real>(w: R, arctan: R) -> R {
+    let octant = R::splat(OCTANT);
+    let square = w.min(octant).square();
+    let small = R::splat(1.0 / 3.0) - square * R::arctangent_tail(square);
+    R::select(octant.lt(w), (w - arctan) / (w * w * w), small)
+}
+
 /// The angle of the direction (x, y), in (−π, π].
 #[inline(always)]
 pub fn direction<R: Real>(y: R, x: R) -> R {

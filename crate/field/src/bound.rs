@@ -331,7 +331,7 @@ impl Bound {
     #[inline]
     #[must_use]
     pub fn cancels(&self) -> f64 {
-        if self.dimension == 2 && self.whole.is_finite() && self.kernel.falls_fast() {
+        if self.dimension == 2 && self.whole.is_finite() && !self.kernel.has_pole() {
             let plane = self.endless * plane::jet(self.kernel, [0.0; 3]).value;
             plane.at_most(self.whole)
         } else {
@@ -344,7 +344,11 @@ impl Bound {
     #[must_use]
     pub fn power(&self) -> f64 {
         match self.kernel {
-            Kernel::Cauchy | Kernel::Inverse | Kernel::Squared if self.ripple.is_none() => 4.0,
+            Kernel::Cauchy | Kernel::Inverse | Kernel::Squared | Kernel::Cubed
+                if self.ripple.is_none() =>
+            {
+                4.0
+            }
             _ => f64::INFINITY,
         }
     }
@@ -421,7 +425,7 @@ impl Bound {
             1 if let Some(coil) = &self.coil
                 && near.stretch > NEARLY_STRAIGHT =>
             {
-                let outward = |a, b| kernel.along(b) - kernel.along(a);
+                let outward = |a, b| kernel.between(a, b);
                 let coiled = coil.bound(u, |u| kernel.value(u), outward);
                 if near.stretch.is_finite() {
                     coiled.at_most(near.stretch * line())

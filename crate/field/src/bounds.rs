@@ -51,7 +51,7 @@ fn abreast(kernel: Kernel, length: f64, d: f64) -> f64 {
 fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
     let q = d * d;
     // The difference of two integrals, unless it would have lost its digits.
-    let whole = PI * (kernel.over_disc(q + area / PI) - kernel.over_disc(q));
+    let whole = PI * kernel.over_ring(q, q + area / PI);
     let most = area * kernel.value(d);
     if whole.is_finite() && whole > 1e-9 * most {
         most.at_most(whole * (1.0 + 1e-6))
@@ -66,7 +66,7 @@ fn arc_bound(kernel: Kernel, length: f64, radius: f64, d: f64) -> f64 {
     if kernel == Kernel::Cauchy {
         return most.at_most(circle(radius, d));
     }
-    let outward = |a: f64, b: f64| kernel.along(b) - kernel.along(a);
+    let outward = |a: f64, b: f64| kernel.between(a, b);
     most.at_most(Coil::arc(length, radius).bound(d, |u| kernel.value(u), outward))
 }
 

@@ -10,9 +10,10 @@
 //!   where, is found by Newton's method from the root of a parabola (exact on straight spans without
 //!   taper). The rule is applied to what lies inside. Outside the support the field is exactly 0.
 //!   Metaballs' inner piece, ωg < 1/9, is found in the same way and integrated by itself.
-//! - Kernels with a pole (inverse, squared): the integrand has a peak of the width
+//! - Kernels with a pole (inverse, squared, cubed): the integrand has a peak of the width
 //!   `b = √((g* + ε²/ω)/|q′|²)` around t*. With `s = b·sinh x` this becomes smooth: `ds/√(s²+b²)` is
-//!   `dx`, and `ds/(s²+b²)` is `dx/(b·cosh x)`, which is as wide as 1 however long the interval of x.
+//!   `dx`, and `ds/(s²+b²)` is `dx/(b·cosh x)`, which is as wide as 1 however long the interval of x
+//!   (the cubed kernel's is `dx/(b·cosh x)²`).
 //!   So `x = (π/2)·sinh y` on top: it takes the singularities of the secant from ±iπ/2 to where
 //!   those of y are, and the interval from ±12 (for points on the curve itself) to ±2.8.
 //!
@@ -20,8 +21,9 @@
 //! `−2Σ eₖ ∫αωG′|q′|sᵏ`. Ends of the support do not move it, since kernels are continuous.
 //!
 //! Accuracy (tests/chart.rs and tests/taper.rs): double precision 10⁻⁹ of the value, single 10⁻⁵. Within
-//! 10⁻³ widths of a bone whose kernel has a pole single precision is right to 3·10⁻⁴, since there it
-//! counts that the ends of spans are rounded: by 10⁻⁸, where the squared kernel is 10¹⁰ high.
+//! 10⁻³ widths of a bone whose kernel has a pole single precision is right to 3·10⁻⁴ (cubed: 10⁻³),
+//! since there it counts that the ends of spans are rounded: by 10⁻⁸, where the squared kernel is 10¹⁰ high and the
+//! cubed one 10¹⁵.
 use crate::bone::Curve;
 use crate::bone::curve::{SINGLE_TERMS, Span, TERMS};
 use crate::inverse::POLE2;
@@ -40,6 +42,7 @@ pub fn jet<R: Real>(kernel: Kernel, bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R
         Kernel::Gauss => smooth(bone, p, |q| Kernel::Gauss.pair(q)),
         Kernel::Inverse => with_pole(bone, p, false, |q| Kernel::Inverse.pair(q)),
         Kernel::Squared => with_pole(bone, p, true, |q| Kernel::Squared.pair(q)),
+        Kernel::Cubed => with_pole(bone, p, true, |q| Kernel::Cubed.pair(q)),
         Kernel::Metaballs => compact(bone, p, true, |q| Kernel::Metaballs.pair(q)),
         Kernel::Soft => compact(bone, p, false, |q| Kernel::Soft.pair(q)),
         Kernel::Quartic => compact(bone, p, false, |q| Kernel::Quartic.pair(q)),

@@ -13,6 +13,7 @@ pub fn line(kernel: Kernel, x: f64) -> f64 {
         Kernel::Gauss => PI.sqrt() * libm::exp(-q),
         Kernel::Inverse => 2.0 * libm::asinh(WINDOW / (q + inverse::POLE2).sqrt()),
         Kernel::Squared => PI / (q + inverse::POLE2).sqrt(),
+        Kernel::Cubed => 2.0 / (q + inverse::POLE2),
         Kernel::Metaballs => 1.5 * cone(x) - cone(3.0 * x) / 6.0,
         Kernel::Soft | Kernel::Quartic | Kernel::Compact6 => {
             let [c2, c3] = kernel.polynomial().unwrap_or_default();

@@ -200,7 +200,7 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
             outward += rough[i] * (places[i + 1] - places[i]);
             before = t;
         }
-        // Beyond the last place everything falls faster than r⁻⁴ (slopes of the inverse kernel: as
+        // Beyond the last place everything falls as r⁻⁴ or faster (slopes of the inverse kernel: as
         // r⁻², which over a plane has no end).
         line += 2.0 * rough[last] * places[last];
         plane += TAU * rough[last] * places[last] * places[last];

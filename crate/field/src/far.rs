@@ -129,7 +129,7 @@ fn triangle<R: Real>(kernel: Kernel, triangle: &Triangle<R::Scalar>, [x, y, z]: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{inverse, squared};
+    use crate::{cubed, inverse, squared};
 
     fn needle_and_others() -> [Triangle<f64>; 3] {
         [
@@ -154,6 +154,7 @@ mod tests {
                 for (kernel, want) in [
                     (Kernel::Inverse, inverse::polygon::triangle(&bone, p)),
                     (Kernel::Squared, squared::polygon::triangle(&bone, p)),
+                    (Kernel::Cubed, cubed::polygon::triangle(&bone, p)),
                 ] {
                     let value = triangle(kernel, &bone, p);
                     let off: [f64; 3] =

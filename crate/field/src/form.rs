@@ -8,12 +8,14 @@
 //! | squared | closed | closed | closed | closed (Clausen) | closed, windowed | G–L |
 //! | metaballs | closed | closed | closed inside, G–L outside | closed inside, G–L outside | closed | G–L |
 //! | soft, quartic, compact6 | closed | closed (by exact quadrature) | closed | closed | closed | G–L |
+//! | cubed | closed | closed | elliptic (Carlson) | closed | closed | G–L |
 //!
 //! G–L: Gauss–Legendre integrals, whose errors stand in the cells' own files. BENCHMARKS.md lists each
 //! cell's cost and the worst error of single precision.
 use crate::bone::Bone;
 use crate::{
-    Jet, Kernel, Real, cauchy, curve, gauss, inverse, metaballs, plane, point, polynomial, squared,
+    Jet, Kernel, Real, cauchy, cubed, curve, gauss, inverse, metaballs, plane, point, polynomial,
+    squared,
 };
 
 /// A kernel on a bone, both in units of the kernel's width.
@@ -49,6 +51,10 @@ impl<S: Copy> Form<S> {
             (Kernel::Squared, Bone::Arc(bone)) => squared::arc::jet(bone, p),
             (Kernel::Squared, Bone::Triangle(bone)) => squared::polygon::triangle(bone, p),
             (Kernel::Squared, Bone::Polygon(bone)) => squared::polygon::jet(bone, p),
+            (Kernel::Cubed, Bone::Segment(bone)) => cubed::segment::jet(bone, p),
+            (Kernel::Cubed, Bone::Arc(bone)) => cubed::arc::jet(bone, p),
+            (Kernel::Cubed, Bone::Triangle(bone)) => cubed::polygon::triangle(bone, p),
+            (Kernel::Cubed, Bone::Polygon(bone)) => cubed::polygon::jet(bone, p),
             (Kernel::Metaballs, Bone::Segment(bone)) => metaballs::segment::jet(bone, p),
             (Kernel::Metaballs, Bone::Arc(bone)) => metaballs::arc::jet(bone, p),
             (Kernel::Metaballs, Bone::Triangle(bone)) => metaballs::polygon::jet(&bone.edges, p),

@@ -7,7 +7,7 @@ use crate::{Real, inverse, metaballs};
 use core::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
-/// A kernel: a function of distance that falls to 0 (thesis, section 2.3; `compact6` is ours).
+/// A kernel: a function of distance that falls to 0 (thesis, section 2.3; `compact6` and `cubed` are ours).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Kernel {
     /// `1/(1+u²)²`: infinite, falls as u⁻⁴.
@@ -28,6 +28,8 @@ pub enum Kernel {
     Quartic,
     /// `(1−u²)³` up to u = 1, then 0.
     Compact6,
+    /// `1/u³`: infinite, its pole rounded off as those of `inverse` and `squared`.
+    Cubed,
 }
 
 /// G(q) and its derivatives by q.
@@ -36,7 +38,7 @@ pub struct Derivatives(pub [f64; 5]);
 
 impl Kernel {
     /// All kernels, in the order of the chart.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Cauchy,
         Self::Gauss,
         Self::Inverse,
@@ -45,6 +47,7 @@ impl Kernel {
         Self::Soft,
         Self::Quartic,
         Self::Compact6,
+        Self::Cubed,
     ];
 
     /// The name by which the language knows it.
@@ -59,6 +62,7 @@ impl Kernel {
             Self::Soft => "soft",
             Self::Quartic => "quartic",
             Self::Compact6 => "compact6",
+            Self::Cubed => "cubed",
         }
     }
 
@@ -77,6 +81,13 @@ impl Kernel {
         )
     }
 
+    /// Whether it has a pole, rounded off, at u = 0. Such kernels have no width: their unit of length is the
+    /// radius.
+    #[must_use]
+    pub fn has_pole(self) -> bool {
+        matches!(self, Self::Inverse | Self::Squared | Self::Cubed)
+    }
+
     /// Whether its integral over an infinite plane is finite.
     #[must_use]
     pub fn falls_fast(self) -> bool {
@@ -87,7 +98,7 @@ impl Kernel {
     #[must_use]
     pub fn kinks(self) -> &'static [f64] {
         match self {
-            Self::Cauchy | Self::Gauss | Self::Inverse | Self::Squared => &[],
+            Self::Cauchy | Self::Gauss | Self::Inverse | Self::Squared | Self::Cubed => &[],
             Self::Metaballs => &[1.0 / 3.0, 1.0],
             Self::Soft | Self::Quartic | Self::Compact6 => &[1.0],
         }
@@ -98,7 +109,7 @@ impl Kernel {
     #[must_use]
     pub fn smoothness(self) -> usize {
         match self {
-            Self::Cauchy | Self::Gauss | Self::Inverse | Self::Squared => usize::MAX,
+            Self::Cauchy | Self::Gauss | Self::Inverse | Self::Squared | Self::Cubed => usize::MAX,
             Self::Metaballs | Self::Soft | Self::Quartic => 1,
             Self::Compact6 => 2,
         }
@@ -158,6 +169,17 @@ impl Kernel {
                     2.0 * i * i * i,
                     -6.0 * i * i * i * i,
                     24.0 * i * i * i * i * i,
+                ]
+            }
+            Self::Cubed => {
+                let i = 1.0 / (q + inverse::POLE2);
+                let g = i * i.sqrt();
+                [
+                    g,
+                    -1.5 * g * i,
+                    3.75 * g * i * i,
+                    -13.125 * g * i * i * i,
+                    59.0625 * g * i * i * i * i,
                 ]
             }
             Self::Metaballs => {
@@ -237,6 +259,11 @@ impl Kernel {
                 let i = one / (q + R::splat(inverse::POLE2));
                 (i, i * i)
             }
+            Self::Cubed => {
+                let i = one / (q + R::splat(inverse::POLE2));
+                let g = i * i.sqrt();
+                (g, R::splat(1.5) * g * i)
+            }
             Self::Metaballs => {
                 let u = q.sqrt().max(R::splat(metaballs::INNER * 0.5));
                 let rest = (one - u).max(zero);
@@ -264,6 +291,7 @@ impl Kernel {
             Self::Gauss => PI.sqrt() / 2.0 * libm::erf(u),
             Self::Inverse => libm::asinh(u / pole),
             Self::Squared => libm::atan(u / pole) / pole,
+            Self::Cubed => u / (inverse::POLE2 * (u * u + inverse::POLE2).sqrt()),
             Self::Metaballs => {
                 let cone = |u: f64| (1.0 - (1.0 - u.min(1.0)).powi(3)) / 3.0;
                 1.5 * cone(u) - cone(3.0 * u) / 6.0
@@ -279,6 +307,31 @@ impl Kernel {
         }
     }
 
+    /// `∫ₐᵇ h` along a line through the point, 0 ≤ a ≤ b.
+    #[must_use]
+    pub fn between(self, a: f64, b: f64) -> f64 {
+        if self == Self::Cubed {
+            // The rest from u on: beside what the pole gives, the difference of two integrals from 0 is lost.
+            let beyond = |u: f64| {
+                let root = (u * u + inverse::POLE2).sqrt();
+                1.0 / (root * (root + u))
+            };
+            return beyond(a) - beyond(b);
+        }
+        self.along(b) - self.along(a)
+    }
+
+    /// `∫ G` from p to q, 0 ≤ p ≤ q: over a ring around the point, of area π(q−p), the kernel's integral
+    /// is π times this.
+    #[must_use]
+    pub fn over_ring(self, p: f64, q: f64) -> f64 {
+        if self == Self::Cubed {
+            let [near, far] = [p, q].map(|q| (q + inverse::POLE2).sqrt());
+            return 2.0 * (q - p) / (near * far * (near + far));
+        }
+        self.over_disc(q) - self.over_disc(p)
+    }
+
     /// `∫₀^q G`: over a disc around the point, of area πq, the kernel's integral is π times this.
     #[must_use]
     pub fn over_disc(self, q: f64) -> f64 {
@@ -290,6 +343,7 @@ impl Kernel {
                 2.0 * q / ((q + inverse::POLE2).sqrt() + pole)
             }
             Self::Squared => libm::log1p(q / inverse::POLE2),
+            Self::Cubed => self.over_ring(0.0, q),
             Self::Metaballs => {
                 // 2∫(1−u)²u du from 0.
                 let cone = |u: f64| {
@@ -325,6 +379,7 @@ mod tests {
                 (Kernel::Gauss, libm::exp(-q)),
                 (Kernel::Inverse, 1.0 / (q + 1e-10).sqrt()),
                 (Kernel::Squared, 1.0 / (q + 1e-10)),
+                (Kernel::Cubed, 1.0 / ((q + 1e-10) * (q + 1e-10).sqrt())),
                 (
                     Kernel::Metaballs,
                     if u <= 1.0 / 3.0 {
@@ -379,13 +434,22 @@ mod tests {
                 let u: f64 = q.sqrt();
                 let breaks = [0.1, 1.0 / 3.0, 1.0, 2.0].map(|b: f64| b.min(u.max(0.1)));
                 let along = integral(&mut |u| kernel.value(u), &breaks, 1e-13);
-                let want = kernel.along(u) - kernel.along(0.1);
+                let want = kernel.between(0.1, u.max(0.1));
                 assert!(
                     (along - want).abs() < 1e-9,
                     "{kernel:?} {u}: {along} {want}"
                 );
+                // As far as doubles tell beside what the pole gives.
+                let digits = 1e-15 * kernel.along(u);
+                let want = kernel.along(u) - kernel.along(0.1);
+                assert!(
+                    (along - want).abs() < 1e-9 + digits,
+                    "{kernel:?} {u}: {along} {want}"
+                );
                 let squares = breaks.map(|b| b * b);
                 let disc = integral(&mut |q| kernel.derivatives(q).0[0], &squares, 1e-13);
+                let want = kernel.over_ring(0.01, q);
+                assert!((disc - want).abs() < 1e-9, "{kernel:?} {q}: {disc} {want}");
                 let want = kernel.over_disc(q) - kernel.over_disc(0.01);
                 assert!((disc - want).abs() < 1e-9, "{kernel:?} {q}: {disc} {want}");
             }

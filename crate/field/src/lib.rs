@@ -33,6 +33,7 @@ mod carlson;
 mod cauchy;
 mod clausen;
 pub mod course;
+mod cubed;
 mod curve;
 mod cut;
 pub mod endless;

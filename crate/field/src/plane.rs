@@ -1,7 +1,7 @@
 //! An infinite plane (thesis 2.24): a function of the height z above it alone.
 //!
-//! `f(z) = π·∫_{z²}^∞ G(q) dq`, and so `f′ = −2πz·G(z²)`: Cauchy `π/(1+z²)`; Gauss `π·exp(−z²)`; with
-//! v = 1−z² quartic `πv³/3`, compact6 `πv⁴/4`, soft `π(20v³ + 12v⁴)/108`; metaballs from
+//! `f(z) = π·∫_{z²}^∞ G(q) dq`, and so `f′ = −2πz·G(z²)`: Cauchy `π/(1+z²)`; Gauss `π·exp(−z²)`; cubed
+//! `2π/√(z²+ε²)`; with v = 1−z² quartic `πv³/3`, compact6 `πv⁴/4`, soft `π(20v³ + 12v⁴)/108`; metaballs from
 //! `P(z) = (π/6)(1−z)³(1+3z)` as `1.5·P(z) − P(3z)/18` (see `metaballs`).
 //!
 //! The integrals of the inverse and the squared kernel diverge. There the plane counts only up to
@@ -40,6 +40,10 @@ pub fn jet<R: Real>(kernel: Kernel, [_, _, z]: [R; 3]) -> Jet<R> {
             let window = R::splat(WINDOW * WINDOW);
             let ratio = window / q;
             (pi * ratio.ln_1p(), ratio / (q + window))
+        }
+        Kernel::Cubed => {
+            let c = (z * z + R::splat(inverse::POLE2)).sqrt();
+            ((pi + pi) / c, g)
         }
         Kernel::Metaballs => {
             let height = z.abs();

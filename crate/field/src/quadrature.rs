@@ -102,6 +102,7 @@ fn kernel(kernel: Kernel, width: f64, square: f64) -> f64 {
         Kernel::Gauss => libm::exp(-q),
         Kernel::Inverse => 1.0 / (q + pole).sqrt(),
         Kernel::Squared => 1.0 / (q + pole),
+        Kernel::Cubed => libm::pow(q + pole, -1.5),
         Kernel::Metaballs if u <= 1.0 / 3.0 => 1.0 - 3.0 * q,
         Kernel::Metaballs => inside(1.5 * (1.0 - u) * (1.0 - u)),
         // (1−q)² times what is left of the polynomial, so that its end keeps its digits.
@@ -114,7 +115,7 @@ fn kernel(kernel: Kernel, width: f64, square: f64) -> f64 {
 /// How finely an integrand must be looked at: the kernel's width, or its pole's.
 fn finest(kernel: Kernel) -> f64 {
     match kernel {
-        Kernel::Inverse | Kernel::Squared => 1e-5,
+        Kernel::Inverse | Kernel::Squared | Kernel::Cubed => 1e-5,
         _ => 1.0,
     }
 }

@@ -111,14 +111,14 @@ impl Shaping {
     /// Cauchy and Gauss `√|B|/R`. For compact kernels 1/D, with the depth D at which their
     /// logarithmic slope at R is Blinn's, `−2|B|`: quartic `D = R√(1+2/|B|)`, compact6 `R√(1+3/|B|)`,
     /// metaballs `R/u` with `u = |B|/(1+|B|)` if that is over ⅓, else `u² = |B|/(3(1+|B|))`; soft: v = 1−u²
-    /// solves `(12+4|B|)v² + (5|B|−2)v = 10`. The inverse and the squared kernel have no width: 1/R,
-    /// whatever B is.
+    /// solves `(12+4|B|)v² + (5|B|−2)v = 10`. The inverse, the squared and the cubed kernel have no
+    /// width: 1/R, whatever B is.
     #[must_use]
     pub fn width(&self) -> Option<f64> {
         let b = self.relative();
         let at_radius = match self.kernel {
             Kernel::Cauchy | Kernel::Gauss => b.sqrt(),
-            Kernel::Inverse | Kernel::Squared => 1.0,
+            Kernel::Inverse | Kernel::Squared | Kernel::Cubed => 1.0,
             Kernel::Quartic => 1.0 / (1.0 + 2.0 / b).sqrt(),
             Kernel::Compact6 => 1.0 / (1.0 + 3.0 / b).sqrt(),
             Kernel::Metaballs => {
@@ -150,6 +150,8 @@ impl Shaping {
     /// 3.3.2): with it, a point, an infinite line and an infinite plane have `F = T` at the
     /// distance R, times the strength. Where infinite ones have no finite field (inverse lines,
     /// inverse and squared planes), finite ones of half-length 10·R stand for them.
+    ///
+    /// Of the cubed kernel 1/d³ that is R³ for points, R²/2 for lines and R/2π for planes, in units of length.
     ///
     /// It depends on the skeleton's dimension only, not on its size. So cutting a segment, an arc
     /// or a triangle in two changes nothing, which is what keeps joints free of bulges.

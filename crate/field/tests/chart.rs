@@ -39,7 +39,7 @@ fn shaped(random: &mut Random, kernel: Kernel) -> Shaping {
 /// The largest field a primitive can have (at a radius from poles).
 fn peak(primitive: &Primitive) -> f64 {
     let from = match primitive.kernel {
-        Kernel::Inverse | Kernel::Squared => 1.0 / primitive.width,
+        kernel if kernel.has_pole() => 1.0 / primitive.width,
         _ => 0.0,
     };
     primitive.bound_at(from)
@@ -94,7 +94,14 @@ fn single_matches_double(kernel: Kernel, kind: Kind) {
             (value8.to_bits(), gradient8),
             "{primitive:?} at {point:?}"
         );
-        let Accuracy { relative, floor } = SINGLE;
+        let Accuracy {
+            mut relative,
+            floor,
+        } = SINGLE;
+        if kernel == Kernel::Cubed && kind == Kind::Curve && skeleton.distance(point) < 1e-3 {
+            // A curve's spans are rounded where they meet (tests/taper.rs): next to the pole such gaps count.
+            relative = 1e-3;
+        }
         let slack = 64.0 * EPSILON32 * sensitivity(&primitive, point);
         let tolerance = relative * want.abs() + floor * peak(&primitive) + slack;
         assert!(
@@ -106,7 +113,7 @@ fn single_matches_double(kernel: Kernel, kind: Kind) {
         let near = (primitive.width * skeleton.distance(point)).max(1e-3);
         let slopes = primitive.width * (1.0 + 1.0 / near);
         let mut tolerance = 30.0 * (tolerance * slopes + relative * want_gradient.length());
-        if matches!(kernel, Kernel::Inverse | Kernel::Squared) {
+        if kernel.has_pole() {
             // A rounding of the coordinates changes a slope by as much of it as it changes the
             // distance from the pole; within a rounding of a pole the slope has no meaning.
             let rounding = 8.0 * EPSILON32 * (point.length() + extent(&skeleton));
@@ -134,8 +141,7 @@ fn gradient_is_the_derivative(kernel: Kernel, kind: Kind) {
         let point = random.near(&skeleton, -2.0, 0.5);
         let u = primitive.width * skeleton.distance(point);
         // A difference is worth nothing across a kink, or next to a pole.
-        let windowed = matches!(kernel, Kernel::Inverse | Kernel::Squared);
-        if windowed && u < 0.05 || kernel == Kernel::Metaballs && u < 0.01 {
+        if kernel.has_pole() && u < 0.05 || kernel == Kernel::Metaballs && u < 0.01 {
             continue;
         }
         let (_, gradient) = jet::<f64>(&primitive, point);
@@ -339,8 +345,11 @@ fn degenerate_geometry(kernel: Kernel, kind: Kind) {
                 // What is below single precision's smallest number is 0 in it: a bone 1e-300 long.
                 let slack = 64.0 * EPSILON32 * (want_gradient.length() + peak)
                     + f64::from(f32::MIN_POSITIVE) * primitive.height.abs().max(1.0);
+                // As in `single_matches_double`.
+                let on_pole = kernel == Kernel::Cubed && kind == Kind::Curve;
+                let relative = if on_pole { 1e-3 } else { 1e-4 };
                 assert!(
-                    (value8 - want).abs() <= 1e-4 * peak + needle * EPSILON32 + slack,
+                    (value8 - want).abs() <= relative * peak + needle * EPSILON32 + slack,
                     "{value8} instead of {want}: {skeleton:?} at {p:?}"
                 );
             }
@@ -652,4 +661,5 @@ chart! {
     soft: Kernel::Soft;
     quartic: Kernel::Quartic;
     compact6: Kernel::Compact6;
+    cubed: Kernel::Cubed;
 }

@@ -51,6 +51,8 @@ fn bound(kernel: Kernel, kind: Kind) -> f64 {
         // The window over which it is integrated leaves out 2·10⁻⁶ of the field on the skeleton,
         // which is up to e¹⁰·T here.
         (Kernel::Gauss, Kind::Arc) => 2e-4,
+        // The rounding of coordinates alone, 1/40 of a radius from circles of 10: 3·10⁻⁷ of the distance, thrice.
+        (Kernel::Cubed, Kind::Arc) => 5e-5,
         // Sums over edges, whose terms are larger than they.
         (_, Kind::Triangle | Kind::Polygon) => 5e-5,
         (Kernel::Metaballs, Kind::Segment) => 5e-5,

@@ -168,7 +168,7 @@ tests! {
                 }
             }
         }
-        assert_eq!(hash, 0x7D51_4FFA_02DC_9C52, "{hash:#018x}");
+        assert_eq!(hash, 0x4BC7_87FF_D4AD_2915, "{hash:#018x}");
     }
 
     /// Against a five-point difference of the value.

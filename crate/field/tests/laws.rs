@@ -4,7 +4,9 @@ mod common;
 
 use common::{KINDS, Kind, Random, jet, primitive, sensitivity, shaping, single};
 use core::f64::consts::TAU;
-use field::{BlobScale, Primitive, Profile, Shaping, Skeleton, Sum, THRESHOLD, Wave, quadrature};
+use field::{
+    BlobScale, Kernel, Primitive, Profile, Shaping, Skeleton, Sum, THRESHOLD, Wave, quadrature,
+};
 use glam::{DQuat, DVec3};
 use wide::f32x8;
 
@@ -178,6 +180,30 @@ tests! {
                 let ring = Skeleton::Arc { center: DVec3::Y * -long, u: DVec3::Y, v: DVec3::X, radius: long, angle: TAU };
                 let value = jet::<f64>(&primitive(ring, &shaping, None), DVec3::Y * radius).0;
                 assert!((value - THRESHOLD).abs() < 1e-2, "{value}");
+            }
+        }
+    }
+
+    /// The cubed kernel has no width: a point's field is (R/d)³, a long line's (R/d)², a plane's R/d, whatever the
+    /// blobbiness.
+    fn cubed_fields_are_powers_of_the_distance() {
+        let mut random = Random::new(18);
+        for _ in 0..100 {
+            let radius = random.decades(-2.0, 1.0);
+            let shaping = Shaping {
+                kernel: Kernel::Cubed,
+                ..shaping(radius, -random.decades(-1.0, 1.0))
+            };
+            let distance = radius * random.decades(-1.0, 1.0);
+            let long = 1e6 * radius;
+            let line = Skeleton::Segment { base: DVec3::X * -long, apex: DVec3::X * long };
+            let plane = Skeleton::Plane { point: DVec3::ZERO, normal: DVec3::Y };
+            for (skeleton, power) in [(Skeleton::Point { center: DVec3::ZERO }, 3), (line, 2), (plane, 1)] {
+                let primitive = primitive(skeleton, &shaping, None);
+                let value = jet::<f64>(&primitive, DVec3::Y * distance).0;
+                let want = (radius / distance).powi(power);
+                // The pole's ε, at a tenth of a radius.
+                assert!((value / want - 1.0).abs() < 2e-8, "{value} {want} {primitive:?}");
             }
         }
     }

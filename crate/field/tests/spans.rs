@@ -171,4 +171,7 @@ tests! {
     fn compact6() {
         bounds_hold(Kernel::Compact6);
     }
+    fn cubed() {
+        bounds_hold(Kernel::Cubed);
+    }
 }

@@ -31,13 +31,9 @@ fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, low: f64) -
     primitive(skeleton, &tapered(random, kernel), None)
 }
 
-fn has_pole(kernel: Kernel) -> bool {
-    matches!(kernel, Kernel::Inverse | Kernel::Squared)
-}
-
 /// The largest field (at a radius of the thin end from poles).
 fn peak(primitive: &Primitive) -> f64 {
-    primitive.bound_at(if has_pole(primitive.kernel) {
+    primitive.bound_at(if primitive.kernel.has_pole() {
         1.0 / primitive.width
     } else {
         0.0
@@ -98,11 +94,12 @@ fn single_matches_double(kernel: Kernel) {
                 let slack = 32.0 * f64::from(f32::EPSILON) * sensitivity(&primitive, point);
                 let distance = primitive.skeleton.distance(point);
                 // Next to a pole it counts that the ends of spans are rounded: a gap or an overlap
-                // of 10⁻⁸ widths, where the squared kernel is 10¹⁰ high and its field 10⁵.
-                let relative = if has_pole(kernel) && distance < 1e-3 {
-                    3e-4
-                } else {
-                    1e-5
+                // of 10⁻⁸ widths, where the squared kernel is 10¹⁰ high and its field 10⁵, and the cubed
+                // one 10¹⁵ and 10¹⁰.
+                let relative = match kernel {
+                    Kernel::Cubed if distance < 1e-3 => 1e-3,
+                    _ if kernel.has_pole() && distance < 1e-3 => 3e-4,
+                    _ => 1e-5,
                 };
                 let tolerance = relative * want.abs() + 2e-6 * peak(&primitive) + slack;
                 assert!(
@@ -112,7 +109,7 @@ fn single_matches_double(kernel: Kernel) {
                     primitive.skeleton,
                     primitive.tapered
                 );
-                if has_pole(kernel) && distance < 1e-3 {
+                if kernel.has_pole() && distance < 1e-3 {
                     // Here a rounding of the coordinates turns the gradient.
                     continue;
                 }
@@ -138,7 +135,7 @@ fn gradient_is_the_derivative(kernel: Kernel) {
             let primitive = random_primitive(&mut random, kernel, kind, -1.0);
             let point = random.near(&primitive.skeleton, -2.0, 0.5);
             let u = primitive.width * primitive.skeleton.distance(point);
-            if has_pole(kernel) && u < 0.05 || kernel == Kernel::Metaballs && u < 0.01 {
+            if kernel.has_pole() && u < 0.05 || kernel == Kernel::Metaballs && u < 0.01 {
                 continue;
             }
             let (_, gradient) = jet::<f64>(&primitive, point);
@@ -560,4 +557,5 @@ kernels! {
     soft: Kernel::Soft;
     quartic: Kernel::Quartic;
     compact6: Kernel::Compact6;
+    cubed: Kernel::Cubed;
 }

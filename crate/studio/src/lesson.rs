@@ -3,7 +3,7 @@
 /// A lesson of the lab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Lesson {
-    /// The eight kernels.
+    /// The nine kernels.
     #[default]
     Kernels,
     /// Geometry times kernel, in one dimension.

@@ -578,7 +578,7 @@ mod tests {
     /// A ball of radius ¼ around (0, 0, 2), in the scene's own places.
     fn ball() -> Soft {
         let mut scene = empty();
-        scene.finishes = vec![soft(-2.0, 1.0)];
+        clothe(&mut scene, vec![soft(-2.0, 1.0)]);
         let center = DVec3::Z * 2.0;
         let radius = 0.25;
         scene.elements = vec![Element {
@@ -606,7 +606,7 @@ mod tests {
         let (rays, enters) = past_the_ball();
         for (ray, enters) in rays.into_iter().zip(enters) {
             let [found, before, behind] =
-                [[1.5, 2.5], [0.5, 1.5], [2.3, 9.0]].map(|s| soft.entry(ray, s).0);
+                [[1.5, 2.5], [0.5, 1.5], [2.3, 9.0]].map(|s| soft.entry(0, ray, s).0);
             assert_eq!(found.is_some(), enters.is_some(), "{ray:?}");
             if let (Some(found), Some(enters)) = (found, enters) {
                 assert!((found - enters).abs() < 1e-6, "{found} {enters}");
@@ -614,7 +614,7 @@ mod tests {
             assert_eq!([before, behind], [None; 2], "{ray:?}");
         }
         // Inside already.
-        assert_eq!(soft.entry(rays[0], [2.0, 3.0]).0, Some(2.0));
+        assert_eq!(soft.entry(0, rays[0], [2.0, 3.0]).0, Some(2.0));
     }
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
@@ -635,7 +635,7 @@ mod tests {
                 doubt: doubt.map(f32x8::splat),
                 evaluations: 0,
             };
-            soft.settle_doubts(&near, &rays, &mut climbed);
+            soft.settle_doubts(&near, 0, &rays, &mut climbed);
             climbed
         };
         // Longer than one part.

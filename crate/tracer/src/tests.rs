@@ -2,8 +2,9 @@
 #[path = "../tests/common/mod.rs"]
 pub mod common;
 
-use crate::picture::{Picture, Stats};
+use crate::picture::Picture;
 use crate::slabs::Precision;
+use crate::stats::Stats;
 use crate::tile::{Pass, Tile};
 use field::{Profile, Wave};
 use glam::DVec3;
@@ -31,7 +32,7 @@ fn trace_counting(picture: &Picture) -> (Vec<u8>, Stats) {
 fn difference(scene: &Scene) -> [f64; 2] {
     let mut picture = Picture::new(scene, [SIZE, SIZE]);
     let quick = trace(&picture);
-    picture.soft.precision = Precision {
+    picture.sampler.world.soft.precision = Precision {
         first: 1e-4,
         last: 2e-6,
         shared: 1e-6,
@@ -115,7 +116,7 @@ fn doubts_in_a_cloud_are_settled_with_what_is_near() {
     // Some see balls.
     assert!((100..4000).contains(&plain.shadow_rays), "{plain:?}");
     // Rays are doubted sooner than they need be.
-    picture.soft.precision.rounding *= 4.0;
+    picture.sampler.world.soft.precision.rounding *= 4.0;
     let (settled, doubted) = trace_counting(&picture);
     let off = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 1;
     assert_eq!(shown.iter().zip(&settled).filter(|&x| off(x)).count(), 0);

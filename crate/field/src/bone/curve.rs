@@ -122,7 +122,7 @@ struct Demands {
     slow: f64,
     /// Nodes on either side of the nearest point within the support of a compact kernel.
     clipped: usize,
-    /// Nodes of the inverse kernel, and of the squared one.
+    /// Nodes of the inverse kernel, and of the squared and the cubed one.
     pole: [usize; 2],
 }
 
@@ -232,7 +232,7 @@ impl Curve<f64> {
             spans: Vec::new(),
             rule: gauss_legendre(match kernel {
                 Kernel::Inverse => demands.pole[0],
-                Kernel::Squared => demands.pole[1],
+                Kernel::Squared | Kernel::Cubed => demands.pole[1],
                 _ => demands.clipped,
             }),
             tapered: law.is_some(),
@@ -329,7 +329,7 @@ impl Piece<'_> {
         });
         let (slow, longest) = match kernel {
             Kernel::Cauchy | Kernel::Gauss => (demands.slow, demands.longest),
-            Kernel::Inverse | Kernel::Squared => (1e-7, f64::INFINITY),
+            Kernel::Inverse | Kernel::Squared | Kernel::Cubed => (1e-7, f64::INFINITY),
             _ => (demands.slow, f64::INFINITY),
         };
         let even = fastest <= 3.0 * slowest || self.length <= slow;

@@ -315,6 +315,10 @@ pub fn sensitivity(primitive: &Primitive, point: DVec3) -> f64 {
                 let k = (square + 1e-10).sqrt() / primitive.width;
                 2.0 * libm::atan(longest / (2.0 * k)) / (k * primitive.width * primitive.width)
             }
+            Kernel::Cubed => {
+                let k2 = (square + 1e-10) / primitive.width.powi(2);
+                longest / (k2 * (k2 + longest * longest / 4.0).sqrt() * primitive.width.powi(3))
+            }
             _ => {
                 let q = 1.0 + square;
                 longest.min(PI / 2.0 * q.sqrt() / primitive.width) / (q * q)

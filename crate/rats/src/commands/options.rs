@@ -169,6 +169,7 @@ pub static KERNELS: &[OptionSpec] = &[
     ),
     plain("quartic", "(1−r²)², nothing beyond r = 1"),
     plain("compact6", "(1−r²)³, nothing beyond r = 1"),
+    plain("cubed", "1/r³: no width, so the blobbiness is ignored"),
 ];
 
 /// Properties of a material that a texture changes.

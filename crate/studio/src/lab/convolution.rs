@@ -46,7 +46,7 @@ impl Convolution {
     /// The kernel as it is seen here.
     fn kernel_at(&self, u: f64) -> f64 {
         match self.kernel {
-            Kernel::Inverse | Kernel::Squared => {
+            kernel if kernel.has_pole() => {
                 let beside = (u * u + BESIDE * BESIDE).sqrt();
                 // As high as 1, like the others.
                 self.kernel.value(beside) / self.kernel.value(BESIDE)
@@ -60,6 +60,7 @@ impl Convolution {
         let along = match self.kernel {
             Kernel::Inverse => libm::asinh(u.abs() / BESIDE) * BESIDE,
             Kernel::Squared => libm::atan(u.abs() / BESIDE) * BESIDE,
+            Kernel::Cubed => BESIDE * u.abs() / (u * u + BESIDE * BESIDE).sqrt(),
             kernel => kernel.along(u.abs()),
         };
         along.copysign(u)
@@ -175,7 +176,7 @@ impl Convolution {
                 "This kernel ends, so it is a window: what stands in the shade does not count at all. Make a bar longer outside the window and nothing changes here.",
             );
         } else {
-            let text = if matches!(self.kernel, Kernel::Inverse | Kernel::Squared) {
+            let text = if self.kernel.has_pole() {
                 "This kernel has a pole on the line itself; it is shown a quarter of a width beside the line. It never ends, so every bar counts everywhere."
             } else {
                 "This kernel never ends: every bar counts everywhere, if ever so little far away."

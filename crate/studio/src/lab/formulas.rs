@@ -69,7 +69,7 @@ pub fn way(kernel: Kernel, bone: Bone) -> &'static str {
         (Kernel::Gauss, Bone::Line) => "error function",
         (Kernel::Gauss, Bone::Arc) => "Gauss–Legendre",
         (Kernel::Gauss, Bone::Triangle | Bone::Polygon) => "Owen's T",
-        (Kernel::Inverse, Bone::Arc) => "Carlson",
+        (Kernel::Inverse | Kernel::Cubed, Bone::Arc) => "Carlson",
         (Kernel::Squared, Bone::Triangle | Bone::Polygon) => "dilogarithm",
         (Kernel::Metaballs, Bone::Arc | Bone::Triangle | Bone::Polygon) => "Gauss–Legendre",
         _ => "closed",
@@ -88,13 +88,14 @@ pub fn kernel(kernel: Kernel) -> &'static str {
         Kernel::Soft => "h(u) = 1 − 4/9·u⁶ + 17/9·u⁴ − 22/9·u² up to u = 1",
         Kernel::Quartic => "h(u) = (1−u²)² up to u = 1",
         Kernel::Compact6 => "h(u) = (1−u²)³ up to u = 1",
+        Kernel::Cubed => "h(u) = 1/u³",
     }
 }
 
 /// The field of a cell in units of the kernel's width, and what its letters mean.
 #[must_use]
 pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
-    use Kernel::{Cauchy, Gauss, Inverse, Metaballs, Squared};
+    use Kernel::{Cauchy, Cubed, Gauss, Inverse, Metaballs, Squared};
     const EDGE: &str = "a sum over the edges: h is the distance of the foot of the point from the edge's line, t runs along the edge, z is the height over the plane";
     const ALONG: &str = "x runs along the line from the foot of the point to the ends x₁, x₂; ρ is the distance from the line";
     const AROUND: &str = "r₀ is the arc's radius, φ the angle from the point's azimuth, ρ and z the point's distance from the axis and from the plane";
@@ -111,6 +112,7 @@ pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
         (Gauss, Bone::Line) => ("F = √π/2 · exp(−ρ²) · (erf x₂ − erf x₁)", ALONG),
         (Inverse, Bone::Line) => ("F = asinh(x₂/ρ) − asinh(x₁/ρ)", ALONG),
         (Squared, Bone::Line) => ("F = (atan(x₂/ρ) − atan(x₁/ρ)) / ρ", ALONG),
+        (Cubed, Bone::Line) => ("F = [ x/√(ρ²+x²) ] / ρ² from x₁ to x₂", ALONG),
         (Metaballs, Bone::Line) => (
             "F = ∫ 3/2·(1−√(ρ²+x²))² dx, inside u < ⅓ replaced by ∫ (1−3(ρ²+x²)) dx",
             "both integrals are elementary; the line is cut where it enters and leaves the two spheres",
@@ -135,6 +137,10 @@ pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
             "F = r₀ ∫ dφ/(A − B cos φ),   A = r₀²+ρ²+z²,   B = 2r₀ρ",
             AROUND,
         ),
+        (Cubed, Bone::Arc) => (
+            "F = r₀ ∫ dφ/√(A − B cos φ)³, elliptic integrals of the first and the second kind",
+            "computed as Carlson's R_D",
+        ),
         (Metaballs, Bone::Arc) => (
             "F = r₀ ∫ 3/2·(1−√(A − B cos φ))² dφ, an elliptic integral of the second kind",
             "by Gauss–Legendre; the arc is cut where it enters and leaves the two spheres",
@@ -158,6 +164,10 @@ pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
         (Squared, Bone::Triangle | Bone::Polygon) => {
             ("F = ½ · Σ ∫ ln(1 + (h²+t²)/z²) · h/(h²+t²) dt", EDGE)
         }
+        (Cubed, Bone::Triangle | Bone::Polygon) => (
+            "F = ( 2πw − Σ [ atan2(zt, h√(h²+t²+z²)) ] along each edge ) / z",
+            "the solid angle at which the polygon is seen, over the height z; w is the number of times the edges run around the foot of the point, h its distance from the edge's line, and t runs along the edge",
+        ),
         (_, Bone::Triangle | Bone::Polygon) => (
             "F = Σ h·[P(t)] along the part of each edge inside the disc, and G·(angle) along the rest",
             "the disc is where the kernel's sphere meets the plane; P is a polynomial, G the field of the whole disc",
@@ -172,6 +182,7 @@ pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
             "F = π·ln(1 + w²/d²)",
             "over the whole plane the integral is infinite; it is taken over a window of radius w around the foot of the point",
         ),
+        (Cubed, Bone::Plane) => ("F = 2π/d", "d is the distance from the plane"),
         (Kernel::Quartic, Bone::Plane) => ("F = π/3 · (1−d²)³", "d is the distance from the plane"),
         (Kernel::Compact6, Bone::Plane) => {
             ("F = π/4 · (1−d²)⁴", "d is the distance from the plane")

@@ -84,7 +84,7 @@ impl Grid {
             controls,
             "Each picture is traced just now, by the same tracer as in the editor.",
         );
-        if matches!(self.kernel, Kernel::Inverse | Kernel::Squared) {
+        if self.kernel.has_pole() {
             remark(
                 controls,
                 "This kernel has no width, so the blobbiness does nothing here.",

@@ -1,4 +1,4 @@
-//! Lesson 1: the eight kernels, bare and as the field of a point.
+//! Lesson 1: the nine kernels, bare and as the field of a point.
 
 use super::bench::Bench;
 use super::plot::{self, Axis, Plot, number};

@@ -6,16 +6,16 @@ use egui::{
     Ui, Vec2, pos2, vec2,
 };
 
-/// Eight hues that stay apart for the colour-blind (after Okabe and Ito), as bright as each palette
+/// Nine hues that stay apart for the colour-blind (after Okabe and Ito), as bright as each palette
 /// needs. They come in the order of `field::Kernel::ALL`.
-const HUES_DARK: [u32; 8] = [
-    0xF0A030, 0x63BDF0, 0x2FC79A, 0xF2E65A, 0x8C96FF, 0xFF7A45, 0xE08FC0, 0xE4E8EE,
+const HUES_DARK: [u32; 9] = [
+    0xF0A030, 0x63BDF0, 0x2FC79A, 0xF2E65A, 0x8C96FF, 0xFF7A45, 0xE08FC0, 0xE4E8EE, 0xA87A56,
 ];
-const HUES_LIGHT: [u32; 8] = [
-    0xC97A00, 0x2288C4, 0x007F5C, 0x8F8200, 0x3B47B8, 0xC2410C, 0xA33E7A, 0x3A424C,
+const HUES_LIGHT: [u32; 9] = [
+    0xC97A00, 0x2288C4, 0x007F5C, 0x8F8200, 0x3B47B8, 0xC2410C, 0xA33E7A, 0x3A424C, 0x6B4423,
 ];
 
-/// One of eight colours.
+/// One of nine colours.
 #[must_use]
 pub fn hue(ui: &Ui, index: usize) -> Color32 {
     let hues = if ui.visuals().dark_mode {

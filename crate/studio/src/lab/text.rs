@@ -51,7 +51,7 @@ pub fn of(lesson: Lesson) -> Words {
                         the radius, so the outline does not copy the curve.",
         },
         Lesson::Chart => Words {
-            about: "eight kernels × seven primitives",
+            about: "nine kernels × seven primitives",
             sentences: "Every kernel can be convolved with every primitive; this is the whole table, \
                         traced just now. Some cells have a closed formula, some need an elliptic \
                         integral, some a small numerical one, and that shows in the time they take. \

@@ -136,7 +136,7 @@ pub fn kernels(ui: &mut Ui, is_chosen: impl Fn(Kernel) -> bool) -> Option<Kernel
     let palette = theme::palette(ui.visuals());
     let mut clicked = None;
     let height = ui.spacing().interact_size.y.max(28.0);
-    let columns = if ui.available_width() > 460.0 { 4 } else { 2 };
+    let columns = if ui.available_width() > 330.0 { 3 } else { 2 };
     let gap = 6.0;
     let width = ((ui.available_width() + gap) / columns as f32 - gap).floor();
     for row in Kernel::ALL.chunks(columns) {

@@ -216,7 +216,7 @@ impl Pieces {
     /// Magnitude, slope and curvature of one term, before its factor.
     fn gather(&mut self, number: usize, root: u32, center: DVec3, radius: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        let has_pole = !self.bodies[number].kernel.falls_fast();
+        let has_pole = self.bodies[number].kernel.has_pole();
         self.stack.clear();
         self.stack.push(root);
         while let Some(index) = self.stack.pop() {

@@ -68,6 +68,17 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
                 curvature: curvature(g1(p), g1(q), bent(at(POLE2 / 2.0))),
             }
         }
+        Kernel::Cubed => {
+            let g = |q: f64| 1.0 / ((q + POLE2) * (q + POLE2).sqrt());
+            let g1 = |q: f64| 1.5 * g(q) / (q + POLE2);
+            let bent = |q: f64| q * 3.75 * g(q) / ((q + POLE2) * (q + POLE2));
+            let s = at(POLE2 / 4.0);
+            Largest {
+                value: g(p),
+                slope: 2.0 * s.sqrt() * g1(s),
+                curvature: curvature(g1(p), g1(q), bent(at(0.4 * POLE2))),
+            }
+        }
         _ if p > 1.0 => Largest::default(),
         Kernel::Metaballs => {
             let inner = 1.0 / 9.0;

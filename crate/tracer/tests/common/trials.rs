@@ -1,5 +1,5 @@
 //! Random scenes and rays on which what pictures show is held against the reference.
-use super::common::{Numbers, element, empty};
+use super::common::{Numbers, empty};
 use core::f64::consts::TAU;
 use field::{BlobScale, Kernel, Profile, Wave};
 use glam::DVec3;

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::process::Command;
 
 /// Kernels and kinds of skeleton, in the order of the chart.
-const KERNELS: [&str; 8] = [
+const KERNELS: [&str; 9] = [
     "cauchy",
     "gauss",
     "inverse",
@@ -16,6 +16,7 @@ const KERNELS: [&str; 8] = [
     "soft",
     "quartic",
     "compact6",
+    "cubed",
 ];
 const KINDS: [&str; 7] = [
     "point", "segment", "arc", "triangle", "polygon", "plane", "curve",
