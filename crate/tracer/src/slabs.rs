@@ -1076,7 +1076,7 @@ mod tests {
             let center = numbers.vector();
             let carves = carving != 0.0 && i % 20 == 0;
             let shape = Shape::Sphere { center, radius };
-            scene.elements.push(element(shape, usize::from(carves)));
+            scene.elements.push(element(shape, u32::from(carves)));
         }
         Soft::new(scene)
     }
