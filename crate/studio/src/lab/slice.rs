@@ -198,10 +198,10 @@ impl Slice {
     pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         self.look(bench.session);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.95);
-        let soft = self
-            .subject
-            .as_ref()
-            .map_or(0, |subject| subject.field.primitives.len());
+        let soft = self.subject.as_ref().map_or(0, |subject| {
+            let bodies = subject.bodies.iter();
+            bodies.map(|body| body.primitives.len()).sum::<usize>()
+        });
         bench.readings.insert("primitives", soft as f64);
         if soft == 0 {
             nothing(ui, &stage, bench);

@@ -1,0 +1,302 @@
+//! Several bodies in one picture, and bodies of functions that are no sums.
+#![cfg(not(target_arch = "wasm32"))]
+mod common;
+#[path = "common/trials.rs"]
+mod trials;
+
+use common::{Numbers, blend};
+use field::{Ball, Enclosure, Implicit, Jet, Kernel, Sum, THRESHOLD};
+use glam::DVec3;
+use scene::{Body, Scene};
+use std::sync::Arc;
+use tracer::{Hit, Pass, Picture, Stats, Tile};
+use trials::{Kind, Row, check};
+use wide::f32x8;
+
+/// Soft elements of all kinds, spread over some bodies.
+fn in_bodies(seed: u64, count: usize, bodies: u32) -> Scene {
+    let mut scene = blend(seed, count);
+    for _ in 0..bodies {
+        scene.bodies.push(Body::default());
+    }
+    for (element, body) in scene.elements.iter_mut().zip((0..=bodies).cycle()) {
+        element.body = body;
+    }
+    scene
+}
+
+/// A scene with the elements of one body only.
+fn one_body(scene: &Scene, body: u32) -> Scene {
+    let mut scene = scene.clone();
+    // An element without a finish is not drawn, and leaves the scene as large as it was.
+    for element in scene.elements.iter_mut().filter(|e| e.body != body) {
+        element.finish = u32::MAX;
+    }
+    scene
+}
+
+/// Rays in packets from around the scene towards its middle.
+fn rays(numbers: &mut Numbers, packets: usize) -> Vec<(DVec3, DVec3)> {
+    let mut rays = Vec::new();
+    for _ in 0..packets {
+        let eye = numbers.vector().normalize() * 6.0;
+        let to = numbers.vector();
+        for _ in 0..8 {
+            let to = to + numbers.vector() * 0.02;
+            rays.push((eye, (to - eye).normalize()));
+        }
+    }
+    rays
+}
+
+#[test]
+fn the_nearest_body_is_seen() {
+    let (mut hits, mut seen) = (0, std::collections::BTreeSet::new());
+    let (mut differ, mut all) = (0, 0);
+    for seed in 0..30 {
+        let count = 3 + seed as usize % 7;
+        let scene = in_bodies(seed, count, 1 + seed as u32 % 3);
+        let picture = Picture::new(&scene, [512; 2]);
+        let bodies = 0..scene.bodies.len() as u32;
+        let alone: Vec<Picture> = bodies
+            .map(|body| Picture::new(&one_body(&scene, body), [512; 2]))
+            .collect();
+        let rays = rays(&mut Numbers(seed * 2 + 1), 12);
+        for (ray, hit) in rays.iter().zip(picture.cast(&rays)) {
+            let firsts = alone.iter().map(|picture| {
+                let hits = picture.hits(ray.0, ray.1);
+                hits.first().map_or(f64::INFINITY, |hit| hit.t)
+            });
+            let nearest = (0u32..).zip(firsts).min_by(|a, b| a.1.total_cmp(&b.1));
+            let (body, t) = nearest.expect("there are bodies");
+            all += 1;
+            match hit {
+                Some(hit) if (hit.t - t).abs() < 1e-3 => {
+                    hits += 1;
+                    assert_eq!(hit.body, Some(body), "{seed}");
+                    seen.insert(body);
+                    let element = hit.element.expect("it is an element's");
+                    assert_eq!(scene.elements[element as usize].body, body);
+                }
+                None if t == f64::INFINITY => {}
+                // A ray that grazes may be seen to meet or not.
+                _ => differ += 1,
+            }
+        }
+    }
+    assert!(hits > 400 && seen.len() == 4, "{hits} {seen:?}");
+    assert!(differ * 300 < all, "{differ} of {all}");
+}
+
+/// In a picture, too, and shadows fall from one body onto another.
+#[test]
+fn pictures_show_all_bodies() {
+    const SIDE: u32 = 40;
+    let whole = Tile {
+        x: 0,
+        y: 0,
+        width: SIDE,
+        height: SIDE,
+    };
+    let trace = |scene: &Scene| {
+        let picture = Picture::new(scene, [SIDE; 2]);
+        let pixels = picture.trace(whole, Pass::Full, &|| false, &mut Stats::default());
+        pixels.expect("nobody asked to stop")
+    };
+    let (mut equal, mut differ) = (0, 0);
+    for seed in 0..12 {
+        let mut scene = in_bodies(seed, 6, 2);
+        scene.lights[0].shadow = false;
+        let pixels = trace(&scene);
+        let alone: Vec<Vec<u8>> = (0..3).map(|body| trace(&one_body(&scene, body))).collect();
+        for (i, pixel) in pixels.chunks_exact(4).enumerate() {
+            // A pixel shows what one of the bodies alone would show.
+            let same = alone.iter().any(|alone| {
+                let other = &alone[4 * i..4 * i + 4];
+                pixel.iter().zip(other).all(|(a, b)| a.abs_diff(*b) <= 2)
+            });
+            *(if same { &mut equal } else { &mut differ }) += 1;
+        }
+        scene.lights[0].shadow = true;
+        assert_ne!(trace(&scene), pixels, "{seed}: shadows");
+    }
+    assert!(differ * 200 < equal, "{differ} of {equal}");
+}
+
+/// The general path for any function, judged by the reference as pictures of sums are.
+#[test]
+fn surfaces_of_functions_are_within_the_tolerance() {
+    let kinds = [
+        Kind::Point,
+        Kind::Segment,
+        Kind::Arc,
+        Kind::Triangle,
+        Kind::Curve,
+        Kind::Taper,
+        Kind::Waves,
+        Kind::Kinks,
+        Kind::Mixed,
+    ];
+    let (mut all, mut told) = (Row::default(), String::new());
+    for kernel in [Kernel::Gauss, Kernel::Cauchy, Kernel::Quartic, Kernel::Soft] {
+        for kind in kinds {
+            for seed in 0..2 {
+                let by_function = |trial: &trials::Trial, _: &Picture| {
+                    let mut scene = trial.scene.clone();
+                    let sum = scene.soft_surfaces().swap_remove(0).sum;
+                    for element in &mut scene.elements {
+                        element.finish = u32::MAX;
+                    }
+                    let mut picture = Picture::new(&scene, [trial.size; 2]);
+                    let body = picture.add_function(Arc::new(sum), vec![0]);
+                    let hits = picture.cast(&trial.rays);
+                    assert!(hits.iter().flatten().all(|hit| hit.body == Some(body)));
+                    hits
+                };
+                let seed = 8_000_000 + seed;
+                all.add(&check(kernel, kind, seed, 2, &by_function, &mut told));
+            }
+        }
+    }
+    assert!(all.rays > 800 && all.hits > 400, "{all:?}");
+    assert!(all.missed == 0 && all.invented == 0, "{all:?}\n{told}");
+}
+
+/// A smooth maximum of two functions: `(a + b + √((a−b)² + k²))/2`.
+#[derive(Debug)]
+struct SmoothMaximum {
+    parts: [Sum; 2],
+    k: f64,
+}
+
+impl SmoothMaximum {
+    /// Value and share of the first.
+    fn mixed(&self, a: f64, b: f64) -> (f64, f64) {
+        let root = libm::sqrt((a - b) * (a - b) + self.k * self.k);
+        (0.5 * (a + b + root), 0.5 * (1.0 + (a - b) / root))
+    }
+}
+
+impl Implicit for SmoothMaximum {
+    fn jet(&self, point: DVec3) -> Jet<f64> {
+        let [a, b] = self.parts.each_ref().map(|part| part.jet(point));
+        let (value, share) = self.mixed(a.value, b.value);
+        let gradient = a.times(share).plus(b.times(1.0 - share)).gradient;
+        Jet { value, gradient }
+    }
+
+    fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
+        let jet = self.jet(DVec3::from_array(point.map(f64::from)));
+        Jet {
+            value: jet.value as f32,
+            gradient: jet.gradient.map(|x| x as f32),
+        }
+    }
+
+    fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8> {
+        let lanes = points.map(f32x8::to_array);
+        let jets: [Jet<f32>; 8] =
+            core::array::from_fn(|i| self.jet32([0, 1, 2].map(|k: usize| lanes[k][i])));
+        Jet {
+            value: f32x8::new(jets.map(|jet| jet.value)),
+            gradient: core::array::from_fn(|k| f32x8::new(jets.map(|jet| jet.gradient[k]))),
+        }
+    }
+
+    fn enclose(&self, ball: Ball) -> Enclosure {
+        let [a, b] = self.parts.each_ref().map(|part| part.enclose(ball));
+        // It grows with both; its gradient is a mean of theirs, and the shares change by no more than 1/(2k).
+        let both = a.slope + b.slope;
+        Enclosure {
+            value: [0, 1].map(|i| self.mixed(a.value[i], b.value[i]).0),
+            slope: a.slope.max(b.slope),
+            curvature: a.curvature.max(b.curvature) + both * both / (2.0 * self.k),
+        }
+    }
+
+    fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
+        let [a, b] = self.parts.each_ref().map(|part| part.jet(point).value);
+        let (_, share) = self.mixed(a, b);
+        out.extend([(0, share), (1, 1.0 - share)]);
+    }
+
+    fn support(&self) -> Option<Ball> {
+        // Below T by more than k/2 both are below it together.
+        None
+    }
+}
+
+/// Crossings of a ray, by marching in small steps.
+fn marched(function: &dyn Implicit, (origin, direction): (DVec3, DVec3)) -> Vec<f64> {
+    let inside = |t: f64| function.jet(origin + direction * t).value >= THRESHOLD;
+    let step = 1e-3;
+    let mut found = Vec::new();
+    let mut before = inside(0.0);
+    for i in 1..12_000 {
+        let t = step * f64::from(i);
+        let after = inside(t);
+        if after != before {
+            let (mut low, mut high) = (t - step, t);
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                *(if inside(middle) == before {
+                    &mut low
+                } else {
+                    &mut high
+                }) = middle;
+            }
+            found.push(0.5 * (low + high));
+        }
+        before = after;
+    }
+    found
+}
+
+#[test]
+fn a_smooth_maximum_is_seen_where_it_is() {
+    let (mut crossings, mut shown) = (0, 0);
+    for seed in 0..6 {
+        let scene = in_bodies(seed + 50, 6, 1);
+        let mut surfaces = scene.soft_surfaces().into_iter();
+        let (Some(a), Some(b)) = (surfaces.next(), surfaces.next()) else {
+            continue;
+        };
+        let function = Arc::new(SmoothMaximum {
+            parts: [a.sum, b.sum],
+            k: 0.3,
+        });
+        let mut picture = Picture::new(&Scene::default(), [256; 2]);
+        picture.add_function(function.clone(), vec![0, 0]);
+        let rays = rays(&mut Numbers(seed * 2 + 9), 3);
+        for (ray, hit) in rays.iter().zip(picture.cast(&rays)) {
+            let want = marched(&*function, *ray);
+            let found: Vec<f64> = picture
+                .hits(ray.0, ray.1)
+                .iter()
+                .map(|h: &Hit| h.t)
+                .collect();
+            // Within a step of each other the march may have missed two.
+            for t in &want {
+                assert!(
+                    found.iter().any(|f| (f - t).abs() < 1e-9),
+                    "{t} of {found:?}"
+                );
+            }
+            for pair in found
+                .iter()
+                .filter(|f| !want.iter().any(|t| (*f - t).abs() < 1e-9))
+            {
+                let on = function.jet(ray.0 + ray.1 * *pair).value - THRESHOLD;
+                assert!(on.abs() < 1e-9 || *pair > 11.9, "{pair}: {on}");
+            }
+            crossings += want.len();
+            if let (Some(hit), Some(first)) = (hit, found.first()) {
+                assert!((hit.t - first).abs() < 1e-9);
+                shown += 1;
+            } else {
+                assert_eq!(hit.is_none(), found.is_empty());
+            }
+        }
+    }
+    assert!(crossings > 60 && shown > 30, "{crossings} {shown}");
+}
