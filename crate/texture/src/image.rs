@@ -135,7 +135,7 @@ impl Region {
             return None;
         }
         let distance = across.dot(origin - point) / slope;
-        if !(distance >= 0.0 && distance < f64::INFINITY) {
+        if !(0.0..f64::INFINITY).contains(&distance) {
             return None;
         }
         let at = point + distance * normal - origin;

@@ -37,7 +37,7 @@ pub enum Solid {
     Onion,
     /// Growth rings around the z axis, four a unit, and fibres along it.
     Wood,
-    /// Rings of waves as around drops in water, six a unit.
+    /// Rings of waves as around drops in water, five a unit.
     Ripples,
     /// Fine straight wood without rings: wavering streaks and dark pores along the z axis.
     Sandal,
@@ -101,20 +101,23 @@ impl Solid {
     }
 
     /// Height of the pattern as a bump, in units of texture space, with slopes of about 1 at most: what is bright
-    /// stands out, but craters are as deep as craters are, and paint lies on.
+    /// stands out, but craters are as deep as craters are, paint lies on, and
+    /// checkers have bevelled edges (a face that lies on a border of cubes is flat).
     #[must_use]
     pub fn relief(self, q: DVec3, grain: Grain) -> f64 {
         let (q, grain) = (sane(q), grain.sane());
         let depth = match self {
             Self::Moon => return spots::craters(q, grain),
             Self::Ripples => {
-                return spots::ripples(q, grain) * (0.6 / (6.0 * core::f64::consts::TAU));
+                return spots::ripples(q, grain)
+                    * (0.6 / (spots::RIPPLES * core::f64::consts::TAU));
             }
             Self::Paint => return 0.04 * spots::paint(q, grain).1,
             Self::Granite | Self::Sandal => 0.015,
             Self::Agate => 0.02,
             Self::Wood => 0.04,
-            Self::Marble | Self::Onion | Self::Checker => 0.05,
+            Self::Checker => return 0.05 * cut::bevelled(q),
+            Self::Marble | Self::Onion => 0.05,
         };
         depth * self.pattern(q, grain)[0]
     }

@@ -59,9 +59,9 @@ pub struct Site {
 ///
 /// ```
 /// use texture::{Surface, blend};
-/// let water = Surface { index: 1.3, ..Surface::default() };
+/// let air = Surface { index: 1.0, ..Surface::default() };
 /// let glass = Surface { index: 1.5, ..Surface::default() };
-/// assert_eq!(blend(&[(3.0, water), (1.0, glass)]).unwrap().index, 1.35);
+/// assert_eq!(blend(&[(3.0, air), (1.0, glass)]).unwrap().index, 1.125);
 /// ```
 #[must_use]
 pub fn blend(parts: &[(f64, Surface)]) -> Option<Surface> {

@@ -14,6 +14,22 @@ pub fn checker(q: DVec3) -> f64 {
     if odd(sum) == 0.0 { 1.0 } else { 0.0 }
 }
 
+/// The checker's height: 1 and 0, with slopes a tenth of a unit wide between the cubes.
+pub fn bevelled(q: DVec3) -> f64 {
+    // 1 in even units, −1 in odd ones, 0 on their borders.
+    let wave = |x: f64| {
+        let x = 0.5 * x;
+        let place = 2.0 * (x - x.floor());
+        let to_border = if place < 1.0 {
+            place.min(1.0 - place)
+        } else {
+            -(place - 1.0).min(2.0 - place)
+        };
+        (20.0 * to_border).clamp(-1.0, 1.0)
+    };
+    0.5 + 0.5 * wave(q.x) * wave(q.y) * wave(q.z)
+}
+
 /// Shells around the origin. Their borders are at (k + ½)/4, so that round sizes lie in the middle of flesh.
 pub fn onion(q: DVec3, grain: Grain) -> f64 {
     let t = grain.turbulence;

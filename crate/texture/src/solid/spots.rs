@@ -5,6 +5,9 @@ use crate::noise::{fractal, noise, scatter, scramble, unit, warp};
 use core::f64::consts::TAU;
 use glam::DVec3;
 
+/// Rings of ripples in a unit.
+pub const RIPPLES: f64 = 5.0;
+
 /// Height of a crater over the plain, in radii, at distance x radii from its middle: a bowl with a flat floor, a
 /// rim, and a slope outside that ends at 1.6.
 fn crater(x: f64) -> f64 {
@@ -51,18 +54,18 @@ pub fn moon(q: DVec3, grain: Grain) -> f64 {
         + grain.turbulence * 0.05 * fractal(q * 9.0, grain.octaves)
 }
 
-/// Waves in [−1, 1]: rings around a point in each cell of two units, dying out where the next cells' begin.
+/// Waves in [−1, 1]: rings around scattered drops, dying out at two and a half units.
 pub fn ripples(q: DVec3, grain: Grain) -> f64 {
-    const CELL: f64 = 2.0;
-    let q = q + grain.turbulence * 0.012 * warp(q * 1.5, grain.octaves.min(2.0));
-    let p = q / CELL;
+    const REACH: f64 = 2.5;
+    let q = q + grain.turbulence * 0.01 * warp(q * 1.5, grain.octaves.min(2.0));
+    let p = q / REACH;
     let mut sum = 0.0;
-    scatter(p, 41, |hash, at| {
+    scatter(p, 43, |hash, at| {
         let d = at.distance(p);
-        if d < 1.0 {
-            // 1 in the middle, smoothly 0 at a cell's distance; each drop fell at its own time.
+        // Few drops, else no ring is seen for all the others.
+        if d < 1.0 && unit(hash) < 0.4 {
             let fade = 1.0 - d * d;
-            sum += fade * fade * libm::cos(TAU * (6.0 * CELL * d - unit(hash)));
+            sum += 1.5 * fade * fade * libm::cos(TAU * (RIPPLES * REACH * d - 2.5 * unit(hash)));
         }
     });
     // Where drops meet their waves add up; this keeps them within ±1.
@@ -87,7 +90,7 @@ fn bright(hash: u32) -> [f64; 3] {
 /// them.
 pub fn paint(q: DVec3, grain: Grain) -> ([f64; 3], f64) {
     let (mut colour, mut thick) = ([1.0; 3], 0.0_f64);
-    let mut size = 1.15;
+    let mut size = 1.5;
     for seed in 0..4 {
         let p = q / size + DVec3::splat(0.41 * f64::from(seed));
         let ragged = grain.turbulence * 0.3 * fractal(p * 2.6, grain.octaves.min(2.0))
@@ -113,7 +116,7 @@ pub fn paint(q: DVec3, grain: Grain) -> ([f64; 3], f64) {
             (thick + 1.0).min(2.0),
             smooth(0.0, 0.12, best * size),
         );
-        size *= 0.55;
+        size *= 0.5;
     }
     (colour, 0.5 * thick)
 }

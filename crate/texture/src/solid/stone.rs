@@ -50,7 +50,8 @@ pub fn agate(q: DVec3, grain: Grain) -> f64 {
     let coarse = bands(4.0 * level, 1);
     let medium = bands(13.0 * level, 2);
     let fine = bands(41.0 * level, 3);
-    0.52 * coarse + 0.33 * medium + 0.15 * fine
+    // Sums of random numbers crowd in the middle.
+    0.5 + 1.3 * (0.52 * coarse + 0.33 * medium + 0.15 * fine - 0.5)
 }
 
 /// Cells around scattered points, their borders frayed by noise: a cell is feldspar (light), quartz (grey) or mica

@@ -33,11 +33,10 @@ pub fn sandal(q: DVec3, grain: Grain) -> f64 {
     let y = q.y + sway * noise(along + DVec3::new(3.3, 17.0, 5.5));
     let p = DVec3::new(x, y, q.z);
     let figure = fractal(p * DVec3::new(2.3, 2.3, 0.22), grain.octaves.min(2.0));
-    let streak = fractal(p * DVec3::new(9.0, 9.0, 0.3), grain.octaves.min(3.0));
+    let streak = fractal(p * DVec3::new(8.0, 8.0, 0.25), grain.octaves.min(3.0));
     let fibre = noise(p * DVec3::new(46.0, 46.0, 1.6));
     let pores = pores(p, DVec3::new(17.0, 17.0, 2.2), 0.4);
-    let lines = 0.2 * figure + 0.34 * streak;
-    0.7 + 0.8 * lines + 0.09 * fibre - 0.34 * pores
+    0.66 + 0.2 * figure + 0.42 * streak + 0.12 * fibre - 0.4 * pores
 }
 
 /// Short dark dashes: balls around scattered points of a space that is stretched along z, in a share of the cells.

@@ -269,7 +269,7 @@ tests! {
         let embossed = Texture::new(Target::Normal, Method::Image(0, Mapping::Plain));
         // A third of white a texel of a quarter of the width, over 32.
         let slope = embossed.slope(&at_uv(0.5, 0.5), &[&image]).unwrap();
-        assert!((slope - DVec3::X * (4.0 / 3.0 / 32.0)).length() < 1e-12, "{slope}");
+        assert!((slope - DVec3::X * (4.0 / 3.0 / 32.0)).length() < 1e-7, "{slope}");
         // White stands out: the normal leans to the dark side.
         let got = apply(&[embossed], full(), &at_uv(0.5, 0.5), &[&image]).normal;
         assert!(got.x < 0.0 && got.z > 0.9);
@@ -319,8 +319,9 @@ tests! {
     fn textures_cross_dissolve() {
         let stripes = Texture { scale: DVec3::splat(20.0), ..Texture::new(Target::Diffuse, Method::Waves([Wave::Sin, Wave::One])) };
         let at = |x: f64| {
-            let point = DVec3::new(x, 1.0, 0.0);
-            let part = |uv| apply(std::slice::from_ref(&stripes), full(), &Site { point, normal: DVec3::Y, uv }, &[]);
+            // In front of the axis, away from poles and seams.
+            let point = DVec3::new(x, 0.3, 1.0);
+            let part = |uv| apply(std::slice::from_ref(&stripes), full(), &Site { point, normal: DVec3::Z, uv }, &[]);
             let share = |center: f64| libm::exp(-(x - center) * (x - center));
             let a = part(uv::segment(DVec3::new(-2.0, 0.0, 0.0), DVec3::ZERO, point));
             let b = part(uv::sphere(DVec3::X, point));

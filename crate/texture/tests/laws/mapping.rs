@@ -14,8 +14,11 @@ const RING: Arc = Arc {
     angle: 2.0,
 };
 
+/// Texture coordinates as a function of space.
+type Mapping = Box<dyn Fn(DVec3) -> Uv>;
+
 /// Every mapping, by name.
-fn mappings() -> Vec<(&'static str, Box<dyn Fn(DVec3) -> Uv>)> {
+fn mappings() -> Vec<(&'static str, Mapping)> {
     let corners = [
         DVec3::new(-3.0, -2.0, 0.5),
         DVec3::new(3.0, -2.5, 0.0),
@@ -82,9 +85,9 @@ tests! {
                 });
                 if calm {
                     checked += 1;
-                    for i in 0..2 {
+                    for (i, got) in here.gradient.into_iter().enumerate() {
                         let want = slope(|p| uv(p).at[i], p, 1e-5);
-                        assert!((here.gradient[i] - want).length() < 1e-6, "{name} at {p}: {} instead of {want}", here.gradient[i]);
+                        assert!((got - want).length() < 1e-6, "{name} at {p}: {got} instead of {want}");
                     }
                 }
             }

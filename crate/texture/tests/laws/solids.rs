@@ -25,7 +25,7 @@ tests! {
                     (low, high) = (low.min(x), high.max(x));
                 }
             }
-            assert!(low < 0.35 && high > 0.85, "{solid:?}: {low} to {high}");
+            assert!(low < 0.31 && high > 0.9, "{solid:?}: {low} to {high}");
         }
     }
 
@@ -96,8 +96,8 @@ tests! {
         }
     }
 
-    /// Ripples of one drop: their crests are a sixth of a unit apart. Counted by crossings of the mean.
-    fn ripples_are_six_a_unit() {
+    /// Crests are a fifth of a unit apart. Counted by crossings of the mean.
+    fn ripples_are_five_a_unit() {
         let mut random = Random::new(25);
         let (mut crossings, mut length) = (0, 0.0);
         for _ in 0..60 {
@@ -110,9 +110,10 @@ tests! {
             }
             length += 2.0;
         }
-        // Rings are crossed at all angles: at most 12 a unit, on average over angles half of it to all of it.
+        // Rings are crossed at all angles: at most 10 a unit; on average over angles half of that, less where no
+        // drop fell.
         let rate = f64::from(crossings) / length;
-        assert!((6.0..12.0).contains(&rate), "{rate}");
+        assert!((3.0..10.0).contains(&rate), "{rate}");
     }
 
     /// Craters dig, and are rare on the way up.

@@ -3,11 +3,14 @@
 //! Each swatch shows a ball and a block with a corner at the origin of texture space. Rows: solids; solids in other
 //! colours or as bumps; waves, masks, images; texture coordinates of each kind of primitive.
 
+mod shapes;
+
 use glam::{DMat3, DVec2, DVec3, Vec3};
+use shapes::{Shape, ball, block, one, segment_distance};
 use std::fs::File;
 use std::io::BufWriter;
 use texture::{
-    Grain, Image, Mapping, Method, Region, Rgb8, Site, Solid, Surface, Target, Texture, Uv, Wave,
+    Grain, Image, Mapping, Method, Region, Rgb8, Site, Solid, Surface, Target, Texture, Wave,
     apply, blend, uv,
 };
 
@@ -17,19 +20,6 @@ const COLUMNS: usize = 5;
 /// Rays per pixel along each side.
 const RAYS: usize = 2;
 
-type Distance = Box<dyn Fn(DVec3) -> f64>;
-type Coordinates = Box<dyn Fn(DVec3) -> Uv>;
-
-/// A shape with texture coordinates, of its own space.
-struct Shape {
-    distance: Distance,
-    /// Weights and coordinates: one, or one for each element of a blend.
-    parts: Vec<(Box<dyn Fn(DVec3) -> f64>, Coordinates, usize)>,
-    /// From its own space to the world.
-    turn: DMat3,
-    shift: DVec3,
-}
-
 struct Swatch {
     name: String,
     surface: Surface,
@@ -38,55 +28,22 @@ struct Swatch {
     shapes: Vec<Shape>,
 }
 
-fn one(distance: Distance, coordinates: Coordinates, turn: DMat3, shift: DVec3) -> Shape {
-    Shape {
-        distance,
-        parts: vec![(Box::new(|_| 1.0), coordinates, 0)],
-        turn,
-        shift,
-    }
-}
-
-fn ball(shift: DVec3) -> Shape {
-    one(
-        Box::new(|p| p.length() - 1.0),
-        Box::new(|p| uv::sphere(DVec3::ZERO, p)),
-        DMat3::IDENTITY,
-        shift,
-    )
-}
-
-/// A block whose nearest corner is the origin: faces at x = 0, y = 0 and z = 0, all turned to the viewer.
-fn block(shift: DVec3) -> Shape {
-    let (half, center) = (DVec3::splat(0.8), DVec3::new(-0.8, -0.8, -0.8));
-    let turn = DMat3::from_rotation_x(0.5) * DMat3::from_rotation_y(-0.6);
-    one(
-        Box::new(move |p| {
-            let q = (p - center).abs() - half;
-            q.max(DVec3::ZERO).length() + q.max_element().min(0.0)
-        }),
-        Box::new(move |p| uv::cuboid(center, [0.8 * DVec3::X, 0.8 * DVec3::Y, 0.8 * DVec3::Z], p)),
-        turn,
-        shift - turn * center,
-    )
-}
-
 fn both(name: &str, surface: Surface, layers: Vec<Texture>) -> Swatch {
+    let is_solid = matches!(layers[0].method, Method::Solid(_));
+    let turn = if is_solid {
+        DMat3::from_rotation_x(-1.1) * DMat3::from_rotation_y(0.3)
+    } else {
+        DMat3::IDENTITY
+    };
     Swatch {
         name: name.into(),
         surface,
         layers: vec![layers],
         shapes: vec![
-            ball(DVec3::new(-1.15, 0.0, 0.0)),
+            ball(DVec3::new(-1.15, 0.0, 0.0), turn),
             block(DVec3::new(1.2, 0.0, 0.0)),
         ],
     }
-}
-
-fn segment_distance(a: DVec3, b: DVec3, p: DVec3) -> f64 {
-    let d = b - a;
-    let t = ((p - a).dot(d) / d.length_squared()).clamp(0.0, 1.0);
-    (p - a - t * d).length()
 }
 
 fn colour(r: f64, g: f64, b: f64) -> DVec3 {
@@ -245,19 +202,12 @@ fn bumps() -> Vec<Swatch> {
             vec![green],
         ),
         both(
-            "ripples, scale 2",
+            "sand: ripples, scale 0.5",
             plain(0.85, 0.75, 0.5, 0.1, 20.0),
-            bump(S::Ripples, 0.5, 1.4),
+            bump(S::Ripples, 0.5, 1.0),
         ),
         both("normal moon, scale 2", clay, bump(S::Moon, 2.0, 1.0)),
-        both(
-            "shine and specular moon",
-            plain(0.3, 0.3, 0.35, 1.0, 100.0),
-            vec![
-                solid(Target::Shine, S::Paint, black, white, 1.0),
-                solid(Target::Specular, S::Paint, black, white, 1.0),
-            ],
-        ),
+        both("normal sandal", clay, bump(S::Sandal, 1.0, 1.0)),
     ]
 }
 
