@@ -1,0 +1,10 @@
+//! What must hold for textures and for the closed forms of shading.
+#[macro_use]
+mod common;
+
+mod bits;
+mod layers;
+mod mapping;
+mod noise;
+mod shading;
+mod solids;
