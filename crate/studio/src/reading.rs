@@ -174,7 +174,8 @@ mod tests {
         session.compile();
         assert!(session.is_compiled());
         assert_eq!(session.errors(), 1);
-        assert!(session.diagnostics()[0].message.contains("corner"));
+        let message = &session.diagnostics()[0].message;
+        assert!(message.contains("`9` is none of the 3"), "{message}");
         assert_eq!(session.generation(), generation);
     }
 
