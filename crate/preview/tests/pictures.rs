@@ -384,7 +384,7 @@ fn hundreds_of_thousands_of_elements_are_limited() {
                     center: place,
                     radius: 0.4,
                 },
-                i,
+                i as u32,
             )
         })
         .collect();

@@ -8,8 +8,9 @@ use driver::Window;
 use egui::{Key, Modifiers, Pos2, Rect, TextEdit, vec2};
 use egui_kittest::kittest::Queryable;
 use std::time::Instant;
-use studio::hands::{Picker, Sight};
+use studio::hands::Sight;
 use studio::{examples, places};
+use tracer::Picker;
 
 /// A ball on the left, which is written out, and three on the right, which a loop makes.
 const TEXT: &str = "\
@@ -203,16 +204,17 @@ fn every_example_has_shapes_to_pick_with_handles() {
         for i in 0..9 {
             for j in 0..9 {
                 let at = rect.lerp_inside(vec2(i as f32 + 0.5, j as f32 + 0.5) / 9.0);
-                met.extend(picker.pick(eye, sight.direction(at)));
+                let hit = picker.pick(eye, sight.direction(at));
+                met.extend(hit.and_then(|hit| hit.element));
             }
         }
         let picked = begin.elapsed() / 81;
         assert!(!met.is_empty(), "{}", example.title);
         let mut movable = 0;
         let begin = Instant::now();
-        for met in met.iter().take(6) {
+        for element in met.iter().take(6).map(|&element| element as usize) {
             let view = &sight.projection.world_from_view;
-            let handles = assist::handles::handles(&project, &[], 0, &compiled, met.element, view);
+            let handles = assist::handles::handles(&project, &[], 0, &compiled, element, view);
             assert!(!handles.is_empty(), "{}", example.title);
             movable += handles
                 .iter()

@@ -1130,7 +1130,7 @@ mod tests {
             };
             let one = |base: f64| Beams::one(beam.from(base));
             let (mut slabs, base) = soft
-                .slabs(beam, one, f64::INFINITY, &mut Vec::new())
+                .slabs(0, beam, one, f64::INFINITY, &mut Vec::new())
                 .expect("flesh");
             let mut stack = vec![slabs.root()];
             while let Some(index) = stack.pop() {
