@@ -731,6 +731,7 @@ fn an_instance_of_a_body_is_a_new_body() {
         "body A\nsphere s 1 1 0 0\nclose\ninstance A C\nobject O\ninstance A B\nsphere s 1 2 0 0\nclose\n\
          instance O P\nobject Q\nsphere s 1 3 0 0\nclose\nbody D\ninstance Q\nclose\ninstance Q R",
     );
-    assert_eq!(of_each, [1, 2, 3, 0, 4, 0, 0, 5, 0]);
-    assert_eq!(names, ["", "A", "C", "B", "B", "D"]);
+    // The last `Q` means the copy in D.
+    assert_eq!(of_each, [1, 2, 3, 0, 4, 0, 0, 5, 6]);
+    assert_eq!(names, ["", "A", "C", "B", "B", "D", "R"]);
 }

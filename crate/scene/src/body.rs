@@ -1,6 +1,5 @@
 //! Bodies, within which soft elements blend, and the frames of objects.
 
-use crate::Origin;
 use glam::DAffine3;
 use serde::{Deserialize, Serialize};
 
@@ -12,8 +11,6 @@ use serde::{Deserialize, Serialize};
 pub struct Body {
     /// The name in the text; empty for the elements that stand in no `body`.
     pub name: String,
-    /// Where in the text it begins.
-    pub origin: Origin,
 }
 
 /// The coordinates that a shape was written in: those of its object before any transform.

@@ -3,7 +3,7 @@
 use field::Skeleton;
 use glam::DVec3;
 use scene::{
-    Body, Camera, Element, Flesh, Fragile, Frame, Light, LightKind, Origin, Quadric, Scene, Shape,
+    Body, Camera, Element, Flesh, Fragile, Frame, Light, LightKind, Quadric, Scene, Shape,
     SoftSurface,
 };
 
@@ -385,10 +385,7 @@ fn elements_blend_within_their_body_only() {
         ..Scene::default()
     };
     for name in ["A", "EMPTY", "B"] {
-        scene.bodies.push(Body {
-            name: name.into(),
-            origin: Origin::default(),
-        });
+        scene.bodies.push(Body { name: name.into() });
     }
     let in_body = |body| Element {
         body,

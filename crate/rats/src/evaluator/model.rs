@@ -10,7 +10,7 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
 use glam::DAffine3;
-use scene::{Body, Element, Origin, Shape};
+use scene::{Body, Element, Shape};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
@@ -52,8 +52,8 @@ pub enum Group<'a> {
     Object,
     /// `chain`, with the name of its material.
     Chain(Name<'a>),
-    /// `body`, with the command's place.
-    Body(Origin),
+    /// `body`
+    Body,
 }
 
 /// An object that has been begun.
@@ -140,10 +140,9 @@ impl<'a> Model<'a> {
     }
 
     /// A new body of this name.
-    fn new_body(&mut self, name: &str, origin: Origin) -> u32 {
+    fn new_body(&mut self, name: &str) -> u32 {
         self.bodies.push(Body {
             name: name.to_owned(),
-            origin,
         });
         self.bodies.len() as u32
     }
@@ -177,9 +176,9 @@ impl<'a> Model<'a> {
         match &group {
             Group::Object => {}
             Group::Chain(material) => self.chain = Some(material.clone()),
-            Group::Body(origin) => {
+            Group::Body => {
                 self.refuse_body_in_body(&name.span)?;
-                self.open_body = self.new_body(name.text, *origin);
+                self.open_body = self.new_body(name.text);
             }
         }
         self.count += 1;
@@ -194,7 +193,7 @@ impl<'a> Model<'a> {
 
     /// An error if a body is open.
     fn refuse_body_in_body(&self, span: &Range<usize>) -> Outcome<()> {
-        let is_body = |object: &&Object<'_>| matches!(object.group, Group::Body(_));
+        let is_body = |object: &&Object<'_>| matches!(object.group, Group::Body);
         let Some(outer) = self.open.iter().find(is_body) else {
             return Ok(());
         };
@@ -213,7 +212,7 @@ impl<'a> Model<'a> {
         match object.group {
             Group::Object => {}
             Group::Chain(_) => self.chain = None,
-            Group::Body(_) => self.open_body = 0,
+            Group::Body => self.open_body = 0,
         }
         let range = object.start..self.parts.len();
         self.last = Some(range.clone());
@@ -300,9 +299,9 @@ impl<'a> Model<'a> {
     ///
     /// # Errors
     /// If bodies would stand in a body; fatally, if there are too many shapes.
-    pub fn copy(&mut self, range: Range<usize>, name: &Name<'a>, origin: Origin) -> Outcome<()> {
+    pub fn copy(&mut self, range: Range<usize>, name: &Name<'a>) -> Outcome<()> {
         let start = self.parts.len();
-        let bodies = self.bodies_of(range.clone(), name, origin)?;
+        let bodies = self.bodies_of(range.clone(), name)?;
         for index in range {
             self.parts[index].repeated = true;
             let mut part = self.parts[index].clone();
@@ -324,12 +323,7 @@ impl<'a> Model<'a> {
     }
 
     /// New bodies for copies of some shapes, by the bodies that these are of.
-    fn bodies_of(
-        &mut self,
-        range: Range<usize>,
-        name: &Name<'a>,
-        origin: Origin,
-    ) -> Outcome<BTreeMap<u32, u32>> {
+    fn bodies_of(&mut self, range: Range<usize>, name: &Name<'a>) -> Outcome<BTreeMap<u32, u32>> {
         let parts = self.parts[range].iter();
         let old: BTreeSet<u32> = parts.map(|part| part.element.body).collect();
         let named: Vec<u32> = old.iter().copied().filter(|&body| body != 0).collect();
@@ -346,7 +340,7 @@ impl<'a> Model<'a> {
                 1 => name.text.to_owned(),
                 _ => self.bodies[body as usize - 1].name.clone(),
             };
-            new.insert(body, self.new_body(&own, origin));
+            new.insert(body, self.new_body(&own));
         }
         Ok(new)
     }

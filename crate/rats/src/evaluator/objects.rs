@@ -31,8 +31,7 @@ pub fn object<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 
 /// `body name`: an object whose shapes blend with one another and with no others.
 pub fn body<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let origin = run.origin(command);
-    begin(run, command, Group::Body(origin))
+    begin(run, command, Group::Body)
 }
 
 fn begin<'a>(run: &mut Evaluator<'a>, command: &'a Command, group: Group<'a>) -> Outcome<Flow> {
@@ -87,8 +86,7 @@ pub fn instance<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
     let new = given.maybe_name("copy").unwrap_or(old);
     let range = run.model.find(old)?;
     charge(run, command, &range)?;
-    let origin = run.origin(command);
-    run.model.copy(range, new, origin)?;
+    run.model.copy(range, new)?;
     Ok(Flow::Next)
 }
 
