@@ -51,10 +51,14 @@ impl Aabb {
         }
     }
 
-    /// `true` if the boxes have a point in common; touching counts.
+    /// `true` if the boxes have a point in common; touching counts. An empty box has none.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
-        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+        // An empty box compares as if it were within one without bounds.
+        self.min.cmple(other.max).all()
+            && other.min.cmple(self.max).all()
+            && !self.is_empty()
+            && !other.is_empty()
     }
 
     /// The middle; not finite for an empty box.

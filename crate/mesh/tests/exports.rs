@@ -87,7 +87,9 @@ fn our_readers_read_what_is_written() {
         // GLB is in metres, by a scale that our reader takes as a 32-bit number.
         let (unit, slack) = match format {
             Format::Glb => (1000.0, 1e-6),
-            _ => (1.0, 0.0),
+            // Decimals that are exact as 32-bit numbers only.
+            Format::Obj | Format::ThreeMf => (1.0, 1e-7),
+            Format::Stl | Format::Ply => (1.0, 0.0),
         };
         for (i, corners) in wanted.iter().enumerate() {
             for (a, b) in mesh.corners(i).iter().zip(corners) {
@@ -351,6 +353,9 @@ fn manifold_rust_agrees() {
         // Edited meshes stay what they are.
         let mut edited = HalfEdgeMesh::from_triangles(&mesh).unwrap();
         for h in edited.edges().collect::<Vec<_>>() {
+            if !edited.has_half_edge(h) {
+                continue;
+            }
             let at = edited.position(edited.target(h));
             let _ = edited.collapse_edge(h, at);
             if edited.face_count() < 40 {

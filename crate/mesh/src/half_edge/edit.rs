@@ -37,12 +37,16 @@ impl HalfEdgeMesh {
     /// that they become two each. Faces with more vertices get a vertex more.
     ///
     /// # Errors
-    /// As [`HalfEdgeMesh::split_edge`].
+    /// As [`HalfEdgeMesh::split_edge`], and if both triangles have the same opposite vertex.
     pub fn bisect_edge(&mut self, h: HalfEdgeId, position: DVec3) -> Result<VertexId, EditError> {
         self.need(self.has_half_edge(h))?;
         self.need_room(3)?;
         let sides =
             [h.0, h.0 ^ 1].map(|side| self.face[side as usize] != NONE && self.is_triangle(side));
+        let opposite = |side: u32| self.origin[self.prev[side as usize] as usize];
+        if sides == [true; 2] && opposite(h.0) == opposite(h.0 ^ 1) {
+            return Err(EditError::DoubleEdge);
+        }
         let m = self.split_edge(h, position)?;
         // Half-edges that leave the new vertex, left and right.
         let leaving = [self.next(h), self.twin(h)];
