@@ -244,6 +244,7 @@ impl Soft {
     /// [`Soft::quick`] for several bodies: tells what is found of each, nearest first as far as the list says, but for those to be
     /// passed over. `tell` gives how far the rays go from then on, and which go on. Gives the bodies for which this is not the
     /// way.
+    #[expect(clippy::too_many_arguments, reason = "each is something else")]
     pub fn quick_each(
         &self,
         near: &Nearby,

@@ -81,7 +81,7 @@ impl World {
                 scene::Digger::Hermite => None,
                 other => Some(digger::of(other)),
             },
-            one_sided: false,
+            one_sided: !settings.double_sided,
             bodies,
         }
     }

@@ -146,3 +146,22 @@ fn senseless_rays_hit_nothing() {
     assert!(picture.hits(DVec3::INFINITY, DVec3::X).is_empty());
     assert!(picture.hits(DVec3::ZERO, DVec3::NAN).is_empty());
 }
+
+/// With `double off` a face that is seen from behind is not there for the eye.
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn faces_seen_from_behind_may_be_hidden() {
+    let mut scene = empty();
+    let corners = [DVec3::NEG_X - DVec3::Y, DVec3::X - DVec3::Y, DVec3::Y];
+    let radius = 0.0;
+    scene.elements = vec![element(Shape::Triangle { corners, radius }, 0)];
+    for double_sided in [true, false] {
+        scene.settings.double_sided = double_sided;
+        let picture = Picture::new(&scene, [8, 8]);
+        let seen = |side: f64| picture.cast(&[(DVec3::Z * (4.0 * side), DVec3::Z * -side)])[0];
+        let front = seen(1.0).expect("it is seen from the front");
+        assert!(front.normal.dot(DVec3::Z) > 0.99 && front.enters(DVec3::NEG_Z));
+        assert_eq!(front.element, Some(0));
+        assert_eq!(seen(-1.0).is_some(), double_sided);
+    }
+}
