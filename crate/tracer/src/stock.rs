@@ -261,7 +261,11 @@ mod tests {
                 taper: None,
             };
             let primitive = Primitive::new(skeleton, &shaping, None).expect("flesh");
-            let stock = Stock::new(core::slice::from_ref(&primitive), &[0], &[0..1]);
+            let stock = Stock::new(
+                core::slice::from_ref(&primitive),
+                &[0],
+                core::slice::from_ref(&(0..1)),
+            );
             assert!(stock.ball(0).is_some(), "{case} is no sum of lumps");
             for _ in 0..40 {
                 let center = DVec3::new(next(), next(), next());
@@ -303,7 +307,7 @@ mod tests {
         };
         let corners = [DVec3::X, DVec3::Y, DVec3::Z];
         let face = Primitive::new(Skeleton::Triangle { corners }, &shaping, None).expect("flesh");
-        let stock = Stock::new(&[face], &[0], &[0..1]);
+        let stock = Stock::new(&[face], &[0], core::slice::from_ref(&(0..1)));
         assert!(stock.ball(0).is_none());
         assert!(stock.counts(0, DVec3::splat(1e6), 0.1, 1.0));
     }
