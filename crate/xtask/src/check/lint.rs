@@ -19,7 +19,8 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
             .filter(|module| chosen.has(module.package))
             .try_for_each(|module| {
                 let options = ["--package", module.package, "--features", module.features];
-                clippy(&[&options[..], &["--target", tools::WASM]].concat())
+                // Tests of these packages are for this machine only.
+                lint(&[&options[..], &["--target", tools::WASM]].concat())
             })
     })?;
     Ok(String::from("clean"))
@@ -31,8 +32,11 @@ pub fn format() -> Result<()> {
         .context("The code is not formatted. Run: cargo fmt --all")
 }
 
-/// Lints packages.
+/// Lints packages with their tests.
 pub fn clippy(packages: &[&str]) -> Result<()> {
-    let mut clippy = cargo(&["clippy", "--all-targets"]);
-    run(clippy.args(packages).args(DENY))
+    lint(&[&["--all-targets"], packages].concat())
+}
+
+fn lint(options: &[&str]) -> Result<()> {
+    run(cargo(&["clippy"]).args(options).args(DENY))
 }
