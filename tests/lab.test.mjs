@@ -79,7 +79,7 @@ for (const [size, options] of Object.entries(SIZES)) {
         if (lesson === 'slice') await until(sinew, ({ readings }) => readings.finished === 1);
         if (lesson === 'chart') {
           // Cells are timed first and then traced, row by row; a row is enough.
-          await until(sinew, ({ readings, drawn, refused }) => readings.timed === 56 && drawn >= 7 && refused === 0);
+          await until(sinew, ({ readings, drawn, refused }) => readings.timed === 63 && drawn >= 7 && refused === 0);
         }
         await sinew.keep(`lab ${lesson} ${size}`);
         assert.ok(colours(await sinew.screen()) > 100, 'the window is not blank');

@@ -259,7 +259,7 @@ fn every_control_of_the_lab_has_a_name() {
             window.until("rest", |window| {
                 let lab = window.lab().unwrap();
                 let rests = |name, rest| lab.readings.get(name).is_none_or(|now| *now == rest);
-                lab.waiting == 0 && rests("finished", 1.0) && rests("timed", 56.0)
+                lab.waiting == 0 && rests("finished", 1.0) && rests("timed", 63.0)
             });
             // Runs until nothing moves; then egui_kittest checks the names for screen readers.
             window.harness.run();

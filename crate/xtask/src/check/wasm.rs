@@ -6,12 +6,13 @@ use crate::page::NO_LINES;
 use crate::shell::{artifacts, cargo, command, find, in_this_lane, root, run_and_read, tell};
 use crate::tools;
 use anyhow::{Context, Result, anyhow, bail};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-/// What a test must mention to be run as wasm.
-const ATTRIBUTE: &str = "wasm_bindgen_test";
+/// A file of tests that run as wasm has one of these: the attribute, or the macro that adds it.
+const MARKS: [&str; 2] = ["wasm_bindgen_test", "tests! {"];
 /// A file of tests that is compiled to wasm.
 struct Binary {
     package: &'static str,
@@ -77,12 +78,14 @@ fn build(packages: &[&'static str]) -> Result<Vec<Binary>> {
         "--message-format",
         "json-render-diagnostics",
     ]);
+    // Each is said once, whichever packages it is for.
+    let mut options = BTreeSet::new();
     let mut wanted = 0;
     for package in packages {
         test.args(["--package", package]);
         let folder = root().join("crate").join(package);
         if mentions(&folder.join("src"))? {
-            test.arg("--lib");
+            options.insert(String::from("--lib"));
             wanted += 1;
         }
         for file in fs::read_dir(folder.join("tests"))? {
@@ -95,11 +98,12 @@ fn build(packages: &[&'static str]) -> Result<Vec<Binary>> {
             // Of a folder without `main.rs` others have parts.
             if main.is_file() && mentions(&path)? {
                 let name = path.file_stem().context("a test has a name")?;
-                test.arg("--test").arg(name);
+                options.insert(format!("--test={}", name.to_string_lossy()));
                 wanted += 1;
             }
         }
     }
+    test.args(options);
     let made = artifacts(test.env(NO_LINES.0, NO_LINES.1))?;
     let mut binaries = Vec::new();
     for made in made.iter().filter(|made| made["profile"]["test"] == true) {
@@ -130,7 +134,8 @@ fn build(packages: &[&'static str]) -> Result<Vec<Binary>> {
 fn mentions(path: &Path) -> Result<bool> {
     if !path.is_dir() {
         let text = fs::read(path)?;
-        return Ok(String::from_utf8_lossy(&text).contains(ATTRIBUTE));
+        let text = String::from_utf8_lossy(&text);
+        return Ok(MARKS.iter().any(|mark| text.contains(mark)));
     }
     for entry in fs::read_dir(path)? {
         if mentions(&entry?.path())? {
