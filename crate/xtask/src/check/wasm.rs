@@ -51,7 +51,8 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
         said.push(format!("{package} {count}"));
     }
     let mut said = format!("tests passed: {}", said.join(", "));
-    if packages.contains(&TESTED_IN_BROWSER) {
+    // In a browser only where that is asked for: there tests of the mathematics take long.
+    if packages.contains(&TESTED_IN_BROWSER) && *chosen != Chosen::All {
         let count = watch.step("browser", || in_browser(&runner, &binaries, chosen.test()))?;
         said += &match count {
             Some(count) => format!(", {TESTED_IN_BROWSER} in a browser {count}"),
