@@ -86,13 +86,11 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
     Ok(())
 }
 
-/// All parts, in two lanes: one builds the page, for which one core works alone for minutes, and then looks at it in a
-/// browser, before all else; the other does meanwhile what it can. Their profiles have folders of their own, so that cargo
-/// lets both build at once.
+/// All parts, in two lanes one after the other: the code's, then the page's, as tests in a browser want the machine for themselves.
 fn all() -> Vec<Done> {
-    let lane = |name, parts: &'static [Part], first| {
+    let lane = |name, parts: &'static [Part]| {
         move || {
-            in_lane(name, first, || {
+            in_lane(name, true, || {
                 parts
                     .iter()
                     .map(|part| run(*part, &Chosen::All))
@@ -100,20 +98,22 @@ fn all() -> Vec<Done> {
             })
         }
     };
-    std::thread::scope(|scope| {
-        let page = scope.spawn(lane("page", &[Part::E2e], true));
-        let code = scope.spawn(lane("code", &[Part::Lint, Part::Native, Part::Wasm], false));
-        [(code, Part::Native), (page, Part::E2e)]
-            .into_iter()
-            .flat_map(|(lane, part)| {
-                lane.join().unwrap_or_else(|_| {
-                    let said = format!("the lane of {} panicked", name(part));
-                    let failed = true;
-                    vec![Done { part, said, failed }]
-                })
-            })
-            .collect()
-    })
+    let lanes = [
+        (
+            Part::Native,
+            lane("code", &[Part::Lint, Part::Native, Part::Wasm]),
+        ),
+        (Part::E2e, lane("page", &[Part::E2e])),
+    ];
+    let done = lanes.into_iter().map(|(part, lane)| {
+        // A thread of its own, so that a panic in one does not keep the other from being run.
+        std::thread::spawn(lane).join().unwrap_or_else(|_| {
+            let said = format!("the lane of {} panicked", name(part));
+            let failed = true;
+            vec![Done { part, said, failed }]
+        })
+    });
+    done.flatten().collect()
 }
 
 /// What a part has come to.
