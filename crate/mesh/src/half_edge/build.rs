@@ -8,7 +8,7 @@ use crate::limits::MAX_HALF_EDGES;
 use crate::triangle_mesh::TriangleMesh;
 use core::fmt;
 
-/// What had to be changed so that polygons became a manifold.
+/// Changes by which polygons became a manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repairs {
     /// Faces with fewer than three vertices or with one twice: left out.
@@ -59,7 +59,7 @@ impl fmt::Display for Repairs {
 pub struct Built {
     /// The mesh.
     pub mesh: HalfEdgeMesh,
-    /// What had to be changed.
+    /// The changes.
     pub repairs: Repairs,
     /// The polygons' vertex that each vertex of the mesh comes from: for colours and the like. A vertex
     /// in the middle of a halved edge comes from one of its ends.
