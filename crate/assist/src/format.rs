@@ -300,7 +300,7 @@ impl Page {
             self.out.push('\n');
         }
         self.fresh_line = false;
-        // What closes at the beginning of the line stands as far out as what it closes.
+        // A closing brace at the start of a line is indented like the line that opens it.
         let mut level = self.levels.len();
         for (token, mark) in tokens[index..].iter().zip(&marks.0[index..]) {
             if token.kind == TokenKind::Space {

@@ -61,7 +61,7 @@ pub fn rename(
         ));
     }
     let edits = edits(&index, occurrence, new_name);
-    // What a word means depends on its neighbours, so the renamed texts are looked at again.
+    // A word's meaning depends on its neighbours, so the renamed texts are checked.
     let after = apply(project, &edits);
     if Index::of(&after).shape() != index.shape() {
         return Err(format!(

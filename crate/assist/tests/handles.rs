@@ -120,7 +120,7 @@ fn variables_are_moved_where_they_are_set() {
         ),
         "var P = 1 2 4\nsphere s 1 <0 P.z 0>"
     );
-    // What is computed stays; the rest of the point moves.
+    // Computed coordinates stay; the rest of the point moves.
     assert_eq!(
         dragged(
             "sphere s 1 <sqrt(4) 0 0>",

@@ -75,7 +75,7 @@ impl Animate {
                 if frame > 0 {
                     loaded.compiled =
                         rats::compile_at(&loaded.project, &loaded.assets, f64::from(frame));
-                    // What the first frame says, the others would say again.
+                    // The other frames would repeat the first one's messages.
                     if clean && !report::is_clean(&loaded) {
                         eprintln!("in frame {frame}:");
                         clean = report::to_stderr(&loaded);

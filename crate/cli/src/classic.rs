@@ -13,7 +13,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// What `-?` prints.
+/// Text that `-?` prints.
 const HELP: &str = "\
 sinew [-/+options] FILE.rat …     runs datasets as RATS did; + turns an option on, - off
   -?           print this
@@ -30,7 +30,7 @@ sinew [-/+options] FILE.rat …     runs datasets as RATS did; + turns an option
   -w +w        warnings (on)
 sinew --help tells the other commands.";
 
-/// What was asked for.
+/// The parsed options.
 #[derive(Debug, Default)]
 struct Request {
     files: Vec<PathBuf>,
@@ -43,7 +43,7 @@ struct Request {
     no_warnings: bool,
     help: bool,
     version: bool,
-    /// What is to be said about options that mean nothing here.
+    /// Messages about options without a meaning here.
     remarks: Vec<String>,
 }
 

@@ -20,7 +20,7 @@ pub struct Loaded {
     pub project: Project,
     /// The images and meshes that they use.
     pub assets: Vec<Asset>,
-    /// What they mean.
+    /// Scene, diagnostics and jobs that they compile to.
     pub compiled: Compiled,
     /// Time the compiler took for the last, complete run.
     pub compile_seconds: f64,

@@ -56,7 +56,7 @@ enum Command {
     Time(time::Time),
 }
 
-/// What a subcommand came to: `Ok(true)` all well, `Ok(false)` the dataset has errors, `Err` a
+/// Result of a subcommand: `Ok(true)` all well, `Ok(false)` the dataset has errors, `Err` a
 /// sentence that says why it could not be carried out and what to do.
 type Outcome = Result<bool, String>;
 

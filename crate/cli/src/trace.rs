@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-/// What is asked for on the command line and overrules the dataset.
+/// Options of the command line that override the dataset.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wishes {
     /// Width and height, pixels.

@@ -22,7 +22,7 @@ impl Whole {
         let mut name = path.file_name().unwrap_or_default().to_owned();
         name.push(".part");
         let part = path.with_file_name(name);
-        // What a run that was cut off left there, or what somebody put there, goes: a link would lead
+        // Remains of an interrupted run, or anything else there, are removed: a link would lead
         // the bytes elsewhere.
         let _ = std::fs::remove_file(&part);
         let file = File::create_new(&part)

@@ -54,7 +54,7 @@ fn check_takes_several_files_and_exits_with_the_worst() {
     assert_eq!(status(&[&missing, &bad, &good]), Some(2));
     assert_eq!(status(&[]), Some(2));
 
-    // What follows a missing file is checked all the same, and each missing file is named.
+    // Files after a missing one are checked all the same, and each missing file is named.
     let other = folder.path("other.rat");
     let output = sinew(&["check", &missing, &bad, &other], "");
     let said = String::from_utf8_lossy(&output.stderr);

@@ -21,7 +21,7 @@ pub struct Done {
     pub files: Vec<String>,
 }
 
-/// What a step came to.
+/// Result of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
     /// The job goes on.
@@ -105,7 +105,7 @@ impl<S: Shelf> Bench<S> {
         let turn = match self.work.take() {
             Some(work) => work.step(&self.shelf),
             None => {
-                // What a job reads is not written over by its own result or by a later one's. (What a later
+                // Files that a job reads are not overwritten by its own result or by a later one's. (What a later
                 // job reads may be this one's result.)
                 tool.reads().iter().for_each(|name| self.names.take(name));
                 begin(tool, &self.shelf, &mut self.names)

@@ -33,7 +33,7 @@ pub fn plain(name: &str) -> &str {
     name
 }
 
-/// What is said of a name that leads out of the folder.
+/// Message about a name that leads out of the folder.
 #[must_use]
 pub fn outside(name: &str) -> String {
     format!("{name} leads out of the dataset's folder; put the picture into that folder")

@@ -23,14 +23,14 @@ use glam::DVec3;
 /// functions keeps enough digits.
 const SHORT: f64 = 0.5;
 /// Amplitudes and width parameters of blobs are at most this.
-const LARGEST: f64 = 1e9;
+const LARGEST_BLOB: f64 = 1e9;
 /// Number of Newton steps to a compact blob's surface.
 const NEWTON: usize = 5;
 /// Half length, in kernel widths, from which the further end of a Gaussian segment contributes nothing: erfc 4 = 1.5·10⁻⁸.
 const LONG: f64 = 4.0;
 
 /// Distance inward from a segment's ends, in kernel widths, at which they hardly count …
-const INNER: f64 = 3.0;
+const INNER_DISTANCE: f64 = 3.0;
 /// … since e^(−9) is less than this.
 const INNER_BELL: f64 = 1.3e-4;
 
@@ -125,7 +125,7 @@ impl Primitive {
         let plain = ends && self.tapered.is_none();
         let amplitude = self.prepared.double.amplitude;
         // Derivatives of larger ones overflow single precision.
-        if !(plain && amplitude > 0.0 && amplitude <= LARGEST && self.width <= LARGEST) {
+        if !(plain && amplitude > 0.0 && amplitude <= LARGEST_BLOB && self.width <= LARGEST_BLOB) {
             return None;
         }
         let waves = self.prepared.double.waves.as_ref();
@@ -138,7 +138,7 @@ impl Primitive {
                     Some(waves) => Some(Ramp::of(waves, half.lane(0))?),
                     None => None,
                 };
-                if ramp.is_some_and(|ramp| amplitude * ramp.largest() > LARGEST) {
+                if ramp.is_some_and(|ramp| amplitude * ramp.largest() > LARGEST_BLOB) {
                     return None;
                 }
                 let ramp = ramp.map(|ramp| ramp.cast(S::round));
@@ -168,7 +168,7 @@ impl Primitive {
 impl Blob<f32> {
     /// A Gaussian point with this width parameter and this field at its centre; `None` if its derivatives would overflow.
     pub(crate) fn point(scale: f64, amplitude: f64) -> Option<Self> {
-        (amplitude > 0.0 && amplitude <= LARGEST && scale <= LARGEST).then_some(Self {
+        (amplitude > 0.0 && amplitude <= LARGEST_BLOB && scale <= LARGEST_BLOB).then_some(Self {
             kernel: Kernel::Gauss,
             scale: scale as f32,
             amplitude: amplitude as f32,
@@ -548,10 +548,10 @@ impl<R: Real> BlobOnRay<R> {
         let (a, b) = (self.place + self.rate * from, self.place + self.rate * to);
         // The position nearest to the middle, and that furthest from it.
         let last = a.abs().max(b.abs()) - half;
-        if !R::any(R::splat(-INNER).lt(last)) {
+        if !R::any(R::splat(-INNER_DISTANCE).lt(last)) {
             return (
                 R::splat(2.0),
-                [R::splat(INNER_BELL), R::splat(INNER * INNER_BELL)],
+                [R::splat(INNER_BELL), R::splat(INNER_DISTANCE * INNER_BELL)],
             );
         }
         let zero = R::splat(0.0);

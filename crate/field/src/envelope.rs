@@ -150,7 +150,7 @@ fn table(kernel: Kernel) -> &'static [Roughness] {
 const FINE: usize = 2;
 /// Distance in kernel widths below which a kernel without a pole is treated as constant: integrals over a line from there on
 /// differ from those from the middle by less than 1 %.
-const LEVEL: f64 = 1.0 / 256.0;
+const FLAT: f64 = 1.0 / 256.0;
 /// Largest ratio of a derivative within a fine step (1/64 octave) to its larger end. Near a zero of the derivative the envelope
 /// of larger distances counts.
 const SLACK: f64 = 1.03;
@@ -224,8 +224,7 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
             octave = start;
         }
         // A bound at a smaller distance holds here, too; without a pole it is hardly larger, and saves a sum.
-        let same =
-            start > octave && places[start] < LEVEL && rough[octave] <= 1.0001 * rough[start];
+        let same = start > octave && places[start] < FLAT && rough[octave] <= 1.0001 * rough[start];
         let here = if same { table.last().copied() } else { None };
         table.push(here.unwrap_or_else(|| entry(start)));
     }

@@ -73,7 +73,7 @@ pub struct Primitive {
 
 /// Largest coordinate of a skeleton and largest size in kernel widths, so that fourth powers of
 /// them are numbers of single precision.
-const LARGEST: f64 = 1e8;
+const LARGEST_SIZE: f64 = 1e8;
 
 /// Largest size, in kernel widths, of curves and bones that taper, which are integrated numerically.
 pub const LONGEST: f64 = 1e4;
@@ -113,7 +113,7 @@ impl Primitive {
         if numeric && shaping.widths_along(skeleton.measure()) > LONGEST {
             return None;
         }
-        if !usable || size * width > LARGEST {
+        if !usable || size * width > LARGEST_SIZE {
             return None;
         }
         let (frame, mut form) = place(&skeleton, shaping.kernel, width);

@@ -14,9 +14,8 @@
 //! # Ok::<(), mesh::Error>(())
 //! ```
 //!
-//! Files come from anywhere, so nothing in them is believed: every count is checked against what is
-//! there and against [`limits`] before memory is taken for it, and what is wrong is told in a
-//! sentence with its place. The readers know the parts of each format that say where triangles and
+//! Files are untrusted: every count is checked against the bytes that are there and against [`limits`]
+//! before memory is allocated for it, and errors are sentences with a position. The readers know the parts of each format that say where triangles and
 //! normals are, and of colours and materials what the formats have in common; textures and animations
 //! are passed over.
 

@@ -1,4 +1,4 @@
-//! What a mesh is, in counts and in words.
+//! Reports on meshes: counts, and sentences about them.
 
 use crate::error::Error;
 use crate::half_edge::{HalfEdgeMesh, PolygonSoup, Repairs, Shell};
@@ -34,7 +34,7 @@ pub struct Topology {
     pub boundary_edges: usize,
     /// Loops that those form.
     pub boundary_loops: usize,
-    /// What would have to be changed to make it a manifold.
+    /// Changes that would make it a manifold.
     pub repairs: Repairs,
     /// The genus of each connected component, in the order of its lowest triangle; after the repairs.
     pub genera: Vec<u64>,

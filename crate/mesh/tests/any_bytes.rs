@@ -1,4 +1,4 @@
-//! Whatever bytes come: nothing panics or hangs, and what comes out can be drawn.
+//! Random bytes: no reader panics or hangs, and meshes that are read can be drawn.
 
 mod common;
 
@@ -36,7 +36,7 @@ fn check(name: &str, bytes: &[u8]) {
                 end = group.triangles.end;
             }
             assert!(end as usize <= mesh.triangles.len());
-            // What was read can be repaired and written again.
+            // Meshes that are read can be repaired and written.
             let built = mesh::HalfEdgeMesh::repaired(&mesh::PolygonSoup::from(&mesh)).unwrap();
             built.mesh.validate().unwrap();
             let part = mesh::Part {

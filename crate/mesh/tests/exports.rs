@@ -328,7 +328,7 @@ fn judged(mesh: &TriangleMesh) -> Manifold {
     })
 }
 
-/// What we call a closed manifold is one for `manifold-rust`, too, of the same genus; and what we do
+/// A closed manifold by our test is one for `manifold-rust`, too, of the same genus; and what we do
 /// not, is not.
 #[test]
 fn manifold_rust_agrees() {

@@ -341,7 +341,7 @@ fn any_polygons_are_repaired() {
             let twice = 2 - shell.boundary_loops as i64 - shell.euler_characteristic();
             assert!(twice >= 0 && twice % 2 == 0);
         }
-        // What was repaired needs no repair, and as triangles neither.
+        // Repaired meshes need no further repair, nor do their triangles.
         let again = HalfEdgeMesh::from_polygons(&built.mesh.to_polygons()).unwrap();
         assert_eq!(again.face_count(), built.mesh.face_count());
         let triangles = built.mesh.to_triangles().unwrap();

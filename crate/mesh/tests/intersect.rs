@@ -189,7 +189,7 @@ fn random_triangles_on_a_grid_are_judged_as_by_separating_axes() {
             assert_eq!(!found.pairs.is_empty(), expected, "{a:?} {b:?}");
             counts[usize::from(expected)] += 1;
         }
-        // Whatever the coordinates, turning triangles and swapping them changes nothing.
+        // Turning triangles and swapping them changes nothing, with any coordinates.
         let one = pairs(&positions, &[[0, 1, 2], [3, 4, 5]]);
         let other = pairs(&positions, &[[4, 3, 5], [1, 2, 0]]);
         assert_eq!(one.len(), other.len());

@@ -1,4 +1,16 @@
-//! Draws what egui wants on its screen with the processor, redrawing only what changed: for pages without a GPU.
+//! A software renderer for egui that redraws only what changed, for pages without a GPU.
+//!
+//! ```
+//! use egui::Color32;
+//! use painter::Painter;
+//!
+//! let mut painter = Painter::default();
+//! let changed = painter.paint([64, 32], 1.0, &[], Color32::WHITE);
+//! assert_eq!(changed.len(), 1);
+//! assert_eq!(painter.pixels().len(), 4 * 64 * 32);
+//! // The same frame again changes nothing.
+//! assert!(painter.paint([64, 32], 1.0, &[], Color32::WHITE).is_empty());
+//! ```
 //!
 //! The window is divided into square tiles. Everything that can change a tile's pixels goes into a
 //! number for each tile: the triangles and rectangles that touch it, in order, with colours, clip
@@ -38,9 +50,9 @@ const SMALL: usize = 4;
 pub struct Painter {
     textures: Textures,
     sheet: Sheet,
-    /// What the tiles show; zero means unknown.
+    /// Hash of each tile's content; zero means unknown.
     shown: Vec<u64>,
-    /// What the tiles shall show.
+    /// Hash of each tile's new content.
     wanted: Vec<u64>,
     /// Kept to save allocations.
     pieces: Vec<Piece>,
@@ -505,7 +517,7 @@ mod tests {
         assert_eq!(covered.len(), 21 * 20);
     }
 
-    /// Whatever happens in the window, redrawing the changed tiles gives the same picture as
+    /// After any changes in the window, redrawing the changed tiles gives the same picture as
     /// redrawing all ([`Window::frame`] checks it).
     #[test]
     fn redrawing_what_changed_is_redrawing_all() {

@@ -272,7 +272,7 @@ impl Edge {
         }
     }
 
-    /// What of a span of pixels in row `y` is inside.
+    /// Part of a span of pixels in row `y` that is inside.
     fn narrow(&self, (x0, x1): (i32, i32), y: i32) -> (i32, i32) {
         let centre = i64::from(y) * i64::from(STEPS) + i64::from(STEPS) / 2;
         let value = self.constant + self.along * centre;

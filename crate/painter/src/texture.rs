@@ -196,7 +196,7 @@ impl Texture {
     }
 }
 
-/// What lies between two channels that are 256 times as large, nearer to the second the larger the weight, 0 … 256.
+/// Interpolates two channels, each scaled by 256: the weight 0 … 256 is that of the second.
 #[inline]
 pub fn blended(near: u16, far: u16, weight: u16) -> u8 {
     let [near, far, weight] = [near, far, weight].map(u32::from);

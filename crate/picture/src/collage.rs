@@ -4,7 +4,7 @@ use crate::limits::{MAX_PIXELS, MAX_SHEET, MAX_SIDE};
 use crate::picture::check_room;
 use crate::{Picture, Problem};
 
-/// What shows between pictures of different sizes.
+/// Colour between pictures of different sizes.
 const BACKGROUND: [u8; 4] = [0, 0, 0, 255];
 
 /// Pictures in rows on one sheet, each in its own size and in the middle of its place; all places are as

@@ -50,7 +50,7 @@ impl Format {
         }
     }
 
-    /// What people call it.
+    /// Common name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -30,7 +30,7 @@ fn library_format(format: Format) -> ImageFormat {
     }
 }
 
-/// What a decoder may use for a picture of so many pixels.
+/// Memory limits of a decoder for a picture of a number of pixels.
 fn limits(pixels: u64) -> Limits {
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);

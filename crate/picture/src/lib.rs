@@ -1,4 +1,16 @@
-//! Plain pictures, and what the TOOLS group of the language does with them.
+//! Plain pictures, and the operations on them for the language's TOOLS group.
+//!
+//! ```
+//! use picture::{Format, Picture, combine, file};
+//!
+//! let a = Picture::filled(4, 2, [200, 100, 50, 255])?;
+//! let b = Picture::filled(4, 2, [190, 100, 60, 255])?;
+//! let difference = combine::diff(&a, &b)?;
+//! assert_eq!(difference.pixel(0, 0), Some([10, 0, 10, 255]));
+//! let png = file::encode(&difference, Format::Png)?;
+//! assert!(png.starts_with(b"\x89PNG"));
+//! # Ok::<(), picture::Problem>(())
+//! ```
 //!
 //! A [`Picture`] is a width, a height and four bytes a pixel. [`combine`] and [`resize()`] make new ones of
 //! old ones, [`collage()`] puts several on a sheet, [`plot()`] and [`swatches()`] draw simple ones.

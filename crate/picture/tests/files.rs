@@ -217,7 +217,7 @@ fn an_animation_counts_its_frames() {
     assert_eq!(problem, Err(Problem::NoAnimation("MTV")));
 }
 
-/// Whoever knows no animations sees the first frame.
+/// Readers without animations see the first frame.
 #[test]
 fn an_animated_png_is_a_picture_too() {
     let mut bytes = Vec::new();

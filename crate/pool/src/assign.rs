@@ -211,7 +211,7 @@ mod tests {
     use crate::run::Plan;
     use tracer::Stats;
 
-    /// A picture of so many pixels for so many workers, all awake.
+    /// A picture of a number of pixels for a number of workers, all started.
     fn run(size: [u32; 2], workers: usize) -> Run {
         let plan = Plan {
             generation: 1,

@@ -63,7 +63,7 @@ struct Slot {
     /// Whether it was sent the present scene, and whether it has prepared it.
     begun: bool,
     prepared: bool,
-    /// When it was told to leave the picture it worked at, until it says that it did.
+    /// Time at which it was told to leave its picture, until it confirms that.
     stale: Option<f64>,
     /// Whether the last tick found it too late. Its answer may only have been waiting for a busy
     /// page, so it gets until the next tick.
@@ -295,7 +295,7 @@ impl Scheduler {
         true
     }
 
-    /// A worker died, or said that it cannot go on.
+    /// Handles a worker that died, or reported that it cannot continue.
     pub fn died(&mut self, index: usize, reason: &str, now: f64) {
         let slot = &mut self.slots[index];
         slot.deaths += 1;

@@ -82,7 +82,7 @@ fn picture_completes_without_a_killed_worker() {
     finish(&mut pool);
 }
 
-/// Workers that do a step when they are told to.
+/// Workers that run single steps on request.
 struct Desks(Vec<Engine>);
 
 impl Workers for Desks {
@@ -98,7 +98,7 @@ impl Workers for Desks {
     }
 }
 
-/// Notes whether they are asked to tell what they sample.
+/// Records whether workers are asked to report their samples.
 struct Asked(Option<bool>);
 
 impl Workers for Asked {

@@ -13,7 +13,7 @@ use scene::{Camera, Scene, Shape};
 /// Elements that the draft takes; of more, the first ones are drawn.
 pub const MAX_ELEMENTS: usize = 200_000;
 
-/// What became of a scene's elements and lights.
+/// Numbers of a scene's elements and lights that are drawn or left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drawn {
     /// Elements that are drawn.
@@ -163,7 +163,7 @@ impl Draft {
     }
 
     /// Counts how often the picture's texture was made anew, because the size or the sampling
-    /// changed. When it differs, whoever registered the view elsewhere does so again.
+    /// changed. When it differs, the view must be registered elsewhere again.
     #[must_use]
     pub fn generation(&self) -> u64 {
         self.generation

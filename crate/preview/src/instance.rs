@@ -1,4 +1,4 @@
-//! What the GPU is told about one element, and the buffers that hold it.
+//! Instance data of elements, and their buffers.
 
 use crate::solid::{Kind, Solid};
 use bytemuck::{Pod, Zeroable};
@@ -112,7 +112,7 @@ impl Instances {
         }
         let needed = bytes.len() as u64;
         let fits = |buffer: &wgpu::Buffer| {
-            // Not far too large either: memory of a scene long gone is given back.
+            // Not far too large either: memory of an earlier scene is returned.
             buffer.size() >= needed && buffer.size() / 4 <= needed.max(1 << 16)
         };
         let buffer = match self.buffer.take() {

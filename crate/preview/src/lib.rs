@@ -1,4 +1,4 @@
-//! The instant draft: what a scene looks like, as fast as a GPU can draw it.
+//! The instant draft of a scene, drawn on the GPU.
 //!
 //! Every element is drawn as its *offset surface* – a ball, a cylinder, a piece of a torus, a
 //! prism, a slab of the radius that counts for it ([`scene::Scene::radius`]) – and not as a mesh
@@ -7,7 +7,7 @@
 //! that pass through each other meet in the right curve, and nothing is prepared when the text
 //! changes but a list of numbers. The draft and the tracer share the projection
 //! ([`scene::Camera::projection`]) and Phong's model, so the traced picture falls into place over
-//! the draft. What the draft leaves out: the blending of soft elements, and shadows.
+//! the draft. The draft has no blending of soft elements and no shadows.
 //!
 //! [`Draft`] draws; [`orbit`] moves a camera with the pointer, or to where it sees everything.
 //!

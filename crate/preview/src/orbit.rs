@@ -33,7 +33,7 @@ pub fn orbit(camera: Camera, across: f64, down: f64) -> Camera {
     let height = libm::asin(backwards.dot(axis).clamp(-1.0, 1.0));
     let limit = 0.5 * PI - POLE;
     let height = (height + down * PI).clamp(-limit, limit);
-    // What of the line of sight is level; at a pole, what the picture shows as up or down.
+    // Horizontal part of the line of sight; at a pole, the picture's vertical.
     let level = axis.cross(axes.x_axis).normalize_or(backwards) * -1.0;
     let level = turn(level, axis, -across * PI);
     let (sine, cosine) = libm::sincos(height);
@@ -82,7 +82,7 @@ pub fn zoom(camera: Camera, factor: f64) -> Camera {
 const MARGIN: f64 = 0.05;
 
 /// A camera that sees all of a scene in the middle of a picture of the given size, for a text that
-/// gives none or when a person has lost their way. It keeps the direction, up vector and angle of
+/// gives none or to recover a lost view. It keeps the direction, up vector and angle of
 /// view of the scene's own camera.
 #[must_use]
 pub fn frame(scene: &Scene, size: [u32; 2]) -> Camera {

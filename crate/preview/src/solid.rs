@@ -1,4 +1,4 @@
-//! What a shape's offset surface is to the draft: an oriented box, and a few numbers that describe
+//! The draft's form of a shape's offset surface: an oriented box, and a few numbers that describe
 //! the shape inside it. Everything is computed in `f64`; [`crate::instance`] packs it for the GPU.
 
 use crate::facets;

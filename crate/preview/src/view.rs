@@ -1,4 +1,4 @@
-//! What the GPU is told about the camera and the lights.
+//! Uniforms of the camera and the lights.
 
 use crate::instance::Units;
 use crate::materials::finite;

@@ -12,7 +12,7 @@ use std::slice;
 
 const SIZE: [u32; 2] = [56, 42];
 
-/// What the reference sees through the middle of every pixel.
+/// Reference picture: rays through the middle of every pixel.
 fn seen(scene: &Scene) -> Vec<Option<Met>> {
     let projection = scene.camera.projection(SIZE[0], SIZE[1]);
     let mut all = Vec::new();

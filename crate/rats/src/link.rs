@@ -116,7 +116,7 @@ pub fn decode(fragment: &str) -> Result<Shared, LinkError> {
         return Err(LinkError::TooLong);
     }
     let bytes = URL_SAFE_NO_PAD.decode(fragment).map_err(|_| {
-        // What begins as our links do was one before it was cut or changed.
+        // A text with the prefix of our links is a link that was cut or changed.
         let start = fragment.get(..4).map(|start| URL_SAFE_NO_PAD.decode(start));
         match start {
             Some(Ok(bytes)) if bytes[0] == VERSION => LinkError::Damaged,

@@ -1,4 +1,4 @@
-//! Whatever is typed or sent: nothing panics, nothing hangs, nothing comes out broken.
+//! Random texts and links: nothing panics, nothing hangs, no result is broken.
 
 use rats::link::{self, Shared};
 use rats::{File, Project, commands, compile};

@@ -1,4 +1,4 @@
-//! What the commands do, group by group.
+//! Commands, group by group.
 
 use field::{BlobScale, Kernel, Wave};
 use glam::DVec3;
@@ -125,7 +125,7 @@ fn random_numbers_are_frozen() {
         b,
         v(0.04783404902957766, 0.9537216673637242, 0.8833108082136426)
     );
-    // What was drawn before does not matter after `seed`.
+    // Earlier random numbers do not matter after `seed`.
     let sphere = "seed 5\nsurface s diff Red\nsphere s 1 rand rand rand";
     let shape = |text: &str| scene(text).elements[0].shape.clone();
     assert_eq!(shape(sphere), shape(&format!("var x = rand\n{sphere}")));

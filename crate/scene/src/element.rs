@@ -183,8 +183,8 @@ impl Shape {
         }
     }
 
-    /// Whether the shape can be part of a convolution surface. What has no skeleton stays hard,
-    /// whatever its material.
+    /// Whether the shape can be part of a convolution surface. Shapes without a skeleton stay hard with any
+    /// material.
     #[must_use]
     pub fn has_skeleton(&self) -> bool {
         !matches!(self, Self::Box { .. } | Self::Quadric(_))

@@ -1,4 +1,4 @@
-//! Long curves and limbs that taper, cut into pieces for whoever looks for the surface.
+//! Long curves and tapered limbs, cut into pieces for the search for the surface.
 //!
 //! A convolution surface does not change when a bone is cut in two (superposition), but what is known
 //! of a piece without evaluating it is sharper: a short one is nowhere near most rays, and along it the

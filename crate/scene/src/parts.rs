@@ -1,4 +1,4 @@
-//! What a shape's offset surface is made of, for renderers that know balls, cylinders, arcs, triangles
+//! Parts of a shape's offset surface, for renderers that draw balls, cylinders, arcs, triangles
 //! and the like only: a polygon is cut into triangles, a curve into short cylinders with balls between.
 
 use crate::Shape;

@@ -1,6 +1,6 @@
 //! Surfaces of the second degree: ellipsoids, paraboloids, hyperboloids, cones, saddles.
 //!
-//! Most of them go on for ever, so each is cut off by a box. The box is also what carries the
+//! Most of them are unbounded, so each is cut off by a box. The box is also what carries the
 //! surface into the world: everything is said in coordinates q that go from −1 to 1 across the box,
 //! and an affine map takes them to `center + q₀·axes[0] + q₁·axes[1] + q₂·axes[2]`. Moving, turning,
 //! scaling and shearing the surface changes the map and leaves the equation as it is.

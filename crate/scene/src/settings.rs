@@ -25,7 +25,7 @@ pub struct Settings {
     /// Depth of influence: a soft element is ignored where its field is below this share of the
     /// threshold. In (0, 1).
     pub influence: f64,
-    /// What finds where rays meet the soft surface.
+    /// Root finder for the soft surface.
     pub digger: Digger,
     /// `map on g`: instead of colours the picture shows what its pixels cost, raised to 1/g.
     pub map: Option<f32>,

@@ -119,7 +119,7 @@ impl Scene {
 
     /// The kernel's parameters for an element with this radius and this flesh, in lengths of the world.
     fn shaping(&self, element: &Element, flesh: &Flesh, radius: f64) -> field::Shaping {
-        // A cone brings its own radii, whatever its flesh's.
+        // A cone has radii of its own, in place of its flesh's.
         let (radius, end_radius) = match element.shape {
             Shape::Cone {
                 base_radius,

@@ -290,7 +290,7 @@ fn a_soft_cone_is_a_limb_that_tapers() {
             apex,
             apex_radius: to,
         };
-        // What the material says of radii does not count.
+        // The material's radius is ignored.
         let of_cone = values(cone, soft(7.0));
         let limb = Flesh {
             end_radius: Some(to),

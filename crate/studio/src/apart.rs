@@ -43,7 +43,7 @@ enum Card {
 }
 
 impl Apart {
-    /// The draft of the session's scene in a place of so many pixels, once there is one.
+    /// The draft of the session's scene at a size in pixels; `None` until there is one.
     pub fn texture(
         &mut self,
         ctx: &Context,

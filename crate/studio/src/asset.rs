@@ -1,6 +1,6 @@
-//! Images and meshes that a work refers to: which are taken, and what is told about them.
+//! Images and meshes that a work refers to: accepted formats, and messages about them.
 //!
-//! Only their heads are read here; what they mean for the picture is the language's affair.
+//! Only their headers are read here; the language interprets them.
 
 use ::picture::{Format, file};
 pub use rats::Asset;
@@ -54,7 +54,7 @@ pub fn is_large_mesh(asset: &Asset) -> bool {
 /// Describes the file's content in a few words.
 ///
 /// # Errors
-/// Says why the file cannot be what its name says, or is too large.
+/// Returns why the file is not of its name's format, or too large.
 pub fn facts(asset: &Asset) -> Result<String, String> {
     match kind(&asset.name) {
         Some(Kind::Image) => {

@@ -246,7 +246,7 @@ fn is_pretended(context: &WebGl2RenderingContext) -> bool {
         name.and_then(|name| name.as_string())
             .is_some_and(|name| backend::is_processor(&name))
     };
-    // Some browsers tell it by the plain name, others only with the extension.
+    // Some browsers report it under the plain name, others only with the extension.
     is_processor(WebGl2RenderingContext::RENDERER)
         || matches!(
             context.get_extension("WEBGL_debug_renderer_info"),

@@ -74,7 +74,7 @@ pub enum Command {
         /// The byte.
         byte: usize,
     },
-    /// See the scene from here; `None`: from where the text says.
+    /// Look at the scene with this camera; `None`: with the text's.
     SetCamera(Option<Camera>),
     /// See the whole model.
     ShowAll,

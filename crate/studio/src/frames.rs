@@ -18,7 +18,7 @@ use wasm_bindgen::prelude::*;
 /// Milliseconds between frames while nothing happens.
 const QUIET: f64 = 250.0;
 
-/// Milliseconds between frames for what egui wants at once, while frames are dear.
+/// Milliseconds between the frames that egui requests at once, while frames are slow.
 const PACE: f64 = 100.0;
 
 /// Milliseconds after an event of a pointer in which they count as cheap: scrolling and dragging must stay smooth.
@@ -57,9 +57,9 @@ struct Frames {
     given: VecDeque<(i32, JsValue)>,
     /// Frames still to be given without delay.
     left: u32,
-    /// When egui wants the next one, in milliseconds of the page's clock; infinite if it does not.
+    /// Time of the frame that egui requests next, in milliseconds of the page's clock; infinite without a request.
     due: f64,
-    /// When those who wait get theirs whatever happens.
+    /// Time at which waiting requests get their frame in any case.
     latest: f64,
     /// Whether each frame keeps the tracer waiting, …
     dear: bool,
@@ -95,7 +95,7 @@ pub fn rest() {
         ("cancelAnimationFrame", withdraw.into_js_value()),
     ];
     for (name, function) in new {
-        // A window whose functions cannot be replaced goes on as it was.
+        // If the window's function cannot be replaced, nothing changes.
         let _ = Reflect::set(&window, &name.into(), &function);
     }
     let listen = |events: &str, act: fn(&mut Frames)| {
@@ -137,7 +137,7 @@ pub fn rest() {
     }));
 }
 
-/// Has frames given when this egui wants them.
+/// Schedules frames at the times that this egui requests.
 pub fn watch(context: &egui::Context) {
     context.set_repaint_observer(|info| with(|frames| frames.want(info.delay)));
 }
@@ -169,7 +169,7 @@ impl Frames {
             .map_or(0.0, |performance| performance.now())
     }
 
-    /// egui wants a frame so soon.
+    /// egui requests a frame after a delay.
     fn want(&mut self, delay: Duration) {
         let now = self.now();
         if !delay.is_zero() {
@@ -194,7 +194,7 @@ impl Frames {
         self.look();
     }
 
-    /// Someone asks for a frame. Gives the number of the request.
+    /// Registers a request for a frame; returns its number.
     fn ask(&mut self, callback: Function) -> i32 {
         self.coming = false;
         self.number = self.number.wrapping_add(1);
@@ -214,7 +214,7 @@ impl Frames {
         }
     }
 
-    /// Gives those who wait their frame, or sees to it that they get it later.
+    /// Runs the waiting requests, or schedules them for later.
     fn look(&mut self) {
         if self.held.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! Buttons with small drawn pictures, so that they look the same whatever fonts there are.
+//! Buttons with small drawn icons, which look the same with any fonts.
 
 use crate::theme;
 use egui::{Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};

@@ -35,7 +35,7 @@ pub fn height(ui: &Ui) -> f32 {
 /// Between the three fields.
 const GAP: f32 = 3.0;
 
-/// Shows the controls. Gives whether a drag goes on, and the vector if it was changed.
+/// Shows the controls. Returns whether a drag continues, and the vector if it changed.
 pub fn show(
     ui: &mut Ui,
     name: &str,
@@ -173,7 +173,7 @@ fn wheel(ui: &Ui, response: &Response, bounds: Bounds) -> glam::DVec3 {
     let scrolled = ui.input_mut(|input| std::mem::take(&mut input.smooth_scroll_delta).y);
     let (low, high) = bounds.range;
     let by = f64::from(scrolled) / WHOLE * (high - low);
-    // Less than half a step would be rounded away, whatever the wheel does.
+    // Less than half a step would be rounded away.
     let by = match bounds.step {
         Some(step) if by != 0.0 && by.abs() < step => step.copysign(by),
         _ => by,

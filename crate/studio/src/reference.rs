@@ -38,7 +38,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Shows this command's card, whatever was searched before.
+    /// Shows this command's card and clears the search.
     pub fn open(&mut self, name: &str) {
         name.clone_into(&mut self.search);
         self.wanted = Some(name.to_owned());

@@ -119,7 +119,7 @@ impl Renderer {
         }
         self.wanted = Some((generation, size));
         if generation != old_generation {
-            // A picture that is given up before it was seen took at least so long.
+            // A cancelled picture took at least this time.
             if self.phase == Phase::Tracing && self.timings.coarse.is_none() {
                 self.coarse = self.coarse.max(now - self.running.1);
             }
@@ -331,7 +331,7 @@ impl Renderer {
     }
 }
 
-/// The name of a pass for people.
+/// Name of a pass, for display.
 #[must_use]
 pub fn pass_label(pass: Pass) -> &'static str {
     match pass {

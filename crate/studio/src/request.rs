@@ -24,7 +24,7 @@ pub enum Request {
     Load(Project, Answer),
     /// Take in files that the user dropped or chose.
     Files(Vec<Taken>),
-    /// See the scene from here; `None`: from where the text says.
+    /// Look at the scene with this camera; `None`: with the text's.
     SetCamera(Option<Camera>),
     /// Give the traced picture.
     Picture(Viewer),

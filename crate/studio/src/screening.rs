@@ -1,4 +1,4 @@
-//! Playing an animated work, and saving its frames: what the app does about it as time goes on.
+//! Playback of an animated work, and saving of its frames: the app's part, frame by frame.
 
 use crate::app::App;
 use crate::command::Command;

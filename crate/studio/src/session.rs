@@ -547,7 +547,7 @@ impl Session {
         self.enabled = true;
     }
 
-    /// Large meshes that the text names and nobody has read yet. Until [`rats::keep_mesh`] was called
+    /// Large meshes that the text names and that are not read yet. Until [`rats::keep_mesh`] was called
     /// for each, [`Session::compile`] waits.
     pub fn unread_meshes(&self) -> impl Iterator<Item = &Asset> {
         let files = &self.project.files;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Choice {
-    /// As many as the view shows, at most [`FIT_PIXELS`].
+    /// Size of the view, at most [`FIT_PIXELS`].
     #[default]
     Fit,
     /// The dataset's `framesize`.

@@ -77,7 +77,7 @@ impl Sliders {
         }
     }
 
-    /// Gives whether a drag goes on, and the number if it was changed.
+    /// Returns whether a drag continues, and the number if it changed.
     fn scalar(
         &mut self,
         ui: &mut Ui,
@@ -144,7 +144,7 @@ impl Sliders {
         )
     }
 
-    /// Gives whether a drag goes on, and the vector if it was changed.
+    /// Returns whether a drag continues, and the vector if it changed.
     fn vector(
         &mut self,
         ui: &mut Ui,
@@ -201,7 +201,7 @@ fn name(ui: &mut Ui, name: &str, width: f32) {
     );
 }
 
-/// Gives whether a drag goes on, and the colour if it was changed.
+/// Returns whether a drag continues, and the colour if it changed.
 fn colour_button(ui: &mut Ui, name: &str, colour: [f32; 3]) -> (bool, Option<[f32; 3]>) {
     // With gamma 1, the default, a colour's numbers go to the screen as they are.
     let mut bytes = colour.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);

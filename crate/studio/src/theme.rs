@@ -6,7 +6,7 @@ use egui::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Which palette the user wants.
+/// The user's choice of palette.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Choice {

@@ -1,4 +1,4 @@
-//! What the editor knows about the language: completions, cards, the line at the caret, definitions,
+//! The editor's services for the language: completions, cards, the line at the caret, definitions,
 //! renaming, layout. All of it with the keyboard, and each change one undo step.
 
 mod driver;
@@ -311,7 +311,7 @@ fn a_card_comes_when_the_pointer_rests_and_the_manual_with_f1() {
     window.steps(14);
     window.harness.get_by_label_contains("F1: manual");
     window.edit();
-    // Who writes wants no card, wherever the pointer was left.
+    // While typing there is no card, wherever the pointer is.
     window.write("# ");
     window.steps(14);
     assert!(
@@ -377,7 +377,7 @@ fn blocks_fold_with_f8_and_with_their_triangles() {
     window.key(Modifiers::NONE, Key::F8);
     window.steps(2);
     window.harness.get_by_label("Unfold line 2");
-    // What is typed goes to the line that is seen, and nothing is lost.
+    // Typed text goes to the visible line, and nothing is lost.
     window.key(Modifiers::NONE, Key::ArrowDown);
     window.key(Modifiers::NONE, Key::Home);
     window.write("# ");

@@ -25,7 +25,7 @@ fn a_pad_moves_a_vector_and_one_undo_takes_the_drag_back() {
     for size in [[1000.0, 700.0], [390.0, 844.0]] {
         let mut window = Window::open(size[0], size[1]);
         window.load(TEXT);
-        // What is said of the picture while it is traced moves the layout on a phone.
+        // The status of a traced picture moves the layout on a phone.
         window.finish();
         if size[0] < 700.0 {
             let tab = window.place("tab sliders").center();

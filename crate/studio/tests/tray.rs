@@ -126,7 +126,7 @@ fn what_cannot_be_done_is_said_in_the_program_s_words() {
     window.harness.get_by_label("Show in the text").click();
     window.steps(3);
     assert!(!has(&window, "dialog"));
-    // What is written takes the place of the command.
+    // The typed text replaces the command.
     window.write("table 1 2 3");
     assert!(window.text().starts_with("table 1 2 3\nconvert"));
     wait_for(&mut window, "table.png");
@@ -184,7 +184,7 @@ fn animations_are_played_in_the_large_view() {
     window.edit();
     window.write("fli one.png two.png speed 50\nsplit fli.gif f.png\nplay fli.gif\n");
     wait_for(&mut window, "f001.png");
-    // What is played is on the tray already.
+    // The played file is on the tray already.
     window.harness.get_by_label("Results 3");
     open(&mut window, "fli.gif");
     window.harness.get_by_label_contains("GIF, an animation");

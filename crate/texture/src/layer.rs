@@ -17,7 +17,7 @@ pub const MAX_MASK: usize = 4096;
 /// Numbers of a texture are at most this large.
 pub const MAX_NUMBER: f64 = 1e9;
 
-/// What a texture changes.
+/// Parameter of shading that a texture changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Target {
     /// [`Surface::diffuse`].
@@ -86,7 +86,7 @@ pub enum Method {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Texture {
-    /// What it changes.
+    /// Parameter that it changes.
     pub target: Target,
     /// Where its values come from.
     pub method: Method,
@@ -108,7 +108,7 @@ pub struct Texture {
     pub replace: bool,
 }
 
-/// What is wrong with a texture.
+/// Error in a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// A number is not finite or larger than [`MAX_NUMBER`].

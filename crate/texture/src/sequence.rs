@@ -7,7 +7,7 @@
 
 use crate::noise::scramble;
 
-/// What a sample is for. Samples of different purposes are independent of each other.
+/// Purpose of a sample. Samples of different purposes are independent of each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// The place in the pixel.

@@ -1,4 +1,4 @@
-//! What a surface is like at a point, and mixtures of such.
+//! Parameters of shading at a point of a surface, and mixtures of them.
 
 use crate::uv::Uv;
 use glam::{DVec3, Vec3};

@@ -171,7 +171,6 @@ fn march_blobs<const PLAIN: bool>(
     let level = f32x8::splat(LEVEL);
     let surely = f32x8::splat(LEVEL - rays.noise);
     let tolerance = f32x8::splat(rays.tolerance);
-    let tiny = f32x8::splat(f32::MIN_POSITIVE);
     let mut evaluations = 0;
     let far = f32x8::splat(f32::INFINITY);
     let (mut doubtful, mut doubt) = (0, [far, -far]);
@@ -221,14 +220,7 @@ fn march_blobs<const PLAIN: bool>(
         let length = at - low;
         let short = length.simd_le(tolerance).to_bitmask();
         let above = level.simd_le(sum.value).to_bitmask() & going;
-        // The field is at most the chord plus a parabola; that sum is largest inside only if the parabola is steeper.
-        let parabola = length * (f32x8::splat(0.5) * length * sum.bend + sum.kink);
-        let steeper = (parabola - (sum.value - low_value).abs()).fast_max(zero);
-        let bulge = f32x8::splat(0.25) * steeper * steeper / parabola.fast_max(tiny);
-        // A NaN proves nothing.
-        let chord = parabola
-            .simd_lt(far)
-            .select(low_value.fast_max(sum.value) + bulge, far);
+        let chord = sum.chord(low_value, length);
         let below = going & !above;
         // The chord's bound may be NaN: then neither comparison holds.
         let under = |level| sum.most.simd_lt(level) | chord.simd_lt(level);
@@ -252,25 +244,13 @@ fn march_blobs<const PLAIN: bool>(
         low = mask.select(at, low);
         low_value = mask.select(sum.value, low_value);
         low_slope = mask.select(sum.slope, low_slope);
-        // The next step may be twice as long.
-        let doubled = f32x8::splat(2.0) * step.fast_min(length.fast_max(tolerance));
-        // Where the field rises towards T the tangent leads a little beyond the crossing.
-        let room = f32x8::splat(TANGENT) * (level - sum.value);
-        let rises = f32x8::splat(NEARLY).simd_lt(sum.value) & zero.simd_lt(sum.slope);
-        let tangent = (room / sum.slope).fast_max(tolerance);
-        let doubled = rises.select(doubled.fast_min(tangent), doubled);
-        step = self::mask(passed & moved).select(doubled, step);
+        let longer = sum.longer(step, length, tolerance);
+        step = self::mask(passed & moved).select(longer, step);
         let arrived = passed & rays.to.simd_le(low).to_bitmask();
         going &= !arrived;
         // Lanes that need a shorter step.
         if failed != 0 {
-            let room = level - low_value.fast_max(sum.value);
-            let served = (f32x8::splat(SERVES) * room.fast_max(zero) / sum.bend).sqrt();
-            let down = f32x8::splat(FALLS) * -low_slope / sum.bend;
-            let served = served
-                .fast_max(down)
-                .fast_min(f32x8::splat(0.5) * length)
-                .fast_max(f32x8::splat(LEAST) * length);
+            let served = sum.shorter(low_value, low_slope, length);
             let closer = sum.closer(blobs, tops, failed, [low, at], low + served, tolerance) - low;
             step = self::mask(failed).select(closer, step);
         }
@@ -295,16 +275,7 @@ fn march_blobs<const PLAIN: bool>(
         let isolated = only.to_bitmask() & level.simd_le(high_value).to_bitmask() & going;
         met |= isolated;
         going &= !isolated;
-        // Back to before the crossing, so near to it that the rest can be proved to hold no other; from deep inside by a
-        // Newton step for the field's logarithm, which for Gaussians leads just outside.
-        let near = high - (f32x8::splat(1.4) / high_bend).sqrt();
-        let deep = f32x8::splat(DEEP).simd_lt(high_value);
-        let mut back = near;
-        if deep.to_bitmask() & going != 0 {
-            let out = high - Real::ln(high_value) * high_value / high_slope;
-            let out = zero.simd_lt(high_slope).select(out, low);
-            back = deep.select(out, near);
-        }
+        let back = before_crossing(low, high, [high_value, high_slope, high_bend], going);
         let middle = f32x8::splat(0.5) * (low + high);
         let fits = low.simd_lt(back) & back.simd_lt(high);
         let back = fits.select(back, middle).fast_min(low + step);
@@ -347,6 +318,21 @@ fn values<const PLAIN: bool>(
         slope += s;
     }
     (value, slope)
+}
+
+/// Returns a parameter before the crossing below `high`, so near to it that the rest can be proved to hold no other; from deep
+/// inside by a Newton step for the field's logarithm, which for Gaussians leads just outside. Value, slope and bend are those at
+/// `high`.
+#[inline(always)]
+fn before_crossing(low: f32x8, high: f32x8, [value, slope, bend]: [f32x8; 3], going: u32) -> f32x8 {
+    let near = high - (f32x8::splat(1.4) / bend).sqrt();
+    let deep = f32x8::splat(DEEP).simd_lt(value);
+    if deep.to_bitmask() & going == 0 {
+        return near;
+    }
+    let out = high - Real::ln(value) * value / slope;
+    let out = f32x8::splat(0.0).simd_lt(slope).select(out, low);
+    deep.select(out, near)
 }
 
 impl Sum {
@@ -394,6 +380,46 @@ impl Sum {
             *top = most;
         }
         sum
+    }
+
+    /// Returns an upper bound on the field on a step of some length that starts with `low_value`: chord plus parabola (see the
+    /// module). Infinite where it is unknown.
+    #[inline(always)]
+    fn chord(&self, low_value: f32x8, length: f32x8) -> f32x8 {
+        let (zero, far) = (f32x8::splat(0.0), f32x8::splat(f32::INFINITY));
+        let tiny = f32x8::splat(f32::MIN_POSITIVE);
+        let parabola = length * (f32x8::splat(0.5) * length * self.bend + self.kink);
+        // The sum is largest inside only if the parabola is steeper than the chord.
+        let steeper = (parabola - (self.value - low_value).abs()).fast_max(zero);
+        let bulge = f32x8::splat(0.25) * steeper * steeper / parabola.fast_max(tiny);
+        // A NaN proves nothing.
+        parabola
+            .simd_lt(far)
+            .select(low_value.fast_max(self.value) + bulge, far)
+    }
+
+    /// Returns the length of the step after one of some length that was proved: twice that, or, where the field rises towards T,
+    /// along the tangent to a little beyond the crossing.
+    #[inline(always)]
+    fn longer(&self, step: f32x8, length: f32x8, tolerance: f32x8) -> f32x8 {
+        let doubled = f32x8::splat(2.0) * step.fast_min(length.fast_max(tolerance));
+        let room = f32x8::splat(TANGENT) * (f32x8::splat(LEVEL) - self.value);
+        let rises =
+            f32x8::splat(NEARLY).simd_lt(self.value) & f32x8::splat(0.0).simd_lt(self.slope);
+        let tangent = (room / self.slope).fast_max(tolerance);
+        rises.select(doubled.fast_min(tangent), doubled)
+    }
+
+    /// Returns the length of the step after a failed one of some length, by the bend on it ([`SERVES`], [`FALLS`], [`LEAST`]).
+    #[inline(always)]
+    fn shorter(&self, low_value: f32x8, low_slope: f32x8, length: f32x8) -> f32x8 {
+        let room = f32x8::splat(LEVEL) - low_value.fast_max(self.value);
+        let served = (f32x8::splat(SERVES) * room.fast_max(f32x8::splat(0.0)) / self.bend).sqrt();
+        let down = f32x8::splat(FALLS) * -low_slope / self.bend;
+        served
+            .fast_max(down)
+            .fast_min(f32x8::splat(0.5) * length)
+            .fast_max(f32x8::splat(LEAST) * length)
     }
 
     /// Returns the end of a shorter step after a failed one: where the largest blob begins to be strong, or where it ceases to be,
@@ -471,7 +497,7 @@ fn polish<const PLAIN: bool>(
         // about the slope squared over the value.
         let up = slope * slope / value.fast_max(level);
         let left = (bend + up) * length * length;
-        let near = fits & left.simd_lt(f32x8::splat(CLOSE));
+        let near = fits & left.simd_lt(f32x8::splat(REFINED));
         if !near.to_bitmask() & marched.met == 0 {
             break;
         }
@@ -489,7 +515,7 @@ fn polish<const PLAIN: bool>(
 /// Largest number of refining steps.
 const MOST_STEPS: u32 = 24;
 /// Largest error of the field at a refined crossing, about.
-const CLOSE: f32 = 2e-2;
+const REFINED: f32 = 2e-2;
 
 #[cfg(test)]
 mod tests {
@@ -567,7 +593,7 @@ mod tests {
         (0..blobs.len() as u32).map(interval).collect()
     }
 
-    /// What rays meet.
+    /// The primitives as blobs on the rays.
     fn ray_blobs(primitives: &[Primitive], rays: &[(DVec3, DVec3); 8]) -> Vec<RayBlob> {
         let lane = |f: &dyn Fn(usize) -> f64| f32x8::from_lanes(f);
         let direction: [f32x8; 3] = [0, 1, 2].map(|k| lane(&|i| rays[i].1[k]));
@@ -640,7 +666,7 @@ mod tests {
                 match (want, got) {
                     (None, None) => misses += 1,
                     (Some(want), Some(got)) if (want - got).abs() < 1e-3 => hits += 1,
-                    // What the samples step over, or single precision cannot tell.
+                    // Crossings between the samples, or below single precision.
                     _ => assert!(
                         nearest < 1e-3,
                         "case {case}, ray {i}: {want:?} {got:?} {nearest}"

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Field, as a fraction of T divided by the number of primitives, at which a blob's reach ends.
-const LEFT_OUT: f64 = 2e-6;
+const BLOBS_LEFT_OUT: f64 = 2e-6;
 
 /// [`Near::lead`] in kernel widths. At a Gaussian's own surface −F″ ≤ 2T; with h = 0.6, `h²·2T` is about what the march's proof
 /// allows ([`climb`](mod@crate::blob_march)).
@@ -51,11 +51,11 @@ impl BlobSet {
                 Some((i, own))
             })
             .collect();
-        let left_out = LEFT_OUT * THRESHOLD / (primitives.len() + chain).max(1) as f64;
+        let left_out = BLOBS_LEFT_OUT * THRESHOLD / (primitives.len() + chain).max(1) as f64;
         let mut blob_set = Self {
             items: Vec::with_capacity(primitives.len() + chain),
             ends: Vec::with_capacity(primitives.len()),
-            least: NEXT_TO_NOTHING / LEFT_OUT * left_out,
+            least: NEXT_TO_NOTHING / BLOBS_LEFT_OUT * left_out,
         };
         let mut body = 0;
         for (i, p) in primitives.iter().enumerate() {

@@ -17,7 +17,7 @@ const OCTAVES: usize = 12;
 const ENTRIES: usize = 1 + OCTAVES * STEPS + 1;
 
 /// Most members of a leaf group.
-const LEAF: usize = 16;
+const GROUP_SIZE: usize = 16;
 
 /// The tree of groups.
 pub struct Clusters {
@@ -70,13 +70,13 @@ pub enum Members<'a> {
 /// Ratio of distance to radius below which a group is near, unless the ball that it is seen from is much larger than the group.
 const NEAR: f64 = 2.0;
 /// See [`NEAR`].
-const WIDE: f64 = 0.3;
+const WIDE_VIEW: f64 = 0.3;
 
 impl Clusters {
     /// Builds the groups of primitives, given as (number, centre, radius) of balls that hold their skeletons.
     #[must_use]
     pub fn new(balls: Vec<(u32, DVec3, f64)>, bounds: &[Bound]) -> Self {
-        let tree = Hierarchy::with_leaves(balls, LEAF);
+        let tree = Hierarchy::with_leaves(balls, GROUP_SIZE);
         let mut facts: Vec<Facts> = Vec::with_capacity(tree.len());
         facts.resize(tree.len(), Facts::NONE);
         // Children come after their parents.
@@ -108,7 +108,7 @@ impl Clusters {
             magnitude,
             fourth,
             distance,
-            near: distance <= NEAR * around && around > WIDE * radius,
+            near: distance <= NEAR * around && around > WIDE_VIEW * radius,
             count: self.tree.items(index).len(),
             adds: facts.adds,
             carves: facts.carves,

@@ -36,7 +36,7 @@ impl Flesh {
 }
 
 /// Half the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)).
-const COARSEST: f64 = 1e-4;
+const COARSEST_OF_SPANS: f64 = 1e-4;
 
 /// Primitives that are evaluated at a packet's hits.
 #[derive(Default)]
@@ -177,7 +177,7 @@ impl Soft {
         let gradients = flesh.gradients();
         (0..PACKET).fold(0, |all, i| {
             let tolerance = 0.1 * self.pixel * (base + flesh.t[i]);
-            let most = tolerance.clamp(FINEST, COARSEST) * gradients[i].length();
+            let most = tolerance.clamp(FINEST, COARSEST_OF_SPANS) * gradients[i].length();
             // NaN counts as off.
             let near = error[i] <= most;
             all | u32::from(!near) << i & hits.met & !hits.settled

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// Size of a sample in bytes.
 const BYTES: usize = 24;
 /// Largest width and height in pixels: a tile or a part of one.
-const LARGEST: u32 = 64;
+const LARGEST_SIDE: u32 = 64;
 
 /// The first samples of all pixels of a rectangle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -77,7 +77,7 @@ impl Known {
     #[must_use]
     pub fn is_of(&self, size: [u32; 2]) -> bool {
         let area = Area::from(self.tile);
-        let small = self.tile.width <= LARGEST && self.tile.height <= LARGEST;
+        let small = self.tile.width <= LARGEST_SIDE && self.tile.height <= LARGEST_SIDE;
         let inside = area.right <= size[0] && area.bottom <= size[1];
         small && inside && !area.is_empty() && self.is_whole()
     }

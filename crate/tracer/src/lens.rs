@@ -17,7 +17,7 @@ use glam::DVec3;
 use wide::f32x8;
 
 /// Largest spread of a square's beam for which there is a lens.
-const WIDEST: f64 = 0.25;
+const WIDEST_LENS: f64 = 0.25;
 
 /// Maps positions in a square to rays.
 pub(crate) struct Lens {
@@ -39,7 +39,7 @@ pub(crate) struct Fan {
 impl Lens {
     /// Prepares an area, given its beam. `None` if that is too wide.
     pub fn new(camera: &View, area: Area, beam: &Beam) -> Option<Self> {
-        if beam.spread.is_nan() || beam.spread > WIDEST {
+        if beam.spread.is_nan() || beam.spread > WIDEST_LENS {
             return None;
         }
         let [l, t, r, b] = [area.left, area.top, area.right, area.bottom].map(f64::from);

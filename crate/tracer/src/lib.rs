@@ -15,21 +15,21 @@
 //!
 //! The soft surface is found in one of two ways, both certified.
 //!
-//! - The quick way (`quick`) is for *lumps*, whose largest value on any piece of a ray is known in closed form
-//!   (`field::course`): points and Gaussian segments, of kernels that end or nearly do. Gaussian arcs, curves and limbs
-//!   that taper are strings of lumps (`field::beads`). `nearby` lists the lumps near a
-//!   square, a part of it, a packet; `climb` steps along the packet's rays, each step proved to cross nothing.
+//! - The fast path (`quick`) is for *blobs*, whose largest value on any interval of a ray has a closed form
+//!   (`field::blob`): points with compact or Gaussian kernels, and Gaussian segments. Gaussian arcs, curves and tapered
+//!   limbs are chains of blobs (`field::blob_chain`). `nearby` lists the blobs near a square, a part of it, a packet;
+//!   `blob_march` steps along the packet's rays, each step proved to hold no crossing.
 //! - The general way is the thesis' (chapter 4): `slabs` decides for a whole beam which primitive needs Hermite spans
 //!   of which length (`field::Bound` knows how large a field and the error of a span can be), and `walk` follows single
-//!   packets through the slabs, adds up their spans' cubics (`spans`) and takes their roots (`roots`); what those leave
-//!   in doubt `settle` decides. Nothing is cut off: what is far enough to be smooth across the beam is interpolated
-//!   once for all its rays (`shared`), and distant primitives are judged in groups (`clusters`). `flesh` says what the
-//!   surface is like at the hits. So is traced a packet that comes near anything but lumps, or of which a ray starts inside;
-//!   and all of a square whose beam meets more than a few other primitives.
+//!   packets through the slabs, adds up their spans' cubics (`spans`) and takes their roots (`roots`); `root_isolation` decides
+//!   the doubtful ones. Nothing is cut off: primitives so far away that they are smooth across the beam are interpolated
+//!   once for all its rays (`shared`), and distant primitives are bounded in groups (`clusters`). `flesh` samples the
+//!   surface at the hits. This way takes packets near anything but blobs, or with a ray that starts inside,
+//!   and all packets of a square whose beam meets more than 16 other primitives.
 //!
 //! Other ways of finding crossings, for comparison, are in `digger`; `map` shows what a picture costs.
 //!
-//! What pictures show is held against [`mod@reference`], which looks for the surface by bisection with
+//! Pictures are checked against [`mod@reference`], which finds the surface by bisection with
 //! bounds of its own (`tests/certified.rs`, `examples/certify.rs`); `cast` follows single rays in the way of
 //! pictures.
 //!
@@ -38,14 +38,14 @@
 //! - Of all primitives no more than 2·10⁻⁵·T is left out, all together, whatever `influence` says; that and single
 //!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field; a ray that they may
 //!   have kept outside is settled where that was, with all of them. Shadows are not. A packet near more
-//!   than 2¹⁶ lumps (beads count one each), or that makes more than 2²⁴ evaluations, goes the general way.
+//!   than 2¹⁶ blobs (points of chains count one each), or that makes more than 2²⁴ evaluations, goes the general way.
 //! - There pictures show a field within 5·10⁻⁴·T of the true one, or as near as rounding lets it come where that is
 //!   less, and what is shared adds at most 4·10⁻⁴·T; hits are then
 //!   moved onto the field itself, unless what is shared moves them by less than half the tolerance; in double precision, where
 //!   rounding may move them by more than that and no more than 2¹⁶ primitives are near.
 //!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
 //!   within 10⁻⁹·T of T.
-//! - Where spans leave a ray in doubt it is settled alone (`settle`), among very many primitives within what is shared, if that
+//! - Where spans leave a ray in doubt its crossings are isolated alone (`root_isolation`), among very many primitives within what is shared, if that
 //!   tells enough, and else exactly; stretches shorter than 5·10⁻⁷ of the scene are
 //!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left (all but an eighth for its next part),
 //!   and what comes after its share is used up is decided by the signs at its ends.

@@ -32,7 +32,7 @@ pub struct Picker {
 }
 
 /// Stretches of rays shorter than this part of the scene's size are not looked into.
-const RESOLUTION: f64 = 1e-5;
+const PICK_RESOLUTION: f64 = 1e-5;
 /// Surfaces without a support are followed this far, in units of the scene's size.
 const FURTHEST: f64 = 1e4;
 
@@ -81,7 +81,7 @@ impl Picker {
             let along = Along {
                 ray,
                 range,
-                resolution: RESOLUTION,
+                resolution: PICK_RESOLUTION,
             };
             let mut found = None;
             crossings(&surface.sum, &along, |t, _| {

@@ -40,12 +40,113 @@ pub struct Quick {
     pub flesh: Flesh,
 }
 
+/// Where the rays of a packet are within the reach of blobs.
+struct Reached {
+    /// First and last parameter of each ray, infinite and minus infinite without blobs.
+    from: f32x8,
+    to: f32x8,
+    /// See [`MarchRays::guess`].
+    guess: f32x8,
+    /// See [`MarchRays::first`].
+    first: f32x8,
+    /// Largest [`Near::steep`](crate::nearby::Near::steep).
+    steepest: f32,
+    evaluations: u64,
+}
+
 impl Quick {
     fn ray_blobs(&self) -> RayBlobs<'_> {
         RayBlobs {
             blobs: &self.blobs,
             intervals: &self.intervals,
             plain: self.plain,
+        }
+    }
+
+    /// Collects those of some blobs of a list, given in its order, that the rays meet, without those that all rays meet only
+    /// inside of others.
+    #[inline(always)]
+    fn collect(
+        &mut self,
+        near: &Nearby,
+        indices: impl Iterator<Item = usize>,
+        rays: &Rays,
+        limits: &[f64; PACKET],
+        alive: u32,
+    ) -> Reached {
+        let far = f32x8::splat(f32::INFINITY);
+        let (mut from, mut to, mut guess, mut first) = (far, -far, far, far);
+        let mut evaluations = 0;
+        self.blobs.clear();
+        self.intervals.clear();
+        self.plain = true;
+        let limit = f32x8::from_lanes(|i| (limits[i] - near.base).at_most(1e30));
+        // Each ray is certainly inside at `sure`, and all of them at `hidden`.
+        let (mut sure, mut hidden) = (far, f32::INFINITY);
+        // The same in all lanes: a scalar maximum compiles to a branch in wasm.
+        let mut steepest = f32x8::splat(0.0);
+        for index in indices {
+            let near = near.get(index);
+            // Blobs from here on are met only inside of others.
+            if near.from > hidden {
+                break;
+            }
+            let middle = core::array::from_fn(|i| f32x8::splat(near.middle[i]) - rays.origin[i]);
+            let on_ray = near.blob.on_ray(middle, rays.direction);
+            let [enters, leaves] = on_ray.within(f32x8::splat(near.square));
+            let enters = enters.fast_max(f32x8::splat(0.0));
+            let leaves = leaves.fast_min(limit);
+            let meets = enters.simd_le(leaves);
+            evaluations += 8;
+            if meets.to_bitmask() & alive == 0 {
+                continue;
+            }
+            let step_from = meets.select(enters, far);
+            let step_to = meets.select(leaves, -far);
+            from = from.fast_min(step_from);
+            to = to.fast_max(step_to);
+            let strong = near.core + STRONG * (near.square - near.core);
+            let [core, out] = on_ray.within(f32x8::splat(near.core));
+            let inside = meets & enters.simd_le(core) & core.simd_le(out);
+            if inside.any() {
+                let core = inside.select(core, far);
+                first = core
+                    .simd_lt(guess)
+                    .select(core - f32x8::splat(near.lead), first);
+                guess = guess.fast_min(core);
+                // A segment's field may be below T at its core.
+                let certain = if near.part {
+                    far
+                } else if near.blob.is_segment() {
+                    let inside = f32x8::splat(1.0).simd_lt(on_ray.at(core).0);
+                    inside.select(core, far)
+                } else {
+                    core
+                };
+                sure = sure.fast_min(certain);
+                hidden = extremes(sure, sure, alive).1;
+            }
+            let steep = f32x8::splat(near.steep);
+            steepest = steepest.simd_lt(steep).select(steep, steepest);
+            self.plain &= on_ray.is_gaussian_point();
+            self.intervals.push(RayInterval {
+                from: least(step_from),
+                to: -least(-step_to),
+                blob: self.blobs.len() as u32,
+            });
+            self.blobs.push(RayBlob {
+                on_ray,
+                strong,
+                index: index as u32,
+            });
+        }
+        Reached {
+            from,
+            to,
+            guess,
+            first,
+            steepest: steepest.to_array()[0],
+            evaluations,
         }
     }
 }
@@ -64,10 +165,10 @@ pub struct Looked {
 /// Half the least and the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), or less, in units of the scene.
 pub const FINEST: f64 = 1e-6;
 /// See [`FINEST`].
-pub const COARSEST: f64 = 5e-5;
+pub const COARSEST_OF_BLOBS: f64 = 5e-5;
 
 /// Largest number of Newton steps from a packet's hits onto the surface.
-const MOST_LOOKS: usize = 12;
+const MOST_REFINING: usize = 12;
 /// Rounding of the field near T in single precision.
 const FIELD_ROUNDING: f32 = 2e-6;
 /// Largest error of the field, in T: everything that lists leave out, primitives that are no blobs, the error of blob chains, and
@@ -76,14 +177,14 @@ const LOST: f32 = 2.5e-5;
 /// Largest noise that is allowed for; tiny, distant blobs would need more.
 const NOISIEST: f32 = 2e-3;
 /// Length, in units of the scene, of the parts in which doubtful intervals are isolated.
-const PART: f64 = 1.0 / 16.0;
+const DOUBT_PART: f64 = 1.0 / 16.0;
 /// Rounding of positions, relative to the scene's size plus the distance.
 const MISPLACED: f32 = 3e-7;
 /// Most blobs near a packet; beyond that it takes the general way, which needs less space for each.
-const MOST_STEPS: usize = 1 << 16;
+const MOST_NEAR_BLOBS: usize = 1 << 16;
 
-/// See [`PART`].
-const MOST_PARTS: f64 = 256.0;
+/// See [`DOUBT_PART`].
+const MOST_DOUBT_PARTS: f64 = 256.0;
 
 /// Rays of a packet, counted from a list's base.
 pub struct Rays {
@@ -311,76 +412,19 @@ impl Soft {
             alive,
             quest,
         } = asked;
-        let far = f32x8::splat(f32::INFINITY);
-        let (mut from, mut to, mut guess, mut first) = (far, -far, far, far);
-        let mut evaluations = 0;
-        work.blobs.clear();
-        work.intervals.clear();
-        work.plain = true;
-        let limit = f32x8::from_lanes(|i| (limits[i] - near.base).at_most(1e30));
-        // Each ray is certainly inside at `sure`, and all of them at `hidden`.
-        let (mut sure, mut hidden) = (far, f32::INFINITY);
-        // The same in all lanes: a scalar maximum compiles to a branch in wasm.
-        let mut steepest = f32x8::splat(0.0);
-        for index in indices {
-            let near = near.get(index);
-            // Blobs from here on are met only inside of others.
-            if near.from > hidden {
-                break;
-            }
-            let middle = core::array::from_fn(|i| f32x8::splat(near.middle[i]) - rays.origin[i]);
-            let on_ray = near.blob.on_ray(middle, rays.direction);
-            let [enters, leaves] = on_ray.within(f32x8::splat(near.square));
-            let enters = enters.fast_max(f32x8::splat(0.0));
-            let leaves = leaves.fast_min(limit);
-            let meets = enters.simd_le(leaves);
-            evaluations += 8;
-            if meets.to_bitmask() & alive == 0 {
-                continue;
-            }
-            let step_from = meets.select(enters, far);
-            let step_to = meets.select(leaves, -far);
-            from = from.fast_min(step_from);
-            to = to.fast_max(step_to);
-            let strong = near.core + STRONG * (near.square - near.core);
-            let [core, out] = on_ray.within(f32x8::splat(near.core));
-            let inside = meets & enters.simd_le(core) & core.simd_le(out);
-            if inside.any() {
-                let core = inside.select(core, far);
-                first = core
-                    .simd_lt(guess)
-                    .select(core - f32x8::splat(near.lead), first);
-                guess = guess.fast_min(core);
-                // A segment's field may be below T at its core.
-                let certain = if near.part {
-                    far
-                } else if near.blob.is_segment() {
-                    let inside = f32x8::splat(1.0).simd_lt(on_ray.at(core).0);
-                    inside.select(core, far)
-                } else {
-                    core
-                };
-                sure = sure.fast_min(certain);
-                hidden = extremes(sure, sure, alive).1;
-            }
-            let steep = f32x8::splat(near.steep);
-            steepest = steepest.simd_lt(steep).select(steep, steepest);
-            work.plain &= on_ray.is_gaussian_point();
-            work.intervals.push(RayInterval {
-                from: least(step_from),
-                to: -least(-step_to),
-                blob: work.blobs.len() as u32,
-            });
-            work.blobs.push(RayBlob {
-                on_ray,
-                strong,
-                index: index as u32,
-            });
-        }
+        let reached = work.collect(near, indices, rays, limits, alive);
+        let Reached {
+            from,
+            to,
+            guess,
+            first,
+            steepest,
+            evaluations,
+        } = reached;
         if work.blobs.is_empty() {
             return Some(Looked::default());
         }
-        if work.blobs.len() > MOST_STEPS {
+        if work.blobs.len() > MOST_NEAR_BLOBS {
             return None;
         }
         let order =
@@ -391,10 +435,7 @@ impl Soft {
         // Shadow rays need no such accuracy, and start where the field is nearly T.
         let noise = match quest {
             Quest::Entry => 0.0,
-            _ => {
-                let steepest = steepest.to_array()[0];
-                (LOST + MISPLACED * steepest * (1.0 + furthest)).at_most(NOISIEST)
-            }
+            _ => (LOST + MISPLACED * steepest * (1.0 + furthest)).at_most(NOISIEST),
         };
         let march_rays = MarchRays {
             from,
@@ -448,7 +489,9 @@ impl Soft {
                 origin: ray.at(near.base),
                 direction: ray.direction,
             };
-            let parts = ((end - start) / PART).ceil().clamp(1.0, MOST_PARTS);
+            let parts = ((end - start) / DOUBT_PART)
+                .ceil()
+                .clamp(1.0, MOST_DOUBT_PARTS);
             let place = |part: u32| start + (end - start) * f64::from(part) / parts;
             for part in 0..parts as u32 {
                 let (found, evaluations) = self.entry(body, based, [place(part), place(part + 1)]);
@@ -468,7 +511,7 @@ impl Soft {
 
     /// Tolerance for the blobs of a list, none of which is nearer to the rays' origins than the list's base.
     fn tolerance(&self, list: &Nearby) -> f64 {
-        (0.1 * self.pixel * list.base).clamp(FINEST, COARSEST)
+        (0.1 * self.pixel * list.base).clamp(FINEST, COARSEST_OF_BLOBS)
     }
 
     /// Moves a packet's hits onto the surface and samples it there (gradient, shares of finishes).
@@ -489,7 +532,7 @@ impl Soft {
         let mut gradient = [f32x8::splat(0.0); 3];
         let (first, last) = extremes(at, at, met);
         let [mut low, mut high] = marched.between;
-        for _ in 0..MOST_LOOKS {
+        for _ in 0..MOST_REFINING {
             let mut value = f32x8::splat(0.0);
             gradient = [f32x8::splat(0.0); 3];
             weights.clear();

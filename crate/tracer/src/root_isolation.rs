@@ -28,9 +28,9 @@ const KEPT: u32 = 8;
 /// Fewest pieces for a part, if there are as many left: enough to isolate a few crossings.
 const FEWEST_PIECES: u32 = 256;
 /// Largest number of halvings of a piece, also for lengths that are not finite.
-const DEEPEST: u32 = 50;
+const MOST_HALVINGS: u32 = 50;
 /// Number of primitives for which a piece counts as one more.
-const LONG: u32 = 64;
+const PRIMITIVES_A_PIECE: u32 = 64;
 /// Largest error of all resolved primitives together, in T.
 const RESOLVED: f64 = 1e-9;
 /// Rounding of a field in double precision, relative to the sizes of its terms.
@@ -251,7 +251,7 @@ impl RootIsolator {
         mut piece: Piece,
         tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
-        let cost = 1 + piece.rest.len() as u32 / LONG;
+        let cost = 1 + piece.rest.len() as u32 / PRIMITIVES_A_PIECE;
         if piece.most < cost {
             return self.give_up(along, &piece, tell);
         }
@@ -338,7 +338,7 @@ impl RootIsolator {
             return self.refine(along, piece, tell);
         }
         let hopeless = span.max() <= vague && span.min() >= -vague;
-        if hopeless || length <= along.resolution || piece.depth >= DEEPEST {
+        if hopeless || length <= along.resolution || piece.depth >= MOST_HALVINGS {
             return self.give_up(along, piece, tell);
         }
         let t = 0.5 * (piece.from + piece.to);

@@ -20,6 +20,7 @@ use crate::spans::Node;
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
 use field::{Cut, Primitive, THRESHOLD};
+use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Accuracy of spans.
@@ -298,6 +299,94 @@ struct Heritage {
     pub spent: Spent,
 }
 
+/// Geometry of a new slab.
+struct Place {
+    from: f64,
+    to: f64,
+    /// Ball around the slab.
+    center: DVec3,
+    radius: f64,
+    /// The beam's axis and spread.
+    direction: DVec3,
+    spread: f64,
+    /// Levels of division below the beam.
+    levels_below: u32,
+    /// Factor from a fourth derivative to the error of a shared interpolant; infinite without shared interpolants.
+    roughness: f64,
+    length: SpanLength,
+    /// Rounding of coordinates.
+    misplaced: f64,
+}
+
+/// Sums of bounds over a new slab's candidates.
+#[derive(Default)]
+struct Sizes {
+    /// Of those that may be positive.
+    above: f64,
+    /// Of those that may be negative.
+    below: f64,
+    total: f64,
+}
+
+/// The part of the error budget that is left to a candidate: half of the rest is shared out evenly, half by size. The shares
+/// add up to no more than the rest.
+#[derive(Clone, Copy)]
+struct Share {
+    even: f64,
+    by_size: f64,
+}
+
+impl Share {
+    fn of(budget: f64, spent: f64, count: usize, total: f64) -> Self {
+        let left = (budget - spent).at_least(0.0);
+        Self {
+            even: 0.5 * left / count.max(1) as f64,
+            by_size: 0.5 * left / total.at_least(f64::MIN_POSITIVE),
+        }
+    }
+
+    #[inline(always)]
+    fn at(self, magnitude: f64) -> f64 {
+        self.even + self.by_size * magnitude
+    }
+}
+
+/// Decisions for all candidates of a new slab.
+struct Plan {
+    for_spans: Share,
+    /// Whether too few candidates could share an interpolant.
+    few: bool,
+    /// Whether the beam is narrow enough for spans.
+    resolves: bool,
+    /// Whether there is a joined interpolant.
+    joins: bool,
+    /// Whether candidates with large rounding are handed to the halves.
+    remote: bool,
+}
+
+impl Plan {
+    /// Whether a candidate may be part of a joined interpolant.
+    #[inline(always)]
+    fn is_joinable(&self, c: &Candidate) -> bool {
+        c.id & GROUP == 0
+            && (c.fate == Fate::Pending || self.few && c.fate == Fate::Shared)
+            && c.shared <= self.for_spans.at(c.magnitude)
+    }
+}
+
+/// Sums over a new slab's candidates by fate.
+#[derive(Default)]
+struct Sorted {
+    pending_above: f64,
+    pending_below: f64,
+    /// Whether a pending candidate has no kink here, and whether one has.
+    smooth: bool,
+    kinked: bool,
+    blurring: bool,
+    /// Rounding of the shared interpolant.
+    of_shared: Rounding,
+}
+
 const NONE: u32 = u32::MAX;
 
 /// Fraction of its share of the shared interpolants' error up to which a primitive is dropped.
@@ -311,14 +400,14 @@ const FEWEST: u32 = 3;
 const REMOTE: f64 = 16.0;
 
 /// Ratio of a beam's width to a slab's length from which narrower beams take over …
-const NARROW: f64 = 0.5;
+const NARROW_BEAM: f64 = 0.5;
 /// … and for beams wider than a block.
-const WIDE: f64 = 0.4;
+const WIDE_BEAM: f64 = 0.4;
 /// Levels of division below a block, which is a beam of four packets.
-const BLOCK: u32 = 2;
+const BLOCK_LEVELS: u32 = 2;
 
 /// Most levels of division below a beam with joined interpolants.
-const JOINED: u32 = 4;
+const JOINED_LEVELS: u32 = 4;
 
 /// Factor by which refining a slab divides its error.
 const FINER: f64 = 8.0;
@@ -330,13 +419,13 @@ pub const LARGE_TERM: f64 = 4.0 * THRESHOLD;
 const MOST_BLURRED: usize = 32;
 
 /// Largest rounding error of an interpolant that root isolation uses in place of its primitives.
-const SHARP: f64 = 2e-5;
+const SHARP_INTERPOLANT: f64 = 2e-5;
 
 /// Numbers of slabs and of list entries above which a tree is discarded between two packets.
 const LARGE: (usize, usize) = (1 << 16, 1 << 21);
 
 /// Most slabs that [`Slabs::is_empty_for`] visits.
-const MOST_LOOKS: u32 = 64;
+const MOST_EMPTY_LOOKS: u32 = 64;
 
 /// Whether a slab ends far out and starts in the nearer half of its range.
 fn is_remote(from: f64, to: f64) -> bool {
@@ -488,7 +577,7 @@ impl<'a> Slabs<'a> {
         }
         *looks += 1 + (slab.pending.len() / 64) as u32;
         // Where there are spans, only rays can tell.
-        if !slab.resolved.is_empty() || *looks > MOST_LOOKS {
+        if !slab.resolved.is_empty() || *looks > MOST_EMPTY_LOOKS {
             return false;
         }
         let nothing_left = slab.pending.is_empty();
@@ -595,10 +684,10 @@ impl<'a> Slabs<'a> {
 
     /// Ratio of a beam's width to a slab's length from which narrower beams take over.
     fn narrow(&self, beam: usize) -> f64 {
-        if self.beams.levels_below(beam) > BLOCK {
-            WIDE
+        if self.beams.levels_below(beam) > BLOCK_LEVELS {
+            WIDE_BEAM
         } else {
-            NARROW
+            NARROW_BEAM
         }
     }
 
@@ -737,7 +826,7 @@ impl<'a> Slabs<'a> {
         let mut off = self.slab(index).spent.shared;
         self.up(index, |s, _| {
             if let Some(block) = self.blocks.get(s.blocks[Which::Shared as usize] as usize)
-                && s.noise_of_shared <= SHARP
+                && s.noise_of_shared <= SHARP_INTERPOLANT
             {
                 blocks.push((block.cell, block.total));
                 off += s.noise_of_shared;
@@ -808,17 +897,45 @@ impl<'a> Slabs<'a> {
         }
     }
 
+    /// Makes the slab between two parameters from a parent's entries.
     fn add(&mut self, candidates: Range<u32>, from: f64, to: f64, heritage: Heritage) {
-        let Heritage {
-            parent,
-            anew,
-            beam: number,
-            depth,
-            budget,
-            mut spent,
-        } = heritage;
+        let place = self.place(heritage.beam, from, to);
+        let sizes = self.gather(candidates, &place);
+        let plan = self.plan(&place, &sizes, &heritage);
+        let mut spent = heritage.spent;
+        spent.rounding.carved = spent.rounding.carved.at_least(sizes.below);
+        let sorted = self.sort(&place, &plan, &mut spent);
+        let [start, shared, joined, resolved, pending, dropped] = self.store_lists();
+        self.nodes.push(Slab {
+            from,
+            to,
+            shared: start..shared,
+            joined: shared..joined,
+            resolved: joined..resolved,
+            pending: resolved..pending,
+            dropped: pending..dropped,
+            above: sizes.above,
+            below: sizes.below,
+            pending_above: sorted.pending_above,
+            pending_below: sorted.pending_below,
+            error: spent.spans + spent.shared + spent.noise,
+            spent,
+            noise_of_shared: sorted.of_shared.most(),
+            budget: heritage.budget,
+            parent: heritage.parent,
+            anew: heritage.anew,
+            kinked: sorted.kinked && !sorted.smooth && plan.resolves,
+            blurring: sorted.blurring && plan.resolves,
+            blocks: [NONE; 2],
+            beam: heritage.beam,
+            children: [0; 4],
+            finer: 0,
+            depth: heritage.depth,
+        });
+    }
+
+    fn place(&self, number: usize, from: f64, to: f64) -> Place {
         let beam = self.beams.get(number);
-        let levels_below = self.beams.levels_below(number);
         let (center, mut radius) = beam.ball(from, to);
         let mut roughness = f64::INFINITY;
         if self.precision.shared > 0.0 {
@@ -826,127 +943,157 @@ impl<'a> Slabs<'a> {
             roughness = cell.roughness();
             radius = radius.at_least(cell.radius());
         }
-        let length = SpanLength::new(to - from);
-        let (direction, spread) = (beam.axis.direction, beam.spread);
-        let (mut above, mut below, mut total) = (0.0, 0.0, 0.0);
         let rounding = self.precision.rounding;
-        // Coordinates are rounded in the world and in the primitive's own frame.
-        let misplaced = rounding * (center.abs().max_element() + radius + to).at_least(1.0);
+        Place {
+            from,
+            to,
+            center,
+            radius,
+            direction: beam.axis.direction,
+            spread: beam.spread,
+            levels_below: self.beams.levels_below(number),
+            roughness,
+            length: SpanLength::new(to - from),
+            // Coordinates are rounded in the world and in the primitive's own frame.
+            misplaced: rounding * (center.abs().max_element() + radius + to).at_least(1.0),
+        }
+    }
+
+    /// Collects the candidates of a new slab in `scratch`, without negligible ones; near groups are opened.
+    fn gather(&mut self, candidates: Range<u32>, place: &Place) -> Sizes {
+        let mut sizes = Sizes::default();
         self.scratch.clear();
         for at in candidates {
             let mut first = Some(self.ids[at as usize]);
             while let Some(id) = first.take().or_else(|| self.stack.pop()) {
-                let candidate =
-                    if let (Some(clusters), true) = (self.terms.clusters, id & GROUP != 0) {
-                        let group = id & !GROUP;
-                        let view = clusters.view(group, center, radius);
-                        if view.magnitude <= self.terms.left_out * view.count as f64 {
-                            continue;
-                        }
-                        // Of what has kinks only single primitives have spans.
-                        if view.near || view.fourth.is_infinite() && levels_below <= BLOCK {
-                            self.open(clusters, group);
-                            continue;
-                        }
-                        Candidate {
-                            id,
-                            magnitude: view.magnitude,
-                            span: length.fourth() * view.fourth,
-                            shared: view.fourth * roughness,
-                            distance: view.distance,
-                            adds: view.adds,
-                            carves: view.carves,
-                            kinked: false,
-                            fate: Fate::Pending,
-                        }
-                    } else {
-                        let primitive = self.list[id as usize];
-                        let bound = &self.terms.bounds[primitive as usize];
-                        let near = bound.nearness(center, radius);
-                        let shortened = bound.shortened(direction, spread);
-                        let length = if shortened < 1.0 {
-                            SpanLength::new(shortened * (to - from))
-                        } else {
-                            length
-                        };
-                        let estimate = bound.estimate(near, &length);
-                        if estimate.magnitude <= self.terms.left_out {
-                            continue;
-                        }
-                        Candidate {
-                            id,
-                            magnitude: estimate.magnitude,
-                            // A span is between the values' and slopes' extremes, so it is never further off than
-                            // its bound says; a NaN counts as far off.
-                            span: estimate.error,
-                            shared: estimate.fourth * roughness,
-                            distance: near.distance,
-                            adds: bound.adds(),
-                            carves: bound.carves(),
-                            kinked: bound.has_profile() && {
-                                let kinks = self.terms.kinks.of(primitive);
-                                kinks.iter().any(|kink| kink.cuts(center, radius))
-                            },
-                            fate: Fate::Pending,
-                        }
-                    };
+                let candidate = match self.terms.clusters {
+                    Some(clusters) if id & GROUP != 0 => self.group(clusters, id & !GROUP, place),
+                    _ => self.single(id, place),
+                };
+                let Some(candidate) = candidate else {
+                    continue;
+                };
                 let magnitude = candidate.magnitude;
                 if candidate.adds {
-                    above += magnitude;
+                    sizes.above += magnitude;
                 }
                 if candidate.carves {
-                    below += magnitude;
+                    sizes.below += magnitude;
                 }
-                total += magnitude;
+                sizes.total += magnitude;
                 self.scratch.push(candidate);
             }
         }
-        // What is left of a budget is shared out half evenly, half by size. The shares add up
-        // to no more than the whole.
-        let share = |budget: f64, spent: f64| {
-            let left = (budget - spent).at_least(0.0);
-            let even = 0.5 * left / self.scratch.len().max(1) as f64;
-            let by_size = 0.5 * left / total.at_least(f64::MIN_POSITIVE);
-            move |magnitude: f64| even + by_size * magnitude
+        sizes
+    }
+
+    /// Returns a group as a candidate; `None` if it is negligible, or if its parts are candidates instead.
+    #[inline(always)]
+    fn group(&mut self, clusters: &Clusters, group: u32, place: &Place) -> Option<Candidate> {
+        let view = clusters.view(group, place.center, place.radius);
+        if view.magnitude <= self.terms.left_out * view.count as f64 {
+            return None;
+        }
+        // With kinks only single primitives have spans.
+        if view.near || view.fourth.is_infinite() && place.levels_below <= BLOCK_LEVELS {
+            self.open(clusters, group);
+            return None;
+        }
+        Some(Candidate {
+            id: group | GROUP,
+            magnitude: view.magnitude,
+            span: place.length.fourth() * view.fourth,
+            shared: view.fourth * place.roughness,
+            distance: view.distance,
+            adds: view.adds,
+            carves: view.carves,
+            kinked: false,
+            fate: Fate::Pending,
+        })
+    }
+
+    /// Returns a primitive as a candidate; `None` if it is negligible.
+    #[inline(always)]
+    fn single(&self, id: u32, place: &Place) -> Option<Candidate> {
+        let (center, radius) = (place.center, place.radius);
+        let primitive = self.list[id as usize];
+        let bound = &self.terms.bounds[primitive as usize];
+        let near = bound.nearness(center, radius);
+        let shortened = bound.shortened(place.direction, place.spread);
+        let length = if shortened < 1.0 {
+            SpanLength::new(shortened * (place.to - place.from))
+        } else {
+            place.length
         };
-        let for_spans = share(budget, spent.spans);
-        let for_shared = share(self.precision.shared, spent.shared);
-        let resolves = levels_below <= BLOCK;
-        // A packet's own spans are as quick to make.
-        let joins = (1..=JOINED).contains(&levels_below);
-        // Of a slab that reaches far out, most are nearer than its end, and halves are rounded less.
-        let remote = is_remote(from, to);
-        let rounded = |magnitude: f64, steepness: f64| {
-            magnitude.at_most(LARGE_TERM) * (4.0 * rounding + misplaced * steepness)
-        };
-        let mut count = 0;
+        let estimate = bound.estimate(near, &length);
+        if estimate.magnitude <= self.terms.left_out {
+            return None;
+        }
+        Some(Candidate {
+            id,
+            magnitude: estimate.magnitude,
+            // A span is between the values' and slopes' extremes, so its error is never larger than the bound; NaN counts
+            // as a large error.
+            span: estimate.error,
+            shared: estimate.fourth * place.roughness,
+            distance: near.distance,
+            adds: bound.adds(),
+            carves: bound.carves(),
+            kinked: bound.has_profile() && {
+                let kinks = self.terms.kinks.of(primitive);
+                kinks.iter().any(|kink| kink.cuts(center, radius))
+            },
+            fate: Fate::Pending,
+        })
+    }
+
+    /// Marks the candidates to drop and to share, and decides which interpolants the slab has.
+    fn plan(&mut self, place: &Place, sizes: &Sizes, heritage: &Heritage) -> Plan {
+        let count = self.scratch.len();
+        let share = |budget: f64, spent: f64| Share::of(budget, spent, count, sizes.total);
+        let for_spans = share(heritage.budget, heritage.spent.spans);
+        let for_shared = share(self.precision.shared, heritage.spent.shared);
+        let mut sharing = 0;
         for candidate in &mut self.scratch {
-            let share = for_shared(candidate.magnitude);
+            let share = for_shared.at(candidate.magnitude);
             if candidate.magnitude <= DROPPED_SHARE * share {
-                // What is as small as that is as good as interpolated by nothing.
+                // As small as the error of an interpolant.
                 candidate.fate = Fate::Dropped;
             } else if candidate.shared <= share {
                 candidate.fate = Fate::Shared;
-                count += 1;
+                sharing += 1;
             }
         }
-        let few = count < FEWEST;
-        let coarse = |c: &Candidate| {
-            c.id & GROUP == 0
-                && (c.fate == Fate::Pending || few && c.fate == Fate::Shared)
-                && c.shared <= for_spans(c.magnitude)
+        let mut plan = Plan {
+            for_spans,
+            few: sharing < FEWEST,
+            resolves: place.levels_below <= BLOCK_LEVELS,
+            // A packet's own spans cost as little as joined interpolants.
+            joins: (1..=JOINED_LEVELS).contains(&place.levels_below),
+            // Most of a slab that ends far out is nearer than its end, and its halves are rounded less.
+            remote: is_remote(place.from, place.to),
         };
-        let joins = joins && self.scratch.iter().filter(|c| coarse(c)).count() >= FEWEST as usize;
-        spent.rounding.carved = spent.rounding.carved.at_least(below);
-        let mut of_shared = Rounding {
-            carved: spent.rounding.carved,
-            ..Rounding::default()
+        let joinable = || self.scratch.iter().filter(|c| plan.is_joinable(c)).count();
+        let joins = plan.joins && joinable() >= FEWEST as usize;
+        plan.joins = joins;
+        plan
+    }
+
+    /// Sorts the candidates into `lists`, by fate, and adds their errors and rounding.
+    fn sort(&mut self, place: &Place, plan: &Plan, spent: &mut Spent) -> Sorted {
+        let rounding = self.precision.rounding;
+        let rounded = |magnitude: f64, steepness: f64| {
+            magnitude.at_most(LARGE_TERM) * (4.0 * rounding + place.misplaced * steepness)
+        };
+        let mut sorted = Sorted {
+            of_shared: Rounding {
+                carved: spent.rounding.carved,
+                ..Rounding::default()
+            },
+            ..Sorted::default()
         };
         let mut lists = core::mem::take(&mut self.lists);
         lists.iter_mut().for_each(Vec::clear);
-        let (mut pending_above, mut pending_below) = (0.0, 0.0);
-        // Whether something is pending that spans will follow, and something that they will not.
-        let (mut left, mut kinked, mut blurring) = (false, false, false);
         for candidate in &self.scratch {
             let Candidate {
                 id,
@@ -955,36 +1102,37 @@ impl<'a> Slabs<'a> {
                 shared,
                 ..
             } = *candidate;
+            let for_spans = || plan.for_spans.at(magnitude);
             let fate = match candidate.fate {
                 Fate::Dropped => Fate::Dropped,
-                Fate::Shared if !few => Fate::Shared,
+                Fate::Shared if !plan.few => Fate::Shared,
                 _ if candidate.kinked => Fate::Pending,
-                _ if remote
+                _ if plan.remote
                     && rounded(magnitude, self.relative_slope(id, candidate.distance))
-                        > for_spans(magnitude) =>
+                        > for_spans() =>
                 {
                     Fate::Pending
                 }
-                _ if joins && coarse(candidate) => Fate::Joined,
-                _ if resolves && span <= for_spans(magnitude) => Fate::Resolved,
+                _ if plan.joins && plan.is_joinable(candidate) => Fate::Joined,
+                _ if plan.resolves && span <= for_spans() => Fate::Resolved,
                 _ => Fate::Pending,
             };
-            left |= fate == Fate::Pending && !candidate.kinked;
-            kinked |= fate == Fate::Pending && candidate.kinked;
             lists[fate as usize].push(id);
             match fate {
                 Fate::Shared => spent.shared += shared,
                 Fate::Joined => spent.spans += shared,
                 Fate::Resolved => spent.spans += span,
                 Fate::Pending => {
+                    sorted.smooth |= !candidate.kinked;
+                    sorted.kinked |= candidate.kinked;
                     if candidate.adds {
-                        pending_above += magnitude;
+                        sorted.pending_above += magnitude;
                     }
                     if candidate.carves {
-                        pending_below += magnitude;
+                        sorted.pending_below += magnitude;
                     }
                     if id & GROUP == 0 {
-                        blurring |= 2.0 * rounding * self.cancels(id) >= THRESHOLD;
+                        sorted.blurring |= 2.0 * rounding * self.cancels(id) >= THRESHOLD;
                     }
                     continue;
                 }
@@ -997,10 +1145,18 @@ impl<'a> Slabs<'a> {
             let cancelled = 2.0 * rounding * self.cancels(id);
             spent.rounding.add(magnitude, part, cancelled);
             if fate == Fate::Shared {
-                of_shared.add(magnitude, part, cancelled);
+                sorted.of_shared.add(magnitude, part, cancelled);
             }
         }
         spent.noise = spent.rounding.most();
+        self.lists = lists;
+        sorted
+    }
+
+    /// Appends `lists` to `ids`; returns the start and the ends of the lists there. Groups to resolve are replaced by their
+    /// members.
+    fn store_lists(&mut self) -> [u32; 6] {
+        let lists = core::mem::take(&mut self.lists);
         let mut ends = [self.ids.len() as u32; 6];
         for (list, which) in lists.iter().zip(1..) {
             match self.terms.clusters {
@@ -1020,33 +1176,7 @@ impl<'a> Slabs<'a> {
             ends[which] = self.ids.len() as u32;
         }
         self.lists = lists;
-        let [start, shared, joined, resolved, pending, dropped] = ends;
-        self.nodes.push(Slab {
-            from,
-            to,
-            shared: start..shared,
-            joined: shared..joined,
-            resolved: joined..resolved,
-            pending: resolved..pending,
-            dropped: pending..dropped,
-            above,
-            below,
-            pending_above,
-            pending_below,
-            error: spent.spans + spent.shared + spent.noise,
-            spent,
-            noise_of_shared: of_shared.most(),
-            budget,
-            parent,
-            anew,
-            kinked: kinked && !left && resolves,
-            blurring: blurring && resolves,
-            blocks: [NONE; 2],
-            beam: number,
-            children: [0; 4],
-            finer: 0,
-            depth,
-        });
+        ends
     }
 }
 

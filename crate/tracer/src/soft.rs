@@ -71,7 +71,7 @@ struct Groups {
 }
 
 /// Largest sum of the fields left out, of all primitives that are no blobs, in T.
-const LEFT_OUT: f64 = 1e-5;
+const OTHERS_LEFT_OUT: f64 = 1e-5;
 
 /// Largest sum of the fields that slabs leave out of their lists, in T: below the accuracy of root isolation, which uses those
 /// lists.
@@ -83,7 +83,7 @@ const FAR: f64 = 1e4;
 /// Steps along a beam after which it counts as near a primitive …
 const MOST_STRIDES: usize = 32;
 /// … and the distance that counts as near, beyond the primitive's reach and relative to it.
-const CLOSE: f64 = 0.05;
+const CLOSE_BEAM: f64 = 0.05;
 
 impl Soft {
     /// Collects a scene's soft elements. The scene is dropped before their bounds are made, which saves memory.
@@ -120,7 +120,7 @@ impl Soft {
         }
         let ranges: Vec<Range<u32>> = bodies.iter().map(|body| body.range.clone()).collect();
         let blob_set = BlobSet::new(&primitives, &finish, &ranges);
-        let left_out = LEFT_OUT * THRESHOLD / primitives.len().max(1) as f64;
+        let left_out = OTHERS_LEFT_OUT * THRESHOLD / primitives.len().max(1) as f64;
         let mut balls = Vec::with_capacity(primitives.len());
         let mut body_balls = Vec::new();
         for (number, body) in (0..).zip(&mut bodies) {
@@ -264,7 +264,7 @@ impl Soft {
                 }
             });
         }
-        let left_out = NEXT_TO_NOTHING / LEFT_OUT * self.left_out;
+        let left_out = NEXT_TO_NOTHING / OTHERS_LEFT_OUT * self.left_out;
         let terms = self.terms(&groups.kinks, left_out, clusters);
         let space = spaces.pop().unwrap_or_default();
         let slabs = Slabs::new(terms, &list, beams(from), range, self.precision, space);
@@ -365,7 +365,7 @@ impl Soft {
             }
             // All rays are within the beam's width of the axis.
             let away = bound.nearness(beam.axis.at(t), beam.width(t)).distance - other.reach;
-            if away <= CLOSE * other.reach {
+            if away <= CLOSE_BEAM * other.reach {
                 break;
             }
             // Along a ray the distance shrinks by at most the ray's length.

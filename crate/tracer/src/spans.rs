@@ -104,7 +104,7 @@ impl<L: Lanes> Span<L> {
 }
 
 /// Accuracy of roots, relative to the interval.
-const EXACT: f64 = 1e-13;
+const ROOT_ACCURACY: f64 = 1e-13;
 
 impl Span<f64> {
     /// Returns the x in 0..=1 (the interval's ends) where the cubic crosses a level, ascending; none if a coefficient is NaN.
@@ -122,7 +122,7 @@ impl Span<f64> {
             };
             // The secant's root is near.
             let start = (level - a) / (d - a);
-            return Roots::one(bracketed_from(over, [0.0, 1.0], start, EXACT));
+            return Roots::one(bracketed_from(over, [0.0, 1.0], start, ROOT_ACCURACY));
         }
         roots(
             &[

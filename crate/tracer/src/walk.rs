@@ -122,7 +122,7 @@ impl<L: Lanes> Memories<L> {
 }
 
 /// Largest depth of slabs that are halved: lengths of 2⁻⁴⁰ of the beam's.
-const DEEPEST: u32 = 40;
+const DEEPEST_SLAB: u32 = 40;
 
 /// Most primitives in a slab with which crossings are isolated directly, without shared interpolants …
 const FEW_PRIMITIVES: usize = 64;
@@ -216,7 +216,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
         let all = self.sight.primitives.len();
         let most = (MOST_VISITS * all).clamp(MOST_WORK, MOST_WORK_OF_MANY);
-        if kinked || self.work > most || depth >= DEEPEST || self.slabs.is_blurred(index) {
+        if kinked || self.work > most || depth >= DEEPEST_SLAB || self.slabs.is_blurred(index) {
             self.isolate(index, self.alive);
             return;
         }

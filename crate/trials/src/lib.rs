@@ -127,7 +127,7 @@ impl Case {
         Self { seed, size }
     }
 
-    /// What [`Told`] writes.
+    /// Parses the output of [`Told`].
     fn read(text: &str) -> Option<Self> {
         let (seed, size) = text.split_once(':')?;
         Some(Self {

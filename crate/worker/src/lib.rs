@@ -1,4 +1,27 @@
-//! Tiles on request.
+//! The engine of a tracing worker: tiles on request.
+//!
+//! ```
+//! use tracer::{Pass, tiles};
+//! use worker::{Answer, Engine, Kind, Order, Request, Step};
+//!
+//! let mut engine = Engine::default();
+//! engine.accept(Request::Begin {
+//!     generation: 1,
+//!     scene: Box::default(),
+//!     size: [8, 8],
+//!     kind: Kind::Colours,
+//!     shared: false,
+//! });
+//! let order = |tile| Order { generation: 1, tile, pass: Pass::Full };
+//! engine.accept(Request::Trace(tiles([8, 8], 8).into_iter().map(order).collect()));
+//! let mut bytes = 0;
+//! while !engine.is_idle() {
+//!     if let Step::Answer(Answer::Traced { pixels, .. }) = engine.step(&|| false, &|| 0.0) {
+//!         bytes += pixels.len();
+//!     }
+//! }
+//! assert_eq!(bytes, 4 * 8 * 8);
+//! ```
 //!
 //! The page cuts a picture into tiles and sends [`Request`]s to its workers; a worker keeps them in
 //! an [`Engine`], does one step of work at a time and sends [`Answer`]s. Between two steps it looks

@@ -105,7 +105,7 @@ fn no_example_is_left_out() {
         for entry in std::fs::read_dir(folder).expect("the folder is there") {
             let name = entry.expect("it can be read").file_name();
             let name = name.to_str().expect("a plain name");
-            // What the others read.
+            // Files that the others read.
             let Some(name) = name.strip_suffix(".rat").filter(|name| *name != "flake") else {
                 continue;
             };

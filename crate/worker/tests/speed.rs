@@ -1,4 +1,4 @@
-//! What the worker's engine takes for the scenes of `tests/bench/`, natively and as wasm. A measurement:
+//! Time of the worker's engine for the scenes of `tests/bench/`, natively and as wasm. A measurement:
 //! `cargo xtask bench wasm` runs it. That it ends with a picture is a test.
 
 mod common;

@@ -28,7 +28,7 @@ pub fn target() -> PathBuf {
 pub struct Build {
     /// The folder in [`target`] of what is built so.
     pub folder: &'static str,
-    /// What the compiler is told.
+    /// Options of the compiler.
     pub flags: &'static str,
 }
 
@@ -45,7 +45,7 @@ pub const FUSED: Build = Build {
 };
 
 impl Build {
-    /// What to set for cargo.
+    /// Environment variables for cargo.
     pub fn settings(self) -> [(&'static str, std::ffi::OsString); 2] {
         [
             ("RUSTFLAGS", self.flags.into()),
@@ -78,7 +78,7 @@ pub fn cargo(arguments: &[&str]) -> Command {
     command(cargo, arguments)
 }
 
-/// What a thread's lines are marked with, and how its programs run.
+/// A thread's prefix for output lines, and how its programs run.
 #[derive(Clone, Copy, Debug)]
 struct Lane {
     /// Stands before each line that the thread and its programs write; empty where nothing else runs at the same time.
@@ -202,7 +202,7 @@ fn pass_on(command: &mut Command, shown: bool) -> Result<String> {
     Ok(output)
 }
 
-/// What a command writes, if it succeeds.
+/// Returns the output of a command, trimmed; `None` if it fails.
 pub fn read(command: &mut Command) -> Option<String> {
     let output = command.stderr(Stdio::null()).output().ok()?;
     output
@@ -211,7 +211,7 @@ pub fn read(command: &mut Command) -> Option<String> {
         .then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
-/// What a cargo command with `--message-format json-render-diagnostics` says that it made.
+/// Returns the artifacts that a cargo command with `--message-format json-render-diagnostics` reports.
 pub fn artifacts(command: &mut Command) -> Result<Vec<serde_json::Value>> {
     say(command);
     Ok(pass_on(command, false)?

@@ -36,7 +36,7 @@ pub fn wasm_test_runner() -> Result<PathBuf> {
     executable(&artifacts(&mut cargo(&build))?, "wasm-bindgen-test-runner")
 }
 
-/// What says to the runner that tests are to run in a browser's worker: `.cargo/config.toml` does, for `wasm-pack test`.
+/// Environment variable that makes the test runner use a browser's worker; `.cargo/config.toml` sets it for `wasm-pack test`.
 pub const IN_WORKER: &str = "WASM_BINDGEN_USE_DEDICATED_WORKER";
 
 /// A command that runs tests as wasm in node.

@@ -1,4 +1,4 @@
-//! What must hold for every text and every link, whatever they contain.
+//! Properties of all texts and all links.
 
 use assist::{format, highlight};
 use rats::link::{self, Shared};
@@ -175,7 +175,7 @@ pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
     Err(format!("laid out, the text gives {differs}"))
 }
 
-/// What the editor asks about a place, which may lie between the bytes of a letter or behind the end, must be
+/// Answers about a place, which may lie between the bytes of a letter or behind the end, must be
 /// answered; and a name that is changed everywhere changes nothing else.
 ///
 /// # Errors

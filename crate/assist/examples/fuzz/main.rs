@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 
 /// Longest time for one compile, of the processor, on the machine we develop on.
 const SLOW: Duration = Duration::from_millis(100);
-/// What a finding is called whose compile took longer than [`SLOW`].
+/// Name of findings whose compile took longer than [`SLOW`].
 const SLOWNESS: &str = "slow";
 /// How many slow texts are made smaller.
 const MAX_SLOW: usize = 5;
@@ -275,7 +275,7 @@ impl Fuzzer {
     }
 }
 
-/// What a finding is called so that it is told once: its first words without numbers.
+/// Name of a finding, so that it is reported once: its first words without numbers.
 fn kind_of(what: &str) -> String {
     if what.starts_with(SLOWNESS) {
         return SLOWNESS.to_owned();

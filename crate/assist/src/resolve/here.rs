@@ -28,7 +28,7 @@ impl<'p, 's> Resolver<'p, 's> {
         let items = &syntaxes[file].items[command.items.clone()];
         let types = |name: &str| self.type_of(name);
         let all = Slots::read(items, text, grammar, &types);
-        // What comes before the word at the place.
+        // The text before the word at the place.
         let before = items.partition_point(|item| (item.end as usize) < byte);
         let glued = items.get(before).is_some_and(|item| {
             (item.start as usize) < byte && matches!(item.datum, Datum::Sign(_))

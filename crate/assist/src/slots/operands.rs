@@ -45,7 +45,7 @@ impl<'p> Slots<'_, 'p> {
                     break;
                 }
             }
-            // What is copied needs no description.
+            // A copy needs no description.
             let is_copy = matches!(parameter.kind, Kind::Copy(_)) && !first;
             if self.stopped || is_copy {
                 return;

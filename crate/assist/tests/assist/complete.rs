@@ -1,4 +1,4 @@
-//! What can be written at the caret.
+//! Completion at the caret.
 
 use crate::texts::{corpus, examples, file, marked, names_soup, one_file, soup};
 use assist::complete::MAX_COMPLETIONS;

@@ -22,7 +22,7 @@ fn levels() {
             .replace("}}", "} }")
             .as_str(),
     );
-    // What is never closed inside braces ends with them.
+    // Unclosed brackets inside braces end with the braces.
     check(
         "for i = 1 to 2 {\nobject A\n}\nquit\n",
         "for i = 1 to 2 {\n  object A\n}\nquit\n",
@@ -69,7 +69,7 @@ fn spaces() {
     check("", "");
 }
 
-/// What is laid out is settled, whatever signs run into each other: a space after one must not make others of those behind it.
+/// Formatting is idempotent, also with signs next to each other: a space after one must not change the tokens behind it.
 #[test]
 fn signs_that_run_into_each_other() {
     check("var a+=*=b", "var a+=*=b\n");
@@ -86,7 +86,7 @@ fn signs_that_run_into_each_other() {
     }
 }
 
-/// What we give to read is laid out as we lay it out.
+/// The published texts are formatted.
 #[test]
 fn examples_and_library() {
     let texts = examples()

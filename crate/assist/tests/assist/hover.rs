@@ -1,4 +1,4 @@
-//! What the word under the pointer is.
+//! Hover cards of the word under the pointer.
 
 use crate::texts::{corpus, file, marked, one_file, soup};
 use assist::{Card, hover};

@@ -1,4 +1,4 @@
-//! What an editor asks of the language.
+//! Services of an editor for the language.
 
 mod complete;
 mod fold;

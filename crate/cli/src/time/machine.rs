@@ -1,4 +1,4 @@
-//! What the operating system says of this program.
+//! The operating system's figures about this program.
 
 /// Seconds that this thread has been running, which other programs disturb less than the time of
 /// day; where the system does not tell, seconds since the first call.

@@ -22,7 +22,7 @@ pub fn sinew(arguments: &[&str], input: &str) -> Output {
     output
 }
 
-/// What a run printed on the standard output, as text.
+/// Standard output of a run, as text.
 pub fn printed(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("UTF-8")
 }

@@ -20,7 +20,7 @@
 //!   than [`Demands::slow`] may do otherwise).
 //!
 //! The curve is cut at the slowest places first, so that cusps are ends. Spans shorter than
-//! [`Demands::least`] are accepted as they are. Should there be more than [`MOST`] spans, turn and
+//! [`Demands::least`] are accepted as they are. Should there be more than [`MOST_SPANS`] spans, turn and
 //! length are doubled and the tolerance is multiplied by 16, until there are not: a smooth kernel's
 //! curve of more than a thousand widths is then a chain of blobs that begin to show (4 nodes a width
 //! leave 10⁻⁶ of the field, 2 nodes 10⁻³).
@@ -38,7 +38,7 @@ pub const TERMS: usize = 12;
 pub const SINGLE_TERMS: usize = 8;
 
 /// Largest number of spans (see the module).
-const MOST: usize = 512;
+const MOST_SPANS: usize = 512;
 
 /// α and ω at a fraction of the curve's length.
 pub(crate) type Law<'a> = &'a dyn Fn(f64) -> [f64; 2];
@@ -220,7 +220,7 @@ impl Curve<f64> {
     ) -> Self {
         let mut pieces = cut(kernel, cubics, law, demands);
         for _ in 0..12 {
-            if pieces.len() <= MOST {
+            if pieces.len() <= MOST_SPANS {
                 break;
             }
             demands = demands.relaxed();
@@ -559,7 +559,7 @@ fn cut<'a>(
                 total,
                 law,
             };
-            if depth >= 40 || pieces.len() > 8 * MOST || piece.suits(kernel, demands) {
+            if depth >= 40 || pieces.len() > 8 * MOST_SPANS || piece.suits(kernel, demands) {
                 start += piece.length;
                 pieces.push(piece);
             } else {

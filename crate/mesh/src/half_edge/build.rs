@@ -1,4 +1,4 @@
-//! From polygons to the half-edge mesh, with detection and repair of what is no manifold.
+//! Construction of the half-edge mesh from polygons, with detection and repair of non-manifold parts.
 
 use super::connectivity::HalfEdgeMesh;
 use super::id::{HalfEdgeId, NONE};
@@ -82,7 +82,7 @@ impl HalfEdgeMesh {
         }
     }
 
-    /// As [`HalfEdgeMesh::from_polygons`], of triangles.
+    /// Like [`HalfEdgeMesh::from_polygons`], for triangles.
     ///
     /// # Errors
     /// The same.
@@ -185,7 +185,7 @@ impl Corners {
                 repairs.dropped_faces += 1;
                 continue;
             }
-            // With twins on a boundary, as many half-edges again.
+            // Twins on a boundary can double the number of half-edges.
             if 2 * (corners.vertex.len() + face.len()) > MAX_HALF_EDGES {
                 return fail(format!(
                     "the mesh has more than {MAX_HALF_EDGES} half-edges; simplify it first"

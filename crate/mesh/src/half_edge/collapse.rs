@@ -33,7 +33,7 @@ impl HalfEdgeMesh {
         self.remove_edge(h);
         self.remove_vertex(u);
         for (face, before, after) in sides {
-            // What was a triangle has two sides left, from v and back.
+            // The former triangle has two sides left, from v and back.
             kept = after;
             if face != NONE && self.next[after as usize] == before {
                 self.remove_face(face);

@@ -345,7 +345,7 @@ impl HalfEdgeMesh {
         h
     }
 
-    /// A face of the loop of a half-edge, whose half-edges are told.
+    /// Makes a face of the loop of a half-edge, and sets it on the loop's half-edges.
     pub(super) fn new_face(&mut self, first: u32) -> u32 {
         let f = match self.free_faces.pop() {
             Some(f) => f,

@@ -37,7 +37,7 @@ impl HalfEdgeMesh {
     /// that they become two each. Faces with more vertices get a vertex more.
     ///
     /// # Errors
-    /// As [`HalfEdgeMesh::split_edge`], and if both triangles have the same opposite vertex.
+    /// Those of [`HalfEdgeMesh::split_edge`]; also if both triangles have the same opposite vertex.
     pub fn bisect_edge(&mut self, h: HalfEdgeId, position: DVec3) -> Result<VertexId, EditError> {
         self.need(self.has_half_edge(h))?;
         self.need_room(3)?;

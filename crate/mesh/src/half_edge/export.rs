@@ -1,4 +1,4 @@
-//! From the half-edge mesh back to lists.
+//! Conversion of the half-edge mesh to lists.
 
 use super::connectivity::HalfEdgeMesh;
 use super::id::{EditError, NONE};

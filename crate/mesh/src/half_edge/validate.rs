@@ -7,7 +7,7 @@ use core::fmt;
 /// An invariant that does not hold, and the number of the element where it was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// What should hold.
+    /// The condition that does not hold.
     pub invariant: &'static str,
     /// Number of the vertex, half-edge or face.
     pub element: usize,

@@ -44,7 +44,7 @@ impl Kind {
 
 struct Property<'a> {
     name: &'a str,
-    /// What a list's length is written as, if it is a list.
+    /// Type of a list's length; `None` if it is no list.
     length: Option<Kind>,
     kind: Kind,
 }

@@ -1,4 +1,4 @@
-//! What can be written.
+//! Exports: meshes with names and materials, to be written.
 
 use crate::triangle_mesh::TriangleMesh;
 

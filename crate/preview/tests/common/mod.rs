@@ -1,4 +1,4 @@
-//! What the draft's tests share: devices to draw on, pictures read back, and shapes defined anew.
+//! Helpers of the draft's tests: devices, read-back of pictures, and independent definitions of shapes.
 
 #![allow(dead_code, reason = "no test uses all of it")]
 

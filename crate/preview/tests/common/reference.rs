@@ -7,7 +7,7 @@ use scene::{Quadric, Scene, Shape};
 /// Steps along a ray. A chord shorter than a step is missed, which concerns silhouettes only.
 const STEPS: u32 = 1000;
 
-/// What a ray meets first.
+/// First crossing of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
     pub element: usize,
@@ -91,7 +91,7 @@ fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<
     }
     let at = |i: u32| from + (to - from) * f64::from(i) / f64::from(STEPS);
     let is_inside = |t: f64| inside(shape, radius, eye + direction * t);
-    // What is open ends where it is cut off; going in or out there is no crossing.
+    // An open surface ends where it is cut off, without a crossing.
     let reaches = |t: f64| reaches(shape, eye + direction * t);
     let crossed = |&i: &u32| {
         let (a, b) = (at(i - 1), at(i));

@@ -87,7 +87,7 @@ pub struct Model<'a> {
     open: Vec<Object<'a>>,
     closed: HashMap<&'a str, Closed>,
     count: usize,
-    /// What the shapes weigh, see [`Part::weight`].
+    /// Weight of the shapes, see [`Part::weight`].
     weight: usize,
     /// The last shape or closed object.
     last: Option<Range<usize>>,

@@ -39,7 +39,7 @@ impl Folding {
         folds.hidden.clone()
     }
 
-    /// Opens whatever hides a line.
+    /// Opens the folds that hide a line.
     pub fn reveal(&mut self, file: usize, line: usize) {
         if let Some(folds) = self.files.get_mut(&file) {
             let hides = |fold: &Range<usize>| fold.start < line && line < fold.end;

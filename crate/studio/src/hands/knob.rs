@@ -15,9 +15,9 @@ pub const LIT: Color32 = Color32::from_rgb(255, 222, 122);
 pub struct Answer {
     /// A drag begins.
     pub begins: bool,
-    /// By how many points it is dragged.
+    /// Drag in points.
     pub pulled: Vec2,
-    /// By how many points keys move it.
+    /// Movement by keys in points.
     pub nudged: Vec2,
     /// Whether up means away from the eye.
     pub deep: bool,

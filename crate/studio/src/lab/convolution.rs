@@ -15,9 +15,9 @@ use field::Kernel;
 const LINE: [f64; 2] = [-5.0, 5.0];
 /// Most bars.
 const MOST: usize = 5;
-/// The inverse kernels have a pole on the line itself; they are seen so many widths beside it.
+/// Distance from the line, in widths, at which kernels with a pole are shown.
 const BESIDE: f64 = 0.25;
-/// 1/u has no finite integral; a bar of so many widths to each side stands for an endless one.
+/// Half length, in widths, of the bar that stands for an infinite one: 1/u has no finite integral.
 const ENDLESS: f64 = 10.0;
 
 /// The lesson's state.

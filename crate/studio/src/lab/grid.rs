@@ -53,7 +53,7 @@ pub fn tee(kernel: Kernel, radius: f64, blobbiness: f64) -> String {
 fn between([low, high]: [f64; 2], index: usize) -> f64 {
     let share = index as f64 / (SIDE - 1) as f64;
     let value = low * libm::pow(high / low, share);
-    // As many digits as one wants to read.
+    // Enough digits to read.
     let digits = libm::pow(10.0, 1.0 - libm::floor(libm::log10(value)));
     libm::round(value * digits) / digits
 }

@@ -109,7 +109,7 @@ impl Pictures {
         }
     }
 
-    /// Forgets what was asked for: a new frame asks anew.
+    /// Clears the requests at the start of a frame.
     pub fn begin_frame(&mut self) {
         self.frame += 1;
         self.wishes.clear();
@@ -258,7 +258,7 @@ impl Pictures {
         self.wishes.retain(|other| other.key != wish.key);
     }
 
-    /// Shows the picture of a text in a place; where it is not there yet, asks for it.
+    /// Shows the picture of a text in an area; requests it if it is missing.
     pub fn show(&mut self, ui: &Ui, slot: impl Hash, text: &str, place: Rect) -> Shown {
         let palette = theme::palette(ui.visuals());
         let slot = hashed(slot);

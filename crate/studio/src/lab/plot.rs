@@ -162,7 +162,7 @@ impl Plot {
         ]
     }
 
-    /// The x of so many points, evenly apart.
+    /// Iterates over the range of x in `count` equal steps, both ends included.
     pub fn samples(&self, count: usize) -> impl Iterator<Item = f64> + use<> {
         let [low, high] = self.x;
         (0..=count).map(move |i| low + (high - low) * i as f64 / count as f64)

@@ -40,7 +40,7 @@ impl Wave {
         }
     }
 
-    /// The factor on u that gives so many bumps.
+    /// Factor on u for a number of bumps.
     fn scale(self, bumps: f64) -> f64 {
         match self {
             Self::Constant | Self::Linear => 1.0,

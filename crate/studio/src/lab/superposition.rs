@@ -366,7 +366,7 @@ impl Superposition {
     }
 }
 
-/// From the plane to the screen.
+/// Converts a point of the plane to the screen.
 struct Map {
     center: Pos2,
     scale: f32,
@@ -392,7 +392,7 @@ impl Map {
         DVec3::new(f64::from(by.x), f64::from(-by.y), 0.0)
     }
 
-    /// From samples.
+    /// Makes it from samples.
     fn sample(&self, [x, y]: [f32; 2]) -> Pos2 {
         let world = |sample: f32, axis: usize| {
             let share = f64::from(sample) / (SAMPLES[axis] - 1) as f64;

@@ -1,8 +1,8 @@
 //! The tray: what the commands of the TOOLS group made of the work's pictures, below its own picture.
 //!
 //! The jobs of a text run when it has no errors and they, the images they read or the traced picture changed.
-//! They go on in small steps, a few milliseconds in each frame, and wait for the traced picture only if
-//! they read it. What is on the tray stays there until all of a new run is done.
+//! They run in small steps, a few milliseconds in each frame, and wait for the traced picture only if
+//! they read it. The tray's contents stay until a new run is complete.
 
 pub mod desk;
 pub mod item;

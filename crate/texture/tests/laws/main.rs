@@ -1,4 +1,4 @@
-//! What must hold for textures and for the closed forms of shading.
+//! Laws of textures and of the closed forms of shading.
 #[macro_use]
 mod common;
 

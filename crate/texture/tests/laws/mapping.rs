@@ -272,7 +272,7 @@ tests! {
             assert!((got.shine - s * a.shine - t * b.shine).abs() < 1e-3);
             let normal = (share * a.normal + (1.0 - share) * b.normal).normalize();
             assert!((got.normal - normal).length() < 1e-12);
-            // What does not count does not matter.
+            // Parameters without weight do not matter.
             let with = blend(&[(3.0 * share, a), (-1.0, surface(&mut random)), (3.0 * (1.0 - share), b), (f64::NAN, a)]).unwrap();
             assert!((with.diffuse - got.diffuse).length() < 1e-6);
         }

@@ -12,7 +12,7 @@ use field::THRESHOLD;
 use scene::Settings;
 
 /// Most spans added up on a ray, or 64 times its primitives; crossings beyond are not found.
-const MOST: usize = 1 << 18;
+const MOST_SPANS: usize = 1 << 18;
 
 /// Number of spans of each primitive.
 pub(super) struct Spans(u32);
@@ -86,7 +86,7 @@ impl Single for Spans {
 
         let mut side = Side::unknown(quest);
         let (mut active, mut next) = (Vec::new(), 0);
-        let mut left = MOST.max(64 * sight.terms.len());
+        let mut left = MOST_SPANS.max(64 * sight.terms.len());
         for slab in cuts.windows(2) {
             let (from, to) = (slab[0], slab[1]);
             if from == to {

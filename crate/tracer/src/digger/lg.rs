@@ -11,11 +11,11 @@ use crate::walk::Quest;
 use core::ops::Range;
 
 /// Intervals shorter than this are not halved.
-const SHORTEST: f64 = 1e-7;
+const SHORTEST_INTERVAL: f64 = 1e-7;
 /// Most looks at a primitive on a ray, or 64 times its primitives: along a ray that lies in the
 /// surface every interval would have to be halved to the last. What is left then is settled
 /// by its ends.
-const MOST: u64 = 1 << 16;
+const MOST_LG_LOOKS: u64 = 1 << 16;
 
 pub(super) struct Lg;
 
@@ -23,7 +23,7 @@ impl Single for Lg {
     fn dig(&self, sight: &mut Sight<'_>, quest: Quest) -> Option<f64> {
         let all = 0..sight.terms.len() as u32;
         let mut search = Search {
-            most: MOST.max(64 * u64::from(all.end)),
+            most: MOST_LG_LOOKS.max(64 * u64::from(all.end)),
             lists: all.collect(),
             sight,
             side: Side::unknown(quest),
@@ -77,7 +77,7 @@ impl Search<'_, '_> {
             return self.side.arrive(value > 0.0).then_some(from);
         }
         let monotone = slope.abs() > turn * half;
-        if !monotone && to - from > SHORTEST && self.looks < self.most {
+        if !monotone && to - from > SHORTEST_INTERVAL && self.looks < self.most {
             let front = self.visit([from, middle], list.clone());
             return front.or_else(|| self.visit([middle, to], list));
         }

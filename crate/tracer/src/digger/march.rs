@@ -8,10 +8,10 @@ use crate::walk::Quest;
 /// inside it for less than a step.
 const STEPS: f64 = 8.0;
 /// Most steps on a ray: so many, but fewer where it meets very many primitives, so that it looks at
-/// no more than about [`MOST_LOOKS`] of them, or 64 times at each.
-const MOST: usize = 4096;
-/// See [`MOST`].
-const MOST_LOOKS: usize = 1 << 18;
+/// no more than about [`MOST_MARCH_LOOKS`] of them, or 64 times at each.
+const MOST_MARCH_STEPS: usize = 4096;
+/// See [`MOST_MARCH_STEPS`].
+const MOST_MARCH_LOOKS: usize = 1 << 18;
 /// How exactly roots are refined.
 pub(super) const TOLERANCE: f64 = 1e-9;
 /// Most evaluations while refining a root.
@@ -20,7 +20,7 @@ pub(super) const MOST_REFINING: usize = 100;
 /// The length of a step.
 pub(super) fn step(sight: &Sight<'_>) -> f64 {
     let [from, to] = sight.range;
-    let most = (MOST_LOOKS / sight.terms.len().max(1)).clamp(64, MOST);
+    let most = (MOST_MARCH_LOOKS / sight.terms.len().max(1)).clamp(64, MOST_MARCH_STEPS);
     (sight.finest() / STEPS).max((to - from) / most as f64)
 }
 

@@ -7,10 +7,10 @@ use super::{Side, Sight, Single};
 use crate::walk::Quest;
 
 /// The shortest step: a hit is this near to the surface, and nothing longer is missed.
-const SHORTEST: f64 = 1e-6;
+const SHORTEST_STEP: f64 = 1e-6;
 /// After so many looks at a primitive, or 64 times the ray's primitives, a ray that creeps along the
 /// surface is taken to have met it.
-const MOST: usize = 1 << 16;
+const MOST_SPHERE_LOOKS: usize = 1 << 16;
 
 pub(super) struct Sphere;
 
@@ -20,7 +20,7 @@ impl Single for Sphere {
         let mut ahead = (to - at) / 16.0;
         let mut side = Side::unknown(quest);
         let mut list: Vec<u32> = Vec::new();
-        let (mut looks, most) = (0, MOST.max(64 * sight.terms.len()));
+        let (mut looks, most) = (0, MOST_SPHERE_LOOKS.max(64 * sight.terms.len()));
         while looks < most {
             if at >= to {
                 return None;
@@ -45,7 +45,7 @@ impl Single for Sphere {
                 ahead *= 2.0;
             } else {
                 // Not a number where both are infinite, near a pole.
-                let step = safe.max(SHORTEST);
+                let step = safe.max(SHORTEST_STEP);
                 at += step;
                 ahead = 2.0 * step;
             }

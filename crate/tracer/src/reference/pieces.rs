@@ -55,15 +55,15 @@ struct Node {
 const UNCUT: u32 = u32::MAX;
 
 /// Largest number of halvings: kernels with a pole need balls as small as 10⁻⁵.
-const DEEPEST: u8 = 48;
+const DEEPEST_PIECE: u8 = 48;
 /// A ball is small enough if its radius is less than this times its distance …
-const CLOSE: f64 = 0.2;
+const SMALL_BALL: f64 = 0.2;
 /// … or than this times the kernel's width, unless the kernel has a pole.
-const NARROW: f64 = 0.08;
+const SMALL_WIDTH: f64 = 0.08;
 /// Most pieces of all bones together.
-const MOST: usize = 1 << 21;
+const MOST_PIECES: usize = 1 << 21;
 /// Bounds are computed in floating point, and tapers are fitted within 10⁻⁹.
-const SLACK: f64 = 1.0 + 1e-6;
+const BOUND_SLACK: f64 = 1.0 + 1e-6;
 
 /// One term of the field.
 #[derive(Clone, Debug)]
@@ -172,7 +172,7 @@ impl Pieces {
             }
             let body = &self.bodies[number];
             let [size, slope, bend] = body.factor.largest;
-            let value = size * most[0] * SLACK;
+            let value = size * most[0] * BOUND_SLACK;
             // Only factors with `turns` may change sign.
             if body.adds || body.factor.turns {
                 sum.above += value;
@@ -180,8 +180,9 @@ impl Pieces {
             if !body.adds || body.factor.turns {
                 sum.below += value;
             }
-            sum.slope += SLACK * (size * most[1] + slope * most[0]);
-            sum.curvature += SLACK * (size * most[2] + 2.0 * slope * most[1] + bend * most[0]);
+            sum.slope += BOUND_SLACK * (size * most[1] + slope * most[0]);
+            sum.curvature +=
+                BOUND_SLACK * (size * most[2] + 2.0 * slope * most[1] + bend * most[0]);
         }
         sum
     }
@@ -227,10 +228,12 @@ impl Pieces {
             if body.kernel.is_compact() && near * node.widths[0] >= 1.0 {
                 continue;
             }
-            let small = node.radius <= CLOSE * (between - node.radius).max(radius)
-                || (!has_pole && node.radius * node.widths[1] <= NARROW);
+            let small = node.radius <= SMALL_BALL * (between - node.radius).max(radius)
+                || (!has_pole && node.radius * node.widths[1] <= SMALL_WIDTH);
             let tapers = body.taper.is_some() && node.widths[0] < 0.8 * node.widths[1];
-            let last = node.depth >= DEEPEST || self.nodes.len() >= MOST || node.radius == 0.0;
+            let last = node.depth >= DEEPEST_PIECE
+                || self.nodes.len() >= MOST_PIECES
+                || node.radius == 0.0;
             if (small && !tapers) || last {
                 let [low, high] = node.widths;
                 let most = largest(body.kernel, near * low, far * high);
@@ -276,8 +279,8 @@ impl Body {
         Node {
             piece,
             center,
-            radius: radius * SLACK,
-            measure: measure * SLACK,
+            radius: radius * BOUND_SLACK,
+            measure: measure * BOUND_SLACK,
             share,
             widths,
             height,
@@ -348,8 +351,8 @@ impl Body {
                             let Skeleton::Polygon { rings } = &self.skeleton else {
                                 return None;
                             };
-                            let clear = edge_distance(rings, center) > reach * SLACK;
-                            let within = self.skeleton.distance(center) <= reach * SLACK;
+                            let clear = edge_distance(rings, center) > reach * BOUND_SLACK;
+                            let within = self.skeleton.distance(center) <= reach * BOUND_SLACK;
                             if !within {
                                 return None;
                             }
@@ -443,7 +446,7 @@ fn around(rings: &[Vec<DVec3>]) -> Piece {
         }
     }
     let [cx, cy] = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
-    let [hx, hy] = [0, 1].map(|k| 0.5 * (high[k] - low[k]).max(0.0) * SLACK);
+    let [hx, hy] = [0, 1].map(|k| 0.5 * (high[k] - low[k]).max(0.0) * BOUND_SLACK);
     Piece::Cell(origin + x * cx + y * cy, [x * hx, y * hy], false)
 }
 
@@ -516,7 +519,10 @@ fn range(
         (Some(h), Some(x)) => h.abs() * most / x,
         _ => height,
     };
-    ([least / SLACK, most * SLACK], tall * SLACK)
+    (
+        [least / BOUND_SLACK, most * BOUND_SLACK],
+        tall * BOUND_SLACK,
+    )
 }
 
 /// Magnitude, slope and curvature of a plane's term in a ball. With `P(z) = π∫G` from z² on, the slope

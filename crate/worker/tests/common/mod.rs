@@ -50,7 +50,7 @@ pub const BENCH: [(&str, &str); 10] = [
     bench!("tee"),
 ];
 
-/// What a text means; it may read `flake.rat`.
+/// Compiles a text; it may read `flake.rat`.
 pub fn compile(text: &str) -> Scene {
     let file = |name: &str, text: &str| File {
         name: name.into(),

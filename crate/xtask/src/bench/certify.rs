@@ -16,7 +16,7 @@ pub fn measure() -> Result<Piece> {
     ))
 }
 
-/// What the certifier, perhaps built in another way, says of so many rays; and the command that it is.
+/// Runs the certifier, perhaps built in another way, on a number of rays; returns its output and its command.
 pub fn certify(rays: &str, build: Option<Build>) -> Result<(String, String)> {
     let example = "crate/tracer/examples/certify.rs";
     if !root().join(example).is_file() {

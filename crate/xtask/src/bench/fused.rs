@@ -93,7 +93,7 @@ fn difference(a: &[u8], b: &[u8]) -> Result<(usize, u8)> {
     Ok((pixels, most))
 }
 
-/// What the certifier, built so, says of all its scenes together, below its own heading.
+/// Heading and totals of the table of the certifier, built with fused operations.
 fn certified() -> Result<String> {
     let (_, output) = certify(RAYS, Some(FUSED))?;
     let table: Vec<&str> = output.lines().filter(|l| l.starts_with('|')).collect();

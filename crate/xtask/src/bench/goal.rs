@@ -1,6 +1,6 @@
 //! Goals and whether they are met.
 
-/// What a ratio should be.
+/// Bound that a ratio should keep.
 #[derive(Clone, Copy, Debug)]
 pub enum Wanted {
     /// This or more.
@@ -20,15 +20,15 @@ impl Wanted {
 
 /// A row of the table of goals.
 pub struct Goal {
-    /// What is measured.
+    /// The measured quantity.
     pub what: String,
     /// With what it is compared.
     pub against: String,
-    /// What it should be.
+    /// Its goal.
     pub wanted: Wanted,
-    /// What stands behind the numbers: `×`, ` ms`, ….
+    /// Unit behind the numbers: `×`, ` ms`, ….
     pub unit: &'static str,
-    /// What it is, or why that is not known.
+    /// The measured value, or why there is none.
     pub measured: Result<f64, String>,
 }
 

@@ -49,7 +49,7 @@ pub enum Part {
     Fields,
 }
 
-/// What a part came to: the rows it adds to the table of goals, and its piece of the page.
+/// Result of a part: its rows of the table of goals, and its section of the page.
 type Piece = (Vec<Goal>, String);
 
 /// Measures everything, or one part, and writes the file: of parts not measured now what was measured last.
@@ -69,7 +69,7 @@ pub fn bench(part: Option<Part>) -> Result<()> {
         let (goals, piece) = match result {
             Ok(measured) => measured,
             Err(error) => {
-                // What was measured before stays.
+                // Earlier measurements stay.
                 eprintln!("{title}: {error:#}");
                 continue;
             }
@@ -159,12 +159,12 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
     (title(part), result)
 }
 
-/// What stands above all.
+/// Head of the page.
 const HEAD: &str = "# Benchmarks\n\nWritten by `cargo xtask bench`, part by part; below each part stands what it \
 was measured with. No figure is written by hand. Absolute figures are those of one machine and drift with what else it \
 does: compare ratios within a table.\n\n";
 
-/// What is measured with what.
+/// Description of the machine and the tools.
 fn versions() -> String {
     let version = |program: &str| read(Command::new(program).arg("--version")).unwrap_or_default();
     let mut versions = vec![version("rustc"), format!("node {}", version("node"))];

@@ -1,4 +1,4 @@
-//! What softness costs: the thesis's eight models (table 3.3) as convolution surfaces and as the
+//! The cost of softness: the thesis's eight models (table 3.3) as convolution surfaces and as the
 //! offset surfaces of their skeletons.
 
 use super::goal::{Goal, Wanted, short};

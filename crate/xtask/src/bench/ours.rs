@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Stdio;
 
-/// What a picture cost.
+/// Cost of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
     /// Seconds of one processor.

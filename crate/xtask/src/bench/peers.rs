@@ -238,7 +238,7 @@ fn growth(best: &Best, goals: &mut Vec<Goal>) {
     });
 }
 
-/// What groups of far primitives, and interpolants that rays share, are worth.
+/// Gain of groups of far primitives and of shared interpolants.
 fn hierarchy(scenes: &Scenes, goals: &mut Vec<Goal>, page: &mut String) -> Result<()> {
     let dataset = scenes.dataset("flake-820-cauchy");
     let with = [dataset.as_str()];

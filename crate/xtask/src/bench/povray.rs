@@ -12,7 +12,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What a picture cost POV-Ray.
+/// Cost of a picture in POV-Ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// Seconds of one processor, of tracing alone.

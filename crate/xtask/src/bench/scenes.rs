@@ -61,7 +61,7 @@ impl Scenes {
         compiled(&self.sinew, Path::new(&dataset))
     }
 
-    /// What is said of a dataset about a word, if anything.
+    /// Returns the first message of `sinew check` about a dataset that contains a word.
     pub fn complaint(&self, dataset: &str, word: &str) -> Option<String> {
         let output = command(&self.sinew, &["check", "--json", dataset])
             .output()

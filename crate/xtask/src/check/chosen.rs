@@ -1,10 +1,10 @@
-//! What of a part is run: `cargo xtask test PART FILTER`.
+//! Selection of tests within a part: `cargo xtask test PART FILTER`.
 
 use crate::shell::{command, read, root};
 use anyhow::{Result, bail};
 use std::collections::BTreeSet;
 
-/// What was asked for: everything, a package, tests by a part of their names, or what has been changed.
+/// The selection: everything, a package, tests by a part of their names, or changed packages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Chosen {
     /// All of it.
@@ -20,7 +20,7 @@ pub enum Chosen {
 }
 
 impl Chosen {
-    /// What a filter means: a package if there is one of that name, else tests.
+    /// Interprets a filter: a package if there is one of that name, else tests.
     pub fn new(filter: Option<String>) -> Self {
         match filter {
             None => Self::All,
@@ -74,7 +74,7 @@ impl Chosen {
         }
     }
 
-    /// What names of tests must contain.
+    /// Text that names of tests must contain, if any.
     pub fn test(&self) -> Option<&str> {
         match self {
             Self::Test(name) => Some(name),

@@ -30,7 +30,7 @@ pub enum Part {
     E2e,
 }
 
-/// What a part takes, step by step.
+/// Times of the steps of a part.
 #[derive(Default)]
 pub struct Watch {
     steps: Vec<(&'static str, u64)>,
@@ -116,7 +116,7 @@ fn all() -> Vec<Done> {
     done.flatten().collect()
 }
 
-/// What a part has come to.
+/// Result of a part.
 struct Done {
     part: Part,
     said: String,

@@ -1,11 +1,11 @@
-//! What is built for any processor of this one's kind, with other instructions than the tests on this machine: the program that
+//! The build for any processor of this kind, with other instructions than the tests on this machine: the program that
 //! the page is compared with, and the test that traces parts of all pictures. One build, as they share nearly everything.
 
 use crate::shell::{PORTABLE, artifacts, cargo, executable};
 use anyhow::Result;
 use std::path::PathBuf;
 
-/// What was built.
+/// Result of the build.
 pub struct Portable {
     /// The program `sinew`.
     pub program: PathBuf,
