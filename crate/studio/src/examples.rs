@@ -153,7 +153,7 @@ mod tests {
                     bytes: crate::platform::read(path).expect(path).into(),
                 })
                 .collect();
-            let compiled = rats::compile_with(&example.project(), &assets);
+            let compiled = rats::compile_at(&example.project(), &assets, 0.0);
             assert_eq!(compiled.diagnostics, [], "{}", example.title);
             assert!(!compiled.scene.elements.is_empty(), "{}", example.title);
             let bytes = crate::platform::read(example.thumbnail).expect(example.title);
