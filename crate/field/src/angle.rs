@@ -55,7 +55,7 @@ fn reduce<R: Real>(y: R, x: R) -> Reduced<R> {
     }
 }
 
-/// From the sine (≥ 0) and the cosine of θ, which need not be normalised better than to rounding.
+/// Returns the angle θ and its integrals from its sine (≥ 0) and cosine, normalised to within rounding.
 #[inline(always)]
 pub fn angle<R: Real>(sine: R, cosine: R) -> Angle<R> {
     let reduced = reduce(sine, cosine.abs());
@@ -98,7 +98,7 @@ pub fn direction<R: Real>(y: R, x: R) -> R {
     y.sign_to(angle)
 }
 
-/// What lies between a circle's arc on the unit sphere and the great circle through its ends.
+/// Sliver between a circle's arc on the unit sphere and the great circle through its ends.
 #[derive(Clone, Copy)]
 pub struct Sliver<R> {
     /// `V = arctan(k tan θ) − kθ`, half the sliver's area.
@@ -107,7 +107,7 @@ pub struct Sliver<R> {
     pub shortfall: R,
 }
 
-/// For half the arc's angle θ (and its sine and cosine) and `e = 1 − k` in [0, 1].
+/// Returns the sliver for half the arc's angle θ (with its sine and cosine) and `e = 1 − k` in [0, 1].
 ///
 /// `V = eθ − ζ` with `tan ζ = e sin θ cos θ/(1 − e sin²θ)`; both terms lose their first powers
 /// symbolically.

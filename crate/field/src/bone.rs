@@ -1,4 +1,4 @@
-//! The skeleton's geometry in a primitive's local frame, with all that its formulas want prepared.
+//! The skeleton's geometry in a primitive's local frame, with everything that does not depend on the point precomputed.
 //!
 //! Lengths are in units of the kernel's width (metres times [`Shaping::width`](crate::Shaping::width)).
 pub mod arc;
@@ -13,8 +13,8 @@ pub use polygon::{Edge, Polygon};
 pub use segment::Segment;
 pub use triangle::Triangle;
 
-/// A skeletal element in its local frame. What many elements have in common pictures (points, segments, arcs)
-/// lies here; the larger rest lies elsewhere, so that a scene of a million points has room.
+/// A skeletal element in its local frame. The common small kinds (points, segments, arcs) are stored inline; the larger ones
+/// are boxed, so that a scene of a million points stays small.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Bone<S> {
     /// The origin.

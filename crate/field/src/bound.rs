@@ -1,13 +1,12 @@
-//! What is known of a primitive without evaluating it: how large its field can be, and how far a
-//! cubic Hermite span can be from it, at a given distance or more from its skeleton.
+//! Bounds on a primitive's field at a given distance or more from its skeleton: its size, its derivatives, and the error of
+//! a cubic Hermite span.
 //!
-//! Both follow from the kernel's own: a field is an integral of kernels, so what bounds the kernel at
-//! a distance ([`envelope`](crate::envelope)) bounds the field, times the skeleton's length or area; or,
-//! if that is less, integrated over an infinite line or plane.
+//! A field is an integral of kernels. So a bound on the kernel at a distance ([`envelope`](crate::envelope)) bounds the field
+//! when multiplied by the skeleton's length or area, or integrated over an infinite line or plane; the smaller counts.
 mod place;
 
-use crate::bounds::Coil;
 use crate::envelope::{self, PEANO, Roughness};
+use crate::influence::Crowding;
 use crate::ripple::Ripple;
 use crate::{Cut, Kernel, Primitive, Real, endless, plane};
 use glam::DVec3;
@@ -17,23 +16,23 @@ use place::Place;
 #[derive(Clone, Debug)]
 pub struct Bound {
     place: Place,
-    /// Of an arc or a curve, in kernel widths: how much of it can be near one place.
-    coil: Option<Box<Coil>>,
+    /// For an arc or a curve, in kernel widths: how much of it fits into a ball.
+    crowding: Option<Box<Crowding>>,
     kernel: Kernel,
-    /// The kernel's width parameter: the smallest, of a tapered bone, since kernels and envelopes fall
-    /// with the width times the distance.
+    /// Width parameter of the kernel, an inverse length; the smallest of a tapered bone, since kernels and envelopes fall with
+    /// the width parameter times the distance.
     width: f64,
-    /// The largest width parameter, by which derivatives grow.
+    /// Largest width parameter, by which derivatives grow.
     finest: f64,
-    /// |height| times the skeleton's measure (1 for points, infinite for planes): the field's size
-    /// is that times the kernel if all of the skeleton is at one distance.
+    /// |height| times the skeleton's measure (1 for points, infinite for planes): times the kernel it is the field where all
+    /// of the skeleton is at one distance.
     whole: f64,
-    /// |height| times the width to the power of minus the dimension: the same for integrals over
-    /// an infinite line or plane in units of the width. Infinite where that says nothing.
+    /// |height|·width^−dimension, the factor on integrals over an infinite line or plane in kernel widths. Infinite where
+    /// there is no such bound.
     endless: f64,
     /// The square of the skeleton's length, or its area, in kernel widths: 0 for points.
     size: f64,
-    /// For compact kernels: the radius of a ball around `middle` that holds the skeleton.
+    /// For compact kernels: radius of a ball around `middle` that holds the skeleton.
     extent: f64,
     middle: DVec3,
     dimension: u8,
@@ -42,58 +41,57 @@ pub struct Bound {
     negative: bool,
     /// Depth of influence.
     pub influence: f64,
-    /// What is known of the profile, if any.
+    /// Bounds on the profile, if any.
     ripple: Option<Box<Ripple>>,
-    /// Its derivative over its size is nowhere more than this.
-    unrest: f64,
+    /// Largest slope of the profile over its size, per unit of length.
+    variation: f64,
 }
 
-/// How near a ball is to a skeleton.
+/// Position of a ball relative to a skeleton.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearness {
-    /// No point of the ball is nearer than this.
+    /// Distance of the ball from the skeleton, or less.
     pub distance: f64,
-    /// Whether no point of the skeleton is further from any point of the ball than a compact
-    /// kernel reaches.
+    /// Whether all of the skeleton is within a compact kernel's support of every point of the ball.
     within: bool,
-    /// Integrals over an arc are at most this times those over its tangent line at `distance`;
-    /// infinite where that says nothing.
-    stretch: f64,
-    /// No point of the ball is nearer than this to an arc's axis.
-    hub: f64,
+    /// Ratio of an integral over an arc to that over its tangent line at `distance`, or more; infinite where there is no such
+    /// bound.
+    arc_factor: f64,
+    /// Distance of the ball from an arc's axis, or less.
+    axis_distance: f64,
 }
 
 impl Nearness {
-    /// That of a place of which only its distance from the skeleton is known.
+    /// Nearness of a point whose distance from the skeleton is all that is known.
     #[must_use]
     pub fn at(distance: f64) -> Self {
         Self {
             distance,
             within: false,
-            stretch: f64::INFINITY,
-            hub: 0.0,
+            arc_factor: f64::INFINITY,
+            axis_distance: 0.0,
         }
     }
 }
 
-/// What is known of a primitive at some nearness.
+/// Bounds on a primitive's field at some [`Nearness`].
 #[derive(Clone, Copy, Debug)]
 pub struct Estimate {
-    /// `|f|` is at most this.
+    /// Bound on `|f|`.
     pub magnitude: f64,
-    /// The cubic Hermite interpolant on a span of the given length is at most this far from f. With a
-    /// profile: where that is smooth ([`kinks`](crate::kinks) tell where it is not); elsewhere an estimate.
+    /// Bound on the error of the cubic Hermite interpolant on a span of the given length. With a profile: a bound where that is
+    /// smooth, an estimate in its [`kinks`](crate::kinks).
     pub error: f64,
-    /// The fourth derivative of f along any line is at most this, where something is known of it; else infinite.
+    /// Bound on the fourth derivative of f along any line; infinite if unknown.
     pub fourth: f64,
 }
 
-/// The length h of a span, as its error wants it: `cₘhᵐ` for the orders 2 to 4.
+/// Length h of a span as factors on derivatives: `cₘhᵐ` for the orders m = 2 to 4, with Peano's constants.
 #[derive(Clone, Copy, Debug)]
 pub struct SpanLength([f64; 3]);
 
 impl SpanLength {
-    /// Of a span on a ray whose direction has unit length.
+    /// From the length of a span on a ray with unit direction.
     #[must_use]
     pub fn new(h: f64) -> Self {
         Self([
@@ -103,15 +101,14 @@ impl SpanLength {
         ])
     }
 
-    /// What a bound on the fourth derivative is to be multiplied with.
+    /// Factor from a bound on the fourth derivative to a bound on the span's error.
     #[must_use]
     pub fn fourth(&self) -> f64 {
         self.0[2]
     }
 }
 
-/// Arcs that are stretched by no more than this are not asked how much of them can be near: what that would say is seldom
-/// less, and costs arcs of tangents.
+/// Largest `arc_factor` for which [`Crowding`] is not evaluated: there it seldom gives a smaller bound, and costs an arctangent.
 const NEARLY_STRAIGHT: f64 = 1.2;
 
 impl Bound {
@@ -135,7 +132,7 @@ impl Bound {
         let mut height = primitive.height.abs() * low.abs().at_least(high.abs());
         let mut whole = height * measure;
         if let Some([mass, density, thinness]) = primitive.taper_bounds() {
-            // All of the bone as if it had the smallest width; lines as if the largest density, too.
+            // Bounds hold for the whole bone at its smallest width parameter; those over lines at its largest density, too.
             whole = height * mass;
             height *= density;
             width *= thinness.sqrt();
@@ -150,7 +147,7 @@ impl Bound {
             .unwrap_or((DVec3::ZERO, f64::INFINITY));
         let profile = primitive.profile.as_ref();
         let ripple = profile.and_then(|p| Ripple::of(p, skeleton));
-        let unrest = ripple.as_ref().map_or(0.0, |r| r.derivatives(0.0)[0]);
+        let variation = ripple.as_ref().map_or(0.0, |r| r.derivatives(0.0)[0]);
         let size = match dimension {
             0 => 0.0,
             1 => (measure * finest) * (measure * finest),
@@ -159,7 +156,7 @@ impl Bound {
         Self {
             place: Place::of(primitive, width),
             size,
-            coil: Coil::of(skeleton, measure, width).map(Box::new),
+            crowding: Crowding::of(skeleton, measure, width).map(Box::new),
             kernel,
             width,
             finest,
@@ -172,30 +169,30 @@ impl Bound {
             negative: low < 0.0,
             influence: primitive.influence,
             ripple: ripple.map(Box::new),
-            unrest,
+            variation,
         }
     }
 
-    /// How near the points of a ball come to the skeleton.
+    /// Returns how near a ball comes to the skeleton.
     #[must_use]
     pub fn nearness(&self, center: DVec3, radius: f64) -> Nearness {
         let place::Near {
             distance,
-            stretch,
-            hub,
+            arc_factor,
+            axis_distance,
         } = self.place.nearness(center, radius);
         let within = self.kernel.is_compact()
             && (center.distance(self.middle) + radius + self.extent) * self.finest <= 1.0;
         Nearness {
             distance: (distance - radius).at_least(0.0),
             within,
-            stretch,
-            hub,
+            arc_factor,
+            axis_distance,
         }
     }
 
-    /// A span along a direction, or one that differs from it by no more than `spread`, is as near to the field as one
-    /// so many times as long may be: at most 1. Along an infinite plane the field does not change.
+    /// Factor ≤ 1 on the length of a span along a direction (within `spread` of it) for its error: below 1 along an infinite
+    /// plane, where the field does not change.
     #[inline]
     #[must_use]
     pub fn shortened(&self, direction: DVec3, spread: f64) -> f64 {
@@ -207,7 +204,7 @@ impl Bound {
         }
     }
 
-    /// The bounds at some nearness, for spans of some length.
+    /// Returns the bounds at some nearness, for spans of some length.
     #[inline(always)] // Pictures spend their time here.
     #[must_use]
     pub fn estimate(&self, near: Nearness, length: &SpanLength) -> Estimate {
@@ -222,7 +219,7 @@ impl Bound {
         ];
         let magnitude;
         let rough = if kernel == Kernel::Cauchy && self.size <= 1.0 + u * u {
-            // Further away than it is long, or than its area is wide: that of an endless line or plane would be hardly less.
+            // Further away than its size: the bound for an infinite line or plane would hardly be smaller.
             let (point, rough) = envelope::cauchy_point(u);
             magnitude = self.whole * point;
             self.whole * rough
@@ -238,12 +235,12 @@ impl Bound {
                 outward,
             } = envelope::roughness(kernel, u);
             let over_endless = match self.dimension {
-                1 => match &self.coil {
-                    Some(coil) if near.stretch > NEARLY_STRAIGHT => {
+                1 => match &self.crowding {
+                    Some(crowding) if near.arc_factor > NEARLY_STRAIGHT => {
                         let at = |u| envelope::rough_point(kernel, u);
-                        (near.stretch * line).at_most(coil.bound(u, at, |_, _| outward))
+                        (near.arc_factor * line).at_most(crowding.bound(u, at, |_, _| outward))
                     }
-                    Some(_) => near.stretch * line,
+                    Some(_) => near.arc_factor * line,
                     None => line,
                 },
                 _ => plane,
@@ -255,7 +252,7 @@ impl Bound {
             return self.rippled(ripple, near, magnitude, rough, length);
         }
         let mut error = rough * length.0[order - 2];
-        // Beyond a compact kernel's reach nothing is rough.
+        // Beyond a compact kernel's support all derivatives are 0.
         let mut fourth = if order == 4 || rough == 0.0 {
             rough
         } else {
@@ -273,8 +270,8 @@ impl Bound {
         }
     }
 
-    /// The bounds with a profile: the error by whichever derivative of the product says most. `rough` is the field's own
-    /// derivative of its kernel's order.
+    /// Returns the bounds with a profile: the smallest error over the orders of the product's derivatives. `rough` bounds the
+    /// field's derivative of its kernel's order without the profile.
     #[inline(never)]
     fn rippled(
         &self,
@@ -298,36 +295,35 @@ impl Bound {
                 *own = own.at_most(scale * inside);
             }
         }
-        let bounds = Ripple::of_product(&field, &ripple.derivatives(near.hub));
+        let bounds = Ripple::of_product(&field, &ripple.derivatives(near.axis_distance));
         let errors = bounds.iter().zip(&length.0).map(|(d, h)| d * h);
         Estimate {
             magnitude,
-            // What is no number is left out.
+            // `at_most` ignores NaN.
             error: errors.fold(f64::INFINITY, f64::at_most),
             fourth: f64::INFINITY,
         }
     }
 
-    /// `|∇f|` is at most this at some nearness (a Lipschitz constant of the ball): where the profile,
-    /// if any, is smooth.
+    /// Returns a bound on `|∇f|` (a Lipschitz constant of f in the ball), where the profile, if any, is smooth.
     #[must_use]
     pub fn slope(&self, near: Nearness) -> f64 {
         let [first, ..] = self.factor(near);
         self.derivative(near, 1) + self.magnitude(near) * first
     }
 
-    /// About the largest slope of f over its size at some nearness, as far as single precision's rounding of coordinates
-    /// asks for it: that of a Gaussian three widths out, steeper than which is only what is small; of what falls as
-    /// a power of the distance no more than that over the distance; with the profile's.
+    /// Estimates the largest |∇f|/|f|, for the effect of coordinates rounded to single precision: the profile's plus that of a
+    /// Gaussian three widths out (only negligible parts of a field are steeper), or, if the field falls as a power k of the
+    /// distance d, at most k/d.
     #[inline]
     #[must_use]
     pub fn relative_slope(&self, near: Nearness) -> f64 {
-        let steepest = 8.0 * self.finest + self.unrest;
+        let steepest = 8.0 * self.finest + self.variation;
         steepest.at_most(self.power() / near.distance)
     }
 
-    /// What formulas of faces add up to the field may be as large as this, however small the field is: they sum over
-    /// edges, and beside a face those sums cancel. Rounding is relative to it.
+    /// Returns the size of the terms that a face's formula adds up: sums over edges cancel beside a face, and rounding is relative
+    /// to their terms, not to the field. 0 for other bones and for kernels with a pole.
     #[inline]
     #[must_use]
     pub fn cancels(&self) -> f64 {
@@ -339,7 +335,7 @@ impl Bound {
         }
     }
 
-    /// Where the field falls as a power of the distance, or slower, that power; else infinite.
+    /// Exponent of the field's decay with distance; infinite if it falls faster than any power.
     #[inline]
     #[must_use]
     pub fn power(&self) -> f64 {
@@ -353,8 +349,8 @@ impl Bound {
         }
     }
 
-    /// The second derivative of f along any line is at most this at some nearness (a Lipschitz constant of
-    /// the slope along a ray within the ball): where the profile, if any, is smooth.
+    /// Returns a bound on the second derivative of f along any line (a Lipschitz constant of the slope along a ray in the ball),
+    /// where the profile, if any, is smooth.
     #[must_use]
     pub fn curvature(&self, near: Nearness) -> f64 {
         let [first, second, ..] = self.factor(near);
@@ -362,13 +358,13 @@ impl Bound {
         self.derivative(near, 2) + wave
     }
 
-    /// Bounds on the derivatives of the profile's factor over its size.
+    /// Returns bounds on the first to fourth derivative of the profile's factor, over its size; 0 without a profile.
     fn factor(&self, near: Nearness) -> [f64; 4] {
-        let of = |ripple: &Ripple| ripple.derivatives(near.hub);
+        let of = |ripple: &Ripple| ripple.derivatives(near.axis_distance);
         self.ripple.as_deref().map_or([0.0; 4], of)
     }
 
-    /// A bound on the first, second or third derivative along any line, without the profile's.
+    /// Returns a bound on the first, second or third derivative along any line, without the profile.
     fn derivative(&self, near: Nearness, order: usize) -> f64 {
         let kernel = self.kernel;
         let u = near.distance * self.width;
@@ -381,14 +377,14 @@ impl Bound {
         } = bounds_at(u);
         let over_endless = match (self.dimension, &self.place) {
             (0, _) => point,
-            (1, _) => match &self.coil {
-                Some(coil) => {
+            (1, _) => match &self.crowding {
+                Some(crowding) => {
                     let at = |u| bounds_at(u).point;
-                    (near.stretch * line).at_most(coil.bound(u, at, |_, _| outward))
+                    (near.arc_factor * line).at_most(crowding.bound(u, at, |_, _| outward))
                 }
                 None => line,
             },
-            // Of planes of poles: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from above; it
+            // Planes of the inverse kernel: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from above; it
             // jumps in the plane, and has a slope of less than 1 elsewhere.
             (_, Place::Plane { .. }) if kernel == Kernel::Inverse => match order {
                 1 => core::f64::consts::TAU,
@@ -407,7 +403,7 @@ impl Bound {
         (0..order).fold(least, |bound, _| bound * self.finest)
     }
 
-    /// `|f|` is at most this at some nearness.
+    /// Returns a bound on `|f|`.
     #[inline]
     #[must_use]
     pub fn magnitude(&self, near: Nearness) -> f64 {
@@ -415,41 +411,41 @@ impl Bound {
         let kernel = self.kernel;
         let point = size(kernel, u);
         let line = || match kernel {
-            // No endless line of the inverse kernel has a finite field.
+            // The inverse kernel's integral over an infinite line diverges.
             Kernel::Inverse => f64::INFINITY,
             Kernel::Gauss => core::f64::consts::PI.sqrt() * point,
             _ => endless::line(kernel, u),
         };
         let endless = match self.dimension {
             0 => point,
-            1 if let Some(coil) = &self.coil
-                && near.stretch > NEARLY_STRAIGHT =>
+            1 if let Some(crowding) = &self.crowding
+                && near.arc_factor > NEARLY_STRAIGHT =>
             {
                 let outward = |a, b| kernel.between(a, b);
-                let coiled = coil.bound(u, |u| kernel.value(u), outward);
-                if near.stretch.is_finite() {
-                    coiled.at_most(near.stretch * line())
+                let crowded = crowding.bound(u, |u| kernel.value(u), outward);
+                if near.arc_factor.is_finite() {
+                    crowded.at_most(near.arc_factor * line())
                 } else {
-                    coiled
+                    crowded
                 }
             }
-            1 if self.coil.is_some() => near.stretch * line(),
+            1 if self.crowding.is_some() => near.arc_factor * line(),
             1 => line(),
-            // Finite planes of these may be larger than those that stand for infinite ones.
+            // A finite plane may have a larger field than the windowed one that stands for an infinite one.
             _ if self.whole.is_finite() && !kernel.falls_fast() => f64::INFINITY,
             _ => plane::jet(kernel, [0.0, 0.0, u]).value,
         };
-        // Infinity times 0 says nothing either way.
+        // Infinity times 0 is NaN: no bound.
         let least = |a: f64, b: f64| if a < b || b.is_nan() { a } else { b };
         least(self.whole * point, self.endless * endless)
     }
 
-    /// A distance from the skeleton beyond which `|f|` is at most `share`.
+    /// Returns a distance from the skeleton beyond which `|f|` is at most `share`.
     #[must_use]
     pub fn distance_of(&self, share: f64) -> f64 {
         let enough = |distance: f64| self.magnitude(Nearness::at(distance)) <= share;
         let mut high = self.influence.at_least(f64::MIN_POSITIVE);
-        // The field falls at least as fast as 1/d, so this doubles some times only.
+        // The field falls at least as fast as 1/d, so a few doublings suffice.
         for _ in 0..64 {
             if enough(high) {
                 break;
@@ -464,7 +460,7 @@ impl Bound {
         high
     }
 
-    /// Whether there is a profile, whose [kinks](crate::kinks) no bound on a derivative tells of.
+    /// Whether there is a profile; bounds on derivatives then exclude its [kinks](crate::kinks).
     #[inline]
     #[must_use]
     pub fn has_profile(&self) -> bool {
@@ -484,13 +480,13 @@ impl Bound {
     }
 }
 
-/// The kernel's value from above, quickly.
+/// Upper bound on the kernel's value, cheap to compute.
 #[inline]
 fn size(kernel: Kernel, u: f64) -> f64 {
     match kernel {
-        // Single precision's is right to 10⁻⁶, and not yet 0.
+        // Single precision's exponential is right to 10⁻⁶, and not yet 0.
         Kernel::Gauss if u < 9.0 => f64::from(Real::decay((u * u) as f32)) * (1.0 + 1e-5),
-        // e⁻⁸¹; there is nothing to know more exactly.
+        // e⁻⁸¹.
         Kernel::Gauss => 7e-36,
         Kernel::Cauchy => envelope::cauchy_point(u).0,
         _ => kernel.value(u),

@@ -22,7 +22,7 @@ const COEFFICIENTS: [f64; 11] = [
     -1.035_651_761_218_124_7e-17,
 ];
 
-/// A number z of the disc, as the formulas want it.
+/// A complex number z of the unit disc, in the quantities that the formulas use.
 #[derive(Clone, Copy)]
 pub struct InDisc<R> {
     /// Half its argument, ψ.

@@ -89,7 +89,7 @@ fn with_pole<R: Real>(
     let mut total = Jet::zero();
     for span in &bone.spans {
         let mut t = Slope::new(span, p).extremum(|slope, t| slope.at(t));
-        // To the last digit, since the peak may be as narrow as that.
+        // Converge to the last digit, since the peak may be that narrow.
         for _ in 0..if R::DOUBLE { 4 } else { 3 } {
             let [e0, e1, e2, _] = relative(span, t, p);
             let square = dot(e1, e1);
@@ -103,7 +103,7 @@ fn with_pole<R: Real>(
         } else {
             R::splat(POLE2)
         };
-        // Beyond a few spans away nothing is peaked, and sinh of small numbers loses digits.
+        // A few spans away there is no peak, and sinh of small numbers loses digits.
         let b = ((square + pole) / nonzero(around.speed[0]))
             .sqrt()
             .min(R::splat(8.0));
@@ -147,7 +147,7 @@ fn compact<R: Real>(
     let mut total = Jet::zero();
     for span in &bone.spans {
         let away: [R; 3] = core::array::from_fn(|i| p[i] - R::lift(span.position[0][i]));
-        // What no lane can see would add zeros.
+        // Out of every lane's reach the span adds 0.
         if !R::any(dot(away, away).lt(R::lift(span.reach2))) {
             continue;
         }
@@ -179,7 +179,7 @@ fn compact<R: Real>(
             if metaballs {
                 let inner = side.inside(&around, R::splat(INNER2));
                 integrate(inner);
-                // The rest of the outer piece is on the inner one's far side.
+                // The outer piece continues on the far side of the inner one.
                 let rising = side.start.lt(side.stop);
                 integrate([
                     R::select(rising, inner[1], outer[0]),
@@ -233,8 +233,8 @@ impl<R: Real> Slope<R> {
         self.middle + t * horner(&c, t)
     }
 
-    /// Where in [−1, 1] a function that is nearly linear in t passes 0, by the Illinois method; where
-    /// it does not, the end at which its integral is smaller.
+    /// Returns the zero in [−1, 1] of a function that is nearly linear in t, by the Illinois method; without a
+    /// zero, the end at which its integral is smaller.
     #[inline(always)]
     fn extremum(&self, f: impl Fn(&Self, R) -> R) -> R {
         let (zero, one, half) = (R::splat(0.0), R::splat(1.0), R::splat(0.5));
@@ -367,7 +367,7 @@ impl<R: Real> Side<R> {
     fn inside(&self, around: &Around<'_, R>, level: R) -> [R; 2] {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let (first, last) = (self.start - level, self.stop - level);
-        // Counted so that it rises. The parabola that touches it at the start.
+        // With the sign that makes it rise: the parabola tangent to it at the start.
         let rising = self.start.lt(self.stop);
         let sign = R::select(rising, one, -one);
         let bend = self.bend;
@@ -486,7 +486,7 @@ fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A divisor.
+/// x, or a tiny number in place of 0, for use as a divisor.
 #[inline(always)]
 fn nonzero<R: Real>(x: R) -> R {
     let least = R::splat(1e-30);

@@ -1,4 +1,4 @@
-//! The field of an infinite line, by which lines and arcs are normalised (fields.md, section 3.4), at
+//! Fields of infinite lines, by which segments, arcs and curves are normalised (fields.md, section 3.4), at
 //! a distance x, in kernel widths.
 use crate::plane::WINDOW;
 use crate::{Kernel, inverse};

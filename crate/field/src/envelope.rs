@@ -1,7 +1,7 @@
-//! How rough a kernel is, by distance: what a derivative along any straight line can at most be at a
-//! distance u or more, and what the integrals of that over a line and a plane at that distance are.
+//! Envelopes of a kernel's derivatives: the largest derivative along any straight line at a distance u or more, and the
+//! integrals of that bound over a line and a plane at that distance.
 //!
-//! The order of the derivative is the highest that the kernel has everywhere: 4 for smooth kernels; 2
+//! The order of the derivative is the highest that exists everywhere: 4 for smooth kernels; 2
 //! for those whose slope has kinks (metaballs, soft, quartic), 3 for compact6. The cubic Hermite
 //! interpolant on a span of length h is then within `c·hᵐ·max|f⁽ᵐ⁾|` of the function, with Peano's
 //! constants c₂ = 1/16, c₃ = 1/96, c₄ = 1/384, both at a span's middle.
@@ -29,7 +29,7 @@ pub struct Roughness {
 }
 
 impl Roughness {
-    /// Of what is 0.
+    /// Bounds on the zero function.
     const NONE: Self = Self {
         point: 0.0,
         line: 0.0,
@@ -38,7 +38,7 @@ impl Roughness {
     };
 }
 
-/// The order of the derivative that is bounded.
+/// Order of the derivative that is bounded.
 #[must_use]
 pub fn order(kernel: Kernel) -> usize {
     kernel.smoothness().saturating_add(1).min(4)
@@ -59,7 +59,7 @@ pub fn inside(kernel: Kernel) -> [f64; 2] {
     }
 }
 
-/// The bounds at a distance of `u ≥ 0` or more.
+/// Returns the bounds at a distance of `u ≥ 0` kernel widths or more.
 #[inline]
 #[must_use]
 pub fn roughness(kernel: Kernel, u: f64) -> Roughness {
@@ -72,7 +72,7 @@ pub fn roughness(kernel: Kernel, u: f64) -> Roughness {
     table(kernel)[index(u)]
 }
 
-/// The same at one point only.
+/// Returns [`Roughness::point`] alone at a distance of `u ≥ 0` or more.
 #[inline]
 #[must_use]
 pub fn rough_point(kernel: Kernel, u: f64) -> f64 {
@@ -148,11 +148,11 @@ fn table(kernel: Kernel) -> &'static [Roughness] {
 
 /// Fine steps in one step of the table.
 const FINE: usize = 2;
-/// Nearer than this, in kernel widths, kernels without a pole are level: integrals over a line from there on differ from those from
-/// the middle by less than a hundredth.
+/// Distance in kernel widths below which a kernel without a pole is treated as constant: integrals over a line from there on
+/// differ from those from the middle by less than 1 %.
 const LEVEL: f64 = 1.0 / 256.0;
-/// What a derivative may rise by within a fine step (1/64 octave), over its larger end: where it is
-/// curved, and near a place where it vanishes the envelope of what comes further out counts.
+/// Largest ratio of a derivative within a fine step (1/64 octave) to its larger end. Near a zero of the derivative the envelope
+/// of larger distances counts.
 const SLACK: f64 = 1.03;
 
 fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
@@ -165,7 +165,7 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
         }
     }
     places.push(libm::exp2(f64::from(FIRST + OCTAVES as i32)));
-    // At a distance or more, from the far end inwards.
+    // Running maximum from the far end inwards.
     let mut rough = vec![0.0f64; places.len()];
     let mut largest = 0.0f64;
     for i in (0..places.len()).rev() {
@@ -189,7 +189,7 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
         let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
         let mut before = 0.0;
         for i in start..last {
-            // Nothing is rough from here on: beyond where a kernel ends, or is as good as 0.
+            // Beyond the kernel's support, or where it underflows.
             if rough[i] == 0.0 {
                 break;
             }
@@ -200,8 +200,8 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
             outward += rough[i] * (places[i + 1] - places[i]);
             before = t;
         }
-        // Beyond the last place everything falls as r⁻⁴ or faster (slopes of the inverse kernel: as
-        // r⁻², which over a plane has no end).
+        // Beyond the last place derivatives fall as r⁻⁴ or faster (slopes of the inverse kernel as r⁻², whose integral over a
+        // plane diverges).
         line += 2.0 * rough[last] * places[last];
         plane += TAU * rough[last] * places[last] * places[last];
         if order == 1 && kernel == Kernel::Inverse {
@@ -223,7 +223,7 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
         if step % STEPS == 0 {
             octave = start;
         }
-        // What holds further in holds here, too; and of a kernel without a pole it is hardly more, and saves a sum.
+        // A bound at a smaller distance holds here, too; without a pole it is hardly larger, and saves a sum.
         let same =
             start > octave && places[start] < LEVEL && rough[octave] <= 1.0001 * rough[start];
         let here = if same { table.last().copied() } else { None };

@@ -46,10 +46,10 @@ fn reach2<S: Real>(edges: &[Edge<S>]) -> S {
     })
 }
 
-/// `near`, or the cubature over `parts` where the point is far away compared to the edges' reach. (The
+/// Returns `near`, or the cubature over `parts` where the point is far away compared to the edges' reach. (The
 /// poles' ε counts as a distance, for bones that are smaller than it.)
 ///
-/// In single precision only bones whose reach is at most 2 are looked at so: a larger one's field at that
+/// Single precision uses the cubature only for bones whose reach is at most 2: a larger one's field at that
 /// distance is so much smaller than its largest that the lost digits do not count.
 #[inline(always)]
 pub fn or_near<'a, R: Real>(
@@ -140,8 +140,8 @@ mod tests {
         .map(Triangle::new)
     }
 
-    /// What the rule leaves at `ratio` times the reach from the closed form, at worst, as a part of the
-    /// value and of the slope.
+    /// Returns the rule's largest relative errors of value and gradient, against the closed forms, at `ratio` times the
+    /// reach.
     fn error(ratio: f64) -> [f64; 2] {
         let mut worst = [0.0_f64; 2];
         for bone in needle_and_others() {
@@ -150,7 +150,7 @@ mod tests {
                 let (y, x) = libm::sincos(f64::from(i) * 0.7);
                 let (height, flat) = libm::sincos(f64::from(i) * 1.3);
                 let p = [x * flat, y * flat, height].map(|x| x * ratio * reach);
-                // In double precision the closed forms serve up to 18 times the reach.
+                // In double precision the closed forms are used up to 18 times the reach.
                 for (kernel, want) in [
                     (Kernel::Inverse, inverse::polygon::triangle(&bone, p)),
                     (Kernel::Squared, squared::polygon::triangle(&bone, p)),

@@ -1,4 +1,4 @@
-//! Implicit functions: the one notion of a surface that tracer, mesher, picker and slices share.
+//! Implicit functions: the definition of a surface that tracer, mesher, picker and slices share.
 use crate::Jet;
 use glam::DVec3;
 use wide::f32x8;
@@ -68,7 +68,7 @@ impl Enclosure {
 /// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
 /// outward normal is `−∇f/|∇f|`.
 ///
-/// [`Sum`](crate::Sum) is the convolution surface. Other implementations may compose functions; whoever follows
+/// [`Sum`](crate::Sum) is the convolution surface. Other implementations may compose functions; code that traces or meshes
 /// surfaces needs nothing but this trait.
 pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// Value and gradient in double precision.

@@ -1,4 +1,4 @@
-//! Kernels h(r): how much flesh a point of the skeleton gives at a distance.
+//! Kernels h(r): the contribution of a point of the skeleton to the field at a distance.
 //!
 //! In units of the kernel's width (lengths times [`Shaping::width`](crate::Shaping::width)) every
 //! kernel is a fixed function of u, the distance, and best written as a function G of the *square*
@@ -7,7 +7,7 @@ use crate::{Real, inverse, metaballs};
 use core::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
-/// A kernel: a function of distance that falls to 0 (thesis, section 2.3; `compact6` and `cubed` are ours).
+/// A kernel: a decreasing function of distance (thesis, section 2.3; `compact6` and `cubed` are ours).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Kernel {
     /// `1/(1+u²)²`: infinite, falls as u⁻⁴.
@@ -50,7 +50,7 @@ impl Kernel {
         Self::Cubed,
     ];
 
-    /// The name by which the language knows it.
+    /// Name in the dataset language.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -66,7 +66,7 @@ impl Kernel {
         }
     }
 
-    /// The kernel of that name.
+    /// Returns the kernel of that name, `None` if there is none.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kernel| kernel.name() == name)
@@ -224,7 +224,7 @@ impl Kernel {
         (value, -fall)
     }
 
-    /// No less than G(q) and −G′(q), but cheaper.
+    /// Returns upper bounds on G(q) and −G′(q), cheaper than the values.
     #[inline(always)]
     pub(crate) fn falling_at_most<R: Real>(self, q: R) -> (R, R) {
         if self == Self::Gauss {

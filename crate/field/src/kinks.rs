@@ -1,6 +1,6 @@
-//! Where a profile is not smooth: the places where a wave has a kink or a jump and where a parameter is cut to
-//! [0, 1]. They lie on planes, across a segment or a triangle, or through the axis of an arc: so on a ray they are
-//! single places, between which the field is smooth.
+//! Kinks of profiles: where a wave has a kink or a jump and where a parameter is clamped to [0, 1]. They lie on planes,
+//! across a segment or a triangle, or through the axis of an arc: a ray meets each plane at one parameter, and between
+//! those the field is smooth.
 use crate::{Primitive, Skeleton, Wave};
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ pub struct Kink {
     pub jumps: bool,
 }
 
-/// Kinks of one wave along a bone; what is finer is not told.
+/// Largest number of kinks of one wave along a bone; further ones are left out.
 const MOST_KINKS: f64 = 4096.0;
 
 impl Kink {
@@ -33,7 +33,7 @@ impl Kink {
         (center - self.point).dot(self.normal).abs() <= radius
     }
 
-    /// Where a ray crosses the plane: infinite or not a number if it runs along it.
+    /// Parameter at which a ray crosses the plane; infinite or NaN if it is parallel to it.
     #[must_use]
     pub fn along(&self, origin: DVec3, direction: DVec3) -> f64 {
         self.normal.dot(self.point - origin) / self.normal.dot(direction)
@@ -58,7 +58,7 @@ pub fn of(primitive: &Primitive) -> Vec<Kink> {
         Skeleton::Triangle { corners: [a, b, c] } => {
             let (e1, e2) = (*b - *a, *c - *a);
             let normal = e1.cross(e2);
-            // Along the gradients of u, of v and of what is left.
+            // Planes of constant u, v and 1 − u − v: their gradients are normal to them.
             let (by_u, by_v) = (e2.cross(normal), normal.cross(e1));
             for (i, gradient, edge) in [(0, by_u, e1), (1, by_v, e2)] {
                 for u in breaks(profile.waves[i], profile.scale[i]) {
@@ -92,7 +92,7 @@ pub fn of(primitive: &Primitive) -> Vec<Kink> {
                 at(u * angle, jumps(0));
             }
         }
-        // These have no parameters, or none that counts.
+        // No parameters, or none that matters.
         Skeleton::Point { .. }
         | Skeleton::Arc { .. }
         | Skeleton::Polygon { .. }

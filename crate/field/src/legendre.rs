@@ -2,8 +2,8 @@
 //!
 //! The rule with n nodes integrates polynomials of degree 2n−1 over [−1, 1] exactly. Its nodes are
 //! the roots of Legendre's polynomial Pₙ, found by Newton's method from the estimate
-//! `cos(π(i−¼)/(n+½))`; the weights are `2/((1−x²)Pₙ′(x)²)`. All that happens when the crate is
-//! compiled.
+//! `cos(π(i−¼)/(n+½))`; the weights are `2/((1−x²)Pₙ′(x)²)`. All of it is evaluated at compile
+//! time.
 use crate::Real;
 use core::f64::consts::PI;
 
@@ -30,7 +30,7 @@ pub const fn pairs<const HALF: usize>() -> [(f64, f64); HALF] {
     pairs
 }
 
-/// Of two rules the one for R's precision.
+/// Selects the rule for R's precision.
 #[inline(always)]
 pub fn choose<R: Real>(
     single: &'static [(f64, f64)],
@@ -52,7 +52,7 @@ const fn legendre(n: usize, x: f64) -> (f64, f64) {
     (value, n as f64 * (x * value - before) / (x * x - 1.0))
 }
 
-/// The cosine for 0 ≤ x ≤ π/2, well enough to start from.
+/// Cosine for 0 ≤ x ≤ π/2, to the accuracy of a starting value.
 const fn cosine(x: f64) -> f64 {
     let q = x * x;
     1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))))

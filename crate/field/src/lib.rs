@@ -1,5 +1,26 @@
 //! The mathematics of convolution surfaces.
 //!
+//! ```
+//! use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
+//! use glam::DVec3;
+//!
+//! // A segment of radius 0.3 with the Cauchy kernel.
+//! let shaping = Shaping {
+//!     kernel: Kernel::Cauchy,
+//!     radius: 0.3,
+//!     blobbiness: -1.0,
+//!     blob_scale: BlobScale::Relative,
+//!     strength: 1.0,
+//!     influence: 1e-3,
+//!     taper: None,
+//! };
+//! let skeleton = Skeleton::Segment { base: -5.0 * DVec3::X, apex: 5.0 * DVec3::X };
+//! let sum: Sum = Primitive::new(skeleton, &shaping, None).into_iter().collect();
+//! // The surface is where the field is T: 0.3 beside the axis, nearly (the segment is not infinite).
+//! assert!(sum.jet(DVec3::new(0.0, 0.28, 0.0)).value > THRESHOLD);
+//! assert!(sum.jet(DVec3::new(0.0, 0.31, 0.0)).value < THRESHOLD);
+//! ```
+//!
 //! A skeleton (points, segments, arcs, triangles, polygons, planes, curves) is convolved with a kernel h(r), a bump
 //! that falls with distance. The result is a smooth field F in space, the sum of one term per
 //! [`Primitive`]; the surface is where F equals [`THRESHOLD`], and inside is where F is larger.
@@ -11,28 +32,27 @@
 //! - [`Shaping`] turns a radius, a blobbiness and a strength into a kernel's width and height;
 //! - [`Implicit`] is any function with a surface, with value, gradient and proven bounds; [`Sum`] is the convolution
 //!   surface's;
-//! - [`Primitive`] is a term of the field: its value and gradient, its depth of influence, where a
-//!   ray meets that, how far a cubic may stand in for it;
-//! - [`Lump`] is a primitive so simple that its largest value on any piece of a ray has a closed form;
-//! - [`Real`] is the number formulas are written in: `f64`, `f32`, or eight `f32` side by side.
+//! - [`Primitive`] is a term of the field: value, gradient, depth of influence, and the ray interval within it;
+//!   [`Bound`] gives upper bounds on its size, its derivatives and the error of a cubic Hermite span;
+//! - [`Blob`] is a primitive whose largest value on any interval of a ray has a closed form;
+//! - [`Real`] is the number type that formulas are generic over: `f64`, `f32`, or eight `f32` side by side.
 //!
 //! # Accuracy
 //! In double precision every cell of the chart agrees with quadrature to 10⁻⁹ (Cauchy to 10⁻¹¹, from
 //! 10⁻⁶ to 10⁶ kernel widths away). In single precision the worst relative error of a cell, at places
 //! that matter to a picture, is listed in BENCHMARKS.md: 10⁻⁵ or less for most, 10⁻⁴ for Gauss arcs.
 //! Sums over edges (triangles and polygons, but for Cauchy's) lose digits where their terms cancel, far
-//! outside and for needles: there it is the error compared to the largest field that stays below 2·10⁻⁶.
-//! Of a Cauchy triangle the slope across its plane is lost more than 100 widths away.
+//! outside and for needles: there the error stays below 2·10⁻⁶ of the largest field.
+//! The slope of a Cauchy triangle across its plane is lost more than 100 widths away.
 
 mod angle;
-pub mod beads;
+pub mod blob;
+pub mod blob_chain;
 mod bone;
 pub mod bound;
-mod bounds;
 mod carlson;
 mod cauchy;
 mod clausen;
-pub mod course;
 mod cubed;
 mod curve;
 mod cut;
@@ -43,6 +63,7 @@ mod far;
 mod form;
 mod gauss;
 mod implicit;
+mod influence;
 mod inverse;
 pub mod kernel;
 pub mod kinks;
@@ -66,9 +87,9 @@ mod sum;
 mod term;
 mod waves;
 
-pub use beads::Bead;
+pub use blob::{Blob, BlobOnRay, Ceiling, Limits};
+pub use blob_chain::ChainBlob;
 pub use bound::Bound;
-pub use course::{Ceiling, Course, Limits, Lump};
 pub use cut::Cut;
 pub use implicit::{Ball, Enclosure, Implicit};
 pub use kernel::{Derivatives, Kernel};

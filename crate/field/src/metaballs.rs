@@ -25,13 +25,14 @@ fn rule<R: Real>() -> &'static [[f64; 2]] {
     if R::DOUBLE { &GAUSS20 } else { &GAUSS6 }
 }
 
-/// The same for inner pieces of a polygon's edges: polynomials, or over the squared distance from a far pole.
+/// Nodes and weights for inner pieces of a polygon's edges: integrands are polynomials, or such over the squared distance from a
+/// far pole.
 #[inline(always)]
 fn rule_inside<R: Real>() -> &'static [[f64; 2]] {
     if R::DOUBLE { &GAUSS20 } else { &GAUSS4 }
 }
 
-/// The same along an arc, where the branch points can be nearer.
+/// Nodes and weights along an arc, where the branch points can be nearer.
 #[inline(always)]
 fn rule_arc<R: Real>() -> &'static [[f64; 2]] {
     if R::DOUBLE { &GAUSS24 } else { &GAUSS8 }

@@ -4,7 +4,7 @@ use crate::real::Scalar;
 use crate::term::{Prepared, Term, place, tapered_curve};
 use crate::waves::Waves;
 use crate::{AlongRay, Kernel, Profile, Real, Shaping, Skeleton, THRESHOLD};
-use crate::{bounds, reach};
+use crate::{influence, reach};
 use glam::DVec3;
 
 /// A value and its gradient.
@@ -17,7 +17,7 @@ pub struct Jet<R> {
 }
 
 impl<R: Real> Jet<R> {
-    /// The zero function's.
+    /// Jet of the zero function.
     #[inline(always)]
     #[must_use]
     pub fn zero() -> Self {
@@ -27,7 +27,7 @@ impl<R: Real> Jet<R> {
         }
     }
 
-    /// The sum's.
+    /// Jet of the sum of two functions.
     #[inline(always)]
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
@@ -37,7 +37,7 @@ impl<R: Real> Jet<R> {
         }
     }
 
-    /// The multiple's.
+    /// Jet of a multiple of the function.
     #[inline(always)]
     #[must_use]
     pub fn times(self, factor: R) -> Self {
@@ -78,8 +78,8 @@ const LARGEST: f64 = 1e8;
 /// Largest size, in kernel widths, of curves and bones that taper, which are integrated numerically.
 pub const LONGEST: f64 = 1e4;
 
-/// The largest width parameter along a tapered bone. It is smooth, and at an end unless radius and
-/// blobbiness work against each other: then a sample is near enough. `None` if there is no flesh
+/// Returns the largest width parameter along a tapered bone: at an end, unless radius and blobbiness change it in
+/// opposite directions; then the largest sample is near enough, as it is smooth. `None` if the shaping is invalid
 /// somewhere.
 fn largest_width(shaping: &Shaping) -> Option<f64> {
     (0..=64).try_fold(0.0, |largest: f64, i| {
@@ -88,7 +88,7 @@ fn largest_width(shaping: &Shaping) -> Option<f64> {
 }
 
 impl Primitive {
-    /// `None` if the shaping gives no flesh: radius, blobbiness or strength zero or not finite, the
+    /// Prepares a primitive. `None` if the shaping gives no surface: radius, blobbiness or strength zero or not finite, the
     /// radius negative, the skeleton not finite, or larger than 10⁸ kernel widths
     /// ([`LONGEST`], if it is a curve or tapers).
     #[must_use]
@@ -125,7 +125,7 @@ impl Primitive {
         if !amplitude.is_finite() {
             return None;
         }
-        // A profile is read off the skeleton's own form, tapered or not.
+        // A profile's parameters come from the untapered form, also for tapered bones.
         let waves = profile.map(|profile| Box::new(Waves::new(&profile, &form.bone)));
         if let Some(shaping) = tapered {
             let law = |fraction: f64| {
@@ -139,7 +139,7 @@ impl Primitive {
             form.bone = Bone::Curve(Box::new(curve));
         }
         let level = THRESHOLD * shaping.influence.max(f64::MIN_POSITIVE);
-        let influence = bounds::depth(&form, amplitude.abs() * peak, level) / width;
+        let influence = influence::depth(&form, amplitude.abs() * peak, level) / width;
         Some(Self {
             skeleton,
             kernel: shaping.kernel,
@@ -199,12 +199,11 @@ impl Primitive {
         let term = &self.prepared.double;
         let peak = self.profile.as_ref().map_or(1.0, |p| p.largest());
         let distance = (distance * self.width).max(0.0);
-        term.amplitude.abs() * peak * bounds::bound_at(&term.form, distance)
+        term.amplitude.abs() * peak * influence::bound_at(&term.form, distance)
     }
 
-    /// Of a tapered bone: its length, weighted with the height in units of `height`; the largest such
-    /// height; and the smallest square of the width parameter in units of `width`'s. The first two
-    /// from above, the third from below.
+    /// Bounds on a tapered bone, `None` for others: an upper bound on its length weighted with the height over
+    /// `height`; one on that relative height; and a lower bound on the squared width parameter over `width²`.
     pub(crate) fn taper_bounds(&self) -> Option<[f64; 3]> {
         self.tapered.as_ref()?;
         let Bone::Curve(curve) = &self.prepared.double.form.bone else {
@@ -214,7 +213,7 @@ impl Primitive {
         Some([mass / self.width, density, thinness])
     }
 
-    /// The field along the ray `origin + t·direction`, ready to be evaluated often.
+    /// Prepares evaluations of the field along the ray `origin + t·direction`.
     #[must_use]
     pub fn on_ray<S: Scalar>(&self, origin: DVec3, direction: DVec3) -> AlongRay<'_, S> {
         AlongRay::new(&self.prepared, origin, direction)

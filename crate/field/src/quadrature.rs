@@ -91,7 +91,7 @@ fn refine(
         + refine(f, middle, b, right, tolerance, depth - 1)
 }
 
-/// The kernel as defined (fields.md, section 1), of a squared distance.
+/// Kernel as defined (fields.md, section 1), of a squared distance.
 fn kernel(kernel: Kernel, width: f64, square: f64) -> f64 {
     let q = width * width * square;
     let u = q.sqrt();
@@ -112,7 +112,7 @@ fn kernel(kernel: Kernel, width: f64, square: f64) -> f64 {
     }
 }
 
-/// How finely an integrand must be looked at: the kernel's width, or its pole's.
+/// Length scale on which an integrand varies: the kernel's width, or its pole's.
 fn finest(kernel: Kernel) -> f64 {
     match kernel {
         Kernel::Inverse | Kernel::Squared | Kernel::Cubed => 1e-5,
@@ -286,7 +286,7 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
     }
 }
 
-/// The field of a tapered bone: of every place's own radius and blobbiness.
+/// Field of a tapered bone, integrated with each point's own radius and blobbiness.
 fn over_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> f64 {
     let k = primitive.kernel;
     let skeleton = &primitive.skeleton;

@@ -1,8 +1,8 @@
-//! The simplest profile along a segment: it rises or falls evenly from one end to the other.
+//! Ramps: profiles that are linear along a segment.
 //!
 //! At x along the segment, in kernel widths from its middle, the factor on the field is
 //! `low + rise·min(max(start + rate·x, 0), top)`: linear beside the segment and constant beyond its ends. Along a ray x is
-//! linear in t, so the factor is linear with at most two kinks, which [`Course`](crate::Course) can follow.
+//! linear in t, so the factor is piecewise linear with at most two kinks, for which [`BlobOnRay`](crate::BlobOnRay) has bounds.
 use crate::waves::Waves;
 use crate::{Real, Wave};
 
@@ -17,7 +17,7 @@ pub struct Ramp<S> {
 }
 
 impl Ramp<f64> {
-    /// The profile of a segment of such a half length in kernel widths, if it is a ramp and above 0 somewhere.
+    /// Returns the profile of a segment of this half length in kernel widths; `None` if it is no ramp, negative somewhere or 0.
     pub(crate) fn of(waves: &Waves<f64>, half: f64) -> Option<Self> {
         let ([Wave::X, Wave::One], [scale, _]) = (waves.waves, waves.scale) else {
             return None;
@@ -33,17 +33,17 @@ impl Ramp<f64> {
         (scale > 0.0 && first >= 0.0 && last >= 0.0 && own.largest() > 0.0).then_some(own)
     }
 
-    /// The factors before its kinks and after.
+    /// Factors at the segment's two ends.
     fn ends(&self) -> [f64; 2] {
         [self.low, self.low + self.rise * self.top]
     }
 
-    /// By how much of its largest value it changes in a kernel's width, at most.
+    /// Largest change in a kernel width, over the largest value.
     pub(crate) fn steepness(&self) -> f64 {
         (self.rise * self.rate).abs() / self.largest()
     }
 
-    /// The factor is nowhere more than this.
+    /// Largest factor.
     pub(crate) fn largest(&self) -> f64 {
         let [first, last] = self.ends();
         first.max(last)
@@ -63,7 +63,7 @@ impl<S> Ramp<S> {
 }
 
 impl<S: Copy> Ramp<S> {
-    /// The factor at x, and its derivative by x.
+    /// Returns the factor at x and its derivative by x.
     #[inline(always)]
     pub fn at<R: Real<Scalar = S>>(&self, x: R) -> (R, R) {
         let zero = R::splat(0.0);
@@ -77,8 +77,8 @@ impl<S: Copy> Ramp<S> {
         )
     }
 
-    /// Between two places: the most that the factor is, the most that its derivative by x is, of either sign, and by how much
-    /// that falls in a kink.
+    /// Returns upper bounds between two positions: on the factor, on the size of its derivative by x, and on that derivative's
+    /// drop in a kink.
     #[inline(always)]
     pub fn most<R: Real<Scalar = S>>(&self, a: R, b: R) -> [R; 3] {
         let zero = R::splat(0.0);
@@ -90,7 +90,7 @@ impl<S: Copy> Ramp<S> {
         let highest = R::select(climbs, last, first).max(zero).min(top);
         let steep = (rise * rate).abs();
         let meets = R::both(zero.lt(last), first.lt(top));
-        // Where the factor is largest its derivative falls to 0, or from 0.
+        // Only at the kink at the largest factor does the derivative fall.
         let kink = R::select(climbs, top, zero);
         let bends = R::both(first.lt(kink), kink.lt(last));
         [

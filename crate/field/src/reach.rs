@@ -1,5 +1,5 @@
-//! Where a ray is within the depth of influence of a skeleton: the bounding volumes of the thesis's
-//! section 4.2, in the primitive's local frame.
+//! Ray intervals within a skeleton's depth of influence: the bounding volumes of the thesis's section 4.2, in
+//! the primitive's local frame.
 //!
 //! Each volume holds all points within distance d of the skeleton. Intervals are conservative: a
 //! point of the ray outside its interval is outside the volume.
@@ -83,8 +83,8 @@ pub(crate) fn interval(
         }
         Bone::Curve(curve) => {
             let mut hull = NONE;
-            for stretch in &curve.stretches {
-                hull = join(hull, ray.ball(stretch.center, stretch.radius + d));
+            for piece in &curve.piece_bounds {
+                hull = join(hull, ray.ball(piece.center, piece.radius + d));
             }
             hull
         }
@@ -101,7 +101,7 @@ fn join(a: Interval, b: Interval) -> Interval {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// `a` without the part of `hole` at its ends.
+/// Removes from `a` the parts of `hole` that contain an end of it.
 fn cut(a: Interval, hole: Interval) -> Interval {
     let [mut low, mut high] = a;
     if hole[0] <= low && low <= hole[1] {
@@ -146,14 +146,14 @@ impl Ray {
         }
     }
 
-    /// Where `low ≤ x ≤ high` in coordinate `axis`.
+    /// Interval on which `low ≤ x ≤ high` in coordinate `axis`.
     fn slab(&self, axis: usize, low: f64, high: f64) -> Interval {
         let mut n = DVec3::ZERO;
         n[axis] = 1.0;
         meet(self.above(n, low), self.above(-n, -high))
     }
 
-    /// Where `n·p ≥ level`.
+    /// Interval on which `n·p ≥ level`.
     fn above(&self, n: DVec3, level: f64) -> Interval {
         let height = n.dot(self.origin) - level;
         let rate = n.dot(self.direction);
@@ -169,7 +169,7 @@ impl Ray {
     }
 }
 
-/// Where `|o + t·d| ≤ radius`, solved from the nearest point for the sake of far origins.
+/// Interval on which `|o + t·d| ≤ radius`, solved from the ray's nearest point, which keeps the digits for far origins.
 fn round(o: DVec3, d: DVec3, radius: f64) -> Interval {
     let square = d.length_squared();
     if square == 0.0 {

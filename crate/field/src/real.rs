@@ -1,4 +1,4 @@
-//! The numbers that formulas are written in.
+//! The number types that formulas are generic over.
 //!
 //! Each formula of this crate is written once, generic over [`Real`], without branches on values:
 //! it runs as `f64` (the reference), as `f32`, and as [`wide::f32x8`] (eight at a time). Only
@@ -66,8 +66,8 @@ pub trait Real:
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Where both masks hold.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Whether the mask holds in any lane. Only to leave out work whose result would be the same
-    /// bits as what stands in for it: else lanes would differ from `f32`.
+    /// Whether the mask holds in any lane. To be used only to skip work that would not change any bit of the
+    /// result: else lanes would differ from `f32`.
     fn any(mask: Self::Mask) -> bool;
 
     /// `Q(y)` of `arctan x = x − x³/3 + x⁵·Q(x²)`, for 0 ≤ y ≤ tan²(π/8), to the type's precision.
@@ -78,13 +78,13 @@ pub trait Real:
     /// Sine and cosine, for |x| ≤ π/4.
     fn sin_cos_octant(self) -> (Self, Self);
     /// `erfc x` of x ≥ 0, the complementary error function, to the last digits also where it is
-    /// tiny. `bell` is e^(−x²), which whoever wants the one mostly has.
+    /// tiny. `bell` is e^(−x²), which callers mostly have already.
     fn erfc(self, bell: Self) -> Self;
 
     /// e^(−x), x ≥ −88. In single precision 0 for x from 87.69 on, and meaningless below −88.
     fn decay(self) -> Self;
-    /// No less than e^(−x), x ≥ 0, and no more than 7 % above it; in single precision nowhere less than 10⁻³⁸, and at a fifth
-    /// of the cost. x must be a number.
+    /// Upper bound on e^(−x), x ≥ 0, at most 7 % above it; in single precision at least 10⁻³⁸ and at a fifth of the cost. x must
+    /// not be NaN.
     #[inline(always)]
     fn decay_at_most(self) -> Self {
         self.decay()
@@ -119,7 +119,7 @@ pub trait Real:
     /// crate: the chart's formulas are too long to be compiled again wherever one is used.
     #[doc(hidden)]
     fn evaluate(term: &Term<Self::Scalar>, local: [Self; 3]) -> Jet<Self>;
-    /// A point's value and gradient at a position in the world, see [`Term`].
+    /// Value and gradient of a point primitive at a position in world coordinates, see [`Term`].
     #[doc(hidden)]
     fn evaluate_point(term: &Term<Self::Scalar>, position: [Self; 3]) -> Jet<Self>;
 
@@ -140,7 +140,7 @@ pub trait Real:
 pub trait Scalar: Real<Scalar = Self> + PartialEq + core::fmt::Debug {
     /// The nearest number of this type.
     fn round(value: f64) -> Self;
-    /// Of a term prepared in both precisions, the one in this.
+    /// Selects this precision of a term prepared in both.
     #[doc(hidden)]
     fn prepared(term: &Prepared) -> &Term<Self>;
 }

@@ -1,5 +1,5 @@
-//! How fast a profile's factor can change along a line between its [kinks](crate::kinks), so that what is known of a
-//! field without its profile bounds the derivatives of the product (Leibniz).
+//! Bounds on a profile's derivatives along a line between its [kinks](crate::kinks). With the bounds on a field without its
+//! profile they bound the derivatives of the product (Leibniz).
 //!
 //! Along a segment or a triangle the waves are functions of linear parameters, whose rates are known. Around an arc they
 //! are functions of the angle θ = Im log z, whose derivatives along a line are at most `(k−1)!/ρᵏ` at a distance ρ from the
@@ -16,15 +16,15 @@ use core::f64::consts::TAU;
 /// Bounds on the derivatives of a profile's factor, over the factor's largest size.
 #[derive(Clone, Debug)]
 pub struct Ripple {
-    /// Of the first to the fourth along any line; around an arc those of the wave by the angle.
+    /// First to fourth derivative along any line; for an arc, of the wave by the angle.
     by: [f64; 4],
-    /// Of an arc: its radius, and by how much the waves raise the factor.
+    /// For an arc: its radius, and the waves' largest contribution to the factor.
     arc: Option<[f64; 2]>,
 }
 
 /// `4(j+1)!`, see the module, …
 const FADE: [f64; 5] = [4.0, 8.0, 24.0, 96.0, 480.0];
-/// … and what the derivatives of g are nowhere above.
+/// … and the largest values of the derivatives of g.
 const FADE_MOST: [f64; 5] = [1.0, 1.74, 8.0, 30.0, 192.0];
 /// Binomial coefficients of the orders 2 to 4.
 const BINOMIAL: [[f64; 5]; 3] = [
@@ -34,12 +34,12 @@ const BINOMIAL: [[f64; 5]; 3] = [
 ];
 
 impl Ripple {
-    /// Of a profile along a skeleton. `None` if it is the same everywhere.
+    /// Bounds for a profile along a skeleton. `None` if the profile is constant.
     #[must_use]
     pub fn of(profile: &Profile, skeleton: &Skeleton) -> Option<Self> {
         let [low, high] = profile.bounds;
         let rise = (high - low).abs() / low.abs().max(high.abs()).max(f64::MIN_POSITIVE);
-        // What has no extent has one parameter.
+        // Along a side without a length the parameter is constant.
         let one_over = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
         let wave = |i: usize, rate: f64| {
             let rate = (profile.scale[i] * rate).abs();
@@ -97,13 +97,13 @@ impl Ripple {
         changes.then_some(Self { by, arc })
     }
 
-    /// The first to the fourth derivative along any line, at a distance of `hub` or more from an arc's axis.
+    /// Returns bounds on the first to fourth derivative along any line, at a distance of `axis_distance` or more from an arc's axis.
     #[must_use]
-    pub fn derivatives(&self, hub: f64) -> [f64; 4] {
+    pub fn derivatives(&self, axis_distance: f64) -> [f64; 4] {
         let Some([radius, rise]) = self.arc else {
             return self.by;
         };
-        let q = hub / radius;
+        let q = axis_distance / radius;
         let y = 1.0 / (1.0 + q * q);
         let root = y.sqrt();
         let powers = [y, y * root, y * y, y * y * root, y * y * y];
@@ -132,7 +132,8 @@ impl Ripple {
         })
     }
 
-    /// The derivatives of the orders 2 to 4 of a field times the factor: those of the field from 0 to 4, and those of the factor.
+    /// Returns bounds on the derivatives of orders 2 to 4 of the field times the factor, from those of the field (orders 0 to 4)
+    /// and of the factor (orders 1 to 4).
     #[must_use]
     pub fn of_product(field: &[f64; 5], factor: &[f64; 4]) -> [f64; 3] {
         let [_, rest @ ..] = product(field, &with_value(1.0, *factor));
@@ -140,8 +141,8 @@ impl Ripple {
     }
 }
 
-/// The most that a wave's derivatives are between its kinks. Where kinks are not told (see `tracer`), those of the waves that
-/// have some stand for them: as if they were no less round than a sine.
+/// Returns bounds on a wave's derivatives between its kinks. Waves with kinks get those of a sine, for callers that ignore
+/// kinks.
 fn derivatives(wave: Wave) -> [f64; 4] {
     match wave {
         Wave::One => [0.0; 4],
@@ -166,7 +167,7 @@ fn product(a: &[f64; 5], b: &[f64; 5]) -> [f64; 4] {
     [first, second, third, fourth]
 }
 
-/// A product of bounds: nothing times what is not bounded is nothing.
+/// Product of two bounds, with 0·∞ = 0.
 fn times(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
@@ -193,7 +194,7 @@ mod tests {
     fn factors_change_no_faster_than_told() {
         const SMOOTH: [Wave; 5] = [Wave::X, Wave::Sin, Wave::Cos, Wave::Sin2, Wave::Cos2];
         let mut next = random();
-        // By kind of skeleton and order: how near the bounds are come to.
+        // Largest ratio of a derivative to its bound, by kind of skeleton and order.
         let mut nearest = [[0.0f64; 4]; 3];
         for case in 0..6000 {
             let mut place = || DVec3::new(next(), next(), next());
@@ -264,11 +265,11 @@ mod tests {
                 (p2 - 2.0 * p1 + 2.0 * m1 - m2) / (2.0 * step.powi(3)),
                 (p2 - 4.0 * p1 + 6.0 * o - 4.0 * m1 + m2) / step.powi(4),
             ];
-            let hub = [-2, 2].map(|i| {
+            let axis_distance = [-2, 2].map(|i| {
                 let away = point(i) - a;
                 libm::sqrt(away.x * away.x + away.y * away.y)
             });
-            let bounds = ripple.derivatives(hub[0].min(hub[1]));
+            let bounds = ripple.derivatives(axis_distance[0].min(axis_distance[1]));
             for (order, (found, bound)) in found.into_iter().zip(bounds).enumerate() {
                 // Differences lose digits.
                 let lost = 1e-14 / step.powi(order as i32 + 1);
@@ -276,7 +277,7 @@ mod tests {
                 let found = found.abs() - lost;
                 assert!(
                     found <= most * 1.01,
-                    "{case}, order {}: {found} > {most} at {hub:?} of {skeleton:?} {profile:?}",
+                    "{case}, order {}: {found} > {most} at {axis_distance:?} of {skeleton:?} {profile:?}",
                     order + 1
                 );
                 let near = &mut nearest[case % 3][order];
@@ -294,7 +295,7 @@ mod tests {
     fn a_product_has_all_of_its_terms() {
         let bounds = Ripple::of_product(&[1.0; 5], &[2.0, 4.0, 8.0, 16.0]);
         assert_eq!(bounds, [9.0, 27.0, 81.0]);
-        // What is not bounded counts only where the factor changes so.
+        // An unbounded derivative of the field counts only if the factor is not constant in that order.
         let field = [1.0, 1.0, 1.0, f64::INFINITY, f64::INFINITY];
         assert_eq!(Ripple::of_product(&field, &[0.0; 4])[0], 1.0);
     }

@@ -12,8 +12,8 @@ pub enum BlobScale {
     Absolute,
 }
 
-/// What a segment, an arc or a curve has at its other end. Along it radius R and blobbiness B vary
-/// evenly with length; other skeletons take no notice.
+/// Radius and blobbiness at the far end of a segment, an arc or a curve. Along it radius R and blobbiness B vary
+/// linearly with length; other skeletons ignore it.
 ///
 /// At every place q of the bone the kernel has the width s and the height that a uniform bone of that
 /// R and B has (thesis, section 3.3.2): `f(p) = ∫ height·h(s·|p−q|) dq`. For a constant B both go
@@ -35,7 +35,7 @@ pub struct Taper {
 /// The smallest radius of a tapered bone's thin end, as a part of its thick end's.
 pub const SLIMMEST: f64 = 1e-3;
 
-/// What the user says of a soft primitive.
+/// The user's parameters of a soft primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaping {
     /// The kernel.
@@ -50,7 +50,7 @@ pub struct Shaping {
     pub strength: f64,
     /// ε of the depth of influence: the primitive is ignored where its field is below ε·T.
     pub influence: f64,
-    /// What differs at the other end, if anything.
+    /// Radius and blobbiness at the far end, if they differ.
     pub taper: Option<Taper>,
 }
 
@@ -64,7 +64,7 @@ impl Shaping {
         differs && skeleton.dimension() == 1
     }
 
-    /// What a tapered bone has at a fraction of its length.
+    /// Returns the shaping at a fraction of a tapered bone's length.
     #[must_use]
     pub fn at(&self, fraction: f64) -> Self {
         let Some(end) = self.taper else {
@@ -72,7 +72,7 @@ impl Shaping {
         };
         let mix = |a: f64, b: f64| a + (b - a) * fraction;
         let slim = |radius: f64| {
-            // Not what is negative: that is a mistake.
+            // A negative radius stays, so that it is rejected as a mistake.
             if radius >= 0.0 {
                 radius.max(SLIMMEST * self.radius.max(end.radius))
             } else {
@@ -87,8 +87,8 @@ impl Shaping {
         }
     }
 
-    /// About how many kernel widths long a bone of this length is: by the geometric mean of the widths
-    /// at its ends, as most of a taper is thicker than its tip.
+    /// Estimates a bone's length in kernel widths, by the geometric mean of the width parameters at its ends, as
+    /// most of a taper is thicker than its tip.
     #[must_use]
     pub fn widths_along(&self, length: f64) -> f64 {
         let [start, end] = [0.0, 1.0].map(|at| self.at(at).width().unwrap_or(0.0));
@@ -191,7 +191,7 @@ impl Shaping {
         if !(depth.is_finite() && depth > 0.0 && self.influence > 0.0) {
             return None;
         }
-        // The field at the depth grows with the radius.
+        // The field at the depth grows with the radius: bisection.
         let (mut low, mut high) = (0.0, depth);
         for _ in 0..56 {
             let middle = 0.5 * (low + high);

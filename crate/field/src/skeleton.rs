@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub enum Skeleton {
     /// A point.
     Point {
-        /// Where.
+        /// Position.
         center: DVec3,
     },
     /// A line segment.
@@ -38,8 +38,8 @@ pub enum Skeleton {
     },
     /// A planar polygon.
     Polygon {
-        /// Its corners: the outer ring, then any holes, which lie inside it. No two edges cross, else
-        /// what is known of its field without evaluating it is wrong.
+        /// Its corners: the outer ring, then any holes, which lie inside it. No two edges may cross, else
+        /// [bounds](crate::Bound) on its field are wrong.
         rings: Vec<Vec<DVec3>>,
     },
     /// A cubic Bézier curve.
@@ -122,7 +122,7 @@ impl Skeleton {
                 let d = point - a;
                 let v = normal.dot(e1.cross(d)) / area;
                 let u = normal.dot(d.cross(e2)) / area;
-                // The edges are asked in any case: of a needle's inside, u and v are uncertain.
+                // The edges are tested in any case: for a needle's interior u and v are uncertain.
                 let inside = area > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0;
                 [(a, b), (b, c), (c, a)]
                     .map(|(p, q)| nearest_on_segment(point, p, q))

@@ -57,7 +57,7 @@ impl Sum {
         self.sum(point.to_array())
     }
 
-    /// Value and gradient in any precision: the arithmetic that pictures are made with for `f32`.
+    /// Value and gradient in any precision; pictures use `f32` and `f32x8`.
     #[must_use]
     pub fn sum<R: Real>(&self, point: [R; 3]) -> Jet<R> {
         sum(&self.primitives, point)

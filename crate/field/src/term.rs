@@ -26,7 +26,7 @@ impl<S: Copy> Frame<S> {
         })
     }
 
-    /// A gradient, a covector: derivatives with respect to world coordinates.
+    /// Transforms a gradient (a covector) from local to world coordinates.
     #[inline(always)]
     pub fn world<R: Real<Scalar = S>>(&self, g: [R; 3]) -> [R; 3] {
         core::array::from_fn(|i| {
@@ -62,8 +62,7 @@ pub struct Term<S> {
     pub(crate) form: Form<S>,
     /// Factor on the form.
     pub(crate) amplitude: S,
-    /// The profile, if any; of its own place: few primitives have any, and its room would be most of a
-    /// primitive's.
+    /// The profile, if any; boxed, since few primitives have one and it would be most of a primitive's size.
     pub(crate) waves: Option<Box<Waves<S>>>,
 }
 
@@ -96,8 +95,8 @@ impl<S: Copy> Term<S> {
         }
     }
 
-    /// The same of a point without a profile, whose frame is no more than a scale, at a position in the
-    /// world.
+    /// Value and gradient of a point without a profile, whose frame is a mere scale, at a position in world
+    /// coordinates.
     #[inline(always)]
     pub(crate) fn point_jet_inline<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
         let scale = R::lift(self.frame.axes[0][0]);

@@ -13,8 +13,8 @@ pub(crate) enum Parameters<S> {
         gradient: [[S; 2]; 2],
         start: [S; 2],
     },
-    /// u is the angle from an arc's start, divided by the arc's, cut to [0, 1]. An angle means
-    /// nothing on the circle's axis, where all angles meet: with q the distance from the axis over
+    /// u is the angle from an arc's start over the arc's angle, clamped to [0, 1]. On the circle's axis the
+    /// angle is undefined: with q the distance from the axis over
     /// the circle's radius, the waves count as `g = (2q/(1+q²))²`, which is 1 and flat at the circle
     /// and 0 on the axis, and their `mean` over the arc counts as `1 − g`.
     Angle {
@@ -103,7 +103,7 @@ fn mean(profile: &Profile) -> f64 {
     along * wave(profile.waves[1], 0.0).0
 }
 
-/// 1/x, or 0 where x is 0: then a parameter has no extent, and stays at its start.
+/// 1/x, or 0 where x is 0: then a parameter is constant at its start.
 fn inverse(x: f64) -> f64 {
     if x > 0.0 { 1.0 / x } else { 0.0 }
 }
@@ -230,7 +230,7 @@ impl<S: Copy> Waves<S> {
     }
 }
 
-/// How much the waves count, the rest being their mean.
+/// Weight of the waves; their mean has the rest.
 struct Fade<R> {
     g: R,
     gradient: [R; 2],

@@ -342,7 +342,7 @@ fn degenerate_geometry(kernel: Kernel, kind: Kind) {
                     "{skeleton:?} at {p:?}: {value8} {gradient8}"
                 );
                 let (want, want_gradient) = jet::<f64>(&primitive, p);
-                // What is below single precision's smallest number is 0 in it: a bone 1e-300 long.
+                // Values below single precision's smallest number become 0: a bone 1e-300 long.
                 let slack = 64.0 * EPSILON32 * (want_gradient.length() + peak)
                     + f64::from(f32::MIN_POSITIVE) * primitive.height.abs().max(1.0);
                 // As in `single_matches_double`.

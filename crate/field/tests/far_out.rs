@@ -1,5 +1,5 @@
-//! Far out a field is a tiny part of its largest value, and flesh of great blobbiness ends there: what is left of
-//! it must be right.
+//! Far out, a field is a tiny fraction of its largest value, and surfaces of great blobbiness lie there: relative accuracy
+//! must hold.
 mod common;
 
 use common::{Kind, Random, primitive, single, span_error};
@@ -43,8 +43,8 @@ tests! {
         }
     }
 
-    /// What rounding leaves of a face's sums over edges is as small as is said.
-    fn sums_over_edges_are_as_exact_as_said() {
+    /// Rounding errors of a face's sums over edges are within `Bound::cancels`.
+    fn rounding_of_sums_over_edges_is_bounded() {
         let mut random = Random::new(6);
         for case in 0..600 {
             let kind = [Kind::Triangle, Kind::Polygon][case % 2];
@@ -62,7 +62,7 @@ tests! {
     }
 
     /// Along a plane a field does not change: spans may be as long as they like.
-    fn spans_along_planes_are_as_near_as_said() {
+    fn spans_along_planes_keep_their_bound() {
         let mut random = Random::new(7);
         for _ in 0..200 {
             let plane = primitive(random.skeleton(Kind::Plane, 1.0), &random.shaping(1.0), None);

@@ -1,5 +1,5 @@
-//! What a convolution surface owes its user: the radius as asked, no bulges at joints, fields that
-//! move with their skeletons, strengths and profiles that multiply.
+//! Laws of convolution surfaces: the radius as asked, no bulges at joints, invariance under rigid motions, strengths and
+//! profiles that multiply.
 mod common;
 
 use common::{KINDS, Kind, Random, jet, primitive, sensitivity, shaping, single};

@@ -1,4 +1,4 @@
-//! What [`field::Bound`] promises: no field exceeds it, no Hermite span is further off than it says.
+//! [`field::Bound`] holds: for values, slopes, curvatures and the errors of Hermite spans.
 mod common;
 
 use common::{ALL_KINDS, Kind, Random, primitive, span_error};
@@ -6,7 +6,7 @@ use field::bound::{Bound, Estimate, SpanLength};
 use field::{Kernel, Primitive, Profile, Shaping, Taper, Wave};
 use glam::DVec3;
 
-/// What a primitive has beyond kernel and bone.
+/// Options of a primitive beyond kernel and bone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Dress {
     Plain,

@@ -1,4 +1,4 @@
-//! A bundle of rays bounded as one: what is proved of the beam holds for each of its rays.
+//! Beams: cones that bound a bundle of rays, so that a proof for the beam holds for each of its rays.
 use crate::ray::Ray;
 use field::Cut;
 use glam::DVec3;
@@ -17,9 +17,9 @@ pub struct Beam {
     pub ahead: f64,
 }
 
-/// Bounds are computed in floating point; this much is added to each so that they stay bounds.
-const ROUNDING: f64 = 1e-9;
-/// What rounding may leave of two equal squares' difference, in units of the squares.
+/// Relative slack added to bounds for their own rounding.
+const BOUND_SLACK: f64 = 1e-9;
+/// Largest rounding error of the difference of two equal squares, relative to them.
 const SQUARES: f64 = 2e-15;
 
 impl Beam {
@@ -48,20 +48,20 @@ impl Beam {
         let furthest = |f: &dyn Fn(&Ray) -> f64| rays.iter().map(f).fold(0.0, f64::max);
         Some(Self {
             axis: Ray { origin, direction },
-            radius: furthest(&|r| r.origin.distance(origin)) * (1.0 + ROUNDING),
-            spread: furthest(&|r| r.direction.distance(direction)) * (1.0 + ROUNDING),
-            ahead: furthest(&|r| (r.origin - origin).dot(direction).abs()) * (1.0 + ROUNDING),
+            radius: furthest(&|r| r.origin.distance(origin)) * (1.0 + BOUND_SLACK),
+            spread: furthest(&|r| r.direction.distance(direction)) * (1.0 + BOUND_SLACK),
+            ahead: furthest(&|r| (r.origin - origin).dot(direction).abs()) * (1.0 + BOUND_SLACK),
         })
     }
 
-    /// How far rays can be from the axis at a parameter.
+    /// Largest distance of rays from the axis at a parameter.
     #[must_use]
     pub fn width(&self, t: f64) -> f64 {
         self.radius + self.spread * t
     }
 
-    /// How far rays can be ahead of the axis, or lag behind it, at a parameter: of two unit vectors the one is
-    /// shorter along the other by half the square of their difference.
+    /// Largest distance, along the axis, of rays from the axis' point at a parameter: the projection of a unit vector on another is
+    /// shorter than 1 by half the square of their difference.
     #[must_use]
     pub fn lag(&self, t: f64) -> f64 {
         self.ahead + 0.5 * self.spread * self.spread * t
@@ -81,34 +81,33 @@ impl Beam {
         }
     }
 
-    /// A ball (centre, radius) that holds the piece of every ray between two parameters.
+    /// Returns a ball (centre, radius) that holds the piece of every ray between two parameters.
     #[must_use]
     pub fn ball(&self, from: f64, to: f64) -> (DVec3, f64) {
         let middle = 0.5 * (from + to);
         let half = 0.5 * (to - from);
         (
             self.axis.at(middle),
-            (half + self.width(to)) * (1.0 + ROUNDING),
+            (half + self.width(to)) * (1.0 + BOUND_SLACK),
         )
     }
 
     /// Whether a ray of the beam may meet a ball.
     #[must_use]
     pub fn meets(&self, center: DVec3, radius: f64) -> bool {
-        // A beam that widens as fast as it goes on reaches every place in the end.
+        // A beam that widens as fast as it advances reaches every point.
         if self.spread >= 1.0 {
             return true;
         }
         let d = center - self.axis.origin;
         let square = d.length_squared();
         let along = d.dot(self.axis.direction);
-        // A difference of large numbers, in which what is left may be rounding: less that.
+        // A difference of large numbers, less its rounding.
         let across = (square - along * along - SQUARES * square).at_least(0.0);
         let d = d.abs();
-        let reach = (radius + self.radius) * (1.0 + ROUNDING) + ROUNDING * (d.x + d.y + d.z);
+        let reach = (radius + self.radius) * (1.0 + BOUND_SLACK) + BOUND_SLACK * (d.x + d.y + d.z);
         // The distance from the axis' point at t less the beam's growth, sqrt(across² + (along−t)²) − spread·t, is least where
-        // its derivative vanishes, at t = along + across·spread/slope, if that is ≥ 0. All are squares here, as trees ask often
-        // and roots take time.
+        // its derivative vanishes, at t = along + across·spread/slope, if that is ≥ 0. Squares avoid roots: trees call this often.
         let spread = self.spread * self.spread;
         let slope = 1.0 - spread;
         let (apart, reach) = if along > 0.0 || across * spread > along * along * slope {
@@ -124,7 +123,7 @@ impl Beam {
     #[must_use]
     pub fn reach(&self, center: DVec3, radius: f64) -> [f64; 2] {
         let distance = self.axis.origin.distance(center);
-        let slack = radius + self.radius + ROUNDING * distance;
+        let slack = radius + self.radius + BOUND_SLACK * distance;
         [(distance - slack).at_least(0.0), distance + slack]
     }
 }
@@ -154,7 +153,7 @@ mod tests {
                 ahead: 0.0,
             };
             let radius = 0.3 * numbers.unit();
-            // The distance less what the beam has grown.
+            // The distance less the beam's growth.
             let apart = |i: u32| {
                 let t = f64::from(i) * STEP;
                 beam.axis.at(t).distance(center) - beam.spread * t
@@ -183,7 +182,7 @@ mod tests {
             direction: DVec3::X,
         });
         assert!(nowhere.meets(DVec3::X * 3.0, 0.0) && !nowhere.meets(DVec3::X * -3.0, 1.0));
-        // Also what is tiny, and on the axis itself.
+        // Also tiny balls, and balls on the axis itself.
         for _ in 0..1000 {
             let direction = numbers.vector().normalize();
             let origin = numbers.vector();

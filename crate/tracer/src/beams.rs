@@ -7,7 +7,7 @@ use core::cell::OnceCell;
 type Narrow<'a> = dyn Fn(usize) -> Beam + 'a;
 
 /// A binary tree of beams, the halves of beam i at 2i+1 and 2i+2, whose last level has one beam for each
-/// packet of rays. Beams are made when they are asked for.
+/// packet of rays. Beams are made at first use.
 pub struct Beams<'a> {
     made: Vec<OnceCell<Beam>>,
     narrow: Box<Narrow<'a>>,
@@ -32,20 +32,20 @@ impl<'a> Beams<'a> {
         }
     }
 
-    /// A beam.
+    /// Returns a beam.
     #[inline]
     #[must_use]
     pub fn get(&self, index: usize) -> &Beam {
         self.made[index].get_or_init(|| (self.narrow)(index))
     }
 
-    /// How often a beam is divided further.
+    /// Number of levels below a beam.
     #[must_use]
     pub fn levels_below(&self, beam: usize) -> u32 {
         (self.made.len() + 1).ilog2() - (beam + 1).ilog2() - 1
     }
 
-    /// The quarter of a beam in which a packet is (the half, if that is not divided further), and its number among
+    /// Returns the quarter of a beam that contains a packet (the half, if that is not divided further), and its number among
     /// the beam's quarters. `None` if the beam is not divided.
     #[must_use]
     pub fn quarter(&self, beam: usize, packet: usize) -> Option<(usize, usize)> {

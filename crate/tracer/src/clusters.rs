@@ -1,8 +1,8 @@
-//! Groups of neighbouring primitives, and what is known of each group at a distance.
+//! Groups of neighbouring primitives with common bounds by distance.
 //!
-//! Groups form a binary tree. Of every group there is a ball that holds its members' skeletons, and a table: what the
-//! members' fields, and their fourth derivatives, add up to at most at a distance or more from the ball. So whatever
-//! is far away is judged, dropped, or interpolated as one, however many its members are.
+//! Groups form a binary tree. Each has a ball that holds its members' skeletons, and a table of bounds on the sums of the members'
+//! fields and of their fourth derivatives, by distance from the ball. So a distant group is dropped or interpolated as a whole,
+//! however many members it has.
 use crate::hierarchy::Hierarchy;
 use field::Cut;
 use field::bound::{Bound, Nearness, SpanLength};
@@ -16,7 +16,7 @@ const FIRST: i32 = -10;
 const OCTAVES: usize = 12;
 const ENTRIES: usize = 1 + OCTAVES * STEPS + 1;
 
-/// Members of the smallest groups, at most.
+/// Most members of a leaf group.
 const LEAF: usize = 16;
 
 /// The tree of groups.
@@ -25,16 +25,16 @@ pub struct Clusters {
     facts: Vec<Facts>,
 }
 
-/// What is known of a group.
+/// Bounds on a group.
 #[derive(Clone, Debug)]
 struct Facts {
-    /// The sum of what the members' fields are at most, and of their fourth derivatives, by distance.
+    /// Bounds on the sums of the members' fields and of their fourth derivatives, by distance.
     table: [[f32; 2]; ENTRIES],
-    /// Each member's field is steeper than so much of itself only where it is small …
+    /// Largest slope of a member over its size, where that is not negligible …
     steep: f32,
-    /// … or, of kernels that fall as a power of the distance, than so much over the distance.
+    /// … or, for kernels that fall as a power of the distance, that slope times the distance.
     power: f32,
-    /// What the members' formulas may lose, added up.
+    /// Sum of the members' [`Bound::cancels`].
     cancels: f32,
     adds: bool,
     carves: bool,
@@ -43,23 +43,23 @@ struct Facts {
 /// A group as seen from a ball.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// Its members together are at most this.
+    /// Bound on the sum of the members' fields.
     pub magnitude: f64,
-    /// The fourth derivative of their sum along any line is at most this; infinite where nothing is known.
+    /// Bound on the fourth derivative of their sum along any line; infinite if unknown.
     pub fourth: f64,
-    /// No member is nearer than this.
+    /// Distance from the nearest member, or less.
     pub distance: f64,
-    /// Whether it is so near that its members had better be looked at one by one.
+    /// Whether it is so near that its parts are examined instead.
     pub near: bool,
-    /// How many members it has.
+    /// Number of members.
     pub count: usize,
-    /// Whether they may be above zero.
+    /// Whether some may be positive.
     pub adds: bool,
-    /// Whether they may be below zero.
+    /// Whether some may be negative.
     pub carves: bool,
 }
 
-/// What a group consists of.
+/// Parts of a group.
 pub enum Members<'a> {
     /// Two groups.
     Groups([u32; 2]),
@@ -67,14 +67,13 @@ pub enum Members<'a> {
     Primitives(&'a [u32]),
 }
 
-/// A group is near where its distance is less than this times its radius, and the ball that it is seen from is not
-/// much larger than the group.
+/// Ratio of distance to radius below which a group is near, unless the ball that it is seen from is much larger than the group.
 const NEAR: f64 = 2.0;
 /// See [`NEAR`].
 const WIDE: f64 = 0.3;
 
 impl Clusters {
-    /// Groups of primitives given as (number, centre, radius) of balls that hold their skeletons.
+    /// Builds the groups of primitives, given as (number, centre, radius) of balls that hold their skeletons.
     #[must_use]
     pub fn new(balls: Vec<(u32, DVec3, f64)>, bounds: &[Bound]) -> Self {
         let tree = Hierarchy::with_leaves(balls, LEAF);
@@ -90,13 +89,13 @@ impl Clusters {
         Self { tree, facts }
     }
 
-    /// The group of all, if there are any.
+    /// The group of all primitives; `None` without primitives.
     #[must_use]
     pub fn root(&self) -> Option<u32> {
         (self.tree.len() > 0).then_some(0)
     }
 
-    /// A group as seen from a ball.
+    /// Returns the bounds on a group as seen from a ball.
     #[inline]
     #[must_use]
     pub fn view(&self, cluster: u32, center: DVec3, radius: f64) -> View {
@@ -116,20 +115,20 @@ impl Clusters {
         }
     }
 
-    /// About the largest slope of a group's field at a distance, over its size.
+    /// Estimate of a group's largest slope over its size, at a distance.
     #[must_use]
     pub fn relative_slope(&self, cluster: u32, distance: f64) -> f64 {
         let facts = &self.facts[cluster as usize];
         f64::from(facts.steep).at_most(f64::from(facts.power) / distance)
     }
 
-    /// What the members' formulas may lose, in units of rounding ([`Bound::cancels`]).
+    /// Sum of the members' [`Bound::cancels`].
     #[must_use]
     pub fn cancels(&self, cluster: u32) -> f64 {
         f64::from(self.facts[cluster as usize].cancels)
     }
 
-    /// What a group consists of.
+    /// Returns a group's parts.
     #[must_use]
     pub fn members(&self, cluster: u32) -> Members<'_> {
         match self.tree.children(cluster as usize) {
@@ -145,7 +144,7 @@ impl Clusters {
     }
 }
 
-/// The entry of the largest distance in the table that is not above one.
+/// Table entry of the largest listed distance that is at most `distance`.
 #[inline]
 fn entry(distance: f64) -> usize {
     // From the exponent and the first bits of the mantissa.
@@ -154,7 +153,7 @@ fn entry(distance: f64) -> usize {
     (place + 1).clamp(0, ENTRIES as i64 - 1) as usize
 }
 
-/// The distance that an entry stands for.
+/// Distance of a table entry.
 fn place(entry: usize) -> f64 {
     match entry.checked_sub(1) {
         None => 0.0,
@@ -188,7 +187,7 @@ impl Facts {
             };
             for (i, entry) in own.table.iter_mut().enumerate() {
                 let estimate = bound.estimate(Nearness::at(place(i)), &length);
-                // A NaN says nothing, as infinity does.
+                // NaN becomes infinity: no bound.
                 *entry = [estimate.magnitude, estimate.fourth]
                     .map(|x| if x.is_nan() { f32::INFINITY } else { x as f32 });
             }
@@ -217,7 +216,7 @@ mod tests {
     use super::*;
     use field::{Kernel, Primitive, Shaping, Skeleton};
 
-    /// No group adds up to more than its table says, and tables of distant groups say little more than that.
+    /// Tables bound their groups' sums, tightly for distant groups.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn a_view_bounds_what_a_group_adds_up_to() {

@@ -1,4 +1,4 @@
-//! Pictures by a digger other than the certified one.
+//! Pictures with root finders other than the certified one (`digger`).
 use crate::digger::{Digger, Packet};
 use crate::layout::PACKET;
 use crate::meet::{ALL, Seen};
@@ -9,12 +9,12 @@ use crate::workspace::Workspace;
 use crate::world::{SurfacePoint, World};
 use glam::DVec3;
 
-/// How far rays to the lights start above a hit, in units of the scene's size: about as much as
-/// the crudest digger's surface differs from itself in another direction.
+/// Offset of shadow rays above a hit, in units of the scene's size: about as much as the crudest digger's hits on one
+/// surface differ by direction.
 const LIFT: f64 = 1e-3;
 
 impl World {
-    /// Replaces what rays meet by points on convolution surfaces that are nearer, as the digger finds them.
+    /// Replaces the points that rays meet by nearer points on convolution surfaces, as the digger finds them.
     pub fn dug_points(&self, digger: &dyn Digger, seen: &mut Seen, work: &mut Workspace) {
         for body in 0..self.soft.bodies.len() as u32 {
             let packet = Packet {
@@ -31,7 +31,7 @@ impl World {
         }
     }
 
-    /// The surface point where a digger says that it is; `None` where nothing is soft.
+    /// Returns the surface point of a digger's crossing; `None` where there is no soft primitive.
     fn dug_point(
         &self,
         body: u32,
@@ -58,8 +58,7 @@ impl World {
         })
     }
 
-    /// Which of some rays (those that are there) enter a convolution surface before their limits, as the
-    /// digger finds it.
+    /// Returns which of some rays (those that are present) enter a convolution surface before their limits, as the digger finds it.
     pub fn dug_shadows(
         &self,
         digger: &dyn Digger,

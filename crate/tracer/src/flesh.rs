@@ -1,9 +1,9 @@
-//! What the soft surface is like where a packet's rays hit it: exactly where, how steep the field is, whose flesh it is.
+//! Surface samples at a packet's hits: the refined parameter, the field's gradient, and the finishes' shares.
 //!
-//! Spans say about where a ray crosses; here Newton's steps lead onto the surface. Shared interpolants stand for
-//! the primitives in them if what they are off by is within the tolerance; else those are looked at themselves. Where single
-//! precision may be off by more than that, the last steps are made in double.
-use crate::climb::mask;
+//! Spans give approximate crossings; Newton steps refine them. Shared interpolants stand for their primitives if their error moves
+//! a hit by less than the tolerance; else the primitives are evaluated. Where the rounding of single precision may move it by more,
+//! the last steps are in double precision.
+use crate::blob_march::mask;
 use crate::lanes::Lanes;
 use crate::layout::PACKET;
 use crate::quick::FINEST;
@@ -16,14 +16,14 @@ use field::{Jet, Real, THRESHOLD};
 use glam::DVec3;
 use wide::f32x8;
 
-/// What the surface is like at the hits of a packet.
+/// Samples of the surface at the hits of a packet.
 #[derive(Default)]
 pub struct Flesh {
-    /// Ray parameter of each hit, polished.
+    /// Ray parameter of each hit, refined.
     pub t: [f64; PACKET],
     /// Gradient of the field.
     pub gradient: [f32x8; 3],
-    /// Materials met, and each one's share of the (positive) field in every lane.
+    /// Finishes, with each one's share of the (positive) field in every lane.
     pub weights: Vec<(u32, f32x8)>,
 }
 
@@ -38,19 +38,18 @@ impl Flesh {
 /// Half the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)).
 const COARSEST: f64 = 1e-4;
 
-/// Primitives that count at a packet's hits.
+/// Primitives that are evaluated at a packet's hits.
 #[derive(Default)]
 pub(crate) struct Active {
-    /// Each with its lanes, a bit each.
+    /// Primitive and lanes, a bit each.
     list: Vec<(u32, u32)>,
-    /// Where a primitive is in the list, for the packet of that number.
+    /// For each primitive the packet in which it was last listed, and its index there.
     stamps: Vec<(u32, u32)>,
     stamp: u32,
 }
 
 impl Active {
-    /// Lists the primitives that count in some slabs, each for its lanes; `shared`: also those that blocks
-    /// stand for.
+    /// Lists the primitives that count in some slabs, each for its lanes; with `shared` also those that interpolants stand for.
     fn collect(&mut self, slabs: &Slabs<'_>, places: &[(u32, u32)], shared: bool, count: usize) {
         self.stamps.resize(count, (0, 0));
         self.stamp = self.stamp.wrapping_add(1);
@@ -74,27 +73,27 @@ impl Active {
     }
 }
 
-/// What a packet's rays hit.
+/// A packet's hits, before refinement.
 struct Hits<'a> {
     slabs: &'a Slabs<'a>,
     origin: [f32x8; 3],
     direction: [f32x8; 3],
-    /// Where the spans cross.
+    /// Crossings of the spans.
     start: f32x8,
-    /// The same, not rounded.
+    /// Crossings of the spans in double precision.
     exact: [f64; PACKET],
-    /// How far that may be from the surface.
+    /// Largest distance of those from the surface.
     furthest: f32x8,
-    /// The slabs of the hits, each with its lanes.
+    /// Slabs of the hits, each with its lanes.
     places: &'a [(u32, u32)],
-    /// Lanes that hit, and those of them whose place is exact already.
+    /// Lanes that hit, and those of them whose crossing is exact already.
     met: u32,
     settled: u32,
 }
 
 impl Soft {
-    /// Moves the hits of a packet onto the exact surface, and says what it is like there. Lanes
-    /// without a hit carry no meaning. Ray parameters are counted from `base`. The answer is left in `scratch`.
+    /// Moves the hits of a packet onto the surface and samples it there; the result is `scratch.flesh`. Lanes without a hit are
+    /// meaningless. Ray parameters are counted from `base`.
     pub fn flesh(
         &self,
         slabs: &Slabs<'_>,
@@ -135,7 +134,7 @@ impl Soft {
             met,
             settled,
         };
-        self.settle_on(&hits, true, scratch);
+        self.refine_hits(&hits, true, scratch);
         let of_slabs = |part: fn(&Spent) -> f64| {
             let mut off = [0.0; PACKET];
             for &(slab, lanes) in hits.places {
@@ -147,11 +146,11 @@ impl Soft {
         };
         let shared = self.off(&hits, &scratch.flesh, base, &of_slabs(|spent| spent.shared)) == 0;
         if !shared {
-            self.settle_on(&hits, false, scratch);
+            self.refine_hits(&hits, false, scratch);
         }
         let mut blurred = self.off(&hits, &scratch.flesh, base, &of_slabs(|spent| spent.noise));
         if blurred != 0 {
-            // What is known of a whole slab is more than what there is at one place of it.
+            // The slab's bound is larger than the noise at one point of it.
             let noise = self.noise(&hits, shared, scratch);
             blurred &= self.off(&hits, &scratch.flesh, base, &noise);
         }
@@ -167,25 +166,25 @@ impl Soft {
             }
             for lane in (0..PACKET).filter(|i| lanes >> i & 1 != 0) {
                 let t = &mut scratch.flesh.t[lane];
-                *t = self.exactly(&hits, ray(lane), lane, *t, &list);
+                *t = self.refine_exactly(&hits, ray(lane), lane, *t, &list);
                 scratch.evaluations += (list.len() * MOST_POLISHING) as u64;
             }
         }
     }
 
-    /// The hits that so large an error of the field may move by more than half the tolerance, a bit each.
+    /// Returns the hits that an error of the field may move by more than half the tolerance, a bit each.
     fn off(&self, hits: &Hits<'_>, flesh: &Flesh, base: f64, error: &[f64; PACKET]) -> u32 {
         let gradients = flesh.gradients();
         (0..PACKET).fold(0, |all, i| {
             let tolerance = 0.1 * self.pixel * (base + flesh.t[i]);
             let most = tolerance.clamp(FINEST, COARSEST) * gradients[i].length();
-            // What is no number may be anything.
+            // NaN counts as off.
             let near = error[i] <= most;
             all | u32::from(!near) << i & hits.met & !hits.settled
         })
     }
 
-    /// How far single precision may be off at each hit, with the interpolants that are shared or with all primitives.
+    /// Bounds the rounding error of the field at each hit, with shared interpolants or with all primitives.
     #[cold]
     #[inline(never)]
     fn noise(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) -> [f64; PACKET] {
@@ -217,10 +216,16 @@ impl Soft {
         noise.to_array().map(f64::from)
     }
 
-    /// A hit moved onto the surface of some primitives in double precision, from a place near it; that place, where no step leads
-    /// nearer.
+    /// Refines a hit on the surface of some primitives by Newton steps in double precision; `start` where no step improves it.
     #[cold]
-    fn exactly(&self, hits: &Hits<'_>, ray: &Ray, lane: usize, start: f64, list: &[u32]) -> f64 {
+    fn refine_exactly(
+        &self,
+        hits: &Hits<'_>,
+        ray: &Ray,
+        lane: usize,
+        start: f64,
+        list: &[u32],
+    ) -> f64 {
         let furthest = f64::from(hits.furthest.to_array()[lane]);
         let (mut best, mut nearest) = (start, f64::INFINITY);
         let mut t = start;
@@ -244,8 +249,8 @@ impl Soft {
         best
     }
 
-    /// Where the rays hit, and what it is like there: by the interpolants that are shared, or with all primitives themselves.
-    fn settle_on(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) {
+    /// Refines and samples the hits, with shared interpolants or with all primitives.
+    fn refine_hits(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) {
         let Scratch { active, flesh, .. } = scratch;
         active.collect(hits.slabs, hits.places, !shared, self.primitives.len());
         let &Hits {
@@ -258,7 +263,7 @@ impl Soft {
         let mut at = start;
         let weights = &mut flesh.weights;
         let mut gradient = [f32x8::splat(0.0); 3];
-        // What is settled stays where it is.
+        // Hits that are exact already stay.
         let free = mask(!hits.settled);
         for _ in 0..MOST_POLISHING {
             let point = core::array::from_fn(|k| origin[k] + direction[k] * at);
@@ -298,8 +303,7 @@ impl Soft {
                 + gradient[2] * direction[2];
             let excess = value - f32x8::splat(THRESHOLD as f32);
             let step = -excess / slope;
-            // Newton's step; where the ray only grazes the surface it may lead astray, and then
-            // the spans' crossing is kept.
+            // A Newton step, unless it leaves the bracket, as at grazing rays.
             let low = Real::max(start - furthest, f32x8::splat(0.0));
             let next = at + step;
             let good = next.simd_le(start + furthest) & next.simd_ge(low) & free;
@@ -319,11 +323,11 @@ impl Soft {
     }
 }
 
-/// Evaluations at the hits. Newton's step from a place near the surface leads onto it as exactly as
-/// single precision can tell, but normal and colours are those of the place the step started from.
+/// Evaluations at the hits. A Newton step from near the surface is exact to single precision, but normal and colours are those of
+/// its start.
 const MOST_POLISHING: usize = 3;
-/// Hits among more primitives than this are left where single precision has them.
+/// Most primitives with which hits are refined in double precision.
 const MOST_EXACT: usize = 1 << 16;
-/// Where the field is within this of T, normal and colours are those of the surface: they change
-/// by about one part in a thousand on the way there, less than a picture shows.
+/// Difference of the field from T within which normal and colours are those of the surface: they change by about 0.1 % on the way
+/// there, less than a picture shows.
 pub const NEAR_ENOUGH: f32 = 1e-3;

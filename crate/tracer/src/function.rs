@@ -10,10 +10,10 @@ use field::{Ball, Implicit, THRESHOLD};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Pieces of one ray that may be halved; what is left is decided by the signs at its ends.
+/// Most halvings of pieces of one ray; on the rest the signs at the ends decide.
 const MOST_HALVED: u32 = 1 << 16;
 /// Rounding of a function's value in double precision, in T.
-const ROUNDING: f64 = 1e-12;
+const VALUE_ERROR: f64 = 1e-12;
 
 /// The surface of an implicit function as a body of a picture.
 #[derive(Clone, Debug)]
@@ -24,30 +24,30 @@ pub(crate) struct FunctionBody {
     pub function: Arc<dyn Implicit>,
     /// Finish of each of the function's elements.
     pub finish: Vec<u32>,
-    /// A ball outside of which there is no surface, in coordinates of the world.
+    /// Ball outside which there is no surface, in coordinates of the world.
     pub support: Option<Ball>,
 }
 
-/// Crossings to look for along one ray.
+/// A query for the crossings along one ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Along {
     pub ray: Ray,
     /// Parameters between which the ray is followed.
     pub range: [f64; 2],
-    /// Pieces shorter than this are not halved.
+    /// Length below which pieces are not halved.
     pub resolution: f64,
 }
 
 impl FunctionBody {
-    /// The outward normal at a point of the surface; `None` where the gradient vanishes.
+    /// Returns the outward normal at a point of the surface; `None` where the gradient vanishes.
     pub fn normal(&self, point: DVec3) -> Option<DVec3> {
         let gradient = DVec3::from_array(self.function.jet(point).gradient);
         (-gradient).try_normalize()
     }
 }
 
-/// The part of a ray up to a limit on which a surface within a ball may be; `None` if the ray misses the ball. Without a ball the
-/// ray is followed as far as `furthest`.
+/// Returns the range of a ray, up to a limit, within a surface's ball; `None` if the ray misses it. Without a ball the range ends at
+/// `furthest`.
 pub(crate) fn range(
     support: Option<Ball>,
     ray: &Ray,
@@ -73,7 +73,7 @@ pub(crate) fn range(
 }
 
 /// Calls `tell` with each crossing of a ray with the surface of a function, and whether the ray enters there, in order,
-/// until it says `false`. Gives the number of evaluations.
+/// until `tell` returns false. Returns the number of evaluations.
 pub(crate) fn crossings(
     function: &dyn Implicit,
     along: &Along,
@@ -96,11 +96,11 @@ pub(crate) fn crossings(
         let jet = function.jet(center);
         let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
         let bend = enclosure.curvature * radius;
-        let change = (slope.abs() + 0.5 * bend) * radius + ROUNDING * (1.0 + jet.value.abs());
+        let change = (slope.abs() + 0.5 * bend) * radius + VALUE_ERROR * (1.0 + jet.value.abs());
         if (jet.value - THRESHOLD).abs() > change {
             continue;
         }
-        // Of a bound that is not known the comparison is false.
+        // False if the bound is infinite.
         let monotone = slope.abs() > bend;
         if !monotone && b - a > along.resolution && left > 0 {
             left -= 1;

@@ -49,8 +49,8 @@ impl Hierarchy {
         }
     }
 
-    /// The same tree over balls of other radii, none of them less, given by number, centre and present radius. A node's ball grows
-    /// as the one below it that grows most.
+    /// Returns the same tree with enlarged balls. The function returns the new radius of an item, at least the old one, from its
+    /// number, centre and radius. A node's ball grows as much as the one below it that grows most.
     #[must_use]
     pub fn enlarged(&self, radius: impl Fn(u32, DVec3, f64) -> f64) -> Self {
         let mut tree = self.clone();
@@ -76,13 +76,13 @@ impl Hierarchy {
         tree
     }
 
-    /// How many nodes the tree has; 0 is the root.
+    /// Number of nodes; 0 is the root.
     #[must_use]
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// A node's ball.
+    /// Ball of a node.
     #[inline]
     #[must_use]
     pub fn ball(&self, node: usize) -> (DVec3, f64) {
@@ -90,14 +90,14 @@ impl Hierarchy {
         (node.center, node.radius)
     }
 
-    /// The numbers of the items below a node.
+    /// Numbers of the items below a node.
     #[must_use]
     pub fn items(&self, node: usize) -> &[u32] {
         let node = &self.nodes[node];
         &self.items[node.first as usize..(node.first + node.count) as usize]
     }
 
-    /// A node's two children, if it is not a leaf.
+    /// Children of a node; `None` for a leaf.
     #[must_use]
     pub fn children(&self, node: usize) -> Option<[usize; 2]> {
         let right = self.nodes[node].right;
@@ -109,7 +109,7 @@ impl Hierarchy {
         self.select(|center, radius| beam.meets(center, radius), found);
     }
 
-    /// The same as [`Hierarchy::search`] with the items whose balls meet a ball.
+    /// Calls `found` with the number and ball of each item whose ball meets a ball.
     pub fn around(&self, middle: DVec3, reach: f64, found: impl FnMut(u32, DVec3, f64)) {
         let meets = |center: DVec3, radius: f64| {
             let both = radius + reach;
@@ -145,9 +145,9 @@ impl Hierarchy {
     }
 }
 
-/// A ball around some balls, and how far apart their middles are along each axis.
+/// Returns a ball around some balls, and the extent of their middles along each axis.
 fn around(items: &[(u32, DVec3, f64)]) -> (DVec3, f64, DVec3) {
-    // By lanes: as wasm, a choice between two single numbers is a jump, and these cannot be foreseen.
+    // By lanes: a scalar minimum compiles to an unpredictable branch in wasm.
     let far = f64x4::splat(f64::INFINITY);
     let less = |a: f64x4, b: f64x4| a.simd_lt(b).select(a, b);
     let more = |a: f64x4, b: f64x4| b.simd_lt(a).select(a, b);

@@ -1,25 +1,23 @@
-//! First samples that one tracer has taken and another one need not take again.
+//! First samples in a form that workers exchange, so that none is traced twice.
 //!
-//! Which pixels get more rays depends on the samples around them, so that whoever makes a tile smooth needs those of its
-//! neighbours' edges, and all of its own if another one traced it before. Samples are the same wherever they were taken,
-//! so they may as well be sent.
+//! Which pixels get more rays depends on the samples around them: the smooth pass of a tile needs those at its neighbours' edges,
+//! and all of its own if another worker traced it before. Samples are the same wherever they are traced.
 use crate::Tile;
 use crate::area::{Area, Samples};
 use crate::sample::Sample;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Bytes of a sample.
+/// Size of a sample in bytes.
 const BYTES: usize = 24;
-/// What is told is a tile or a part of one: no more pixels a side than this.
+/// Largest width and height in pixels: a tile or a part of one.
 const LARGEST: u32 = 64;
 
 /// The first samples of all pixels of a rectangle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Known {
     tile: Tile,
-    /// Row by row, or one if all are alike, as those are that see nothing; of each the colour, the key, the depth and the cost,
-    /// least byte first.
+    /// Samples row by row, or a single one if all are equal, as in empty tiles; each as colour, key, depth and cost, little-endian.
     #[serde(with = "serde_bytes")]
     bytes: Vec<u8>,
 }
@@ -39,13 +37,13 @@ impl Known {
         Self { tile, bytes }
     }
 
-    /// Which pixels.
+    /// The rectangle of pixels.
     #[must_use]
     pub fn tile(&self) -> Tile {
         self.tile
     }
 
-    /// What is known of those pixels that lie in another rectangle, too; `None` if none does.
+    /// Returns the samples of the pixels that lie in another rectangle, too; `None` if none does.
     #[must_use]
     pub fn part(&self, tile: Tile) -> Option<Self> {
         let own = Area::from(self.tile);
@@ -75,7 +73,7 @@ impl Known {
         })
     }
 
-    /// Whether these can be samples of a picture of this size, no more than a tile: another program may have written them.
+    /// Whether these are well-formed samples of at most a tile of a picture of this size: the bytes come from a message.
     #[must_use]
     pub fn is_of(&self, size: [u32; 2]) -> bool {
         let area = Area::from(self.tile);
@@ -84,14 +82,14 @@ impl Known {
         small && inside && !area.is_empty() && self.is_whole()
     }
 
-    /// Whether there is one sample or as many as pixels.
+    /// Whether there are one sample or as many as pixels.
     fn is_whole(&self) -> bool {
         let pixels = u64::from(self.tile.width) * u64::from(self.tile.height);
         let (one, all) = (BYTES as u64, pixels.checked_mul(BYTES as u64));
         [Some(one), all].contains(&Some(self.bytes.len() as u64))
     }
 
-    /// The samples, if they can be those of a picture of this size ([`Known::is_of`]).
+    /// Decodes the samples; `None` unless [`Known::is_of`] a picture of this size.
     pub(crate) fn samples(&self, size: [u32; 2]) -> Option<Samples> {
         if !self.is_of(size) {
             return None;
@@ -128,7 +126,7 @@ fn sample(bytes: &[u8; BYTES]) -> Sample {
     }
 }
 
-/// The pixels whose first samples are needed to make a tile smooth in a picture of `size` pixels: its own and some around it.
+/// Returns the pixels whose first samples the smooth pass of a tile needs, in a picture of `size` pixels: its own and some around it.
 #[must_use]
 pub fn around(tile: Tile, size: [u32; 2]) -> Tile {
     Area::from(tile).around(size).into()

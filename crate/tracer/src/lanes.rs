@@ -6,7 +6,7 @@ use field::Real;
 use wide::bytemuck::cast;
 use wide::{f32x4, f32x8};
 
-/// Numbers of several rays, side by side, whose comparisons can steer the program.
+/// Numbers of several rays, side by side, with comparisons as bit masks.
 pub trait Lanes: Real {
     /// One bit a lane: whether the number is less than the other. Never set for NaN.
     fn less(self, other: Self) -> u32;
@@ -38,7 +38,7 @@ impl Lanes for f64 {
     }
 }
 
-/// The least of eight numbers. By lanes: as wasm, a choice between two single numbers is a jump, and these cannot be foreseen.
+/// Returns the least of eight numbers. By lanes: a scalar minimum compiles to an unpredictable branch in wasm.
 #[inline(always)]
 #[must_use]
 pub fn least(x: f32x8) -> f32 {

@@ -16,28 +16,28 @@ use field::Real;
 use glam::DVec3;
 use wide::f32x8;
 
-/// Squares that are seen at a wider angle than this have none.
+/// Largest spread of a square's beam for which there is a lens.
 const WIDEST: f64 = 0.25;
 
-/// What turns places in a square into rays.
+/// Maps positions in a square to rays.
 pub(crate) struct Lens {
     axis: Ray,
-    /// By how much ε changes from a pixel to the next one, to the right and down.
+    /// Change of ε from a pixel to the next one, to the right and down.
     steps: [DVec3; 2],
 }
 
 /// The rays of a packet.
 pub(crate) struct Fan {
-    /// Their directions less the axis'.
+    /// Directions less the axis'.
     deviation: [f32x8; 3],
-    /// That of the packet's middle.
+    /// Deviation of the packet's middle.
     middle: DVec3,
-    /// No direction is further than this from the middle's.
+    /// Largest distance of a direction from the middle's.
     spread: f64,
 }
 
 impl Lens {
-    /// Of the pixels of an area, whose beam is given. `None` if it is too wide.
+    /// Prepares an area, given its beam. `None` if that is too wide.
     pub fn new(camera: &View, area: Area, beam: &Beam) -> Option<Self> {
         if beam.spread.is_nan() || beam.spread > WIDEST {
             return None;
@@ -88,7 +88,7 @@ impl Lens {
         })
     }
 
-    /// A fan's rays, counted from the base of a list of the lumps near the square.
+    /// A fan's rays, counted from the base of a list of the blobs near the square.
     pub fn rays(&self, fan: &Fan, near: &Nearby) -> Rays {
         let base = f32x8::splat(near.base as f32);
         let axis = self.axis.direction;
@@ -109,7 +109,7 @@ impl Lens {
         }
     }
 
-    /// They in double precision.
+    /// The rays in double precision.
     pub fn wide(&self, fan: &Fan) -> [Ray; PACKET] {
         let [x, y, z] = fan.deviation.map(f32x8::to_array);
         core::array::from_fn(|i| Ray {

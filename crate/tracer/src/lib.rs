@@ -65,8 +65,9 @@
 mod area;
 mod beam;
 mod beams;
+mod blob_march;
+mod blob_set;
 mod cast;
-mod climb;
 mod clusters;
 mod digger;
 mod dug;
@@ -90,12 +91,12 @@ pub mod reference;
 mod refine;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
+mod root_isolation;
 mod roots;
 mod sample;
 mod sample_cache;
 mod sampler;
 mod scratch;
-mod settle;
 mod shade;
 mod shadows;
 mod shared;
@@ -105,7 +106,6 @@ mod solids;
 mod spans;
 mod square;
 mod stats;
-mod stock;
 #[cfg(test)]
 mod tests;
 pub mod tile;

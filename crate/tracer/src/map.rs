@@ -1,4 +1,4 @@
-//! The map of costs (`map on`): where a picture's work goes, pixel by pixel.
+//! The map of costs (`map on`): the work of each pixel.
 //!
 //! The unit of cost is one evaluation of one primitive's field at one point; each ray, to the eye or to
 //! a light, counts as one more. Rays of a packet share the evaluations that are made for all of
@@ -6,8 +6,8 @@
 //! depends on the tile which packet asks for them first. A pixel shows the mean of its rays. Work is counted and not timed, so that a
 //! map is the same wherever it is made.
 //!
-//! White stands for the dearest pixel. As tiles are traced on their own, each finds out what that is
-//! from the same sample, one packet in every 16×16 pixels; what is dearer still is white as well.
+//! White is the cost of the most expensive pixel. As tiles are traced independently, each determines it from the same sample, one
+//! packet in every 16×16 pixels; even more expensive pixels are white as well.
 use crate::area::Area;
 use crate::layout::PACKET_SIZE;
 use crate::sample::Sample;
@@ -18,10 +18,10 @@ use crate::workspace::Workspace;
 use glam::Vec3;
 use std::sync::OnceLock;
 
-/// Packets are sampled this far apart, in pixels.
+/// Distance of sampled packets, in pixels.
 const APART: u32 = 16;
 
-/// How costs are shown.
+/// Conversion of costs to grey.
 #[derive(Debug)]
 pub(crate) struct Map {
     power: f32,
@@ -37,7 +37,7 @@ impl Map {
         }
     }
 
-    /// What white stands for. `None` if it was not known yet and `stop` gave up.
+    /// Returns the cost that is shown as white. `None` if `stop` returned true before it was determined.
     pub fn dearest(&self, sampler: &Sampler, stop: &dyn Fn() -> bool) -> Option<f32> {
         if let Some(dearest) = self.dearest.get() {
             return Some(*dearest);
@@ -62,7 +62,7 @@ impl Map {
         Some(*self.dearest.get_or_init(|| dearest))
     }
 
-    /// The grey of a sample.
+    /// Returns the grey of a sample.
     pub fn grey(&self, sample: &Sample, dearest: f32) -> Vec3 {
         let share = (sample.cost / dearest).clamp(0.0, 1.0);
         Vec3::splat(if self.power == 1.0 {

@@ -126,7 +126,7 @@ impl World {
         // One body that is not all lumps takes the general way with all it has.
         let lumps = self.soft.bodies.len() > 1 || general.is_empty();
         if let Some((near, lens)) = square
-            .lumps(place)
+            .blobs(place)
             .filter(|(near, _)| lumps && near.len() > 0)
         {
             self.meet_lumps(near, lens, &general, rays, seen, exact, work);

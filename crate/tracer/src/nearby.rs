@@ -1,112 +1,111 @@
-//! The lumps near a beam of rays, and those of them near a narrower one.
+//! Lists of blobs near a beam of rays, and their restriction to narrower beams.
 //!
-//! Lists are in order of the distance at which a lump can first be met, their places relative to a point in
-//! the beam, so that single precision is enough for them; eight are judged at a time. Of each is known how near its bone
-//! comes to any ray of a beam, and so how much of a field it can add there: what adds next to nothing is left out,
-//! and a beam in which all together stay below T meets no surface.
+//! Lists are in order of the distance at which a blob may first be met. Positions are relative to a point in the beam, so that
+//! single precision suffices; eight blobs are tested at a time. The distance of a blob's bone from the beam bounds its field there:
+//! blobs with a negligible bound are left out, and a beam in which all bounds add up to less than T meets no surface.
 use crate::beam::Beam;
-use field::{Ceiling, Cut, Lump};
+use field::{Blob, Ceiling, Cut};
 use glam::DVec3;
 use wide::f32x8;
 
-/// Lumps, each within a ball.
+/// A list of blobs near a beam, each within a ball.
 #[derive(Clone, Debug, Default)]
 pub struct Nearby {
-    /// Places are counted from here …
+    /// Origin of the blobs' positions …
     pub middle: DVec3,
-    /// … and ray parameters from this one.
+    /// … and of ray parameters.
     pub base: f64,
-    lumps: Vec<Near>,
-    /// Primitives near the beam that are no lumps.
+    blobs: Vec<Near>,
+    /// Primitives near the beam that are no blobs.
     pub others: Vec<Other>,
     blocks: Vec<Block>,
     /// Whether any of them is a segment.
-    rods: bool,
+    has_segments: bool,
 }
 
-/// A primitive that is no lump, within a ball.
+/// A primitive that is no blob, within a ball.
 #[derive(Clone, Copy, Debug)]
 pub struct Other {
-    /// Its number.
+    /// Number of the primitive.
     pub primitive: u32,
-    /// The ball's middle.
+    /// Middle of the ball.
     pub center: DVec3,
-    /// Its radius.
+    /// Radius of the ball.
     pub radius: f64,
-    /// It is followed up to this distance from its bone.
+    /// Distance from its bone at which its reach ends.
     pub reach: f64,
 }
 
-/// A lump in a list.
+/// A blob in a list.
 #[derive(Clone, Copy, Debug)]
 pub struct Near {
     /// Its field.
-    pub lump: Lump<f32>,
-    /// Its place.
+    pub blob: Blob<f32>,
+    /// Position of its middle.
     pub middle: [f32; 3],
-    /// It is followed up to this square of the distance from its bone, in kernel widths.
+    /// Squared distance from its bone, in kernel widths, at which its reach ends.
     pub square: f32,
-    /// Alone it would have its surface there …
+    /// Squared distance of the surface that it would have alone …
     pub core: f32,
-    /// … or, of a bead, its bone would.
+    /// … or, if this is true, that its bone would have: it is a point of a chain.
     pub part: bool,
-    /// This far before its own surface a ray is well outside of it.
+    /// Distance before its own surface from which a ray is well outside of it.
     pub lead: f32,
-    /// Where the field is T its own part changes by about this much of T with the place, or less.
+    /// Largest slope of its field where the whole field is T, about, in T per unit of length.
     pub steep: f32,
     /// Its finish.
     pub finish: u32,
-    /// Its body, by its number among the soft ones.
+    /// Its body, numbered among the soft ones.
     pub body: u32,
-    /// No ray of the list's beam meets it before this parameter.
+    /// Least parameter at which a ray of the list's beam may meet it.
     pub from: f32,
 }
 
-/// How far a lump reaches and how large its field can be; `R` is one number, or those of eight lumps.
+/// Bounds on a blob: its ball and its field; `R` is one number, or those of eight blobs.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent<R> {
-    /// The radius of the ball around its middle beyond which it is not followed.
+    /// Radius of the ball around its middle that holds its reach.
     pub radius: R,
-    /// From the middle to an end of its bone.
+    /// Vector from the middle to an end of its bone.
     half: [R; 3],
     peak: R,
     scale: R,
     compact: R,
 }
 
-/// Eight lumps side by side.
+/// Eight blobs side by side.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     middle: [[f32; 8]; 3],
     extent: Extent<[f32; 8]>,
 }
 
-/// A ball that no beam meets.
+/// Radius of a ball that no beam meets.
 const NOWHERE: f32 = -1e30;
 
-/// Places are rounded to single precision: squares of distances are off by no more than this part of them.
-const ROUNDING: f32 = 2e-6;
+/// Largest relative error of squared distances, as positions are rounded to single precision.
+const SQUARE_ROUNDING: f32 = 2e-6;
 
-/// A segment whose direction across a beam is shorter than this part of it, as squares, runs along the beam: where it is
-/// nearest is not asked.
+/// Squared sine of the angle between a segment and a beam below which the segment counts as parallel: its nearest point is then
+/// not computed.
 const ALONG: f32 = 1e-4;
 
-/// Fields that are bounded by less than this are nowhere T.
+/// Bound on the field below which there is no surface: T less rounding.
 const BELOW: f32 = 0.999;
 
 impl Extent<f32> {
-    /// Of a lump, with the radius of its ball.
+    /// Bounds on a blob, given the radius of its ball.
     #[must_use]
-    pub fn of(lump: &Lump<f32>, radius: f64) -> Self {
+    pub fn of(blob: &Blob<f32>, radius: f64) -> Self {
         let Ceiling {
             peak,
             scale,
             compact,
-        } = lump.ceiling();
+        } = blob.ceiling();
         Self {
             // Rounded outwards.
             radius: radius as f32 * (1.0 + 1e-6),
-            half: lump.half().as_vec3().to_array(),
+            half: blob.half().as_vec3().to_array(),
             peak: peak as f32 * (1.0 + 1e-6),
             scale: scale as f32 * (1.0 - 1e-6),
             compact: compact as f32,
@@ -154,10 +153,10 @@ impl Block {
     }
 }
 
-/// Which lumps of a list a beam may meet: a bit each, eight lumps a number.
+/// The blobs of a list that a beam may meet: a bit each, eight blobs a number.
 pub type Marks = Vec<u8>;
 
-/// The indices that are marked, in order.
+/// Iterates over the marked indices, in order.
 pub fn marked(marks: &Marks) -> impl Iterator<Item = usize> {
     marks.iter().enumerate().flat_map(|(block, &bits)| {
         let mut bits = bits;
@@ -172,45 +171,44 @@ pub fn marked(marks: &Marks) -> impl Iterator<Item = usize> {
 }
 
 impl Nearby {
-    /// Begins a list that is counted from a beam's axis at a parameter.
+    /// Clears the list and sets the origins of its positions and parameters.
     pub fn begin(&mut self, middle: DVec3, base: f64) {
         (self.middle, self.base) = (middle, base);
-        self.lumps.clear();
+        self.blobs.clear();
         self.others.clear();
-        self.rods = false;
+        self.has_segments = false;
         self.blocks.clear();
     }
 
-    /// Adds a lump; its place is counted from [`Nearby::middle`].
+    /// Adds a blob, its position relative to [`Nearby::middle`].
     #[inline(always)]
     pub fn push(&mut self, near: Near, extent: &Extent<f32>) {
-        self.rods |= extent.half != [0.0; 3];
-        let lane = self.lumps.len() % 8;
+        self.has_segments |= extent.half != [0.0; 3];
+        let lane = self.blobs.len() % 8;
         if lane == 0 {
             self.blocks.push(Block::EMPTY);
         }
         if let Some(last) = self.blocks.last_mut() {
             last.set(lane, near.middle, extent);
         }
-        self.lumps.push(near);
+        self.blobs.push(near);
     }
 
-    /// How many there are.
+    /// Number of blobs.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.lumps.len()
+        self.blobs.len()
     }
 
-    /// A lump.
+    /// Returns a blob.
     #[inline(always)]
     #[must_use]
     pub fn get(&self, index: usize) -> &Near {
-        &self.lumps[index]
+        &self.blobs[index]
     }
 
-    /// Puts those lumps that a ray of a beam may meet into another list, which stays empty if all together
-    /// are nowhere T; no more of the field than `left_out` is lost. The beam's parameters start at
-    /// [`Nearby::base`].
+    /// Copies the blobs that a ray of a beam may meet into another list, leaving out no more than `left_out` of the field in all.
+    /// The list stays empty if they cannot add up to T. The beam's parameters start at [`Nearby::base`].
     pub fn narrow(&self, beam: &Beam, left_out: f32, into: &mut Self) {
         into.begin(self.middle, self.base);
         let mut marks = Marks::new();
@@ -221,30 +219,35 @@ impl Nearby {
         }
     }
 
-    /// Marks the lumps that a ray of a beam may meet. False if all together are nowhere T on the beam's rays: then
-    /// there are no marks. Of the field no more is lost than `left_out`.
+    /// Marks the blobs that a ray of a beam may meet, leaving out no more than `left_out` of the field in all. Returns false, and no
+    /// marks, if they cannot add up to T.
     pub fn mark(&self, beam: &Beam, left_out: f32, marks: &mut Marks) -> bool {
-        if self.rods {
-            self.judge::<true>(beam, left_out, marks)
+        if self.has_segments {
+            self.mark_blocks::<true>(beam, left_out, marks)
         } else {
-            self.judge::<false>(beam, left_out, marks)
+            self.mark_blocks::<false>(beam, left_out, marks)
         }
     }
 
-    /// [`Nearby::mark`], with and without what only segments call for.
+    /// [`Nearby::mark`], with or without segments.
     #[inline(always)]
-    fn judge<const RODS: bool>(&self, beam: &Beam, left_out: f32, marks: &mut Marks) -> bool {
+    fn mark_blocks<const SEGMENTS: bool>(
+        &self,
+        beam: &Beam,
+        left_out: f32,
+        marks: &mut Marks,
+    ) -> bool {
         marks.clear();
         let zero = f32x8::splat(0.0);
         let offset = (beam.axis.origin - self.middle).as_vec3();
         let axis = beam.axis.direction.as_vec3();
         let [ox, oy, oz] = offset.to_array().map(f32x8::splat);
         let [ax, ay, az] = axis.to_array().map(f32x8::splat);
-        // Every beam of a picture is much narrower than this.
+        // Beams of pictures are much narrower than the limit 0.5.
         let grow = f32x8::splat((beam.spread / (1.0 - beam.spread.at_most(0.5))) as f32 * 1.001);
         let wide = f32x8::splat(beam.radius as f32 * 1.001 + 1e-7);
         let all = beam.spread >= 0.5;
-        let least = f32x8::splat(left_out / self.lumps.len().max(1) as f32);
+        let least = f32x8::splat(left_out / self.blobs.len().max(1) as f32);
         let mut most = zero;
         for Block { middle, extent } in &self.blocks {
             let [x, y, z] = middle.map(f32x8::new);
@@ -259,8 +262,8 @@ impl Nearby {
             let mut across = square - along * along;
             let mut slack = wide + grow * ahead.fast_max(zero);
             let mut room = square;
-            if RODS {
-                // Where the bone is nearest to the axis: at middle + share·half.
+            if SEGMENTS {
+                // The bone's point nearest to the axis is middle + share·half.
                 let [ux, uy, uz] = extent.half.map(f32x8::new);
                 let length = ux * ux + uy * uy + uz * uz;
                 let turn = ux * ax + uy * ay + uz * az;
@@ -275,7 +278,7 @@ impl Nearby {
                 slack += loose.sqrt();
                 room += length;
             }
-            let across = across - room * f32x8::splat(ROUNDING);
+            let across = across - room * f32x8::splat(SQUARE_ROUNDING);
             let apart = across.fast_max(zero).sqrt() - slack;
             let ceiling = Ceiling {
                 peak: f32x8::new(extent.peak),
@@ -303,7 +306,7 @@ mod tests {
     use crate::ray::Ray;
     use field::{Kernel, Primitive, Shaping, Skeleton};
 
-    /// What is left of an infinite kernel beyond its ball.
+    /// Field of an infinite kernel at the edge of its ball.
     const BEYOND: f64 = 1e-9;
 
     /// Random numbers between −1 and 1.
@@ -315,7 +318,7 @@ mod tests {
         }
     }
 
-    /// Small lumps around a place.
+    /// Small blobs around a place.
     fn primitives(
         next: &mut impl FnMut() -> f64,
         middle: DVec3,
@@ -351,30 +354,30 @@ mod tests {
                 };
                 Primitive::new(skeleton, &shaping, None)
             })
-            .filter(|p| p.lump::<f32>().is_some())
+            .filter(|p| p.blob::<f32>().is_some())
             .collect()
     }
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn lumps_left_out_add_next_to_nothing_and_most_are_left_out() {
+    fn blobs_left_out_add_next_to_nothing_and_most_are_left_out() {
         const LEFT_OUT: f32 = 1e-5;
         let mut next = random();
         let (mut kept, mut all, mut empty, mut largest) = (0, 0, 0, 0.0f64);
         for case in 0..120 {
-            // Far from the origin, where single precision would not do without a place amid the lumps.
+            // Far from the origin, where single precision needs an origin amid the blobs.
             let middle = DVec3::new(next(), next(), next()) * 1e4;
-            // Half of the lists are of lumps too weak to have a surface each.
+            // In half of the lists no blob has a surface of its own.
             let strength = if case % 2 == 0 { 1.0 } else { 0.15 };
             let primitives = primitives(&mut next, middle, 3 + case * 2, strength);
             let mut list = Nearby::default();
             list.begin(middle, 0.0);
             for (i, primitive) in primitives.iter().enumerate() {
-                let lump = primitive.lump::<f32>().expect("a lump");
-                let square = lump.reach(BEYOND);
-                let place = primitive.lump_middle() - middle;
+                let blob = primitive.blob::<f32>().expect("a blob");
+                let square = blob.reach(BEYOND);
+                let place = primitive.blob_middle() - middle;
                 let near = Near {
-                    lump,
+                    blob,
                     middle: place.as_vec3().to_array(),
                     square: square as f32,
                     core: 1.0,
@@ -385,7 +388,7 @@ mod tests {
                     body: 0,
                     from: 0.0,
                 };
-                list.push(near, &Extent::of(&lump, lump.radius(square)));
+                list.push(near, &Extent::of(&blob, blob.radius(square)));
             }
             let beam = Beam {
                 axis: Ray {

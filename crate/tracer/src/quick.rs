@@ -1,9 +1,9 @@
-//! The quick way to the soft surface, where nothing but lumps is near: points, Gaussian segments, and beads of other bones.
+//! The fast path to the soft surface, for packets near nothing but blobs: points, Gaussian segments, and blob chains.
 //!
-//! The lumps near a square of pixels are listed once, those near each of its parts when a packet in it asks, those near
-//! the packet anew for each; then [`climb`](mod@crate::climb) follows the packet's rays.
+//! The blobs near a square of pixels are listed once, those near each of its parts when a packet there first needs them, those
+//! near a packet for each; then [`march`](crate::blob_march::march) follows the packet's rays.
 use crate::beam::Beam;
-use crate::climb::{Climbed, Stairs, Step, Turn, Way, climb, extremes};
+use crate::blob_march::{MarchRays, Marched, RayBlob, RayBlobs, RayInterval, extremes, march};
 use crate::flesh::{Flesh, NEAR_ENOUGH};
 use crate::lanes::least;
 use crate::layout::PACKET;
@@ -15,72 +15,71 @@ use field::{Cut, Real};
 use glam::DVec3;
 use wide::f32x8;
 
-/// What of the field, in units of T, is left out of the lists of a square's parts …
+/// Part of the field, in units of T, that the lists of a square's parts may leave out …
 pub const LEFT_OUT_OF_PARTS: f32 = 3e-6;
-/// … and of a packet's.
+/// … and that a packet's list may leave out.
 const LEFT_OUT_OF_PACKETS: f32 = 5e-6;
 
-/// A lump is said to be strong up to this part of the way from its own surface to where its reach ends, as
-/// squares of distances.
+/// A blob is strong up to this fraction of the way from its own surface to the end of its reach, in squared distances.
 const STRONG: f32 = 0.15;
 
 /// Working space of one thread.
 #[derive(Default)]
 pub struct Quick {
-    steps: Vec<Step>,
-    turns: Vec<Turn>,
-    /// Whether all of the steps are Gaussian points.
+    blobs: Vec<RayBlob>,
+    intervals: Vec<RayInterval>,
+    /// Whether all blobs are Gaussian points.
     plain: bool,
-    /// Working space of the climb.
+    /// Working space of [`march`].
     tops: Vec<f32x8>,
     pub(crate) list: Nearby,
     marks: Marks,
-    /// The lumps near a packet of all bodies but some: body and index, in this order.
+    /// Blobs near a packet, without those of excluded bodies: body and index, in this order.
     members: Vec<(u32, u32)>,
-    /// What the surface is like at the hits of the last packet that was looked at; parameters are counted from its list's
-    /// base.
+    /// Surface samples at the hits of the last packet; parameters are counted from its list's base.
     pub flesh: Flesh,
 }
 
 impl Quick {
-    fn stairs(&self) -> Stairs<'_> {
-        Stairs {
-            steps: &self.steps,
-            turns: &self.turns,
+    fn ray_blobs(&self) -> RayBlobs<'_> {
+        RayBlobs {
+            blobs: &self.blobs,
+            intervals: &self.intervals,
             plain: self.plain,
         }
     }
 }
 
-/// What a packet's rays met of one body.
+/// Result of a packet's query for one body.
 #[derive(Clone, Copy, Default)]
 pub struct Looked {
     /// The body.
     pub body: u32,
-    /// Those that met the surface, a bit each.
+    /// Rays that met the surface, a bit each.
     pub met: u32,
-    /// Evaluations of lumps, for one ray each.
+    /// Evaluations of blobs, for one ray each.
     pub evaluations: u64,
 }
 
-/// Half the least and the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), or less.
+/// Half the least and the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), or less, in units of the scene.
 pub const FINEST: f64 = 1e-6;
 /// See [`FINEST`].
 pub const COARSEST: f64 = 5e-5;
 
-/// Looks at a packet's hits, each with a step of Newton's onto the surface.
+/// Largest number of Newton steps from a packet's hits onto the surface.
 const MOST_LOOKS: usize = 12;
-/// The field is not known better than this in single precision.
-const ROUNDING: f32 = 2e-6;
-/// What lists leave out, all together, with what is left out of other primitives, beads and the rounding of values.
+/// Rounding of the field near T in single precision.
+const FIELD_ROUNDING: f32 = 2e-6;
+/// Largest error of the field, in T: everything that lists leave out, primitives that are no blobs, the error of blob chains, and
+/// rounding.
 const LOST: f32 = 2.5e-5;
-/// More than this, which tiny lumps far away would call for, is not held against rounding.
+/// Largest noise that is allowed for; tiny, distant blobs would need more.
 const NOISIEST: f32 = 2e-3;
-/// Longer stretches that are in doubt are settled in parts.
+/// Length, in units of the scene, of the parts in which doubtful intervals are isolated.
 const PART: f64 = 1.0 / 16.0;
-/// Rounding of places, in units of the scene and of how far they are away.
+/// Rounding of positions, relative to the scene's size plus the distance.
 const MISPLACED: f32 = 3e-7;
-/// A packet near more lumps than this is left to the general way, which needs less space for each.
+/// Most blobs near a packet; beyond that it takes the general way, which needs less space for each.
 const MOST_STEPS: usize = 1 << 16;
 
 /// See [`PART`].
@@ -125,19 +124,19 @@ impl Rays {
     }
 }
 
-/// What is asked of a packet's rays.
+/// A query for a packet's rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<'l> {
-    /// How far each goes.
+    /// End of each ray.
     pub limits: &'l [f64; PACKET],
-    /// Those that are asked, a bit each.
+    /// The rays to follow, a bit each.
     pub alive: u32,
-    /// What for.
+    /// Kind of crossing to find.
     pub quest: Quest,
 }
 
 impl<'l> Asked<'l> {
-    /// Where each of a packet's rays first meets the surface.
+    /// Query for the first crossing of each ray.
     pub fn first(limits: &'l [f64; PACKET]) -> Self {
         Self {
             limits,
@@ -147,7 +146,7 @@ impl<'l> Asked<'l> {
     }
 }
 
-/// A place amid eight, and how far they are from it at most.
+/// Returns the mean of eight points and their largest distance from it.
 fn around(places: [f32x8; 3]) -> (DVec3, f64) {
     // In the order of the lanes, which is the same everywhere.
     let middle = places.map(|x| x.to_array().iter().sum::<f32>() / PACKET as f32);
@@ -161,7 +160,8 @@ fn around(places: [f32x8; 3]) -> (DVec3, f64) {
 
 impl Soft {
     /// Finds the first crossings of rays that make a packet of their own with the surface of a body, up to their limits; for
-    /// [`Quest::Entry`] only whether there is one. `None` if this is not the way to find it.
+    /// [`Quest::Entry`] only whether there is one. `None` if the packet is near anything but blobs or the march gives up; the caller
+    /// then takes the general way.
     pub fn quick_alone(
         &self,
         body: u32,
@@ -179,7 +179,7 @@ impl Soft {
         let mut list = core::mem::take(&mut work.list);
         let own = |other: &&Other| self.body_of(other.primitive) == body;
         let looked = if !self.is_everywhere(body)
-            && self.list_lumps(&beam, furthest, &mut list)
+            && self.list_blobs(&beam, furthest, &mut list)
             && !self.meets_any(list.others.iter().filter(own), &beam, furthest)
         {
             let lanes = Rays::new(rays, &list);
@@ -202,8 +202,8 @@ impl Soft {
     }
 
     /// Finds the first crossing, from outside to inside, of the rays of a packet with the surface of the only body; for
-    /// [`Quest::Entry`] only whether there
-    /// is one. Nothing else may count near the rays ([`Soft::meets_any`]). `exact` gives the rays in double precision. `None` if this is not the way to find it.
+    /// [`Quest::Entry`] only whether there is one. No other primitives may be near the rays ([`Soft::meets_any`]). `exact` returns
+    /// the rays in double precision. `None` if the march gives up ([`march`]).
     pub fn quick(
         &self,
         near: &Nearby,
@@ -241,8 +241,8 @@ impl Soft {
         looked
     }
 
-    /// [`Soft::quick`] for several bodies: tells what is found of each, nearest first as far as the list says, but for those to be
-    /// passed over. `tell` gives how far the rays go from then on, and which go on. Gives the bodies for which this is not the
+    /// [`Soft::quick`] for several bodies except those in `pass_over`, the nearest first as far as the list tells. Calls `tell` with
+    /// each result; it returns the rays' new limits and the rays to follow from then on. Returns the bodies that need the general
     /// way.
     #[expect(clippy::too_many_arguments, reason = "each is something else")]
     pub fn quick_each(
@@ -267,7 +267,7 @@ impl Soft {
                 .map(own)
                 .filter(|(body, _)| !pass_over.contains(body)),
         );
-        // Lists are in the order of the parameters at which a lump can be met.
+        // Lists are in order of the parameter at which a blob may be met.
         members.sort_unstable();
         let mut groups: Vec<&[(u32, u32)]> = members.chunk_by(|a, b| a.0 == b.0).collect();
         groups.sort_unstable_by_key(|group| group[0].1);
@@ -293,7 +293,7 @@ impl Soft {
         left
     }
 
-    /// Follows rays among some lumps of a list, all of one body, given in the list's order.
+    /// Follows rays among some blobs of a list, all of one body, given in the list's order.
     #[expect(clippy::too_many_arguments, reason = "each is something else")]
     #[inline(always)]
     fn follow(
@@ -314,23 +314,23 @@ impl Soft {
         let far = f32x8::splat(f32::INFINITY);
         let (mut from, mut to, mut guess, mut first) = (far, -far, far, far);
         let mut evaluations = 0;
-        work.steps.clear();
-        work.turns.clear();
+        work.blobs.clear();
+        work.intervals.clear();
         work.plain = true;
         let limit = f32x8::from_lanes(|i| (limits[i] - near.base).at_most(1e30));
-        // Every ray is inside by its own `sure`, and all are by `hidden`.
+        // Each ray is certainly inside at `sure`, and all of them at `hidden`.
         let (mut sure, mut hidden) = (far, f32::INFINITY);
-        // The same in all lanes: a choice between two single numbers is a jump in wasm.
+        // The same in all lanes: a scalar maximum compiles to a branch in wasm.
         let mut steepest = f32x8::splat(0.0);
         for index in indices {
             let near = near.get(index);
-            // What rays meet only where they are inside of another.
+            // Blobs from here on are met only inside of others.
             if near.from > hidden {
                 break;
             }
             let middle = core::array::from_fn(|i| f32x8::splat(near.middle[i]) - rays.origin[i]);
-            let course = near.lump.course(middle, rays.direction);
-            let [enters, leaves] = course.within(f32x8::splat(near.square));
+            let on_ray = near.blob.on_ray(middle, rays.direction);
+            let [enters, leaves] = on_ray.within(f32x8::splat(near.square));
             let enters = enters.fast_max(f32x8::splat(0.0));
             let leaves = leaves.fast_min(limit);
             let meets = enters.simd_le(leaves);
@@ -343,7 +343,7 @@ impl Soft {
             from = from.fast_min(step_from);
             to = to.fast_max(step_to);
             let strong = near.core + STRONG * (near.square - near.core);
-            let [core, out] = course.within(f32x8::splat(near.core));
+            let [core, out] = on_ray.within(f32x8::splat(near.core));
             let inside = meets & enters.simd_le(core) & core.simd_le(out);
             if inside.any() {
                 let core = inside.select(core, far);
@@ -351,11 +351,11 @@ impl Soft {
                     .simd_lt(guess)
                     .select(core - f32x8::splat(near.lead), first);
                 guess = guess.fast_min(core);
-                // A segment may be weaker there than its core says.
+                // A segment's field may be below T at its core.
                 let certain = if near.part {
                     far
-                } else if near.lump.is_segment() {
-                    let inside = f32x8::splat(1.0).simd_lt(course.at(core).0);
+                } else if near.blob.is_segment() {
+                    let inside = f32x8::splat(1.0).simd_lt(on_ray.at(core).0);
                     inside.select(core, far)
                 } else {
                     core
@@ -365,29 +365,30 @@ impl Soft {
             }
             let steep = f32x8::splat(near.steep);
             steepest = steepest.simd_lt(steep).select(steep, steepest);
-            work.plain &= course.is_gaussian_point();
-            work.turns.push(Turn {
+            work.plain &= on_ray.is_gaussian_point();
+            work.intervals.push(RayInterval {
                 from: least(step_from),
                 to: -least(-step_to),
-                step: work.steps.len() as u32,
+                blob: work.blobs.len() as u32,
             });
-            work.steps.push(Step {
-                course,
+            work.blobs.push(RayBlob {
+                on_ray,
                 strong,
                 index: index as u32,
             });
         }
-        if work.steps.is_empty() {
+        if work.blobs.is_empty() {
             return Some(Looked::default());
         }
-        if work.steps.len() > MOST_STEPS {
+        if work.blobs.len() > MOST_STEPS {
             return None;
         }
-        let order = |a: &Turn, b: &Turn| a.from.total_cmp(&b.from).then(a.step.cmp(&b.step));
-        work.turns.sort_unstable_by(order);
+        let order =
+            |a: &RayInterval, b: &RayInterval| a.from.total_cmp(&b.from).then(a.blob.cmp(&b.blob));
+        work.intervals.sort_unstable_by(order);
         let alive = alive & from.simd_le(to).to_bitmask();
         let furthest = extremes(to, to, alive).1.at_least(0.0);
-        // Shadows are not as sharp as that; and where their rays start the field is nearly T in any case.
+        // Shadow rays need no such accuracy, and start where the field is nearly T.
         let noise = match quest {
             Quest::Entry => 0.0,
             _ => {
@@ -395,7 +396,7 @@ impl Soft {
                 (LOST + MISPLACED * steepest * (1.0 + furthest)).at_most(NOISIEST)
             }
         };
-        let way = Way {
+        let march_rays = MarchRays {
             from,
             to,
             guess,
@@ -404,37 +405,42 @@ impl Soft {
             tolerance: self.tolerance(near) as f32,
             noise,
         };
-        // Not by `stairs`, which would borrow `tops`, too.
-        let lumps = Stairs {
-            steps: &work.steps,
-            turns: &work.turns,
+        // Not by `ray_blobs()`, which would borrow `tops`, too.
+        let blobs = RayBlobs {
+            blobs: &work.blobs,
+            intervals: &work.intervals,
             plain: work.plain,
         };
-        let mut climbed = climb(lumps, &way, &mut work.tops)?;
-        if climbed.doubtful != 0 && quest == Quest::First {
-            self.settle_doubts(near, body, &exact(), &mut climbed);
+        let mut marched = march(blobs, &march_rays, &mut work.tops)?;
+        if marched.doubtful != 0 && quest == Quest::First {
+            self.isolate_doubts(near, body, &exact(), &mut marched);
         }
-        if climbed.met == 0 || quest == Quest::Entry {
+        if marched.met == 0 || quest == Quest::Entry {
             return Some(Looked {
                 body,
-                met: climbed.met,
-                evaluations: evaluations + climbed.evaluations,
+                met: marched.met,
+                evaluations: evaluations + marched.evaluations,
             });
         }
-        let looked = self.look(near, rays, &climbed, evaluations, work);
+        let looked = self.look(near, rays, &marched, evaluations, work);
         Some(Looked { body, ..looked })
     }
 
-    /// Rays that went past the surface so near to it that rounding may have hidden it are asked once more where that was, in
-    /// double precision and with nothing left out.
+    /// Repeats the search on the doubtful intervals of rays, in double precision and with all primitives.
     #[cold]
     #[inline(never)]
-    fn settle_doubts(&self, near: &Nearby, body: u32, rays: &[Ray; PACKET], climbed: &mut Climbed) {
-        let [first, last] = climbed.doubt.map(f32x8::to_array);
-        let mut t = climbed.t.to_array();
-        let mut between = climbed.between.map(f32x8::to_array);
+    fn isolate_doubts(
+        &self,
+        near: &Nearby,
+        body: u32,
+        rays: &[Ray; PACKET],
+        marched: &mut Marched,
+    ) {
+        let [first, last] = marched.doubt.map(f32x8::to_array);
+        let mut t = marched.t.to_array();
+        let mut between = marched.between.map(f32x8::to_array);
         for (i, ray) in rays.iter().enumerate() {
-            if climbed.doubtful >> i & 1 == 0 {
+            if marched.doubtful >> i & 1 == 0 {
                 continue;
             }
             let [start, end] = [first[i], last[i]].map(f64::from);
@@ -446,52 +452,52 @@ impl Soft {
             let place = |part: u32| start + (end - start) * f64::from(part) / parts;
             for part in 0..parts as u32 {
                 let (found, evaluations) = self.entry(body, based, [place(part), place(part + 1)]);
-                climbed.evaluations += evaluations;
+                marched.evaluations += evaluations;
                 if let Some(found) = found {
                     t[i] = found as f32;
-                    // It is to stay there.
+                    // A bracket of length 0 keeps it there.
                     between.iter_mut().for_each(|end| end[i] = t[i]);
-                    climbed.met |= 1 << i;
+                    marched.met |= 1 << i;
                     break;
                 }
             }
         }
-        climbed.t = f32x8::new(t);
-        climbed.between = between.map(f32x8::new);
+        marched.t = f32x8::new(t);
+        marched.between = between.map(f32x8::new);
     }
 
-    /// The tolerance for what is in a list, none of which is nearer to the rays' origins than its base.
+    /// Tolerance for the blobs of a list, none of which is nearer to the rays' origins than the list's base.
     fn tolerance(&self, list: &Nearby) -> f64 {
         (0.1 * self.pixel * list.base).clamp(FINEST, COARSEST)
     }
 
-    /// Moves a packet's hits onto the surface, and says what it is like there.
+    /// Moves a packet's hits onto the surface and samples it there (gradient, shares of finishes).
     fn look(
         &self,
         near: &Nearby,
         rays: &Rays,
-        climbed: &Climbed,
+        marched: &Marched,
         evaluations: u64,
         work: &mut Quick,
     ) -> Looked {
-        let met = climbed.met;
+        let met = marched.met;
         let tolerance = self.tolerance(near) as f32;
-        let mut evaluations = evaluations + climbed.evaluations;
-        let mut at = climbed.t;
+        let mut evaluations = evaluations + marched.evaluations;
+        let mut at = marched.t;
         let mut flesh = core::mem::take(&mut work.flesh);
         let weights = &mut flesh.weights;
         let mut gradient = [f32x8::splat(0.0); 3];
         let (first, last) = extremes(at, at, met);
-        let [mut low, mut high] = climbed.between;
+        let [mut low, mut high] = marched.between;
         for _ in 0..MOST_LOOKS {
             let mut value = f32x8::splat(0.0);
             gradient = [f32x8::splat(0.0); 3];
             weights.clear();
             let place: [f32x8; 3] =
                 core::array::from_fn(|i| rays.origin[i] + rays.direction[i] * at);
-            for step in work.stairs().between(first, last) {
-                let near = near.get(step.index as usize);
-                let jet = near.lump.jet(core::array::from_fn(|i| {
+            for blob in work.ray_blobs().between(first, last) {
+                let near = near.get(blob.index as usize);
+                let jet = near.blob.jet(core::array::from_fn(|i| {
                     place[i] - f32x8::splat(near.middle[i])
                 }));
                 evaluations += 8;
@@ -510,7 +516,7 @@ impl Soft {
             high = over.select(at, high);
             low = over.select(low, at);
             let newton = at - excess / (x + y + z);
-            // Where the ray only grazes the surface Newton's step may lead astray.
+            // At grazing rays a Newton step may leave the bracket.
             let good = low.simd_le(newton) & newton.simd_le(high);
             at = good.select(newton, f32x8::splat(0.5) * (low + high));
             // The distance from the surface is about the excess over the gradient's length.
@@ -520,7 +526,7 @@ impl Soft {
                 .sqrt();
             let allowed =
                 (steep * f32x8::splat(0.5 * tolerance)).fast_min(f32x8::splat(NEAR_ENOUGH));
-            let allowed = allowed.fast_max(f32x8::splat(ROUNDING));
+            let allowed = allowed.fast_max(f32x8::splat(FIELD_ROUNDING));
             if allowed.simd_lt(excess.abs()).to_bitmask() & met == 0 {
                 break;
             }
@@ -626,8 +632,8 @@ mod tests {
         let mut near = Nearby::default();
         near.begin(DVec3::Z * 0.5, 0.5);
         let far = f32x8::splat(9.0);
-        let climbed = |doubtful: u32, doubt: [f32; 2]| {
-            let mut climbed = Climbed {
+        let marched = |doubtful: u32, doubt: [f32; 2]| {
+            let mut marched = Marched {
                 t: far,
                 between: [far; 2],
                 met: 0,
@@ -636,12 +642,12 @@ mod tests {
                 doubt: doubt.map(f32x8::splat),
                 evaluations: 0,
             };
-            soft.settle_doubts(&near, 0, &rays, &mut climbed);
-            climbed
+            soft.isolate_doubts(&near, 0, &rays, &mut marched);
+            marched
         };
         // Longer than one part.
         for doubt in [[1.2, 1.6], [0.0, 2.5]] {
-            let settled = climbed(0b1111_1011, doubt);
+            let settled = marched(0b1111_1011, doubt);
             assert_eq!(settled.met, 0b1011, "{doubt:?}");
             for (i, enters) in enters.into_iter().enumerate() {
                 let t = settled.t.to_array()[i];
@@ -655,6 +661,6 @@ mod tests {
             }
         }
         // Where there is nothing.
-        assert_eq!(climbed(0b1111_1111, [0.0, 0.9]).met, 0);
+        assert_eq!(marched(0b1111_1111, [0.0, 0.9]).met, 0);
     }
 }

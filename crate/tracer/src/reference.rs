@@ -1,4 +1,4 @@
-//! The true surface, slowly: what pictures are checked against.
+//! The reference for pictures: finds crossings with the true surface, slowly.
 //!
 //! [`Reference`] looks for the places where the whole field, with nothing cut off, equals T, in
 //! double precision and by bisection. On an interval of a ray with the middle m and the half-width w
@@ -8,8 +8,8 @@
 //! far from the interval as its ball. The reference shares the formulas of the field with the
 //! tracer, and nothing else: no bounds, spans, slabs or depths of influence.
 //!
-//! What cannot be told (|F−T| within the rounding of F, or two crossings closer together than
-//! the resolution) is said to be undecided.
+//! Intervals with |F−T| within the rounding of F, or with two crossings closer together than the
+//! resolution, are reported as undecided.
 mod pieces;
 mod shell;
 #[cfg(test)]
@@ -22,16 +22,16 @@ use glam::DVec3;
 use pieces::Pieces;
 use waves::Factor;
 
-/// The field of some primitives, ready to be searched.
+/// The field of some primitives, prepared for searches.
 #[derive(Clone, Debug)]
 pub struct Reference {
     primitives: Vec<Primitive>,
     pieces: Pieces,
-    /// Where the field is not smooth.
+    /// Kinks of the field.
     kinks: Vec<Kink>,
     /// Evaluations of the whole field so far.
     pub evaluations: u64,
-    /// Intervals looked at along one ray before it is given up. Most rays want a hundred.
+    /// Most intervals for one ray before the search is given up. Most rays need a hundred.
     pub patience: u32,
 }
 
@@ -40,13 +40,13 @@ pub struct Reference {
 pub struct Root {
     /// The ray's parameter.
     pub t: f64,
-    /// It is known within this.
+    /// Bound on the error of t.
     pub width: f64,
     /// Whether the ray enters there.
     pub enters: bool,
 }
 
-/// What a ray meets.
+/// Crossings of a ray.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Crossings {
     /// Whether it starts inside.
@@ -56,54 +56,54 @@ pub struct Crossings {
     /// Intervals no longer than the resolution (or some that touch) in which the ray comes so near to the
     /// surface that two more crossings cannot be excluded.
     pub undecided: Vec<[f64; 2]>,
-    /// Whether the search went all the way; else it was given up for want of [`patience`](Reference::patience).
+    /// Whether the search was completed, or given up after [`patience`](Reference::patience) intervals.
     pub complete: bool,
 }
 
 /// Whether there is surface near a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Near {
-    /// There is, no further away than this.
+    /// Surface within this distance.
     Within(f64),
-    /// There is none in reach.
+    /// No surface within reach.
     Beyond,
-    /// It could not be told.
+    /// Undecided.
     Unknown,
 }
 
-/// What is wrong with a reported crossing, or with there being none.
+/// A fault of a reported crossing, or of a report of none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
-    /// A stretch of the ray on the other side of the surface, longer than the tolerance, went unseen.
+    /// An interval on the other side of the surface, longer than the tolerance, was missed.
     Missed {
-        /// Where the ray enters the stretch.
+        /// Start of the interval.
         from: f64,
-        /// Where it leaves it.
+        /// End of the interval.
         to: f64,
-        /// Whether no place of the stretch is further than the tolerance from the surface: the ray grazes.
+        /// Whether all of the interval is within the tolerance of the surface: the ray grazes.
         grazing: bool,
     },
     /// There is no surface within the tolerance of the reported crossing. `|F−T|/|∇F|` there.
     Invented(f64),
 }
 
-/// A ray's report, judged.
+/// Verdict on a ray's report.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
     /// Distance of the reported crossing from the true surface, at most; 0 if there is none.
     pub distance: f64,
-    /// What is wrong, if anything.
+    /// The fault, if any.
     pub fault: Option<Fault>,
-    /// Whether everything could be decided.
+    /// Whether everything was decided.
     pub certain: bool,
 }
 
-/// See [`Reference::patience`]. A ray that runs far along something flat wants very many.
+/// Default of [`Reference::patience`]. A ray along a flat part needs very many.
 const PATIENCE: u32 = 40_000;
-/// Cells looked at around one point.
+/// Most cells in a search around one point.
 const MOST_CELLS: u32 = 4_000;
 /// Relative error of the terms of the field, and of coordinates.
-const ROUNDING: f64 = 1e-10;
+const FIELD_ERROR: f64 = 1e-10;
 const ULP: f64 = 4e-16;
 
 /// The field less T at a point, its gradient, and how far rounding may have moved them.
@@ -116,7 +116,7 @@ struct Sample {
 }
 
 impl Reference {
-    /// Of the field of these primitives.
+    /// Prepares the field of these primitives.
     #[must_use]
     pub fn new(primitives: Vec<Primitive>) -> Self {
         Self {
@@ -152,8 +152,8 @@ impl Reference {
         Sample {
             excess,
             gradient,
-            noise: ROUNDING * size + ULP * point.abs().max_element() * steep,
-            slope_noise: 10.0 * ROUNDING * steep,
+            noise: FIELD_ERROR * size + ULP * point.abs().max_element() * steep,
+            slope_noise: 10.0 * FIELD_ERROR * steep,
         }
     }
 
@@ -175,7 +175,7 @@ impl Reference {
         let mut steps = self.patience;
         let mut from = 0.0;
         for kink in self.kinks_along(&ray, to) {
-            // The two sides of it, near enough to one another and far enough for rounding.
+            // Points on both sides of the kink, as close as rounding allows.
             let aside = 1e-13 * (origin.abs().max_element() + kink) + 1e-3 * resolution;
             let [before, after] = [kink - aside, kink + aside];
             if before > from {
@@ -198,7 +198,7 @@ impl Reference {
         found
     }
 
-    /// Where a ray crosses planes on which the field is not smooth, in order.
+    /// Parameters at which a ray crosses kinks of the field, in order.
     fn kinks_along(&self, ray: &Ray, to: f64) -> Vec<f64> {
         let crossing = |k: &Kink| k.along(ray.origin, ray.direction);
         let mut found: Vec<f64> = self
@@ -244,7 +244,7 @@ impl Reference {
             if here.excess.abs() > change * around + here.noise {
                 continue;
             }
-            // Nowhere on the interval the sign is known: smaller ones would not tell either.
+            // The sign is uncertain on the whole interval: halving would not help.
             let hopeless = here.excess.abs() + change * around <= here.noise;
             let one_way = slope.abs() - here.slope_noise > bend;
             if one_way || hopeless || 2.0 * half < resolution {
@@ -266,7 +266,7 @@ impl Reference {
         }
     }
 
-    /// The crossing between two places with different signs.
+    /// Refines the crossing between two parameters with different signs.
     fn bisect(&mut self, ray: &Ray, [mut a, mut b]: [f64; 2], enters: bool, width: f64) -> Root {
         while b - a > width {
             let m = 0.5 * (a + b);
@@ -316,7 +316,7 @@ impl Reference {
             }
             at -= step;
             here = self.sample(at);
-            // A little further the sign has changed, and so there is surface on the way there.
+            // If the sign has changed a little further on there is surface between.
             let beyond = at - step.normalize_or_zero() * (1e-3 * reach);
             let far = beyond.distance(point);
             if far <= reach {
@@ -331,7 +331,7 @@ impl Reference {
         self.search_ball(point, start, reach)
     }
 
-    /// The same by cutting the ball around the point into ever smaller cubes.
+    /// [`Reference::surface_near`] by subdivision of the ball around the point into cubes.
     fn search_ball(&mut self, point: DVec3, start: Sample, reach: f64) -> Near {
         let mut stack = vec![(point, reach)];
         let mut unknown = false;
@@ -349,7 +349,7 @@ impl Reference {
                 return Near::Within(away);
             }
             let extent = self.pieces.extent(&self.primitives, center, radius, None);
-            // What a kink has in its ball is known less well.
+            // Bounds are weaker in balls with kinks.
             let (mut kinked, mut jumps) = (false, false);
             for kink in &self.kinks {
                 if kink.normal.dot(center - kink.point).abs() <= radius * (1.0 + 1e-9) {
@@ -410,7 +410,7 @@ impl Reference {
         let end = reported.unwrap_or(limit);
         let found = self.crossings(origin, direction, end, 0.1 * tolerance(0.0));
         verdict.certain &= found.complete;
-        // Stretches on the other side than the start's.
+        // Intervals on the other side than the start's.
         let mut entered = None;
         for root in &found.roots {
             if root.enters != found.starts_inside {
@@ -442,7 +442,7 @@ impl Reference {
         if to - from <= tolerance || verdict.fault.is_some() {
             return;
         }
-        // Where rounding alone makes the stretch there is nothing to be seen.
+        // Intervals that exist by rounding alone are no faults.
         let deepest = (1..8)
             .map(|i| self.sample(ray.at(from + (to - from) * f64::from(i) / 8.0)))
             .fold(0.0f64, |most, s| most.max(s.excess.abs() / s.noise));
@@ -463,8 +463,7 @@ impl Reference {
         });
     }
 
-    /// Whether a stretch of a ray is nowhere further than `reach` from the surface, as far as
-    /// some places on it tell.
+    /// Whether an interval of a ray is within `reach` of the surface, tested at some points.
     fn keeps_near(&mut self, ray: &Ray, [from, to]: [f64; 2], reach: f64) -> bool {
         (0..=12).all(|i| {
             let at = ray.at(from + (to - from) * f64::from(i) / 12.0);

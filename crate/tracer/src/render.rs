@@ -10,7 +10,7 @@ use scene::Scene;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Side of the parts of a picture that are made smooth one after the other, in pixels: their first samples take 100 MB.
+/// Side in pixels of the parts of a picture whose smooth passes run one after the other; the first samples of one take 100 MB.
 const SHEET: u32 = 2048;
 
 /// Renders a scene with several threads and returns RGBA bytes (rows from the top).
@@ -27,7 +27,7 @@ pub fn render(
     render_picture(&Picture::new(scene, size), threads, pass, progress)
 }
 
-/// The same of a picture that is made ready already.
+/// Renders a prepared picture, like [`render`].
 #[must_use]
 pub fn render_picture(
     picture: &Picture,
@@ -61,8 +61,8 @@ pub fn render_picture(
             stats += shared_out(&tiles, threads, trace, &mut show, &step);
             continue;
         }
-        // First the first samples of all pixels, then the others: so none is taken twice but for those at the borders of sheets,
-        // whatever the number of threads.
+        // The first samples of all pixels come first, so that only those at the borders of sheets are traced twice, whatever the
+        // number of threads.
         let mut cache = picture.cache(tiles.len());
         let none = SampleCache::default();
         let sample = |tile, work: &mut Workspace, stats: &mut Stats| {
@@ -81,7 +81,7 @@ pub fn render_picture(
     (rgba, stats)
 }
 
-/// Does a step of work for each tile, on so many threads, and takes what comes of each.
+/// Runs a job for each tile on several threads, and consumes the results.
 fn shared_out<T: Send>(
     tiles: &[Tile],
     threads: usize,

@@ -41,8 +41,8 @@ impl Roots {
 /// The values of x in `from..=to` where `Σ coefficients[i]·xⁱ` changes sign, ascending.
 ///
 /// At most [`MAX_DEGREE`]` + 1` coefficients are read. An end of the interval counts when the
-/// polynomial is exactly zero there and changes sign going inwards is not required: such a root
-/// sits on the border and belongs to whoever asks for it.
+/// polynomial is exactly zero there, with or without a sign change: roots on the border of two
+/// intervals are reported for both.
 #[must_use]
 pub fn roots(coefficients: &[f64], from: f64, to: f64) -> Roots {
     let n = coefficients.len().min(MAX_DEGREE + 1);
@@ -101,7 +101,7 @@ pub fn bracketed(f: impl FnMut(f64) -> (f64, f64), a: f64, b: f64, tolerance: f6
     bracketed_from(f, [a, b], 0.5 * (a + b), tolerance)
 }
 
-/// The same, looking first at a place between.
+/// [`bracketed`] with a first guess between.
 pub fn bracketed_from(
     mut f: impl FnMut(f64) -> (f64, f64),
     [mut low, mut high]: [f64; 2],

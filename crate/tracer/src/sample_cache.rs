@@ -1,9 +1,8 @@
-//! The first samples of a picture's pixels, kept so that none is taken twice.
+//! Cache of the first samples of a picture's pixels, so that none is traced twice.
 //!
-//! Which pixels get more rays depends on the samples around them ([`refine`](crate::refine)), so that a tile that is made
-//! smooth needs those of its neighbours' edges; and a picture is shown with one ray a pixel before it is made smooth. Without
-//! a cache all of these are traced again. What comes out of a cache is what would be traced, bit for bit, as packets are
-//! always traced whole.
+//! Which pixels get more rays depends on the samples around them ([`refine`](crate::refine)), so the smooth pass of a tile needs
+//! those at its neighbours' edges; and the pass with one ray a pixel comes first. Without a cache all of these would be traced
+//! again. Cached samples have the bits of traced ones, as packets are always traced whole.
 use crate::Tile;
 use crate::area::{Area, Samples};
 use crate::known::Known;
@@ -15,23 +14,23 @@ use std::ops::Range;
 const COLUMNS: u32 = SQUARE / PACKET_SIZE[0];
 const ROWS: u32 = SQUARE / PACKET_SIZE[1];
 
-/// First samples, packet by packet, as far as they are known.
+/// First samples of packets traced so far.
 #[derive(Debug, Default)]
 pub struct SampleCache {
     /// Pixels of the picture.
     size: [u32; 2],
-    /// Squares from the picture's corner, row by row; none yet where nothing is known.
+    /// Squares from the picture's corner, row by row; `None` without samples.
     squares: Vec<Option<Box<Kept>>>,
-    /// So many more squares may be kept.
+    /// Number of squares that may still be added.
     room: usize,
 }
 
-/// What is known of a square.
+/// Samples of a square.
 #[derive(Debug)]
 pub(crate) struct Kept {
-    /// Row by row.
+    /// Samples row by row.
     samples: Vec<Sample>,
-    /// For each row of packets a bit for each that is known.
+    /// For each row of packets a bit for each packet that is present.
     known: [u16; ROWS as usize],
 }
 
@@ -52,7 +51,7 @@ impl SampleCache {
         }
     }
 
-    /// How many squares it keeps anything of.
+    /// Number of squares with samples.
     #[must_use]
     pub fn squares(&self) -> usize {
         self.squares.iter().flatten().count()
@@ -63,17 +62,17 @@ impl SampleCache {
         (square.top / SQUARE) as usize * across + (square.left / SQUARE) as usize
     }
 
-    /// What is known of a square, given by its pixels.
+    /// Samples of a square, given by its pixels; `None` if there are none.
     pub(crate) fn square(&self, square: Area) -> Option<&Kept> {
         self.squares.get(self.index(square))?.as_deref()
     }
 
-    /// The pixels of the picture that it is for.
+    /// Size of its picture in pixels.
     pub(crate) fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The samples of a tile of at most 64×64 pixels, if all are known.
+    /// Returns the samples of a tile of at most 64×64 pixels; `None` unless all are present.
     #[must_use]
     pub fn tell(&self, tile: Tile) -> Option<Known> {
         let area = Area::from(tile);
@@ -89,16 +88,16 @@ impl SampleCache {
         Some(Known::new(tile, &samples))
     }
 
-    /// Keeps what another cache for this picture told, as far as it is whole packets: of each square that it lies in anything of,
-    /// which takes that square's room. Nothing is done with what does not lie in the picture.
+    /// Adds samples from another cache of this picture, as far as they are whole packets; each square that they touch takes up room.
+    /// Samples outside the picture are ignored.
     pub fn learn(&mut self, known: &Known) {
         if let Some(samples) = known.samples(self.size) {
             self.keep(&samples, known.tile().into());
         }
     }
 
-    /// Keeps the samples of the packets that lie in their area, as far as packets lie in the picture. Of squares that are
-    /// outside `tile` only if something of them is kept already: strips along its edges are not worth a square's room.
+    /// Adds the samples of whole packets in their area. Squares outside `tile` get samples only if they have some already: strips
+    /// along its edges are not worth a square's room.
     pub(crate) fn keep(&mut self, samples: &Samples, tile: Area) {
         let [right, bottom] = self.size;
         let picture = Area {
@@ -137,7 +136,7 @@ impl Default for Kept {
 }
 
 impl Kept {
-    /// Keeps the packets of a square that lie in the samples' area, as far as they lie in the picture.
+    /// Adds the packets of a square that lie in the samples' area, apart from pixels outside the picture.
     fn keep(&mut self, square: Area, picture: Area, samples: &Samples) {
         let area = samples.area();
         let columns = whole(
@@ -168,7 +167,7 @@ impl Kept {
         }
     }
 
-    /// Writes all samples of a square that are wanted, if all are known. Says whether they are.
+    /// Copies the samples of a square into `samples`, if all are present; returns whether they are.
     pub fn tell_all(&self, square: Area, samples: &mut Samples) -> bool {
         let area = square.meet(samples.area());
         let columns = (area.left - square.left) / PACKET_SIZE[0]
@@ -190,8 +189,7 @@ impl Kept {
         all
     }
 
-    /// Writes the samples of a square's packet, given by its column and row, as far as they are wanted. Says whether they
-    /// are known.
+    /// Copies the samples of a square's packet, given by its column and row, into `samples`; returns whether they are present.
     pub fn tell(&self, [column, row]: [u32; 2], square: Area, samples: &mut Samples) -> bool {
         let known = self.known[row as usize] >> column & 1 == 1;
         if known {
@@ -207,8 +205,8 @@ fn index(square: Area, x: u32, y: u32) -> usize {
     ((y - square.top) * SQUARE + (x - square.left)) as usize
 }
 
-/// The packets of a square, each of `size` pixels along an axis, that lie within some pixels as far as they lie before `end`.
-/// The square begins at `start`.
+/// Returns the packets of a square, each of `size` pixels along an axis, whose pixels before `end` all lie within `pixels`. The
+/// square begins at `start`.
 fn whole(pixels: Range<u32>, start: u32, end: u32, size: u32) -> Range<u32> {
     let first = (pixels.start.max(start) - start).div_ceil(size);
     let to = pixels.end.min(start + SQUARE);
@@ -220,7 +218,7 @@ fn whole(pixels: Range<u32>, start: u32, end: u32, size: u32) -> Range<u32> {
     first..last.max(first)
 }
 
-/// The bits of some columns.
+/// Bits of some columns.
 fn bits(columns: &Range<u32>) -> u16 {
     ((1_u32 << columns.end) - (1 << columns.start)) as u16
 }

@@ -10,13 +10,13 @@ use wide::f32x8;
 #[derive(Default)]
 pub struct Scratch {
     pub(crate) memory: Memories<f32x8>,
-    /// That of slabs that are not needed any more.
+    /// Allocations of slabs that are no longer needed.
     pub(crate) spaces: Vec<Space>,
     pub(crate) active: Active,
     pub(crate) flesh: Flesh,
     pub(crate) quick: Quick,
     /// Evaluations of one primitive's field at one point, so far.
     pub evaluations: u64,
-    /// Those of them that were made for one ray alone.
+    /// Evaluations that were made for a single ray.
     pub alone: [u64; PACKET],
 }

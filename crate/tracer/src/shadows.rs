@@ -252,7 +252,7 @@ impl World {
     ) -> bool {
         general.clear();
         let one = self.soft.bodies.len() == 1;
-        if !self.soft.list_lumps(beam, furthest, near) {
+        if !self.soft.list_blobs(beam, furthest, near) {
             if one {
                 general.push((0.0, 0));
             } else {

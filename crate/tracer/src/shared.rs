@@ -1,9 +1,9 @@
-//! What many primitives add up to in a piece of a beam, as one interpolant for all rays of the beam.
+//! Interpolants of the sum of many primitives on a piece of a beam, shared by all its rays.
 //!
-//! Around the piece lies a box, along the beam's axis. At its eight corners all the primitives are evaluated once,
+//! A box along the beam's axis encloses the piece. At its eight corners all the primitives are evaluated once,
 //! side by side, with their gradients; in between values and slopes are interpolated: linearly across from the
 //! corners, and along each edge by the cubic with the values and slopes of its ends (Adini's element in three
-//! dimensions). Cubic polynomials are met exactly, and what is left is bounded by the fourth derivative, so that
+//! dimensions). Cubic polynomials are reproduced, and the error is bounded by the fourth derivative, so that
 //! distant primitives, whose sum is smooth, cost a ray almost nothing however many they are.
 use crate::beam::Beam;
 use crate::lanes::{Lanes, least};
@@ -11,28 +11,28 @@ use field::{Cut, Primitive};
 use glam::DVec3;
 use wide::f32x8;
 
-/// Places at which each primitive is evaluated for an interpolant.
+/// Number of points at which each primitive is evaluated for an interpolant.
 pub const CORNERS: u64 = 8;
 
 /// The box around a piece of a beam.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
     corner: DVec3,
-    /// Orthonormal; the last is the beam's.
+    /// Orthonormal axes; the last is the beam's.
     axes: [DVec3; 3],
-    /// The box's extent along each.
+    /// Extent of the box along each axis.
     size: [f64; 3],
-    /// The axes, each over the extent along it.
+    /// Each axis divided by the extent along it.
     scaled: [DVec3; 3],
-    /// How much further a ray can be from the axis at the piece's end than at its start, or nearer.
+    /// Largest change of a ray's distance from the axis over the piece.
     travel: f64,
 }
 
-/// The least extent across, over that along the beam.
+/// Least ratio of the extent across the beam to that along it.
 const THINNEST: f64 = 1.0 / 64.0;
 
 impl Cell {
-    /// Around all rays of a beam between two parameters.
+    /// The box around all rays of a beam between two parameters.
     #[must_use]
     pub fn around(beam: &Beam, from: f64, to: f64) -> Self {
         // Rays lag behind the axis, or are ahead of it, by a little.
@@ -58,10 +58,10 @@ impl Cell {
         0.5 * DVec3::from_array(self.size).length() * (1.0 + 1e-9)
     }
 
-    /// With D a bound on the fourth derivative along any line in the box, the cubic Hermite span of the interpolant
-    /// along a ray is at most D times this from the interpolated function.
+    /// Factor from a bound on the fourth derivative along any line in the box to the error of the cubic Hermite span of the interpolant
+    /// along a ray.
     ///
-    /// With A = 1 − L what linear and C = 1 − H what cubic interpolation leaves along an axis, the interpolant leaves
+    /// With A = 1 − L and C = 1 − H the errors of linear and cubic interpolation along an axis, the interpolant's error is
     /// `ΣC₁L₂L₃ + ΣA₁A₂L₃ + A₁A₂A₃`, where |C| ≤ h⁴/384, |A| ≤ h²/8 times a derivative, and |L| ≤ 1. Along a ray that
     /// moves across by s the interpolant is not quite cubic: the changes of its quadratic and cubic parts from edge to
     /// edge, times s over the box's width, are its fourth derivative.
@@ -76,7 +76,7 @@ impl Cell {
         inside + along
     }
 
-    /// The corners, [`CORNERS`]; bits 0, 1, 2 of the lane's number are the steps along the axes.
+    /// The [`CORNERS`] corners; bits 0, 1, 2 of the lane's number are the steps along the axes.
     fn corners(&self) -> [f32x8; 3] {
         let place = |lane: usize| {
             (0..3).fold(self.corner, |p, i| {
@@ -87,7 +87,7 @@ impl Cell {
         core::array::from_fn(|k| f32x8::new(places.map(|p| p[k] as f32)))
     }
 
-    /// Places in the box: coordinates from 0 to 1.
+    /// Converts positions to coordinates of the box, 0 to 1.
     #[inline(always)]
     #[must_use]
     pub fn local<L: Lanes>(&self, point: [L; 3]) -> [L; 3] {
@@ -95,7 +95,7 @@ impl Cell {
         self.steps([x, y, z])
     }
 
-    /// A direction's steps in those coordinates.
+    /// Converts a direction to coordinates of the box.
     #[inline(always)]
     #[must_use]
     pub fn steps<L: Lanes>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
@@ -103,7 +103,7 @@ impl Cell {
             .map(|a| x * L::splat(a.x) + y * L::splat(a.y) + z * L::splat(a.z))
     }
 
-    /// The gradient in the world, of one in those coordinates.
+    /// Converts a gradient from coordinates of the box to the world.
     #[inline(always)]
     #[must_use]
     pub fn world<L: Lanes>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
@@ -117,22 +117,22 @@ impl Cell {
 pub struct Shared {
     /// The edges along x, at y, z = 00, 10, 01, 11.
     rows: [Row; 4],
-    /// Of the two faces across z: how the rows' bends by y change with x, added up …
+    /// For the two faces across z: the sum of the changes of [`Row::y`] with x …
     bends: [f32; 2],
-    /// … and how the change of the bends by z from row to row changes with x.
+    /// … and the change with x of the difference of [`Row::z`] between the rows.
     twists: [f32; 2],
-    /// It is nowhere in the box above this.
+    /// Upper bound in the box.
     top: f32,
 }
 
-/// What is interpolated along an edge.
+/// Coefficients along an edge.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
     /// The value, as a polynomial.
     value: [f32; 4],
-    /// How much steeper than straight edges along y are, times their lengths: at the start, and its change.
+    /// Slope along y less that of the straight line, times the edge's length: at the start, and its change.
     y: [f32; 2],
-    /// The same along z.
+    /// The same for the slope along z.
     z: [f32; 2],
 }
 
@@ -148,20 +148,20 @@ impl Corners {
     }
 }
 
-/// So many terms are summed by themselves before they are added to the rest: sums of very many terms would lose digits.
-const GROUP: usize = 32;
+/// Number of terms in a partial sum, which keeps digits in sums of very many terms.
+const PARTIAL_SUM: usize = 32;
 
-/// The sum of primitives at a cell's corners, in the making.
+/// Accumulator of the sum of primitives at a cell's corners.
 pub struct Sums<'c> {
     cell: &'c Cell,
     corners: [f32x8; 3],
-    /// Of each finish: the sum so far, that of the present group, and its number of terms.
+    /// For each finish: the sum so far, the present partial sum, and its number of terms.
     sums: Vec<(u32, Corners, Corners, usize)>,
     last: usize,
 }
 
 impl<'c> Sums<'c> {
-    /// Of no primitives.
+    /// Starts with no primitives.
     #[must_use]
     pub fn new(cell: &'c Cell) -> Self {
         Self {
@@ -188,13 +188,13 @@ impl<'c> Sums<'c> {
         let (_, whole, group, count) = &mut sums[self.last];
         *group = group.plus(Corners([jet.value, x, y, z]));
         *count += 1;
-        if (*count).is_multiple_of(GROUP) {
+        if (*count).is_multiple_of(PARTIAL_SUM) {
             *whole = whole.plus(*group);
             *group = Corners::NONE;
         }
     }
 
-    /// The interpolant of all, and those of each finish.
+    /// Returns the interpolant of all primitives, and those of each finish.
     #[must_use]
     pub fn finish(self) -> (Shared, Vec<(u32, Shared)>) {
         let sums = || {
@@ -219,7 +219,7 @@ impl Shared {
         let [values, x, y, z] = sum.0.map(f32x8::to_array);
         let gradient =
             |lane: usize| DVec3::new(f64::from(x[lane]), f64::from(y[lane]), f64::from(z[lane]));
-        // How much steeper than straight the edges along each axis are at the corners, times their lengths.
+        // Slopes along each axis at the corners less those of the straight edges, times the edges' lengths.
         let excess: [[f32; 8]; 3] = core::array::from_fn(|axis| {
             core::array::from_fn(|lane| {
                 let slope = gradient(lane).dot(cell.axes[axis]) * cell.size[axis];
@@ -228,7 +228,7 @@ impl Shared {
                 (slope - straight) as f32
             })
         });
-        // What is no number counts as nothing.
+        // NaN counts as 0.
         let greatest = |all: f32x8, nothing: f32x8| {
             let numbers = nothing.simd_lt(all).select(all, nothing);
             -least(-numbers)
@@ -258,18 +258,18 @@ impl Shared {
         }
     }
 
-    /// The interpolant is nowhere in the box above this.
+    /// Upper bound on the interpolant in the box.
     #[must_use]
     pub fn top(&self) -> f64 {
         f64::from(self.top)
     }
 
-    /// Value and gradient at places in the box, given and told in its coordinates.
+    /// Value and gradient at positions in the box, both in its coordinates.
     #[inline(always)]
     #[must_use]
     pub fn jet<L: Lanes>(&self, [x, y, z]: [L; 3]) -> (L, [L; 3]) {
         let single = L::single;
-        // Along x: the value and its slope, and what bends by y and by z.
+        // Along x: the value and its slope, and the coefficients by y and by z.
         let row = |row: &Row| {
             let [a, b, c, d] = row.value.map(single);
             let dx = d * x;
@@ -282,7 +282,7 @@ impl Shared {
             (value, slope, by_y, by_z)
         };
         let (across, along) = (Bend::at(y), Bend::at(z));
-        // Along y: value, slopes by x and y; what bends by z, and its slopes.
+        // Along y: value, slopes by x and y; the coefficient by z, and its slopes.
         let face = |i: usize| {
             let [near, far] = [&self.rows[2 * i], &self.rows[2 * i + 1]];
             let (p, px, q, r) = row(near);
@@ -307,7 +307,7 @@ impl Shared {
     }
 }
 
-/// A place x along an edge, and what bends there.
+/// A position x along an edge, with the cubic's basis functions there.
 #[derive(Clone, Copy)]
 struct Bend<L> {
     x: L,
@@ -328,13 +328,13 @@ impl<L: Lanes> Bend<L> {
         }
     }
 
-    /// What is f and g at the ends, and a and b steeper there than straight: `f + (g−f)x + x(1−x)(a − (a+b)x)`, given a+b.
+    /// The cubic with the values f and g at the ends and the excess slopes a and b: `f + (g−f)x + x(1−x)(a − (a+b)x)`, given a+b.
     #[inline(always)]
     fn value(&self, f: L, g: L, a: L, both: L) -> L {
         f + (g - f) * self.x + (a - both * self.x) * self.bulge
     }
 
-    /// The same, and its derivative.
+    /// That cubic and its derivative.
     #[inline(always)]
     fn jet(&self, f: L, g: L, a: L, both: L) -> (L, L) {
         let rise = g - f;
@@ -382,7 +382,7 @@ mod tests {
         Primitive::new(skeleton, &shaping, None).expect("flesh")
     }
 
-    /// Cubics along the edges, however different, make one smooth function; corners, too, are met.
+    /// The interpolant is smooth and has the values and gradients at the corners, for any cubics along the edges.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn gradients_are_derivatives() {
@@ -418,7 +418,7 @@ mod tests {
         }
     }
 
-    /// Along rays of a beam, the cubic between the interpolant's ends is as near to the field as promised.
+    /// Along rays of a beam, the error of the cubic between the interpolant's ends is within its bound.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn no_ray_is_further_off_than_the_bound() {

@@ -1,18 +1,16 @@
-//! Where along a beam which primitives need how many spans.
+//! Slabs: a binary subdivision of a beam that decides on which intervals primitives are interpolated by Hermite spans.
 //!
-//! The part of the beam that the soft surface can reach is halved again and again. In each slab a
-//! primitive is *resolved* when one Hermite span over the slab is certified to be near enough to
-//! it, for all rays of the beam; what is not yet resolved is *pending* and is handed to the halves.
-//! What all rays of the beam can share is interpolated once for them: for good, if that is exact enough, or in place of
-//! spans, as exact as those. What is next to nothing counts as error. So broad or distant
-//! primitives get few long spans and sharp near ones many short spans. The tree grows only where a
-//! ray asks for it, and is shared by all rays of the beam.
+//! The part of the beam that the soft surface can reach is halved recursively. In each slab a primitive is *resolved* when the
+//! error of one Hermite span over the slab is certified to be small enough for all rays of the beam; else it is *pending* and is
+//! handed to the halves. Primitives that are smooth across the beam are interpolated once for all its rays: *shared*, if that is
+//! so accurate that it is never refined, or *joined*, in place of spans and as accurate as they. Negligible primitives are
+//! *dropped* and count as error. So broad or distant primitives get few long spans and sharp near ones many short spans. The tree
+//! grows on demand and is used by all rays of the beam.
 //!
-//! Where a slab has become shorter than its beam is wide, halving it further would not bring the
-//! rays' surroundings closer together: the beam is then divided into narrower ones instead, and each
-//! packet of rays goes on in its own. In beams wider than a block of four packets there are no spans, which would be made for
-//! rays that do not meet their primitives, and in wider ones than four of those no interpolants in place of spans: such beams
-//! only show what is empty.
+//! Where a slab is shorter than its beam is wide, halving it further would not bring its rays closer together: the beam is then
+//! divided into narrower ones, and each packet of rays continues in its own. Beams wider than a block of four packets have no
+//! spans, which would be made for rays that do not meet their primitives, and beams wider than four blocks no joined interpolants:
+//! they only find empty space.
 use crate::beams::Beams;
 use crate::clusters::{Clusters, Members};
 use crate::kinks::Kinks;
@@ -24,24 +22,23 @@ use field::bound::{Bound, Nearness, SpanLength};
 use field::{Cut, Primitive, THRESHOLD};
 use std::collections::BTreeMap;
 
-/// How exactly spans follow the field.
+/// Accuracy of spans.
 #[derive(Clone, Copy, Debug)]
 pub struct Precision {
-    /// The sum of spans is within this of the field at first …
+    /// Largest error of the sum of spans at first …
     pub first: f64,
-    /// … and within this before a slab in which the surface may lie is decided upon.
+    /// … and in a slab whose crossings are decided.
     pub last: f64,
-    /// Beyond that, the interpolants that a beam's rays share are together within this of what they stand for: so
-    /// little that they are never made finer. 0: there are none, and no groups.
+    /// Largest additional error of all shared interpolants, which are never refined. 0: no shared interpolants and no groups.
     pub shared: f64,
     /// Rounding of coordinates, and of values relative to a primitive's field.
     pub rounding: f64,
-    /// Stretches of rays shorter than this need not be looked into, in units of the scene.
+    /// Length, in units of the scene, below which intervals of rays are not subdivided.
     pub resolution: f64,
 }
 
 impl Precision {
-    /// For pictures: near the surface the field changes by about T over a radius, so the surface
+    /// Precision of pictures: near the surface the field changes by about T over a radius, so the surface
     /// of the spans is within about 1/2000 of a radius of the true one.
     pub const PICTURE: Self = Self {
         first: 3.2e-2,
@@ -50,7 +47,7 @@ impl Precision {
         rounding: 2.5e-7,
         resolution: 5e-7,
     };
-    /// For exact answers.
+    /// Precision of exact crossings.
     pub const EXACT: Self = Self {
         first: 8e-3,
         last: 1e-9,
@@ -60,29 +57,29 @@ impl Precision {
     };
 }
 
-/// The primitives that a beam can meet, and its slabs so far.
+/// The slabs of a beam made so far, with its primitives.
 pub struct Slabs<'a> {
     terms: Terms<'a>,
     beams: Beams<'a>,
     precision: Precision,
-    /// Primitive of each local number.
+    /// Primitive number of each local number.
     list: Vec<u32>,
-    /// The first local number of each group's members that have been looked at one by one.
+    /// First local number of the members of each opened group.
     opened: BTreeMap<u32, u32>,
     nodes: Vec<Slab>,
-    /// Local numbers, and groups; the slabs' lists are ranges of it.
+    /// Local numbers and groups; the slabs' lists are ranges of it.
     ids: Vec<u32>,
-    /// Those that are still to be looked at for a new slab.
+    /// Entries still to be examined for a new slab.
     stack: Vec<u32>,
     blocks: Vec<Block>,
     scratch: Vec<Candidate>,
-    /// Those of each fate.
+    /// Entries of a new slab, by fate.
     lists: [Vec<u32>; 5],
-    /// Evaluations made for interpolants.
+    /// Evaluations for interpolants so far.
     evaluations: u64,
 }
 
-/// The space of slabs that are not needed any more, kept for others.
+/// Allocations of slabs that are no longer needed, for reuse.
 #[derive(Default)]
 pub struct Space {
     list: Vec<u32>,
@@ -97,29 +94,29 @@ pub struct Space {
 /// The soft surface's primitives.
 #[derive(Clone, Copy)]
 pub struct Terms<'a> {
-    /// Their fields.
+    /// The primitives.
     pub primitives: &'a [Primitive],
-    /// What is known of each.
+    /// Bounds of each.
     pub bounds: &'a [Bound],
-    /// Each one's finish.
+    /// Finish of each.
     pub finishes: &'a [u32],
-    /// Where they are not smooth.
+    /// Kinks of their profiles.
     pub kinks: &'a Kinks,
-    /// Those that have a place, in groups, if a beam's list consists of these.
+    /// The bounded primitives in groups; a beam's list then consists of groups. `None`: of single primitives.
     pub clusters: Option<&'a Clusters>,
-    /// Where each is at most this, it is left out.
+    /// Field at which a primitive is left out.
     pub left_out: f64,
 }
 
-/// What is far from a slab, as interpolants.
+/// Interpolants of the primitives that are far from a slab.
 pub struct Afar {
     blocks: Vec<(Cell, Shared)>,
-    /// How far off these are, together with what is left out.
+    /// Bound on their error, together with that of the terms left out.
     pub off: f64,
 }
 
 impl Afar {
-    /// Value and slope along a ray.
+    /// Value and slope along a ray at t.
     #[must_use]
     pub fn node(&self, ray: &Ray, t: f64) -> Node<f64> {
         let place = ray.at(t).to_array();
@@ -135,37 +132,37 @@ impl Afar {
     }
 }
 
-/// What in a list says that a number is a group's.
+/// Bit that marks a list entry as the number of a group.
 const GROUP: u32 = 1 << 31;
 
-/// What a slab's shared primitives add up to.
+/// Interpolant of a slab's shared or joined primitives.
 pub struct Block {
-    /// Where.
+    /// Box in which it holds.
     pub cell: Cell,
-    /// All of them.
+    /// Sum over all of them.
     pub total: Shared,
-    /// Those of each finish.
+    /// Sum over the primitives of each finish.
     pub of_each: Vec<(u32, Shared)>,
-    /// They add up to no more than this.
+    /// Upper bound on the total.
     pub top: f64,
 }
 
-/// A primitive, or a group, in a slab that is being made.
+/// A primitive or group in a slab under construction.
 #[derive(Clone, Copy)]
 struct Candidate {
     id: u32,
     magnitude: f64,
-    /// What its span would be off by …
+    /// Error bound of its span …
     span: f64,
-    /// … and what it would add to the error of a shared interpolant.
+    /// … and of its part of a shared interpolant.
     shared: f64,
-    /// How near it is, at least.
+    /// Distance from the slab, or less.
     distance: f64,
     adds: bool,
     carves: bool,
-    /// Whether it is not smooth here, so that no span follows it.
+    /// Whether it has a kink here, so that spans have no error bound.
     kinked: bool,
-    /// What becomes of it.
+    /// The slab's list that it goes to.
     fate: Fate,
 }
 
@@ -178,121 +175,120 @@ enum Fate {
     Dropped,
 }
 
-/// Which of a slab's primitives have an interpolant together.
+/// The two kinds of common interpolants of a slab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
-    /// Those whose interpolant is never made finer.
+    /// The one that is never refined.
     Shared,
-    /// Those whose interpolant stands for their spans.
+    /// The one in place of spans.
     Joined,
 }
 
-/// How a slab goes on.
+/// Children of a slab.
 #[derive(Clone, Copy, Debug)]
 pub enum Parts {
-    /// In its two halves, front to back.
+    /// Its two halves, front to back.
     Halves(u32, u32),
-    /// As the same slab of a narrower beam.
+    /// The same interval of a narrower beam.
     Narrower(u32),
 }
 
 /// One slab of a beam.
 #[derive(Clone, Debug)]
 pub struct Slab {
-    /// Ray parameters of its ends.
+    /// Ray parameter of the near end.
     pub from: f64,
-    /// The far end.
+    /// Ray parameter of the far end.
     pub to: f64,
-    /// Local numbers of the primitives, and the groups, that have one interpolant for all rays together.
+    /// List of the entries with a shared interpolant.
     pub shared: Range<u32>,
-    /// Those that are resolved, too, but by one interpolant for all rays together, less exact than that of the shared ones.
+    /// List of the entries with a joined interpolant.
     pub joined: Range<u32>,
-    /// Those that get one span over this slab for each ray.
+    /// List of the resolved primitives: one span over this slab for each ray.
     pub resolved: Range<u32>,
-    /// Those handed to the halves.
+    /// List of the pending entries, for the children.
     pub pending: Range<u32>,
-    /// Those whose fields are so small that they count as part of the error.
+    /// List of the dropped entries, whose fields count as error.
     dropped: Range<u32>,
-    /// All terms of this slab (shared, resolved and pending) together are at most this …
+    /// Upper bound on the sum of this slab's terms (shared, joined, resolved and pending) …
     pub above: f64,
-    /// … and at least minus this.
+    /// … and minus a lower bound.
     pub below: f64,
-    /// The same for the pending terms alone.
+    /// Upper bound on the sum of the pending terms …
     pub pending_above: f64,
-    /// The same for the pending terms alone.
+    /// … and minus a lower bound.
     pub pending_below: f64,
-    /// Bound on the error of all spans over this slab: the resolved ones and the coarser ones, with
-    /// the rounding of the arithmetic.
+    /// Bound on the error of all spans over this slab: its own, and those of the slabs that contain it, with rounding.
     pub error: f64,
-    /// What that consists of.
+    /// Parts of `error`.
     pub spent: Spent,
-    /// How far rounding may put the interpolant of its shared primitives off.
+    /// Bound on the rounding error of its shared interpolant.
     noise_of_shared: f64,
-    /// What the errors may add up to.
+    /// Largest error allowed for spans.
     budget: f64,
     parent: u32,
-    /// Whether what its parents resolved does not count.
+    /// Whether it starts again: what its parents resolved is included in its own lists.
     anew: bool,
-    /// Whether what is pending is not smooth here, and nothing else is pending.
+    /// Whether all pending primitives have kinks here.
     pub kinked: bool,
-    /// Whether rounding of something that is pending may be as large as T.
+    /// Whether rounding of a pending primitive may be as large as T.
     blurring: bool,
-    /// The interpolant of its shared primitives, and that of the joined ones. [`NONE`]: not yet made.
+    /// Shared and joined interpolant. [`NONE`]: not yet made.
     blocks: [u32; 2],
     beam: usize,
-    /// Its halves, or the same slab of the beam's quarters. 0: not yet made.
+    /// Its halves, or the same interval of the beam's quarters. 0: not yet made.
     children: [u32; 4],
-    /// The same slab again with finer spans. 0: not yet made.
+    /// The same slab with finer spans. 0: not yet made.
     finer: u32,
-    /// How many times halved.
+    /// Number of halvings.
     pub depth: u32,
 }
 
-/// What the error of a slab's spans consists of.
+/// Parts of the error of a slab's spans.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spent {
-    /// The rays' own spans.
+    /// Errors of spans and joined interpolants.
     spans: f64,
-    /// Shared interpolants.
+    /// Errors of shared interpolants, and dropped terms.
     pub shared: f64,
-    /// Rounding takes nothing from the budget.
+    /// Rounding, which does not count against the budget.
     pub noise: f64,
     rounding: Rounding,
 }
 
-/// What rounding of a slab's terms and of those above it comes to, but for those that are pending.
+/// Bound on the rounding of the terms of a slab and of those above it, without the pending ones.
 #[derive(Clone, Copy, Debug, Default)]
 struct Rounding {
-    /// That of each term by itself, added up.
+    /// Sum of the terms' roundings.
     sum: f64,
-    /// No term is rounded by more than this part of it …
+    /// Largest rounding of a term relative to it …
     part: f64,
-    /// … but for what formulas lose that are differences of larger numbers.
+    /// … apart from the loss of formulas that subtract larger numbers, added up.
     cancelled: f64,
-    /// What terms below zero come to at most.
+    /// Bound on the sum of negative terms.
     carved: f64,
 }
 
 impl Rounding {
-    /// Adds a term that is no more than a magnitude, of which no more than a part is rounded away.
+    /// Adds a term with a bound on its size, one on its relative rounding, and the loss of its formula.
     fn add(&mut self, magnitude: f64, part: f64, cancelled: f64) {
         self.sum += magnitude.at_most(self.largest()) * part;
         self.part = self.part.at_least(part);
         self.cancelled += cancelled;
     }
 
-    /// All together, where the field is T: what adds is no more than that and what carves, and both are rounded.
+    /// Bound on the total where the field is T: there positive terms are at most T plus the negative ones.
     fn most(&self) -> f64 {
         self.cancelled + self.sum.at_most(self.largest() * self.part)
     }
 
-    /// No term, nor the sizes of all together, are more than this where the field is T.
+    /// Bound on a term, and on the sum of the terms' sizes, where the field is T.
     fn largest(&self) -> f64 {
         LARGE_TERM + 2.0 * self.carved
     }
 }
 
-/// What a new slab takes from the one that it is made for.
+/// Values that a new slab inherits from its parent.
 struct Heritage {
     parent: u32,
     anew: bool,
@@ -304,58 +300,57 @@ struct Heritage {
 
 const NONE: u32 = u32::MAX;
 
-/// Primitives that are at most this part of their share of the shared interpolants' error are left out of them.
-const LEAST: f64 = 0.5;
+/// Fraction of its share of the shared interpolants' error up to which a primitive is dropped.
+const DROPPED_SHARE: f64 = 0.5;
 
-/// Fewer primitives than this do not share an interpolant, whose evaluation costs a ray about as much as theirs.
+/// Fewest primitives for a common interpolant: fewer cost a ray about as much as its evaluation.
 const FEWEST: u32 = 3;
 
-/// Slabs that end further out than this, in units of half the scene's size, as only infinitely wide primitives have
-/// them, are halved rather than rounded much.
+/// Distance, in units of half the scene's size, beyond which slabs are halved rather than lose digits; only infinitely wide
+/// primitives have such slabs.
 const REMOTE: f64 = 16.0;
 
-/// A slab is given to narrower beams when its beam is wider than this times its length.
+/// Ratio of a beam's width to a slab's length from which narrower beams take over …
 const NARROW: f64 = 0.5;
-/// The same of beams wider than a block.
+/// … and for beams wider than a block.
 const WIDE: f64 = 0.4;
-/// Beams that are divided this many times further, into four packets, are blocks.
+/// Levels of division below a block, which is a beam of four packets.
 const BLOCK: u32 = 2;
 
-/// In beams that are divided no more than this many times further, primitives may have one interpolant in place of spans.
+/// Most levels of division below a beam with joined interpolants.
 const JOINED: u32 = 4;
 
-/// What is made finer has so small a part of the error it had.
+/// Factor by which refining a slab divides its error.
 const FINER: f64 = 8.0;
 
-/// Where the field is T no term is much larger than that, unless others carve it away: what is known of rounding
-/// counts terms as no larger than this.
+/// Largest term that bounds on rounding assume: where the field is T, larger ones occur only with negative terms.
 pub const LARGE_TERM: f64 = 4.0 * THRESHOLD;
 
-/// Where rounding tells nothing rays are settled at once in slabs that no more primitives than this count in.
+/// Most primitives in a slab whose crossings are isolated at once where rounding is as large as T.
 const MOST_BLURRED: usize = 32;
 
-/// An interpolant that rounding puts off by no more than this stands for its primitives also where rays are settled.
+/// Largest rounding error of an interpolant that root isolation uses in place of its primitives.
 const SHARP: f64 = 2e-5;
 
-/// Slabs and list entries above which a tree is thrown away between two packets.
+/// Numbers of slabs and of list entries above which a tree is discarded between two packets.
 const LARGE: (usize, usize) = (1 << 16, 1 << 21);
 
-/// Slabs that [`Slabs::is_empty_for`] looks at.
+/// Most slabs that [`Slabs::is_empty_for`] visits.
 const MOST_LOOKS: u32 = 64;
 
-/// Whether a slab reaches far out, and most of it is nearer than its end.
+/// Whether a slab ends far out and starts in the nearer half of its range.
 fn is_remote(from: f64, to: f64) -> bool {
     to > REMOTE && to - from > 0.5 * to
 }
 
 impl Slab {
-    /// Whether what some of its primitives add up to has been asked for.
+    /// Whether an interpolant has been made.
     #[must_use]
     fn is_made(&self, which: Which) -> bool {
         self.blocks[which as usize] != NONE
     }
 
-    /// The primitives that have an interpolant together.
+    /// List of the entries of an interpolant.
     #[must_use]
     pub fn together(&self, which: Which) -> &Range<u32> {
         match which {
@@ -366,7 +361,7 @@ impl Slab {
 }
 
 impl<'a> Slabs<'a> {
-    /// The slabs of beams between two parameters. `list` holds the primitives they can meet; the groups are added.
+    /// Starts the slabs of beams between two parameters. `list` holds the primitives near them; the groups are added.
     #[must_use]
     pub fn new(
         terms: Terms<'a>,
@@ -420,7 +415,7 @@ impl<'a> Slabs<'a> {
         slabs
     }
 
-    /// The space that these took.
+    /// Returns the allocations for reuse.
     #[must_use]
     pub fn into_space(self) -> Space {
         Space {
@@ -440,32 +435,32 @@ impl<'a> Slabs<'a> {
         0
     }
 
-    /// A slab.
+    /// Returns a slab.
     #[must_use]
     pub fn slab(&self, index: u32) -> &Slab {
         &self.nodes[index as usize]
     }
 
-    /// Local numbers in a slab's list.
+    /// Entries of a slab's list.
     #[must_use]
     pub fn locals(&self, range: &Range<u32>) -> &[u32] {
         &self.ids[range.start as usize..range.end as usize]
     }
 
-    /// How many local numbers there are so far.
+    /// Number of local numbers so far.
     #[must_use]
     pub fn len(&self) -> usize {
         self.list.len()
     }
 
-    /// The primitive of a local number.
+    /// Primitive number of a local number.
     #[must_use]
     pub fn primitive(&self, local: u32) -> u32 {
         self.list[local as usize]
     }
 
-    /// Forgets all but the first slab if there are very many. To be called between packets only,
-    /// as what is forgotten is found again, the same.
+    /// Discards all but the first slab if there are very many; they are made again on demand, with the same result. To be called
+    /// between packets only.
     pub fn tidy(&mut self) {
         if self.nodes.len() > LARGE.0 || self.ids.len() > LARGE.1 {
             self.nodes.truncate(1);
@@ -478,14 +473,13 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Whether it is known, after a short look and without following rays, that no ray of a packet meets
-    /// anything.
+    /// Whether bounds prove, in a few steps and without evaluating rays, that no ray of a packet meets the surface.
     pub fn is_empty_for(&mut self, packet: usize) -> bool {
         self.tidy();
         self.is_empty_from(self.root(), packet, 0.0, &mut 0)
     }
 
-    /// `base` is what the slabs above have at most.
+    /// [`Slabs::is_empty_for`] below a slab; `base` bounds the interpolants of the slabs above.
     fn is_empty_from(&mut self, index: u32, packet: usize, base: f64, looks: &mut u32) -> bool {
         let slab = self.slab(index);
         let (above, error) = (slab.pending_above, slab.error);
@@ -517,7 +511,7 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// What a slab's shared or joined primitives add up to, if it has any.
+    /// Returns the interpolant of a slab's shared or joined primitives, made at first use; `None` if it has none.
     pub fn block(&mut self, index: u32, which: Which) -> Option<&Block> {
         let slab = &self.nodes[index as usize];
         if slab.together(which).is_empty() {
@@ -549,13 +543,13 @@ impl<'a> Slabs<'a> {
         self.blocks.get(block as usize)
     }
 
-    /// Evaluations of one primitive's field at one point that were made for all rays of the beam.
+    /// Number of evaluations of one primitive's field at one point for interpolants of the beam.
     #[must_use]
     pub fn evaluations(&self) -> u64 {
         self.evaluations
     }
 
-    /// Calls `f` with the shared blocks of a slab and of those above it, where they have been asked for.
+    /// Calls `f` with the shared interpolants of a slab and of those above it that have been made.
     pub fn each_block(&self, index: u32, mut f: impl FnMut(&Block)) {
         self.up(index, |s, _| {
             if let Some(block) = self.blocks.get(s.blocks[0] as usize) {
@@ -564,7 +558,7 @@ impl<'a> Slabs<'a> {
         });
     }
 
-    /// Calls `f` with a slab and those above it, and whether all that they have counts or what they share alone.
+    /// Calls `f` with a slab and those above it, and whether all of its terms count, or only the shared and dropped ones.
     fn up(&self, index: u32, mut f: impl FnMut(&Slab, bool)) {
         let (mut at, mut whole) = (index, true);
         while at != NONE {
@@ -575,7 +569,7 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// How a slab goes on for a packet.
+    /// Returns a slab's children for a packet, made at first use.
     pub fn parts(&mut self, index: u32, packet: usize) -> Parts {
         let s = &self.nodes[index as usize];
         let (from, to) = (s.from, s.to);
@@ -599,7 +593,7 @@ impl<'a> Slabs<'a> {
         Parts::Halves(left, right)
     }
 
-    /// A slab is given to narrower beams when its beam is wider than this times its length.
+    /// Ratio of a beam's width to a slab's length from which narrower beams take over.
     fn narrow(&self, beam: usize) -> f64 {
         if self.beams.levels_below(beam) > BLOCK {
             WIDE
@@ -624,9 +618,9 @@ impl<'a> Slabs<'a> {
         index
     }
 
-    /// Whether rounding is so large, or will be of something pending, that no span shows that there is nothing here, and
-    /// there are so few primitives that rays had better be settled at once. What reaches far out is halved first: what is
-    /// known of the primitives far away would take the settler's pieces from what is near.
+    /// Whether rounding (also of pending primitives) is as large as T, so that spans prove nothing, and the primitives are so few
+    /// that crossings are isolated at once. Slabs that end far out are halved first, as their far part would use up the pieces for
+    /// the near one.
     #[must_use]
     pub fn is_blurred(&self, index: u32) -> bool {
         let slab = self.slab(index);
@@ -638,26 +632,26 @@ impl<'a> Slabs<'a> {
         count <= MOST_BLURRED
     }
 
-    /// Whether a slab's spans are as fine as they get.
+    /// Whether a slab's spans are at their final accuracy.
     #[must_use]
     pub fn is_final(&self, index: u32) -> bool {
         let slab = self.slab(index);
-        // Rounding is what it is: spans much nearer to the field than that would tell no more.
+        // Spans more accurate than rounding would be no better.
         let last = self.precision.last.at_least(slab.spent.noise);
         slab.spent.spans <= last || slab.budget <= last
     }
 
-    /// Stretches of rays shorter than this need not be looked into.
+    /// Length below which intervals of rays are not subdivided.
     #[must_use]
     pub fn resolution(&self) -> f64 {
         self.precision.resolution
     }
 
-    /// The same slab from anew, with all its primitives but the shared ones, and a smaller error.
+    /// Returns the same slab with a smaller error, made again from all its primitives but the shared ones.
     pub fn finer(&mut self, index: u32) -> u32 {
         if self.nodes[index as usize].finer == 0 {
             let start = self.ids.len() as u32;
-            // What the path to this slab resolved, and what the slab leaves pending.
+            // The slab's pending entries, and the resolved and joined ones of the path to it.
             let s = &self.nodes[index as usize];
             let pending = s.pending.clone();
             let (from, to) = (s.from, s.to);
@@ -678,7 +672,7 @@ impl<'a> Slabs<'a> {
             let mut at = index;
             while at != NONE {
                 let s = &self.nodes[at as usize];
-                // These follow one another.
+                // The joined and resolved ranges are adjacent.
                 let r = s.joined.start as usize..s.resolved.end as usize;
                 at = if s.anew { NONE } else { s.parent };
                 self.ids.extend_from_within(r);
@@ -691,8 +685,7 @@ impl<'a> Slabs<'a> {
         self.nodes[index as usize].finer
     }
 
-    /// Calls `f` with each primitive that counts in a slab; `all`: also with those that blocks stand for, and with the
-    /// small ones.
+    /// Calls `f` with each primitive that counts in a slab; with `all` also with the shared and dropped ones.
     pub fn each(&self, index: u32, all: bool, mut f: impl FnMut(u32)) {
         let mut each = |range: &Range<u32>| {
             for &id in self.locals(range) {
@@ -712,7 +705,7 @@ impl<'a> Slabs<'a> {
         });
     }
 
-    /// How many primitives count in a slab, small ones and those that blocks stand for included.
+    /// Number of primitives that count in a slab, with the shared and dropped ones.
     #[must_use]
     pub fn count(&self, index: u32) -> usize {
         let mut count = 0;
@@ -736,8 +729,8 @@ impl<'a> Slabs<'a> {
         count
     }
 
-    /// Lists the primitives that count in a slab, but for those that are next to nothing and those that interpolants stand for which
-    /// rounding hardly puts off; gives these.
+    /// Lists the primitives that count in a slab, without the dropped ones and those in accurate shared interpolants; returns these
+    /// interpolants.
     pub fn near(&self, index: u32, list: &mut Vec<u32>) -> Afar {
         self.each(index, false, |p| list.push(p));
         let mut blocks = Vec::new();
@@ -757,7 +750,7 @@ impl<'a> Slabs<'a> {
         Afar { blocks, off }
     }
 
-    /// Calls `f` with each primitive that an entry of a list stands for.
+    /// Calls `f` with each primitive of a list entry.
     fn each_of(&self, id: u32, mut f: impl FnMut(u32)) {
         match self.terms.clusters {
             Some(clusters) if id & GROUP != 0 => {
@@ -767,7 +760,7 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// What formulas of an entry of a list may lose, in units of rounding.
+    /// Size of the terms that cancel in the formulas of a list entry ([`Bound::cancels`]).
     fn cancels(&self, id: u32) -> f64 {
         match self.terms.clusters {
             Some(clusters) if id & GROUP != 0 => clusters.cancels(id & !GROUP),
@@ -775,7 +768,7 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// About the largest slope of an entry of a list at a distance, over its size.
+    /// Estimate of a list entry's largest slope over its size, at a distance ([`Bound::relative_slope`]).
     fn relative_slope(&self, id: u32, distance: f64) -> f64 {
         match self.terms.clusters {
             Some(clusters) if id & GROUP != 0 => clusters.relative_slope(id & !GROUP, distance),
@@ -786,7 +779,7 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// The local numbers of a group's members, if it is one of the smallest, or else its parts, onto the stack.
+    /// Pushes a group's two parts onto the stack, or, for one of the smallest groups, its members' local numbers.
     fn open(&mut self, clusters: &Clusters, group: u32) {
         match clusters.members(group) {
             Members::Groups(parts) => self.stack.extend(parts.map(|part| part | GROUP)),
@@ -802,7 +795,7 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// The local numbers of all members of a group.
+    /// Calls `f` with the local numbers of all members of a group.
     fn open_all(&mut self, clusters: &Clusters, group: u32, mut f: impl FnMut(&mut Self, u32)) {
         let bottom = self.stack.len();
         self.open(clusters, group);
@@ -929,7 +922,7 @@ impl<'a> Slabs<'a> {
         let mut count = 0;
         for candidate in &mut self.scratch {
             let share = for_shared(candidate.magnitude);
-            if candidate.magnitude <= LEAST * share {
+            if candidate.magnitude <= DROPPED_SHARE * share {
                 // What is as small as that is as good as interpolated by nothing.
                 candidate.fate = Fate::Dropped;
             } else if candidate.shared <= share {
@@ -1081,10 +1074,10 @@ mod tests {
         Soft::new(scene)
     }
 
-    /// Terms that add up to T are rounded by no more than is said, however much of them is carved away.
+    /// The bound on rounding holds for terms that add up to T, whatever the sum of the negative ones.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn what_adds_and_what_carves_are_both_rounded() {
+    fn rounding_of_positive_and_negative_terms_is_bounded() {
         const PART: f64 = 1e-3;
         for carved in [0.0, 1.0, 99.0, 1e4] {
             for terms in [1, 7, 100] {
@@ -1100,7 +1093,7 @@ mod tests {
                 let rounded = PART * (THRESHOLD + 2.0 * carved);
                 let most = rounding.most();
                 assert!(most >= rounded * (1.0 - 1e-9), "{carved} {terms}: {most}");
-                // Bounds on terms may be far larger, and what formulas lose comes on top.
+                // Bounds on terms may be far larger; losses of formulas are added.
                 rounding.add(1e9, PART, 0.5);
                 let most = rounding.most();
                 assert!((0.5..0.5 + 5.0 * rounded).contains(&most), "{most}");
@@ -1108,11 +1101,10 @@ mod tests {
         }
     }
 
-    /// What is near and the interpolants of the rest are together as near to the field as is said, on all rays of the beam; and
-    /// interpolants, in single precision, are as near to their primitives.
+    /// The listed primitives and the interpolants of the rest add up to the field within `Afar::off`, on all rays of the beam.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn what_is_near_and_interpolants_are_all_of_the_field() {
+    fn near_primitives_and_interpolants_add_up_to_the_field() {
         let (mut seen, mut shared, mut largest) = (0, 0, 0.0f64);
         for soft in [
             cloud(0.02, 1.0, 0.0),
@@ -1173,7 +1165,7 @@ mod tests {
                 }
             }
         }
-        // Nor is it said to be much further off than it is.
+        // The bound is not much larger than the error.
         assert!(
             4 * shared > seen && largest > 0.2,
             "{seen} {shared} {largest}"

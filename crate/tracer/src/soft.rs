@@ -1,17 +1,16 @@
-//! The convolution surfaces of all bodies, made ready: which primitives a beam can meet, and where its rays cross the surface of a
-//! body.
+//! The convolution surfaces of all bodies, prepared: finds the primitives near a beam, and where its rays cross a body's surface.
 use crate::beam::Beam;
 use crate::beams::Beams;
+use crate::blob_set::BlobSet;
 use crate::clusters::Clusters;
 use crate::hierarchy::Hierarchy;
 use crate::kinks::Kinks;
 use crate::nearby::{Nearby, Other};
 use crate::ray::Ray;
+use crate::root_isolation::{Along, RootIsolator, Sight};
 use crate::roots::bracketed;
 use crate::scratch::Scratch;
-use crate::settle::{Along, Settler, Sight};
 use crate::slabs::{Precision, Slabs, Space, Terms};
-use crate::stock::Stock;
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
 use field::{Bound, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
@@ -22,7 +21,7 @@ use wide::f32x8;
 
 /// The convolution surfaces of a scene's bodies.
 ///
-/// The primitives of all bodies stand in one list, body by body, so that the lumps near a beam are found in one search
+/// The primitives of all bodies stand in one list, body by body, so that the blobs near a beam are found in one search
 /// however many bodies there are.
 pub struct Soft {
     pub(crate) primitives: Vec<Primitive>,
@@ -36,16 +35,16 @@ pub struct Soft {
     body_tree: Hierarchy,
     /// See [`Soft::bounds`].
     bounds: OnceLock<Vec<Bound>>,
-    /// Balls within which each counts.
+    /// Ball of each primitive outside which it is left out.
     tree: Hierarchy,
-    /// Balls beyond which each is next to nothing.
+    /// Ball of each primitive outside which it is negligible, in double precision, too.
     all: OnceLock<Hierarchy>,
-    stock: Stock,
-    /// Where each other primitive is at most this, it is left out.
+    blob_set: BlobSet,
+    /// Field at which a primitive that is no blob is left out.
     left_out: f64,
-    /// How exactly pictures follow the surface.
+    /// Accuracy of pictures.
     pub precision: Precision,
-    /// The width of a pixel at distance 1.
+    /// Width of a pixel at distance 1.
     pub pixel: f64,
 }
 
@@ -53,42 +52,41 @@ pub struct Soft {
 pub(crate) struct SoftBody {
     /// Its number in the scene.
     pub number: u32,
-    /// Its primitives.
+    /// Range of its primitives.
     range: Range<u32>,
-    /// Those of them without a bounding ball.
+    /// Primitives without a bounding ball.
     everywhere: Vec<u32>,
-    /// A ball beyond which none of them counts, unless some count everywhere.
+    /// Ball outside which none of them counts; `None` if some count everywhere.
     pub ball: Option<(DVec3, f64)>,
-    /// What slabs need beyond that.
+    /// Data that only slabs need.
     groups: OnceLock<Groups>,
 }
 
-/// What is only made for a body that is not all lumps.
+/// Data that is made at first use, for bodies that are not all blobs.
 struct Groups {
-    /// Balls outside which the field is below T.
+    /// Balls such that the field is below T outside all of them.
     strong: Hierarchy,
     clusters: Clusters,
     kinks: Kinks,
 }
 
-/// What is left out of all primitives but lumps, together, in T.
+/// Largest sum of the fields left out, of all primitives that are no blobs, in T.
 const LEFT_OUT: f64 = 1e-5;
 
-/// What slabs leave out, together, in T: less than settling can tell. What is more is in their lists, so that it counts
-/// where rays are settled.
+/// Largest sum of the fields that slabs leave out of their lists, in T: below the accuracy of root isolation, which uses those
+/// lists.
 pub const NEXT_TO_NOTHING: f64 = 1e-10;
 
-/// Rays from infinitely wide primitives are followed this far (in units of the scene's size).
+/// End of rays along infinitely wide primitives, in units of the scene's size.
 const FAR: f64 = 1e4;
 
-/// Strides along a beam after which it is taken to come near a primitive …
+/// Steps along a beam after which it counts as near a primitive …
 const MOST_STRIDES: usize = 32;
-/// … as it is where it comes so near, in units of how far that counts.
+/// … and the distance that counts as near, beyond the primitive's reach and relative to it.
 const CLOSE: f64 = 0.05;
 
 impl Soft {
-    /// Collects a scene's soft elements. What is left of the scene is dropped before their bounds are made, so that
-    /// there is room for many.
+    /// Collects a scene's soft elements. The scene is dropped before their bounds are made, which saves memory.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
         let surfaces = scene.soft_surfaces();
@@ -121,7 +119,7 @@ impl Soft {
             });
         }
         let ranges: Vec<Range<u32>> = bodies.iter().map(|body| body.range.clone()).collect();
-        let stock = Stock::new(&primitives, &finish, &ranges);
+        let blob_set = BlobSet::new(&primitives, &finish, &ranges);
         let left_out = LEFT_OUT * THRESHOLD / primitives.len().max(1) as f64;
         let mut balls = Vec::with_capacity(primitives.len());
         let mut body_balls = Vec::new();
@@ -129,7 +127,7 @@ impl Soft {
             let first = balls.len();
             for i in body.range.clone() {
                 let p = &primitives[i as usize];
-                let ball = stock.ball(i as usize).or_else(|| {
+                let ball = blob_set.ball(i as usize).or_else(|| {
                     let (center, around) = p.bounding_sphere()?;
                     let skeleton = around - p.influence;
                     Some((center, skeleton + Bound::new(p).distance_of(left_out)))
@@ -154,14 +152,14 @@ impl Soft {
             bounds: OnceLock::new(),
             tree: Hierarchy::new(balls),
             all: OnceLock::new(),
-            stock,
+            blob_set,
             left_out,
             precision: Precision::PICTURE,
             pixel: 1.0,
         }
     }
 
-    /// The body, by its number among those with a surface, that a primitive belongs to.
+    /// Body of a primitive, numbered among those with a surface.
     pub fn body_of(&self, primitive: u32) -> u32 {
         let after = self
             .bodies
@@ -169,8 +167,8 @@ impl Soft {
         after as u32 - 1
     }
 
-    /// Lists the bodies that a ray of a beam may meet before a parameter, each with the least parameter at which it may, in the
-    /// order of these.
+    /// Lists the bodies that a ray of a beam may meet before a parameter, each with the least parameter at which it may, in this
+    /// order.
     pub fn bodies_along(&self, beam: &Beam, limit: f64, list: &mut Vec<(f64, u32)>) {
         list.clear();
         for (number, body) in (0..).zip(&self.bodies) {
@@ -192,7 +190,7 @@ impl Soft {
         !self.bodies[body as usize].everywhere.is_empty()
     }
 
-    /// The primitives' bounds. The quick way does without, so they are made when first asked for.
+    /// The primitives' bounds, made at first use: the fast path does not need them.
     pub(crate) fn bounds(&self) -> &[Bound] {
         self.bounds
             .get_or_init(|| self.primitives.iter().map(Bound::new).collect())
@@ -204,8 +202,7 @@ impl Soft {
         self.primitives.is_empty()
     }
 
-    /// Calls `f` with each primitive of a body that counts where a ray may come, the
-    /// primitive's bounds and its number, in no order.
+    /// Calls `f` with each primitive of a body whose reach a ray may meet, its bounds and its number, in no order.
     pub fn along<'a>(
         &'a self,
         body: u32,
@@ -225,10 +222,10 @@ impl Soft {
         });
     }
 
-    /// The slabs of a body along a beam, up to a parameter; with them the parameter at which the first starts
-    /// to count. `None` if no primitive reaches the beam, or all together never reach T.
+    /// Returns the slabs of a body along a beam up to a parameter, and the parameter at which they start. `None` if no primitive
+    /// reaches the beam, or their sum stays below T.
     ///
-    /// `beams` divides the beam, given the parameter at which to start; `spaces` is what there is of used space.
+    /// `beams` divides the beam, given the parameter at which to start; `spaces` holds allocations to reuse.
     pub fn slabs<'a>(
         &'a self,
         body: u32,
@@ -256,8 +253,7 @@ impl Soft {
         if from.is_nan() || to.is_nan() || from >= to {
             return None;
         }
-        // Parameters are counted from where the first primitive starts to count, so that single
-        // precision does not lose digits to a distant eye.
+        // Parameters start at the first primitive's reach, so that single precision does not lose digits to a distant eye.
         let range = [0.0, to - from];
         let mut clusters = Some(&groups.clusters);
         if self.precision.shared == 0.0 {
@@ -329,24 +325,24 @@ impl Soft {
         }
     }
 
-    /// Lists the lumps near a beam, up to a parameter, and the few other primitives there. False if those are more than a few,
-    /// or the only body counts everywhere.
-    pub fn list_lumps(&self, beam: &Beam, limit: f64, list: &mut Nearby) -> bool {
+    /// Lists the blobs near a beam, up to a parameter, and the other primitives there. Returns false if those are more than 16, or
+    /// the only body counts everywhere.
+    pub fn list_blobs(&self, beam: &Beam, limit: f64, list: &mut Nearby) -> bool {
         let finite = beam.axis.origin.is_finite() && beam.axis.direction.is_finite();
         let everywhere = self.bodies.len() == 1 && self.is_everywhere(0);
         if everywhere || !finite {
             return false;
         }
-        // The tree's balls reach as far beyond those of the skeletons.
+        // The tree's balls are the skeletons' bounding balls enlarged by the reach.
         let reach = |i: u32, radius: f64| {
             let p = &self.primitives[i as usize];
             let around = p.bounding_sphere().map_or(0.0, |(_, around)| around);
             radius - (around - p.influence)
         };
-        self.stock.list(&self.tree, beam, limit, reach, list)
+        self.blob_set.list(&self.tree, beam, limit, reach, list)
     }
 
-    /// Whether a ray of a beam may come so near to one of some primitives, up to a parameter, that it counts.
+    /// Whether a ray of a beam may come within the reach of one of some primitives, up to a parameter.
     pub fn meets_any<'o>(
         &self,
         others: impl IntoIterator<Item = &'o Other>,
@@ -358,7 +354,7 @@ impl Soft {
             .any(|other| self.meets(other, beam, limit))
     }
 
-    /// The same of one primitive.
+    /// [`Soft::meets_any`] for one primitive.
     fn meets(&self, other: &Other, beam: &Beam, limit: f64) -> bool {
         let [mut t, far] = beam.reach(other.center, other.radius);
         let far = far.at_most(limit);
@@ -367,18 +363,18 @@ impl Soft {
             if t > far {
                 return false;
             }
-            // No ray that is at t is further from the axis than its width there.
+            // All rays are within the beam's width of the axis.
             let away = bound.nearness(beam.axis.at(t), beam.width(t)).distance - other.reach;
             if away <= CLOSE * other.reach {
                 break;
             }
-            // As it goes on a ray comes nearer by no more than it goes.
+            // Along a ray the distance shrinks by at most the ray's length.
             t += away / (1.0 + beam.spread);
         }
         true
     }
 
-    /// Adds the bodies of some primitives that a ray of a beam may come near enough to, up to a parameter.
+    /// Adds the bodies of those of some primitives whose reach a ray of a beam may meet, up to a parameter.
     pub fn bodies_met(&self, others: &[Other], beam: &Beam, limit: f64, bodies: &mut Vec<u32>) {
         for other in others {
             let body = self.body_of(other.primitive);
@@ -388,7 +384,7 @@ impl Soft {
         }
     }
 
-    /// Walks a bundle through the slabs of a body along its beam.
+    /// Returns the crossings of a bundle with a body's surface, by traversing the slabs of its beam.
     pub fn walk(
         &self,
         body: u32,
@@ -405,16 +401,16 @@ impl Soft {
         found
     }
 
-    /// Where a ray first enters the surface of a body on a short stretch, in double precision, with the number of evaluations; its
-    /// start, if it is inside there. What is no lump, or sum of lumps, is taken to count as far as it is followed.
+    /// Returns where a ray first enters a body's surface on a short interval, in double precision, and the number of evaluations. The
+    /// interval's start, if it is inside; `None` if there is no entry. Primitives without blobs count within their reach.
     pub fn entry(&self, body: u32, ray: Ray, [from, to]: [f64; 2]) -> (Option<f64>, u64) {
         let (center, radius) = (ray.at(0.5 * (from + to)), 0.5 * (to - from));
         let body = &self.bodies[body as usize];
         let least = NEXT_TO_NOTHING * THRESHOLD / self.primitives.len() as f64;
         let mut near = Vec::new();
-        let all = self.all.get_or_init(|| self.stock.reaches(&self.tree));
+        let all = self.all.get_or_init(|| self.blob_set.reaches(&self.tree));
         all.around(center, radius, |i, _, _| {
-            if body.range.contains(&i) && self.stock.counts(i as usize, center, radius, least) {
+            if body.range.contains(&i) && self.blob_set.counts(i as usize, center, radius, least) {
                 near.push(i);
             }
         });
@@ -432,18 +428,18 @@ impl Soft {
             ray,
             resolution: self.precision.resolution,
         };
-        let mut settler = Settler::default();
-        settler.list.extend(0..primitives.len() as u32);
+        let mut isolator = RootIsolator::default();
+        isolator.list.extend(0..primitives.len() as u32);
         let mut found = None;
-        settler.crossings(&along, [from, to], |t, inside| {
+        isolator.crossings(&along, [from, to], |t, inside| {
             found = inside.then_some(t);
             !inside
         });
-        (found, settler.evaluations)
+        (found, isolator.evaluations)
     }
 
-    /// All crossings of a ray with the surface of a body, exactly: where the whole field, with nothing cut off, equals T.
-    /// Pairs (t, gradient), in order of t > 0.
+    /// Returns all crossings of a ray with a body's surface in double precision, with no term left out: pairs (t, gradient), in
+    /// order of t > 0.
     #[must_use]
     pub fn crossings(&self, body: u32, ray: &Ray) -> Vec<(f64, DVec3)> {
         let body = &self.bodies[body as usize];
@@ -495,8 +491,8 @@ impl Soft {
             &mut Memories::default(),
         )
         .run();
-        // Between neighbouring crossings the exact field has its sign; where it changes from one
-        // such place to the next, there is the exact crossing.
+        // The field's sign between neighbouring approximate crossings; where it changes from one such place to the next, a crossing is
+        // refined.
         let excess = |t: f64| {
             let jet = field::sum(&self.primitives[own.clone()], based.at(t).to_array());
             (jet.value - THRESHOLD, DVec3::from_array(jet.gradient))
@@ -528,12 +524,12 @@ impl Soft {
     }
 }
 
-/// Primitives with their numbers.
+/// Iterates over primitives with their numbers.
 fn numbered(primitives: &[Primitive]) -> impl ExactSizeIterator<Item = (u32, &Primitive)> {
     primitives.iter().enumerate().map(|(i, p)| (i as u32, p))
 }
 
-/// A ball around some balls, given with numbers.
+/// Returns a ball that holds some balls.
 fn around(balls: &[(u32, DVec3, f64)]) -> (DVec3, f64) {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for (_, center, radius) in balls {

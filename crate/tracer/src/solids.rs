@@ -8,10 +8,10 @@ use scene::Scene;
 /// The hard elements, in a hierarchy.
 pub struct Solids {
     solids: Vec<Solid>,
-    /// Of each solid: its finish, and the scene's element that it came from.
+    /// For each solid its finish, and the scene's element that it came from.
     of: Vec<[u32; 2]>,
     tree: Hierarchy,
-    /// Those without a bounding ball.
+    /// Solids without a bounding ball.
     everywhere: Vec<u32>,
 }
 
@@ -49,7 +49,7 @@ impl Solids {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no solids.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.solids.is_empty()
@@ -67,7 +67,7 @@ impl Solids {
         self.of[number as usize][1]
     }
 
-    /// The nearest crossing with 0 < t < limit, and its solid; of faces that the ray sees from the front only, if so asked.
+    /// Returns the nearest crossing with 0 < t < limit, and its solid; of front faces only, if asked for; `None` without one.
     pub fn first(
         &self,
         ray: &Ray,

@@ -80,7 +80,7 @@ impl<L: Lanes> Span<L> {
         [Self([a, ab, abc, m]), Self([m, bcd, cd, d])]
     }
 
-    /// No value of the cubic is above this.
+    /// Upper bound on the cubic.
     #[inline]
     #[must_use]
     pub fn max(self) -> L {
@@ -88,7 +88,7 @@ impl<L: Lanes> Span<L> {
         a.max(b).max(c.max(d))
     }
 
-    /// No value of the cubic is below this.
+    /// Lower bound on the cubic.
     #[inline]
     #[must_use]
     pub fn min(self) -> L {
@@ -103,11 +103,11 @@ impl<L: Lanes> Span<L> {
     }
 }
 
-/// Roots are no further off than about this part of the interval.
+/// Accuracy of roots, relative to the interval.
 const EXACT: f64 = 1e-13;
 
 impl Span<f64> {
-    /// Where in 0..=1 (the interval's ends) the cubic crosses a level, ascending.
+    /// Returns the x in 0..=1 (the interval's ends) where the cubic crosses a level, ascending; none if a coefficient is NaN.
     #[must_use]
     pub fn crossings(self, level: f64) -> Roots {
         let [a, b, c, d] = self.0;
@@ -115,12 +115,12 @@ impl Span<f64> {
         let changes = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
         let known = |x: &f64| x.is_finite() && *x != level;
         if changes == 1 && self.0.iter().all(known) {
-            // As many roots as sign changes, if that is one (variation diminishing).
+            // One sign change of the coefficients: one root (variation diminishing).
             let over = |x| {
                 let (value, slope) = self.value_and_slope(x);
                 (value - level, slope)
             };
-            // Where the straight line between the ends crosses is near.
+            // The secant's root is near.
             let start = (level - a) / (d - a);
             return Roots::one(bracketed_from(over, [0.0, 1.0], start, EXACT));
         }
@@ -208,7 +208,7 @@ mod tests {
             counts[found.len()] += 1;
         }
         assert!(counts.iter().take(3).all(|count| *count > 50), "{counts:?}");
-        // What is no number crosses nothing.
+        // Cubics with coefficients that are not finite have no crossings.
         for bad in [f64::NAN, f64::INFINITY] {
             let _ = Span([bad, 0.4, 0.5, 0.6]).crossings(0.5);
             let found = Span([bad, bad, 0.5, 0.4]).crossings(1.0);

@@ -1,4 +1,4 @@
-//! The part of the convolution surfaces near a square of pixels, which its packets share.
+//! Convolution surfaces near a square of pixels: data that its packets share.
 use crate::area::Area;
 use crate::beam::Beam;
 use crate::beams::Beams;
@@ -16,7 +16,7 @@ use crate::world::World;
 /// Parts of a square in each direction.
 const PARTS: u32 = 4;
 
-/// Longer lists have none for parts, which would need much space where lumps are large.
+/// Length of a list from which the parts get no lists of their own, which would need much space where blobs are large.
 const MANY: usize = 1 << 15;
 
 /// The convolution surfaces near a square of pixels, divided into columns and rows of packets.
@@ -25,23 +25,23 @@ pub(crate) struct Square<'a> {
     view: &'a View,
     area: Area,
     packets: [u32; 2],
-    /// Lumps near the square; `None` if all bodies take the general way.
-    lumps: Option<Lumps>,
-    /// Bodies that take the general way in every packet, each with the parameter before which no ray meets it.
+    /// Blobs near the square; `None` if all bodies take the general way.
+    blobs: Option<Blobs>,
+    /// Bodies that take the general way in every packet, each with the least parameter at which a ray may meet it.
     general: Vec<(f64, u32)>,
-    /// Slabs, each with its body and the parameter at which they start, made when first asked for.
+    /// Slabs of each body, with the parameter at which they start; made at the first use.
     slabs: Vec<(u32, Option<(Slabs<'a>, f64)>)>,
 }
 
-/// The lumps in a square, and in each of its parts.
-struct Lumps {
+/// The blobs in a square, and in each of its parts.
+struct Blobs {
     all: Nearby,
     lens: Option<Lens>,
     parts: Vec<Option<Nearby>>,
 }
 
 impl<'a> Square<'a> {
-    /// The surroundings of an area. `packets` are powers of two.
+    /// Prepares an area. `packets` are powers of two.
     pub fn new(world: &'a World, view: &'a View, area: Area, packets: [u32; 2]) -> Self {
         let soft = &world.soft;
         let mut square = Self {
@@ -49,7 +49,7 @@ impl<'a> Square<'a> {
             view,
             area,
             packets,
-            lumps: None,
+            blobs: None,
             general: Vec::new(),
             slabs: Vec::new(),
         };
@@ -58,8 +58,8 @@ impl<'a> Square<'a> {
         }
         let mut all = Nearby::default();
         let beam = view.beam(area);
-        if soft.list_lumps(&beam, f64::INFINITY, &mut all) {
-            square.lumps = Some(Lumps {
+        if soft.list_blobs(&beam, f64::INFINITY, &mut all) {
+            square.blobs = Some(Blobs {
                 lens: Lens::new(view, area, &beam),
                 all,
                 parts: vec![None; (PARTS * PARTS) as usize],
@@ -75,8 +75,8 @@ impl<'a> Square<'a> {
         square
     }
 
-    /// Lists the bodies that take the general way in a packet, given by its column and row: those near it that are not all lumps,
-    /// each with the parameter before which no ray meets it.
+    /// Lists the bodies that take the general way in a packet, given by its column and row: those with primitives near it that are
+    /// no blobs, each with the least parameter at which a ray may meet it.
     pub fn general(&mut self, place: [u32; 2], bodies: &mut Vec<(f64, u32)>) {
         bodies.clear();
         let several = self.soft.bodies.len() > 1;
@@ -92,31 +92,32 @@ impl<'a> Square<'a> {
             bodies.extend(&self.general);
         }
         if self
-            .lumps
+            .blobs
             .as_ref()
-            .is_none_or(|lumps| lumps.all.others.is_empty())
+            .is_none_or(|blobs| blobs.all.others.is_empty())
         {
             return;
         }
-        let Some((near, _)) = self.lumps(place) else {
+        let Some((near, _)) = self.blobs(place) else {
             return;
         };
         if near.others.is_empty() {
             return;
         }
         let others = near.others.clone();
-        // Others may be nearer than the first lump, from which lists are counted.
+        // Others may be nearer than the first blob, where the list's parameters start.
         let mut met = Vec::new();
         self.soft
             .bodies_met(&others, &beam(self), f64::INFINITY, &mut met);
         bodies.extend(met.into_iter().map(|body| (0.0, body)));
     }
 
-    /// The lumps in the part that holds the packet in a column and row, and the lens that makes rays for them, if rays can be made so.
-    pub fn lumps(&mut self, [column, row]: [u32; 2]) -> Option<(&Nearby, Option<&Lens>)> {
+    /// Returns the blobs near the part that holds a packet, given by its column and row, and the lens for single precision rays
+    /// (`None` if the square is too wide); `None` if there are none, or all bodies take the general way.
+    pub fn blobs(&mut self, [column, row]: [u32; 2]) -> Option<(&Nearby, Option<&Lens>)> {
         let [columns, rows] = self.packets;
         let (view, area) = (self.view, self.area);
-        let Lumps { all, lens, parts } = self.lumps.as_mut()?;
+        let Blobs { all, lens, parts } = self.blobs.as_mut()?;
         if all.len() == 0 && all.others.is_empty() {
             return None;
         }
@@ -135,8 +136,8 @@ impl<'a> Square<'a> {
         Some((part, lens.as_ref()))
     }
 
-    /// The slabs of a body, the parameter at which they start, and the number of the packet in a column and row among the divisions
-    /// of their beam; `None` if no ray of the packet can meet the body.
+    /// Returns the slabs of a body, the parameter at which they start, and the packet's number among the divisions of their beam;
+    /// `None` if no ray of the packet, given by its column and row, can meet the body.
     pub fn slabs(
         &mut self,
         body: u32,
@@ -169,7 +170,7 @@ impl<'a> Square<'a> {
         self.soft.slabs(body, beam, beams, f64::INFINITY, spaces)
     }
 
-    /// Leaves the space that the square took to others, and counts what was done for all of its packets.
+    /// Returns the square's working space to `scratch`, and adds its evaluations to `stats`.
     pub fn leave(self, scratch: &mut Scratch, stats: &mut Stats) {
         for (slabs, _) in self.slabs.into_iter().filter_map(|(_, slabs)| slabs) {
             stats.field_evaluations += slabs.evaluations();

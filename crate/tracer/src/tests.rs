@@ -87,8 +87,8 @@ fn pictures_with_profiles_show_the_exact_surface() {
     assert!(worst[0] < 0.03 && worst[1] < 0.02, "{worst:?}");
 }
 
-/// Where rounding leaves rays among very many primitives in doubt they are settled with the interpolants of what is far: that
-/// shows the same, and takes far fewer evaluations than with all primitives for each of them.
+/// Where rounding leaves rays among very many primitives in doubt, root isolation uses the interpolants of the far ones: the picture
+/// is the same, with far fewer evaluations than with all primitives for each ray.
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 fn doubts_in_a_cloud_are_settled_with_what_is_near() {
@@ -115,7 +115,7 @@ fn doubts_in_a_cloud_are_settled_with_what_is_near() {
     let (shown, plain) = trace_counting(&picture);
     // Some see balls.
     assert!((100..4000).contains(&plain.shadow_rays), "{plain:?}");
-    // Rays are doubted sooner than they need be.
+    // A larger bound on rounding leaves more rays in doubt.
     picture.sampler.world.soft.precision.rounding *= 4.0;
     let (settled, doubted) = trace_counting(&picture);
     let off = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 1;

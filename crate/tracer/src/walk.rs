@@ -1,19 +1,17 @@
-//! The digger: finds where rays cross the soft surface.
+//! Traversal of a beam's slabs by a packet: finds where its rays cross the soft surface.
 //!
-//! A few rays walk through the slabs of their beam side by side, front to back. Each slab adds its
-//! resolved primitives' spans to the cubics handed down from the longer slabs around it. Where the
-//! cubics and the bounds on what is still pending prove that every ray stays outside (or inside)
-//! the surface, the slab is left at once; where nothing is pending any more, the cubics' roots are
-//! the crossings. Walking stops when every ray has what it wants, so nothing behind the first
-//! hit is ever interpolated.
+//! The rays visit the slabs of their beam together, front to back. Each slab adds its resolved primitives' spans to the cubics
+//! of the longer slabs that contain it. Where the cubics and the bounds on pending primitives prove that every ray stays outside
+//! (or inside) the surface, the slab is left at once; where nothing is pending, the cubics' roots are the crossings. The traversal
+//! ends when every ray has its crossing, so that nothing behind the first hit is interpolated.
 use crate::lanes::Lanes;
 use crate::ray::Ray;
-use crate::settle::{Along, Given, STEEP, Settler, Sight};
+use crate::root_isolation::{Along, KnownPart, RootIsolator, STEEP, Sight};
 use crate::slabs::{Parts, Slabs, Which};
 use crate::spans::{Node, Span};
 use field::{Primitive, THRESHOLD};
 
-/// What the rays look for.
+/// Kind of crossing that rays look for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quest {
     /// The first crossing, into the surface or, from inside, out of it.
@@ -30,9 +28,9 @@ pub struct Bundle<'r> {
     /// The rays, at least one and at most as many as there are lanes; t is counted from where the
     /// slabs start. Lanes beyond the last ray repeat it.
     pub rays: &'r [Ray],
-    /// How far each ray goes.
+    /// End of each ray.
     pub limits: &'r [f64],
-    /// The lanes that are followed, a bit each.
+    /// The lanes to follow, a bit each.
     pub alive: u32,
     /// The bundle's number among the beam's divisions.
     pub number: usize,
@@ -43,15 +41,15 @@ pub struct Bundle<'r> {
 pub struct Found {
     /// Ray parameter.
     pub t: f64,
-    /// The slab it lies in.
+    /// Slab that contains it.
     pub slab: u32,
     /// The ray's lane.
     pub lane: usize,
-    /// Whether t is exact already.
+    /// Whether t is exact in double precision.
     pub settled: bool,
 }
 
-/// Some rays on their way through the slabs of their beam.
+/// Traversal state of a bundle.
 pub struct Walk<'w, 's, L> {
     sight: Sight<'w>,
     slabs: &'w mut Slabs<'s>,
@@ -60,15 +58,15 @@ pub struct Walk<'w, 's, L> {
     rays: &'w [Ray],
     origin: [L; 3],
     direction: [L; 3],
-    /// Where each ray ends.
+    /// End of each ray.
     limit: L,
-    /// Rays that have not found what they want, a bit each.
+    /// Rays without their crossing, a bit each.
     alive: u32,
-    /// Rays known to be outside and inside at the place reached.
+    /// Rays known to be outside and inside at the parameter reached.
     outside: u32,
     inside: u32,
     memory: &'w mut Memories<L>,
-    settler: Settler,
+    isolator: RootIsolator,
     found: Vec<Found>,
     /// Work done, see [`MOST_WORK`].
     work: usize,
@@ -76,16 +74,16 @@ pub struct Walk<'w, 's, L> {
     pub evaluations: u64,
 }
 
-/// The last node at which a primitive was evaluated: slabs that touch share it.
+/// The last node at which a primitive was evaluated, which adjacent slabs share.
 #[derive(Clone, Copy, Debug)]
 struct Memory<L> {
-    /// The walk that it belongs to.
+    /// The traversal that it belongs to.
     walk: u32,
     t: f64,
     node: Node<L>,
 }
 
-/// The last nodes of all primitives, and space for them that is kept between walks.
+/// The last nodes of all primitives; the allocation is kept between traversals.
 #[derive(Debug)]
 pub struct Memories<L> {
     walk: u32,
@@ -102,7 +100,7 @@ impl<L> Default for Memories<L> {
 }
 
 impl<L: Lanes> Memories<L> {
-    /// Forgets all.
+    /// Starts a traversal: earlier nodes become invalid.
     fn begin(&mut self) {
         if self.walk == u32::MAX {
             *self = Self::default();
@@ -110,7 +108,7 @@ impl<L: Lanes> Memories<L> {
         self.walk += 1;
     }
 
-    /// Makes space for so many primitives.
+    /// Makes room for `count` primitives.
     fn hold(&mut self, count: usize) {
         let blank = Memory {
             walk: 0,
@@ -123,29 +121,29 @@ impl<L: Lanes> Memories<L> {
     }
 }
 
-/// Slabs deeper than this are not halved further: 2⁻⁴⁰ of the beam's length.
+/// Largest depth of slabs that are halved: lengths of 2⁻⁴⁰ of the beam's.
 const DEEPEST: u32 = 40;
 
-/// Where no more primitives than this count rays are settled with all of them at once …
-const FEW: usize = 64;
-/// … as they are where what is near is more than one over this of all.
+/// Most primitives in a slab with which crossings are isolated directly, without shared interpolants …
+const FEW_PRIMITIVES: usize = 64;
+/// … as they are where the near primitives are more than one over this of all.
 const WORTH: usize = 4;
 
-/// How many times a slab's cubics are halved to tell their crossings apart.
+/// Number of halvings of a slab's cubics to isolate their crossings.
 const CUTS: u32 = 4;
 
-/// When walking one packet has looked at this many list entries, or at [`MOST_VISITS`] times as many as the scene has
-/// primitives, the slabs left are not halved further but settled ray by ray, within limits of that, so that no scene can
-/// take unlimited time or memory. A packet of the published scenes looks at a few hundred. The limit must not depend on
-/// what other packets of the beam have looked at, which differs with the tiles.
+/// Most list entries that one packet's traversal looks at, or [`MOST_VISITS`] times the scene's primitives. After that, slabs are
+/// not halved further; crossings in them are isolated ray by ray, within limits, so that no scene takes unlimited time or memory.
+/// A packet of the published scenes looks at a few hundred. The limit must not depend on the work of other packets of the beam,
+/// which differs with the tiles.
 const MOST_WORK: usize = 1 << 17;
-/// See [`MOST_WORK`].
+/// Visits of each primitive, see [`MOST_WORK`].
 const MOST_VISITS: usize = 64;
-/// See [`MOST_WORK`]: where there are very many primitives.
+/// Upper limit on the entries of [`MOST_WORK`] with very many primitives.
 const MOST_WORK_OF_MANY: usize = 1 << 22;
 
 impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
-    /// Rays at the start of the slabs. `memory` is scratch space.
+    /// Starts a traversal. `memory` is working space.
     #[must_use]
     pub fn new(
         sight: Sight<'w>,
@@ -170,14 +168,14 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             outside: 0,
             inside: 0,
             memory,
-            settler: Settler::default(),
+            isolator: RootIsolator::default(),
             found: Vec::new(),
             work: 0,
             evaluations: 0,
         }
     }
 
-    /// Walks all the way. The crossings come in order of t for each lane.
+    /// Runs the traversal. Returns the crossings, in order of t for each lane, and the number of evaluations.
     #[must_use]
     pub fn run(mut self) -> (Vec<Found>, u64) {
         let root = self.slabs.root();
@@ -185,7 +183,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         (self.found, self.evaluations)
     }
 
-    /// Follows the rays through a slab, given what the longer slabs around it share and have resolved.
+    /// Visits a slab, given the sums of the shared and of the resolved primitives of the longer slabs that contain it.
     fn visit(&mut self, index: u32, mut shared: Span<L>, mut base: Span<L>) {
         let slab = self.slabs.slab(index);
         let (error, depth, from) = (slab.error, slab.depth, slab.from);
@@ -195,7 +193,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let (shares, joins) = (!slab.shared.is_empty(), !slab.joined.is_empty());
         let (done, kinked) = (slab.pending.is_empty(), slab.kinked);
         self.work += 1 + slab.joined.len() + slab.resolved.len() + slab.pending.len();
-        // Rays that end before this slab have found nothing.
+        // Rays that end before this slab have no crossing.
         self.alive &= L::splat(from).less(self.limit);
         let mut span = shared.plus(base);
         if self.alive == 0 || self.rejected(index, span, above, below, error) {
@@ -219,7 +217,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let all = self.sight.primitives.len();
         let most = (MOST_VISITS * all).clamp(MOST_WORK, MOST_WORK_OF_MANY);
         if kinked || self.work > most || depth >= DEEPEST || self.slabs.is_blurred(index) {
-            self.settle(index, self.alive);
+            self.isolate(index, self.alive);
             return;
         }
         if done {
@@ -229,7 +227,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 self.visit(finer, shared, Span::zero());
             } else {
                 self.cross(index, span, !doubtful);
-                self.settle(index, doubtful);
+                self.isolate(index, doubtful);
             }
             return;
         }
@@ -246,7 +244,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// The span of primitives that have an interpolant together.
+    /// Span of the primitives with a common interpolant.
     fn together(&mut self, index: u32, which: Which) -> Span<L> {
         let s = self.slabs.slab(index);
         let (from, to) = (s.from, s.to);
@@ -269,7 +267,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         Span::hermite(node(near), node(far), to - from)
     }
 
-    /// Whether all rays are proved to stay on one side all through a slab; notes the side.
+    /// Whether all rays are proved to stay on one side in the whole slab; records the side.
     fn rejected(&mut self, index: u32, span: Span<L>, above: f64, below: f64, error: f64) -> bool {
         let outside = span.max().less(L::splat(THRESHOLD - above - error));
         let inside = L::splat(THRESHOLD + below + error).less(span.min());
@@ -282,7 +280,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         true
     }
 
-    /// Notes on which side the rays are, at t; a ray that was on the other side crosses there.
+    /// Records on which side the rays are at t; a ray that was on the other side crosses there.
     fn arrive(&mut self, index: u32, t: f64, outside: u32, inside: u32, settled: bool) {
         let outside = outside & self.alive;
         let inside = inside & self.alive & !outside;
@@ -317,13 +315,12 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// The rays whose cubics do not tell for certain how often they cross in this slab: on each piece
-    /// of it never, or exactly once.
+    /// Rays whose cubics do not prove the number of crossings in this slab: on each piece of it none, or exactly one.
     fn doubtful(&self, span: Span<L>, error: f64) -> u32 {
         Self::open(self.alive, span, error, STEEP * error, CUTS)
     }
 
-    /// Those of some rays that are in doubt on a piece, on which differences of coefficients are off by `steep`.
+    /// Those of some rays that are in doubt on a piece, on which differences of coefficients have the error `steep`.
     fn open(lanes: u32, span: Span<L>, error: f64, steep: f64, cuts: u32) -> u32 {
         let [a, b, c, d] = span.0;
         let level = L::splat(THRESHOLD);
@@ -341,19 +338,19 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         before | Self::open(open & !before, right, error, 0.5 * steep, cuts - 1)
     }
 
-    /// The crossings of some rays in a slab, by single rays in double precision.
-    fn settle(&mut self, index: u32, lanes: u32) {
+    /// Isolates the crossings of some rays in a slab one ray at a time in double precision.
+    fn isolate(&mut self, index: u32, lanes: u32) {
         let mut lanes = lanes & self.alive;
         if lanes == 0 {
             return;
         }
         let s = self.slabs.slab(index);
         let (from, to) = (s.from, s.to);
-        lanes &= !self.settle_near(index, lanes);
+        lanes &= !self.isolate_near(index, lanes);
         if lanes == 0 {
             return;
         }
-        let (slabs, list) = (&*self.slabs, &mut self.settler.list);
+        let (slabs, list) = (&*self.slabs, &mut self.isolator.list);
         list.clear();
         slabs.each(index, true, |p| list.push(p));
         while lanes != 0 {
@@ -365,34 +362,35 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 ray: self.rays[lane.min(self.rays.len() - 1)],
                 resolution: self.slabs.resolution(),
             };
-            let mut settler = core::mem::take(&mut self.settler);
-            settler.crossings(&along, [from, to], |t, inside| {
+            let mut isolator = core::mem::take(&mut self.isolator);
+            isolator.crossings(&along, [from, to], |t, inside| {
                 let side = |yes: bool| if yes { bit } else { 0 };
                 self.arrive(index, t, side(!inside), side(inside), true);
                 self.alive & bit != 0
             });
-            // What is settled is work, too: many short slabs would take far longer than a few long ones.
-            self.work += settler.evaluations as usize;
-            self.evaluations += core::mem::take(&mut settler.evaluations);
-            self.settler = settler;
+            // Isolation counts as work, too: it takes far longer in many short slabs than in a few long ones.
+            self.work += isolator.evaluations as usize;
+            self.evaluations += core::mem::take(&mut isolator.evaluations);
+            self.isolator = isolator;
         }
     }
 
-    /// The same with the interpolants of what is far, where that tells enough and saves most of the work; gives the rays that are settled.
-    fn settle_near(&mut self, index: u32, lanes: u32) -> u32 {
+    /// Isolates crossings with shared interpolants in place of far primitives, where that saves most of the work. Returns the rays
+    /// for which they decide.
+    fn isolate_near(&mut self, index: u32, lanes: u32) -> u32 {
         let all = self.slabs.count(index);
-        if all <= FEW {
+        if all <= FEW_PRIMITIVES {
             return 0;
         }
-        // Listing is work, too.
+        // Listing counts as work, too.
         self.work += all / 16;
-        self.settler.list.clear();
-        let afar = self.slabs.near(index, &mut self.settler.list);
-        if self.settler.list.len() * WORTH > all {
+        self.isolator.list.clear();
+        let afar = self.slabs.near(index, &mut self.isolator.list);
+        if self.isolator.list.len() * WORTH > all {
             return 0;
         }
         let s = self.slabs.slab(index);
-        let stretch = [s.from, s.to];
+        let interval = [s.from, s.to];
         let mut settled = 0;
         for lane in (0..L::LANES).filter(|lane| lanes >> lane & 1 != 0) {
             let along = Along {
@@ -400,12 +398,12 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 ray: self.rays[lane.min(self.rays.len() - 1)],
                 resolution: self.slabs.resolution(),
             };
-            let given = Given {
+            let known = KnownPart {
                 node: &|t| afar.node(&along.ray, t),
                 off: afar.off,
             };
-            let told = self.settler.crossings_with(&along, stretch, &given);
-            let spent = core::mem::take(&mut self.settler.evaluations);
+            let told = self.isolator.crossings_with(&along, interval, &known);
+            let spent = core::mem::take(&mut self.isolator.evaluations);
             self.work += spent as usize;
             self.evaluations += spent;
             let Some(told) = told else { continue };
@@ -422,7 +420,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         settled
     }
 
-    /// The crossings of some rays in a slab whose cubics are final.
+    /// Records the crossings of some rays in a slab whose cubics are final.
     fn cross(&mut self, index: u32, span: Span<L>, lanes: u32) {
         let level = L::splat(THRESHOLD);
         let (from, to) = {
@@ -442,7 +440,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 if self.alive >> lane & 1 == 0 {
                     break;
                 }
-                // A cubic that starts on the level was said to start inside.
+                // A cubic that starts on the level counts as starting inside.
                 if x <= 0.0 {
                     continue;
                 }
@@ -461,7 +459,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// The sum of the spans of a slab's resolved primitives.
+    /// Sum of the spans of a slab's resolved primitives.
     fn span(&mut self, index: u32) -> Span<L> {
         let s = self.slabs.slab(index);
         let range = &s.resolved;
@@ -491,7 +489,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     }
 }
 
-/// A primitive's value and slope along a ray.
+/// Value of a primitive and its slope along rays.
 #[inline]
 fn node<L: Lanes>(primitive: &Primitive, point: [L; 3], direction: [L; 3]) -> Node<L> {
     let jet = primitive.jet(point);

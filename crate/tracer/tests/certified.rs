@@ -1,5 +1,5 @@
-//! What pictures show, against the true surface: hits further from it than the tolerance, what is missed
-//! though it is thicker, what is invented. The same on many more rays, kernel by kernel: `cargo run --release -p tracer
+//! Pictures against the true surface: no hits further from it than the tolerance, none missed where it is thicker than that, none
+//! invented. The same on many more rays, kernel by kernel: `cargo run --release -p tracer
 //! --example certify`.
 #![cfg(not(target_arch = "wasm32"))]
 mod common;
@@ -42,7 +42,7 @@ fn run(
     (total, told)
 }
 
-/// Kernels that end, so that nothing of their field is cut off.
+/// Compact kernels, whose fields are not cut off.
 const COMPACT: [Kernel; 4] = [
     Kernel::Metaballs,
     Kernel::Soft,
@@ -50,8 +50,8 @@ const COMPACT: [Kernel; 4] = [
     Kernel::Compact6,
 ];
 
-/// Pictures have no hit that is off and miss no surface. Of kernels that do not end they may miss what rays graze, as
-/// next to the poles of squared polygons: that must stay as rare as it is. `examples/certify.rs` lists what is left.
+/// Pictures have no inaccurate hit and miss no surface. With infinite kernels they may miss surfaces that rays graze, as next to the
+/// poles of squared polygons: no more often than this share. `examples/certify.rs` lists the cases.
 fn certify(kinds: &[Kind], most_grazed: f64) {
     let mut all = Row::default();
     let mut faults = String::new();
@@ -73,9 +73,9 @@ fn certify(kinds: &[Kind], most_grazed: f64) {
     assert!(grazed <= most_grazed, "{all:?}\n{faults}");
 }
 
-/// Points that go the quick way have no fault at all.
+/// Points, which take the fast path, have no fault at all.
 #[test]
-fn pictures_of_lumps_are_within_the_tolerance() {
+fn pictures_of_blobs_are_within_the_tolerance() {
     let kernels = [&[Kernel::Gauss][..], &COMPACT].concat();
     let (row, told) = run(&kernels, &[Kind::Point], 6, 6, &|trial, picture| {
         picture.cast(&trial.rays)
@@ -111,7 +111,7 @@ fn pictures_of_mixtures_and_clusters_are_within_the_tolerance() {
     certify(&[Kind::Cluster], 0.0);
 }
 
-/// Kinds whose pictures any of the following faults would spoil.
+/// Kinds in whose pictures each of the following faults would show.
 const PLAIN: [Kind; 3] = [Kind::Point, Kind::Segment, Kind::Arc];
 
 #[test]
@@ -162,7 +162,7 @@ fn a_primitive_that_is_left_out_is_told() {
     assert!(total.faults() * 20 > total.rays, "{total:?}");
 }
 
-/// Else the check would be of something else than pictures.
+/// `cast`, which the checks use, agrees with pictures.
 #[test]
 fn what_is_cast_is_what_pictures_show() {
     const SIDE: u32 = 48;
@@ -201,7 +201,7 @@ fn what_is_cast_is_what_pictures_show() {
     assert!(differ <= 8, "{differ} of {shown}");
 }
 
-/// How many pixels of a picture show the surface, and how many do though its ray meets none, or do not though it does.
+/// Counts a picture's pixels that show the surface, and those that disagree with their exact rays.
 fn shown(mut scene: Scene, side: u32) -> [usize; 2] {
     scene.background = [0.0, 0.0, 1.0];
     for finish in &mut scene.finishes {
@@ -230,8 +230,8 @@ fn shown(mut scene: Scene, side: u32) -> [usize; 2] {
     [shown, wrong]
 }
 
-/// Lumps among bones of other kernels, before them and behind; and so many bones of one kernel without end that packets
-/// have interpolants together. Pictures show what single rays, followed exactly, meet.
+/// Blobs among bones of other kernels, before and behind them, and so many bones of one infinite kernel that packets share
+/// interpolants. Pictures agree with single rays traced exactly.
 #[test]
 fn pictures_show_what_is_there() {
     let mut n = Numbers(11);
@@ -241,9 +241,9 @@ fn pictures_show_what_is_there() {
         let joined = case % 2 == 1;
         clothe(&mut scene, vec![soft(-3.0, 1.0)]);
         for k in 0..if joined { 40 } else { 5 } {
-            let lump = k % 2 == 0;
+            let blob = k % 2 == 0;
             let at = n.vector();
-            let shape = match (joined, lump) {
+            let shape = match (joined, blob) {
                 (true, _) => n.shape(k),
                 (false, true) => Shape::Sphere {
                     center: at,
@@ -256,7 +256,7 @@ fn pictures_show_what_is_there() {
                 },
             };
             scene.elements.push(Element {
-                kernel: match (joined, lump) {
+                kernel: match (joined, blob) {
                     (true, _) => Kernel::Cauchy,
                     (false, true) => Kernel::Gauss,
                     (false, false) => Kernel::Quartic,
@@ -271,14 +271,14 @@ fn pictures_show_what_is_there() {
     assert!(seen > 2000 && wrong <= 2, "{wrong} of {seen}");
 }
 
-/// A bone much thinner than anything a beam is wide.
+/// A bone much thinner than any beam.
 #[test]
-fn a_thin_bone_beside_lumps_is_not_stridden_over() {
+fn a_thin_bone_beside_blobs_is_not_stepped_over() {
     let mut scene = empty();
     clothe(&mut scene, vec![soft(-4.0, 1.0)]);
     scene.camera.eye = DVec3::new(0.0, 0.0, 0.02);
     scene.camera.fov = 0.2;
-    let lump = Shape::Sphere {
+    let blob = Shape::Sphere {
         center: DVec3::new(0.0, 3.0, 0.0),
         radius: 0.8,
     };
@@ -291,16 +291,16 @@ fn a_thin_bone_beside_lumps_is_not_stridden_over() {
         kernel,
         ..element(shape, 0)
     };
-    scene.elements = vec![of(lump, Kernel::Gauss), of(thin, Kernel::Quartic)];
+    scene.elements = vec![of(blob, Kernel::Gauss), of(thin, Kernel::Quartic)];
     let [shown, wrong] = shown(scene, 64);
     assert!(shown > 500 && wrong * 50 <= shown, "{wrong} of {shown}");
 }
 
-/// Scenes in which much was missed or off once: where rounding or a surface as flat as the ray leaves all in doubt; beyond
-/// the ends of Gaussian arcs; waves across a needle; beside crisp Gaussian faces and a plane, which is looked for very far
-/// out; a surface as flat as the ray between the kinks of profiles; grazing rays that what is next to nothing, or single
-/// precision's rounding, keeps outside; waves that turn sharply beside an arc's axis; a very thin curve, of which all that is
-/// bent away counted as near; crisp faces that single precision moves by more than a very fine picture's tolerance.
+/// Regressions, scenes with faults in earlier versions: rounding, or a surface along the ray, that leaves all rays in doubt; beyond
+/// the ends of Gaussian arcs; waves across a needle; beside crisp Gaussian faces and a plane with a very distant crossing; a surface
+/// along the ray between the kinks of profiles; grazing rays that negligible terms or rounding keep outside; waves beside an arc's
+/// axis; a very thin curve whose bent-away parts counted as near; crisp faces that single precision moves by more than a very fine
+/// picture's tolerance.
 #[test]
 fn what_was_missed_once_is_found() {
     let once = [
@@ -324,7 +324,7 @@ fn what_was_missed_once_is_found() {
         (Kernel::Quartic, Kind::Kinks, 108),
         (Kernel::Metaballs, Kind::Polygon, 9043),
     ];
-    // Of these most rays pass by.
+    // Most rays miss these.
     let thin = [(Kernel::Quartic, Kind::Taper, 5031)];
     for (kernel, kind, seed) in once.into_iter().chain(thin) {
         let cast = |trial: &Trial, picture: &Picture| picture.cast(&trial.rays);

@@ -1,4 +1,4 @@
-//! The diggers that are there for comparison, against exact hits.
+//! The root finders for comparison, against exact hits.
 mod common;
 use common::{Numbers, blend, clothe, element, empty, soft};
 use glam::DVec3;
@@ -17,14 +17,14 @@ const ALL: [Digger; 9] = [
     Digger::Sphere,
 ];
 
-/// How near a digger's crossings are to the surface of an easy scene, in distance along the ray.
+/// Largest error of a digger's crossings in an easy scene, along the ray.
 fn tolerance(digger: Digger) -> f64 {
     match digger {
         // Two spans are crude, the more so as the field is cut off so late here.
         Digger::Spans(2) => 0.5,
         Digger::Spans(_) => 5e-3,
         Digger::Hermite | Digger::Lagrange => 1e-3,
-        // What is left is the depth of influence, at which the others cut the field off.
+        // The error of the field's cut-off at the depth of influence.
         _ => 1e-5,
     }
 }
@@ -35,7 +35,7 @@ fn dug(scene: &Scene, digger: Digger) -> Picture {
     Picture::new(&scene, [16, 16])
 }
 
-/// Where a ray first meets the surface, as the picture's digger finds it.
+/// First crossing of a ray, as the picture's digger finds it.
 fn meets(picture: &Picture, origin: DVec3, direction: DVec3) -> Option<f64> {
     picture.cast(&[(origin, direction)])[0].map(|hit| hit.t)
 }
@@ -123,7 +123,7 @@ fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
                 let direction = (n.vector() * 0.8 - origin).normalize();
                 let hits = exact.hits(origin, direction);
                 let found = meets(&picture, origin, direction);
-                // The field is this near to T all along what was missed or invented.
+                // Whether the field stays near T on the missed or invented interval.
                 let grazes = |from: f64, to: f64| {
                     (0..=100).all(|i| {
                         let t = from + (to - from) * f64::from(i) / 100.0;

@@ -247,7 +247,7 @@ fn samples_that_are_kept_change_nothing_and_are_taken_once() {
         let (_, once) = whole(&scene, size, 256, Pass::Smooth);
         for room in [0, 1, 4, 6, 100] {
             let cache = &mut picture.cache(room);
-            // What was kept of the coarse picture would be wrong.
+            // Coarse samples must not enter the cache.
             let _ = trace(side, Pass::Coarse, cache);
             let (pixels, rays) = trace(side, Pass::Full, cache);
             assert!(pixels == full && rays <= all, "{side} {room}");

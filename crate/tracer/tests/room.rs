@@ -1,4 +1,4 @@
-//! Room for very many elements: what each takes while a picture of it is made.
+//! Memory for very many elements while a picture is made.
 use field::{Bound, Primitive};
 use scene::Element;
 
@@ -12,7 +12,7 @@ const ROOM: u64 = 3 << 29;
 /// hierarchy (36), as much once more while it is sorted (40), its nodes, of which there are at most half as many as
 /// elements (24). With 176 bytes for an element or a bound and 440 for a primitive those are
 /// 10⁶ × (176 + 440 + 176 + 104) = 0.90·10⁹ bytes of 1.61·10⁹; the rest is for the picture, the lists of a beam,
-/// what `stock` keeps of lumps (about 150 bytes each) or the groups of others (not counted here), and the program itself.
+/// the blob set (about 150 bytes each) or the groups of others (not counted here), and the program itself.
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 fn a_million_elements_leave_two_fifths_of_the_room_for_the_picture() {

@@ -24,7 +24,7 @@ pub struct Arc<S> {
 }
 
 impl Arc<f64> {
-    /// From radius and angle, which is in [0, 2π].
+    /// Prepares an arc from its radius and its angle in [0, 2π].
     pub(crate) fn new(radius: f64, angle: f64) -> Self {
         let half_angle = angle / 2.0;
         let (sine, cosine) = libm::sincos(half_angle);

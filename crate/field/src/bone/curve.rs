@@ -22,22 +22,22 @@
 //! The curve is cut at the slowest places first, so that cusps are ends. Spans shorter than
 //! [`Demands::least`] are accepted as they are. Should there be more than [`MOST`] spans, turn and
 //! length are doubled and the tolerance is multiplied by 16, until there are not: a smooth kernel's
-//! curve of more than a thousand widths is then a string of beads that begin to show (4 nodes a width
+//! curve of more than a thousand widths is then a chain of blobs that begin to show (4 nodes a width
 //! leave 10⁻⁶ of the field, 2 nodes 10⁻³).
 //!
-//! Both precisions have spans of their own: what double precision wants would cost single precision
-//! three times as much.
+//! Both precisions have spans of their own: those of double precision would cost single precision three
+//! times as much.
 use crate::Kernel;
 use core::f64::consts::PI;
 use glam::DVec3;
 
-/// The most terms of the polynomials in t that are kept.
+/// Number of terms kept of polynomials in t.
 pub const TERMS: usize = 12;
 
-/// How many of them single precision's spans have.
+/// Number of those terms that single precision's spans use.
 pub const SINGLE_TERMS: usize = 8;
 
-/// The most spans (see the module).
+/// Largest number of spans (see the module).
 const MOST: usize = 512;
 
 /// α and ω at a fraction of the curve's length.
@@ -49,7 +49,7 @@ pub(crate) type Cubic = [DVec3; 4];
 /// A curve in local coordinates, prepared for one kernel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve<S> {
-    /// For smooth kernels: places and weights.
+    /// For smooth kernels: positions and weights.
     pub nodes: Vec<Node<S>>,
     /// For other kernels: its pieces.
     pub spans: Vec<Span<S>>,
@@ -58,16 +58,16 @@ pub struct Curve<S> {
     pub rule: Vec<[S; 2]>,
     /// Whether α or ω vary.
     pub tapered: bool,
-    /// Pieces for bounds, in double precision only.
-    pub stretches: Vec<Stretch>,
-    /// What single precision is to make of it.
+    /// Bounds on its pieces, in double precision only.
+    pub piece_bounds: Vec<PieceBounds>,
+    /// The coarser version for single precision; `None` in that version itself.
     single: Option<Box<Curve<S>>>,
 }
 
-/// A place on the curve that stands for its surroundings.
+/// A node of the quadrature: a point of the curve with its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node<S> {
-    /// Where.
+    /// Position in local coordinates.
     pub position: [S; 3],
     /// `α|q′|dt`.
     pub weight: S,
@@ -90,10 +90,10 @@ pub struct Span<S> {
     pub reach2: S,
 }
 
-/// A piece as bounds see it.
+/// Bounds on a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
-    /// Centre of a ball that holds it.
+pub struct PieceBounds {
+    /// Centre of a ball that holds the piece.
     pub center: DVec3,
     /// The ball's radius.
     pub radius: f64,
@@ -159,7 +159,7 @@ impl Demands {
 }
 
 impl<S: Copy> Curve<S> {
-    /// For single precision: what was prepared for that.
+    /// Returns the version for single precision in another number type.
     pub(crate) fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Curve<Q> {
         let source = self.single.as_deref().unwrap_or(self);
         Curve {
@@ -167,7 +167,7 @@ impl<S: Copy> Curve<S> {
             spans: source.spans.iter().map(|span| span.cast(f)).collect(),
             rule: source.rule.iter().map(|pair| pair.map(f)).collect(),
             tapered: source.tapered,
-            stretches: Vec::new(),
+            piece_bounds: Vec::new(),
             single: None,
         }
     }
@@ -196,8 +196,8 @@ impl<S: Copy> Span<S> {
 }
 
 impl Curve<f64> {
-    /// From cubics over 0 ≤ t ≤ 1 that follow one another, in a fine version for double precision and
-    /// a coarse one for single.
+    /// Prepares a curve from successive cubics over 0 ≤ t ≤ 1, in a fine version for double precision and a
+    /// coarse one for single.
     pub(crate) fn new(
         kernel: Kernel,
         fine: &[Cubic],
@@ -206,8 +206,8 @@ impl Curve<f64> {
     ) -> Self {
         let single = Self::prepare(kernel, coarse, law, Demands::SINGLE);
         let mut double = Self::prepare(kernel, fine, law, Demands::DOUBLE);
-        // Fewer and larger pieces serve bounds better.
-        double.stretches.clone_from(&single.stretches);
+        // Fewer and larger pieces make bounds cheaper.
+        double.piece_bounds.clone_from(&single.piece_bounds);
         double.single = Some(Box::new(single));
         double
     }
@@ -236,7 +236,7 @@ impl Curve<f64> {
                 _ => demands.clipped,
             }),
             tapered: law.is_some(),
-            stretches: pieces.iter().map(Piece::stretch).collect(),
+            piece_bounds: pieces.iter().map(Piece::bounds).collect(),
             single: None,
         };
         if smooth {
@@ -250,21 +250,21 @@ impl Curve<f64> {
         curve
     }
 
-    /// An upper bound on the field at distance d or more: all of the curve at that distance.
+    /// Upper bound on the field at distance d or more, as if all of the curve were at that distance.
     pub(crate) fn bound_at(&self, kernel: Kernel, d: f64) -> f64 {
-        self.stretches
+        self.piece_bounds
             .iter()
-            .map(|stretch| stretch.mass * kernel.value(d * stretch.thinness.sqrt()))
+            .map(|piece| piece.mass * kernel.value(d * piece.thinness.sqrt()))
             .sum()
     }
 
     /// `∫α|q′|dt` and the largest α, from above, and the smallest ω, from below.
     pub(crate) fn extremes(&self) -> [f64; 3] {
-        self.stretches.iter().fold([0.0, 0.0, 1.0], |e, stretch| {
+        self.piece_bounds.iter().fold([0.0, 0.0, 1.0], |e, piece| {
             [
-                e[0] + stretch.mass,
-                e[1].max(stretch.density),
-                e[2].min(stretch.thinness),
+                e[0] + piece.mass,
+                e[1].max(piece.density),
+                e[2].min(piece.thinness),
             ]
         })
     }
@@ -275,11 +275,11 @@ impl Curve<f64> {
     }
 }
 
-/// Where the kernel is integrated in one step: a cubic over −1 ≤ t ≤ 1, and its place on the curve.
+/// A piece of the curve for one application of the rule: a cubic over −1 ≤ t ≤ 1, and its position along the curve.
 struct Piece<'a> {
     c: Cubic,
     length: f64,
-    /// The length of the curve before it, and of all of the curve.
+    /// Length of the curve before the piece, and of the whole curve.
     start: f64,
     total: f64,
     law: Option<Law<'a>>,
@@ -307,7 +307,7 @@ impl Piece<'_> {
         })
     }
 
-    /// Whether it may stay whole.
+    /// Whether the piece meets the demands; else it is cut.
     fn suits(&self, kernel: Kernel, demands: Demands) -> bool {
         if self.length <= demands.least * self.total.min(1.0) {
             return true;
@@ -323,7 +323,7 @@ impl Piece<'_> {
         let (sine, cosine) = libm::sincos(demands.turn.min(1.5));
         let straight = tangents.iter().all(|v| {
             let along = v.dot(middle);
-            // Where a cusp is an end, the direction there is nothing but rounding.
+            // At a cusp the direction is rounding noise.
             v.length() <= 1e-6 * fastest
                 || along > 0.0 && v.cross(middle).length() * cosine <= along * sine
         });
@@ -361,7 +361,7 @@ impl Piece<'_> {
         })
     }
 
-    /// Length in units of the kernel's width here, counted longer where the curve is bent: there the
+    /// Length in units of the local kernel width, counted longer where the curve is bent: there the
     /// singularities of a Cauchy kernel may be nearer than a width. On a circle of radius r they are
     /// no nearer than `√(2r(√(r²+1)−r))`.
     fn width(&self) -> f64 {
@@ -401,7 +401,7 @@ impl Piece<'_> {
             };
             error <= demands.tolerance
         });
-        // As many as the speed times the kernel's first terms want.
+        // Enough for the speed times the kernel's first terms.
         let order = (order.unwrap_or(36) + 1).max(demands.terms / 2 + 1);
         let order = if self.length <= demands.least * self.total.min(1.0) {
             1
@@ -447,7 +447,7 @@ impl Piece<'_> {
                 .iter()
                 .map(|t| self.law(*t))
                 .collect();
-            // Between the points a little less may occur.
+            // Between the sample points it may be slightly smaller.
             slimmest = values
                 .iter()
                 .fold(slimmest, |least, v| least.min(0.8 * v[1]));
@@ -461,7 +461,7 @@ impl Piece<'_> {
         span
     }
 
-    fn stretch(&self) -> Stretch {
+    fn bounds(&self) -> PieceBounds {
         let [a, b, c, d] = self.c;
         // Bézier points of the cubic over −1 ≤ t ≤ 1.
         let control = [
@@ -478,7 +478,7 @@ impl Piece<'_> {
             .fold(0.0, |r: f64, p| r.max(p.distance(center)));
         let (mut density, mut thinness) = (1.0, 1.0);
         if self.law.is_some() {
-            // Both are smooth and vary little on a piece; a hundredth is left for what lies between.
+            // Both are smooth and vary little on a piece; 1 % covers the values between samples.
             let (mut most, mut least) = (0.0_f64, f64::INFINITY);
             for i in -8..=8 {
                 let [alpha, omega] = self.law(f64::from(i) / 8.0);
@@ -488,8 +488,8 @@ impl Piece<'_> {
             density = most * 1.01;
             thinness = least * 0.99;
         }
-        // 10⁻⁶ is more than the coarse version of a circle differs by.
-        Stretch {
+        // 10⁻⁶ is more than the error of the coarse version of a circle.
+        PieceBounds {
             center,
             radius: reach * (1.0 + 1e-6),
             mass: density * self.length * (1.0 + 1e-6),

@@ -4,7 +4,7 @@
 //! the number of its rings matters.
 use super::Triangle;
 
-/// An edge, prepared. For a point whose foot in the plane is q, `along·q − start` is the foot's place
+/// An edge, prepared. For a point whose foot in the plane is q, `along·q − start` is the foot's position
 /// on the edge's line measured from the edge's start, and `along×q − offset` the signed distance of
 /// q from that line, positive on the left, inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Edge<S> {
 }
 
 impl Edge<f64> {
-    /// From its ends. They may coincide.
+    /// Prepares an edge from its ends. They may coincide.
     pub(crate) fn between(a: [f64; 2], b: [f64; 2]) -> Self {
         let d = [b[0] - a[0], b[1] - a[1]];
         let length = (d[0] * d[0] + d[1] * d[1]).sqrt();
@@ -63,7 +63,7 @@ pub struct Polygon<S> {
 }
 
 impl Polygon<f64> {
-    /// From rings, the outer one first. Holes may run either way round.
+    /// Prepares a polygon from its rings, the outer one first. Holes may run either way round.
     pub(crate) fn new(mut rings: Vec<Vec<[f64; 2]>>) -> Self {
         for (i, ring) in rings.iter_mut().enumerate() {
             if (double_area(ring) < 0.0) == (i == 0) {

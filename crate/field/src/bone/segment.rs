@@ -1,6 +1,6 @@
 //! A segment on the x axis, its middle at the origin.
 
-/// See the module.
+/// A segment on the x axis, its middle at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment<S> {
     /// Half the length.

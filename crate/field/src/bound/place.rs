@@ -1,7 +1,6 @@
-//! Where a primitive's skeleton is, as bounds want to know it: how near it comes to a ball.
+//! Skeletons prepared for bounds: distances from balls.
 //!
-//! Points and segments lie in [`Place`] itself, as a scene may have a million of them; what else there is lies
-//! elsewhere in memory.
+//! Points and segments are stored in [`Place`] itself, since a scene may have a million of them; other kinds are boxed.
 use crate::skeleton::{halves, nearest_on_segment};
 use crate::{Cut, Primitive, Skeleton};
 use core::f64::consts::{PI, TAU};
@@ -38,15 +37,15 @@ pub enum Place {
     Curve(Vec<Chord>),
 }
 
-/// How near a ball's middle is to a skeleton.
+/// Position of a ball's middle relative to a skeleton.
 #[derive(Clone, Copy, Debug)]
 pub struct Near {
-    /// The distance, or less.
+    /// Distance from the skeleton, or less.
     pub distance: f64,
     /// See [`Nearness`](super::Nearness).
-    pub stretch: f64,
-    /// The ball's distance from an arc's axis; 0 for others.
-    pub hub: f64,
+    pub arc_factor: f64,
+    /// Distance of the ball from an arc's axis; 0 for other skeletons.
+    pub axis_distance: f64,
 }
 
 /// An arc `center + radius·(cos t·u + sin t·v)`, `0 ≤ t ≤ angle`; u, v and axis are orthonormal.
@@ -72,13 +71,13 @@ pub struct Chord {
     sag: f64,
 }
 
-/// Pieces of a curve have no more sag than this, in kernel widths …
+/// Largest distance of a curve's piece from its chord, in kernel widths …
 const SAG: f64 = 0.01;
-/// … unless there are so many of them.
+/// … with at most this many chords.
 const MOST_CHORDS: u32 = 16;
 
 impl Place {
-    /// A primitive's, whose kernel has such a width parameter.
+    /// Prepares the skeleton of a primitive whose kernel has this width parameter.
     pub fn of(primitive: &Primitive, width: f64) -> Self {
         match &primitive.skeleton {
             Skeleton::Point { center } => Self::Point(*center),
@@ -108,7 +107,7 @@ impl Place {
         }
     }
 
-    /// How near the middle of a ball is to the skeleton.
+    /// Returns how near the middle of a ball is to the skeleton.
     pub fn nearness(&self, center: DVec3, radius: f64) -> Near {
         let distance = match self {
             Self::Point(point) => center.distance(*point),
@@ -124,23 +123,23 @@ impl Place {
                 let distance = chords.iter().map(|chord| chord.distance(center));
                 return Near {
                     distance: distance.fold(f64::INFINITY, f64::at_most).at_least(0.0),
-                    stretch: f64::INFINITY,
-                    hub: 0.0,
+                    arc_factor: f64::INFINITY,
+                    axis_distance: 0.0,
                 };
             }
             Self::Plane { point, normal } => (center - *point).dot(*normal).abs(),
         };
         Near {
             distance,
-            stretch: 1.0,
-            hub: 0.0,
+            arc_factor: 1.0,
+            axis_distance: 0.0,
         }
     }
 }
 
 impl Sweep {
     fn new(center: DVec3, [u, v]: [DVec3; 2], radius: f64, angle: f64) -> Self {
-        // As the field does it.
+        // With the same orthonormal axes as the field.
         let u = u.try_normalize().unwrap_or(DVec3::X);
         let v = (v - u * u.dot(v))
             .try_normalize()
@@ -175,7 +174,7 @@ impl Sweep {
         } else {
             y >= 0.0 && before
         };
-        let (distance, stretch) = if swept {
+        let (distance, arc_factor) = if swept {
             // A point of the arc at angle φ from the foot is no nearer than if the arc
             // were straight but shorter by the factor sin(φ/2)/(φ/2)·√(ρ/sweep).
             let shrink = self.sag * ((rho - radius).at_least(0.0) / sweep).sqrt();
@@ -189,8 +188,8 @@ impl Sweep {
         };
         Near {
             distance,
-            stretch,
-            hub: (rho - radius).at_least(0.0),
+            arc_factor,
+            axis_distance: (rho - radius).at_least(0.0),
         }
     }
 }

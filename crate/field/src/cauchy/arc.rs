@@ -45,7 +45,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     let i_delta = one / (near * far);
     let root = i_delta.sqrt();
 
-    // The ends.
+    // Squared distances from the ends.
     let end_x = x + radius * versine;
     let chord = radius * sine_half;
     let (y_1, y_2) = (y + chord, y - chord);

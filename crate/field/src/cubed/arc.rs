@@ -74,7 +74,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
     }
 }
 
-/// A gradient.
+/// A vector, such as a gradient.
 #[derive(Clone, Copy)]
 struct Vector<R>([R; 3]);
 

@@ -56,7 +56,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     ];
 
     let coupling = two * two * radius * rho;
-    // Of the square of the distance from an end, or from what is opposite the gap: what is not that of the gap ρ − r.
+    // The squared distance from an end, or from the point opposite the gap, less (ρ − r)².
     let beyond = |end_x: R, end_y: R| {
         let (dx, dy) = (x - end_x, beside - end_y);
         (dx * dx + dy * dy - gap * gap).max(R::splat(0.0))

@@ -55,7 +55,7 @@ pub fn jet<R: Real>(edges: &[Edge<R::Scalar>], p: [R; 3]) -> Jet<R> {
         square = square.max(start * start + offset * offset);
         double_area += offset.abs() * edge.length.lane(0);
     }
-    // What is too thin to be seen by (1) is at least given its area.
+    // A polygon too thin for (1) still gets its area.
     let unseen = if R::DOUBLE { 1e-15 } else { 1e-6 };
     if square < SMALL * SMALL || double_area < unseen {
         small(edges, p)

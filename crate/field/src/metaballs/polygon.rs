@@ -58,7 +58,7 @@ pub fn jet<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
     let chosen = R::select(at_middle, z2 + from_foot, R::select(far, one, z2));
     let level = Level::new(chosen.min(one));
     // C of Φ and of the primitive of −H′.
-    let (lift, drop) = foot.climb(&level, from_foot);
+    let (lift, drop) = foot.rise(&level, from_foot);
     let scale = one / from_foot.max(tiny);
     let mean = R::select(at_middle, lift * scale, zero);
     let mean1 = R::select(at_middle, -half * drop * scale, zero);
@@ -95,7 +95,7 @@ pub fn jet<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
                             + offset * (offset - part.inward - part.inward),
                         R::select(far, -(part.reach2 - t * t).max(zero), s2),
                     );
-                    let (lift, drop) = level.climb(&Level::new((z2 + s2).min(one)), step);
+                    let (lift, drop) = level.rise(&Level::new((z2 + s2).min(one)), step);
                     let weight = R::splat(*weight) * reach;
                     let near = weight / s2.max(tiny);
                     phi = phi + near * (lift - mean * step);
@@ -117,7 +117,7 @@ pub fn jet<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
     let angle = R::select(far, whole_turns(angle + seen), angle);
     let angle = R::select(at_middle, zero, angle);
     let rim = Level::new(one);
-    let (lift, drop) = foot.climb(&rim, disc2);
+    let (lift, drop) = foot.rise(&rim, disc2);
     let value = value + angle * lift + double_area * mean;
     let slope = slope - angle * half * drop + double_area * mean1;
     Jet {
@@ -156,12 +156,12 @@ impl<R: Real> Level<R> {
         )
     }
 
-    /// What is added from here to another level, `step` higher: to `½∫H dq`, and to H.
+    /// Returns the differences of `½∫H dq` and of H from this level to another, `step` higher.
     ///
-    /// The step is divided between the two sides of u = ⅓. What that division lacks in digits does not matter,
-    /// since H is continuous there.
+    /// The step is divided between the two sides of u = ⅓. Rounding of that division does not matter, since H is
+    /// continuous there.
     #[inline(always)]
-    fn climb(&self, to: &Self, step: R) -> (R, R) {
+    fn rise(&self, to: &Self, step: R) -> (R, R) {
         let zero = R::splat(0.0);
         let kink = R::splat(INNER2);
         let cut = to.q.max(kink) - self.q.max(kink);

@@ -32,7 +32,8 @@ pub fn jet<R: Real>(segment: &Segment<R::Scalar>, p: [R; 3]) -> Jet<R> {
         value: R::splat(1.5) * whole - half * core,
         gradient: [
             R::splat(1.5)
-                * (outer.climb * (two - outer.ends) - inner.climb * (two - three * inner.ends)),
+                * (outer.end_difference * (two - outer.ends)
+                    - inner.end_difference * (two - three * inner.ends)),
             across * y,
             across * z,
         ],
@@ -49,7 +50,7 @@ struct Integrals<R> {
     /// `∫1/u`.
     lambda: R,
     /// u₁−u₀.
-    climb: R,
+    end_difference: R,
     /// u₀+u₁.
     ends: R,
 }
@@ -81,7 +82,7 @@ impl<R: Real> Integrals<R> {
             squares: length * (rho2 + m2 + length * length * R::splat(1.0 / 12.0)),
             distances: half * (length * (half * ends + part.middle * slant) + rho2 * lambda),
             lambda,
-            climb: length * slant,
+            end_difference: length * slant,
             ends,
         }
     }

@@ -155,11 +155,11 @@ impl Binary for f32 {
 /// The bits of √½ in single precision.
 pub(super) const ROOT_HALF_BITS: i32 = 0x3F35_04F3;
 
-/// What the exponential and the logarithm need to know of how single precision numbers are stored.
+/// Access to the bits of single precision numbers, for the exponential and the logarithm.
 pub(super) trait Binary: Real {
-    /// The number whose bits are these, so many places further up.
+    /// Shifts the number's bits up by `BITS` and reads them as a number.
     fn bits_up<const BITS: u32>(self) -> Self;
-    /// m in [√½, √2) and the integer n of x = m·2ⁿ, x positive and normal.
+    /// Splits a positive, normal x = m·2ⁿ into m in [√½, √2) and the integer n.
     fn parts(self) -> (Self, Self);
 }
 
@@ -168,7 +168,7 @@ pub(super) trait Binary: Real {
 /// (and a little more), which is 3·10⁻⁹.
 #[inline(always)]
 pub(super) fn decay<R: Binary>(x: R) -> R {
-    // From there on n = −127, which stands for 0.
+    // From here on n = −127, which encodes 0.
     let x = x.min(R::splat(88.1));
     // Adding 1.5·2²³ rounds to a whole number, and leaves that in the low bits.
     let shifted = R::splat(ROUNDER) - x * R::splat(core::f64::consts::LOG2_E);
@@ -183,7 +183,7 @@ pub(super) fn decay<R: Binary>(x: R) -> R {
         0.001_381_443_325_322_647_7,
     ]
     .map(R::splat);
-    // In parts that do not wait for each other: where many e⁻ˣ are wanted, waiting is what takes the time.
+    // In independent parts: latency dominates where many e⁻ˣ are computed.
     let square = r * r;
     let low = R::splat(1.0) + r + square * (a + b * r);
     let power = low + square * square * (c + d * r + e * square);
@@ -191,7 +191,7 @@ pub(super) fn decay<R: Binary>(x: R) -> R {
     power * shifted.bits_up::<23>()
 }
 
-/// No less than `e⁻ˣ`, x ≥ 0: with the exponent that is stored in front of them, the bits of n + f are (1 + f)·2ⁿ, where f is
+/// Upper bound on `e⁻ˣ`, x ≥ 0: with the exponent that is stored in front of them, the bits of n + f are (1 + f)·2ⁿ, where f is
 /// between 0 and 1; that is the chord of 2ⁿ⁺ᶠ, which is convex, and above it by no more than 6.2 %.
 #[inline(always)]
 pub(super) fn decay_at_most<R: Binary>(x: R) -> R {

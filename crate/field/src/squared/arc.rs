@@ -67,14 +67,14 @@ pub struct Places<R> {
     pub to_ends: [[R; 2]; 2],
     /// C.
     pub cosine: R,
-    /// ∂C/∂x, and what y and z have to be multiplied by for ∂C/∂y and ∂C/∂z.
+    /// ∂C/∂x, and the common factor of ∂C/∂y and ∂C/∂z on y and z.
     pub slopes: [R; 2],
     /// `z²+ε²+ρ²−r²`: ∇Δ is `4·planar·(X, y)` in the plane and `4Az` across.
     pub planar: R,
 }
 
 impl<R: Real> Places<R> {
-    /// Those of a local position.
+    /// Computes them at a local position.
     #[inline(always)]
     pub fn of(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Self {
         let two = R::splat(2.0);

@@ -118,7 +118,7 @@ fn over_edges<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
     }
 }
 
-/// What both ends of an edge have in common.
+/// Quantities that both ends of an edge share.
 struct Side<R> {
     /// |h|.
     h: R,
@@ -134,7 +134,7 @@ struct Side<R> {
     ln_rim: R,
 }
 
-/// What an end of an edge adds; odd functions of t.
+/// Contributions of one end of an edge; odd functions of t.
 struct End<R> {
     /// `Λ(β,ψ) − Λ(1,ψ)`.
     potential: R,
@@ -143,7 +143,7 @@ struct End<R> {
 }
 
 impl<R: Real> Side<R> {
-    /// At the end t.
+    /// Returns the contributions of the end t.
     #[inline(always)]
     fn at(&self, t: R) -> End<R> {
         let zero = R::splat(0.0);

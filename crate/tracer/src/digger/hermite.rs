@@ -1,4 +1,4 @@
-//! The certified digger, for whole packets: the quick way for lumps, else slabs of Hermite spans with a bounded error.
+//! The certified digger, for whole packets: the quick way for blobs, else slabs of Hermite spans with a bounded error.
 //!
 //! Pictures do not call it here: there the packets of a square share lists, or the slabs of one beam. Here
 //! each packet has its own, with the same result within the same tolerance.
@@ -33,7 +33,7 @@ impl Digger for Hermite {
             scratch.evaluations += looked.evaluations;
             let t = scratch.quick.flesh.t;
             return core::array::from_fn(|i| {
-                // Whoever asks only whether there is an entry is told no more.
+                // A query for an entry gets no parameter.
                 let t = if quest == Quest::Entry { 0.0 } else { t[i] };
                 (looked.met >> i & 1 != 0).then_some(base + t)
             });
@@ -70,7 +70,7 @@ impl Digger for Hermite {
             return crossings;
         }
         match quest {
-            // Onto the surface itself, as in pictures.
+            // Refined on the surface, as in pictures.
             Quest::First => {
                 soft.flesh(&slabs, &based, base, &found, scratch);
                 for hit in &found {

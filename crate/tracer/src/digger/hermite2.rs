@@ -11,11 +11,10 @@ use crate::walk::Quest;
 use field::THRESHOLD;
 use scene::Settings;
 
-/// Most spans added up on a ray, or 64 times its primitives; what lies behind the place where that many
-/// have been is not seen.
+/// Most spans added up on a ray, or 64 times its primitives; crossings beyond are not found.
 const MOST: usize = 1 << 18;
 
-/// How many spans each primitive gets.
+/// Number of spans of each primitive.
 pub(super) struct Spans(u32);
 
 impl Spans {

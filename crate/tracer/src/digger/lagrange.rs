@@ -32,7 +32,7 @@ impl Single for Lagrange {
                 }
             }
             start += 4.0 * step;
-            // A root on the border belongs to whoever sees the sign change.
+            // A root on the border counts once, where the sign changes.
             if side.arrive(first > 0.0) {
                 return Some(start);
             }

@@ -1,6 +1,6 @@
 //! Marching: equal steps along a ray until the field changes its sign (the "hill climbing" and "ray
-//! marching" of the literature, with a step that suits the kernels). What refines the root is the
-//! caller's choice.
+//! marching" of the literature, with a step that suits the kernels). The caller chooses the method that refines the
+//! root.
 use super::{Side, Sight};
 use crate::walk::Quest;
 
@@ -69,8 +69,8 @@ mod tests {
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn roots_in_brackets_are_refined_whatever_the_function() {
-        // Functions, what is between 0 and 1 the place where they change sign, and how near a method
-        // that stops when it hardly moves can be asked to come.
+        // Functions, the root between 0 and 1, and the accuracy to expect of a method that stops when its
+        // steps become small.
         let functions: [(Function, f64, f64); 8] = [
             (|t| t - 0.3, 0.3, 1e-8),
             (|t| 0.3 - t, 0.3, 1e-8),
@@ -79,7 +79,7 @@ mod tests {
             (|t| if t < 0.8 { t - 0.8 } else { 4.0 * t - 3.2 }, 0.8, 1e-8),
             (|t| libm::exp(20.0 * t) - libm::exp(14.0), 0.7, 1e-7),
             (|t| libm::tanh(1e3 * (t - 0.9)), 0.9, 1e-7),
-            // Flat at its root, where it says little.
+            // Flat at its root, which is then inaccurate.
             (|t| (t - 0.4) * (t - 0.4) * (t - 0.4), 0.4, 1e-3),
             // Infinite at one end, as at a pole.
             (

@@ -3,12 +3,12 @@
 //! The one that pictures are normally made with, [`hermite`], is certified and takes packets of rays.
 //! The others are the methods that the thesis compares with, each as its authors describe it, in a
 //! file of its own. They follow rays one by one ([`Single`]), in double precision, and see the
-//! field through a [`Sight`]: the primitives that one ray can meet. What they find is drawn as they
-//! found it, errors and all.
+//! field through a [`Sight`]: the primitives that one ray can meet. Pictures show their hits unrefined,
+//! errors and all.
 //!
 //! | digger | finds | can miss |
 //! |---|---|---|
-//! | [`hermite`] | roots of Hermite spans with a bounded error; of lumps, by steps with a bound on their bend | little: see the limits of this crate |
+//! | [`hermite`] | roots of Hermite spans with a bounded error; of blobs, by steps with a bound on their bend | little: see the limits of this crate |
 //! | [`hermite2`] | roots of n Hermite spans a primitive | what its spans do not show |
 //! | [`lagrange`] | roots of polynomials through five samples | what is thinner than its samples are apart |
 //! | [`brent`], [`ridder`], [`regula_falsi`] | changes of sign between steps, refined | what is thinner than a step |
@@ -42,13 +42,13 @@ pub(crate) use sight::Sight;
 pub(crate) struct Packet<'r> {
     /// One ray a lane.
     pub rays: &'r [Ray; PACKET],
-    /// How far each ray goes.
+    /// End of each ray.
     pub limits: &'r [f64; PACKET],
-    /// The lanes that are followed, a bit each.
+    /// The lanes to follow, a bit each.
     pub alive: u32,
 }
 
-/// What each lane found: the parameter of a crossing.
+/// Parameter of each lane's crossing; `None` without one.
 pub(crate) type Crossings = [Option<f64>; PACKET];
 
 /// A way of finding where rays cross the soft surface.
@@ -106,7 +106,7 @@ pub(crate) fn of(name: scene::Digger) -> Box<dyn Digger> {
     }
 }
 
-/// Follows on which side of the surface a ray is, and tells when it crosses.
+/// Tracks on which side of the surface a ray is, and detects crossings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side {
     inside: Option<bool>,
@@ -114,7 +114,7 @@ pub(crate) struct Side {
 }
 
 impl Side {
-    /// At the start of a ray, where nothing is known.
+    /// State at the start of a ray.
     pub fn unknown(quest: Quest) -> Self {
         Self {
             inside: None,
@@ -122,7 +122,7 @@ impl Side {
         }
     }
 
-    /// Notes the side; whether the ray has crossed since the last time, as the quest asks for.
+    /// Records the side; returns whether the ray has crossed since the last call in the direction that the quest asks for.
     pub fn arrive(&mut self, inside: bool) -> bool {
         let crossed = self.inside.is_some_and(|before| before != inside);
         self.inside = Some(inside);

@@ -3,7 +3,7 @@ use crate::ray::Ray;
 use crate::soft::Soft;
 use field::{AlongRay, Bound, Primitive, THRESHOLD};
 
-/// Rays along infinitely wide primitives are followed this far (in units of the scene's size).
+/// End of rays along infinitely wide primitives, in units of the scene's size.
 const FAR: f64 = 1e4;
 
 /// A primitive that a ray meets.
@@ -17,7 +17,7 @@ pub(crate) struct Term<'a> {
 }
 
 impl Term<'_> {
-    /// Whether the primitive counts somewhere between two parameters.
+    /// Whether the ray is within its depth of influence somewhere between two parameters.
     pub fn meets(&self, from: f64, to: f64) -> bool {
         self.interval[0] <= to && from <= self.interval[1]
     }
@@ -34,7 +34,7 @@ pub(crate) struct Sight<'a> {
 }
 
 impl<'a> Sight<'a> {
-    /// `None` if the ray meets nothing.
+    /// Collects the primitives that a ray meets; `None` if there are none.
     pub fn new(soft: &'a Soft, body: u32, ray: &Ray, limit: f64) -> Option<Self> {
         let mut terms = Vec::new();
         let mut range = [f64::INFINITY, 0.0_f64];

@@ -49,7 +49,7 @@ impl Cylinder {
     }
 }
 
-/// Where a ray's line is within an endless cylinder.
+/// Part of a ray's line within an infinite cylinder.
 pub(super) enum Wall {
     /// Nowhere.
     Outside,

@@ -103,7 +103,7 @@ impl Solid {
             Shape::Quadric(ref quadric) => {
                 Quadric::new(quadric).map(|q| Self::Quadric(Box::new(q)))
             }
-            // Made of several solids: see `Shape::parts`.
+            // Several solids: see `Shape::parts`.
             Shape::Polygon { .. } | Shape::Curve { .. } => None,
         }
     }
@@ -184,7 +184,7 @@ impl Clip {
         }
     }
 
-    /// Keeps what is between two crossings.
+    /// Keeps the part between two crossings.
     fn stretch(&mut self, enter: Crossing, leave: Crossing) {
         if enter.t > self.enter.t {
             self.enter = enter;

@@ -7,7 +7,7 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     corner: DVec3,
-    /// Of the face, not of the light.
+    /// Normal of the flat face.
     normal: DVec3,
     /// The weights of the second and the third corner at p are `(p − corner)·shares`.
     shares: [DVec3; 2],
@@ -16,8 +16,7 @@ pub struct Patch {
     reach: f64,
 }
 
-/// How far outside its edges, as a share of its size, a patch may still be met: neighbours overlap
-/// by so much rather than let a ray pass between them.
+/// Overlap of a patch beyond its edges, relative to its size, so that no ray passes between neighbours.
 const EDGE: f64 = 1e-12;
 
 impl Patch {

@@ -497,7 +497,7 @@ fn patches_are_flat_but_lit_round() {
     assert!(seen > 100, "{seen}");
 }
 
-/// Whatever the normals, the one that is given is on the side of the face that is seen.
+/// The returned normal is on the visible side of the face, for any normals at the corners.
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
 fn patches_near_the_outline_are_not_lit_from_within() {

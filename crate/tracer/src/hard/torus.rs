@@ -135,7 +135,7 @@ impl Tube {
             4.0 * b,
             1.0,
         ];
-        // Where the line is cut, and by which lid if by one.
+        // Parameters at which the line is cut, and the lid, if it is one.
         let mut cuts = [(0.0, None); 6];
         let mut count = 0;
         for &t in roots(&quartic, from, to).as_slice() {

@@ -1,5 +1,4 @@
-//! Bones cut into pieces, each in a ball: what the reference knows of the field between the places
-//! where it is evaluated.
+//! Bounds of the reference on the field in a ball, from bones cut into pieces, each in a ball of its own.
 //!
 //! All of a piece is at least as far from a point as its ball's near side and at most as far as its far
 //! side, so that its part of the field, its slope and its curvature are at most the piece's mass
@@ -13,9 +12,9 @@ use glam::DVec3;
 /// Bounds of magnitudes of some terms of the field in a ball.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extent {
-    /// What the terms that add can add at most.
+    /// Bound on the sum of the positive terms.
     pub above: f64,
-    /// What the terms that carve can take away at most.
+    /// Bound on the sum of the sizes of the negative terms.
     pub below: f64,
     /// The first derivative in any direction (where no profile jumps).
     pub slope: f64,
@@ -43,25 +42,25 @@ struct Node {
     radius: f64,
     /// Length or area.
     measure: f64,
-    /// Between which shares of the bone's length it lies.
+    /// Start and end on the bone, as fractions of its length.
     share: [f64; 2],
     /// Smallest and largest width parameter, and largest |height|.
     widths: [f64; 2],
     height: f64,
     depth: u8,
-    /// The first of its parts, and how many; none yet where that is [`UNCUT`].
+    /// First part and number of parts; [`UNCUT`] if not yet made.
     parts: (u32, u32),
 }
 
 const UNCUT: u32 = u32::MAX;
 
-/// Pieces are not halved more often than this: kernels with a pole want balls as small as 10⁻⁵.
+/// Largest number of halvings: kernels with a pole need balls as small as 10⁻⁵.
 const DEEPEST: u8 = 48;
 /// A ball is small enough if its radius is less than this times its distance …
 const CLOSE: f64 = 0.2;
 /// … or than this times the kernel's width, unless the kernel has a pole.
 const NARROW: f64 = 0.08;
-/// Pieces kept, of all bones together.
+/// Most pieces of all bones together.
 const MOST: usize = 1 << 21;
 /// Bounds are computed in floating point, and tapers are fitted within 10⁻⁹.
 const SLACK: f64 = 1.0 + 1e-6;
@@ -76,7 +75,7 @@ struct Body {
     skeleton: Skeleton,
     /// Its first piece; none of a plane.
     root: Option<u32>,
-    /// Of a triangle or a polygon: its normal and the first pieces of its edges.
+    /// For a triangle or a polygon: its normal and the first pieces of its edges.
     rim: Option<(DVec3, Vec<u32>)>,
     primitive: usize,
 }
@@ -90,7 +89,7 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// Of these primitives.
+    /// Prepares these primitives.
     pub fn new(primitives: &[Primitive]) -> Self {
         let mut pieces = Self {
             bodies: Vec::new(),
@@ -174,7 +173,7 @@ impl Pieces {
             let body = &self.bodies[number];
             let [size, slope, bend] = body.factor.largest;
             let value = size * most[0] * SLACK;
-            // A factor may change sign only if it says so.
+            // Only factors with `turns` may change sign.
             if body.adds || body.factor.turns {
                 sum.above += value;
             }
@@ -189,7 +188,7 @@ impl Pieces {
 
     /// The second derivative of a flat bone's term along a vector with the cosine c to its normal: in
     /// its plane derivatives are integrals of first derivatives over the rim alone (Gauss' theorem), so
-    /// that it is at most `c²·curvature + (2c+1)·(slopes over the rim)`. Rays along a face want that.
+    /// that it is at most `c²·curvature + (2c+1)·(slopes over the rim)`. Rays along a face need this bound.
     fn over_flat(
         &mut self,
         number: usize,
@@ -329,7 +328,7 @@ impl Body {
                 let (abc, bcd) = (half(ab, bc), half(bc, cd));
                 let m = half(abc, bcd);
                 let (left, right) = ([*a, ab, abc, m], [m, bcd, cd, *d]);
-                // Where by length the middle is: between what chords and control polygons say.
+                // Fraction of the length at the middle: bounds from chords and control polygons.
                 let (least, most) = (|p: &[DVec3; 4]| p[0].distance(p[3]), outline);
                 let share = |l: f64, r: f64| from + (to - from) * (l / (l + r).max(1e-300));
                 let at = [
@@ -427,7 +426,7 @@ fn around(rings: &[Vec<DVec3>]) -> Piece {
         .unwrap_or(from)
     };
     let x = (far(origin) - origin).try_normalize().unwrap_or(DVec3::X);
-    // The corner furthest from the line along x tells the plane.
+    // The corner furthest from the line along x determines the plane.
     let off = |p: DVec3| (p - origin) - x * x.dot(p - origin);
     let y = rings
         .iter()
@@ -448,7 +447,7 @@ fn around(rings: &[Vec<DVec3>]) -> Piece {
     Piece::Cell(origin + x * cx + y * cy, [x * hx, y * hy], false)
 }
 
-/// Normal and edges of a flat bone that has some.
+/// Normal and edges of a triangle or polygon; `None` for other bones.
 fn flat(skeleton: &Skeleton) -> Option<(DVec3, Vec<(DVec3, DVec3)>)> {
     match skeleton {
         Skeleton::Triangle { corners: [a, b, c] } => {

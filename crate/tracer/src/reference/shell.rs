@@ -1,4 +1,4 @@
-//! How large a kernel, its slope and its curvature can be in a shell of distances.
+//! Bounds on a kernel, its slope and its curvature in a shell of distances.
 //!
 //! With q the squared distance in kernel widths a kernel is G(q). Of `h(r) = G(r²)` the slope is
 //! `2rG′`, and the matrix of second derivatives of `h(|x|)` has the eigenvalues `2G′` (across) and
@@ -9,11 +9,11 @@ use field::Kernel;
 /// Upper bounds of magnitudes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Largest {
-    /// Of the kernel.
+    /// Bound on the kernel.
     pub value: f64,
-    /// Of its first derivative in any direction.
+    /// Bound on its first derivative in any direction.
     pub slope: f64,
-    /// Of its second derivative in any direction.
+    /// Bound on its second derivative in any direction.
     pub curvature: f64,
 }
 

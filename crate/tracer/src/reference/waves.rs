@@ -1,20 +1,19 @@
-//! Profiles along a ray: how large they and their derivatives can be between the places where they are not smooth
-//! ([`field::kinks`]), at which the reference divides it.
+//! Bounds on profiles and their derivatives between their kinks ([`field::kinks`]), at which the reference divides a ray.
 use field::{Kink, Primitive, Skeleton, Wave, kinks};
 
-/// What is known of a primitive's profile.
+/// Bounds on a primitive's profile.
 #[derive(Clone, Debug)]
 pub struct Factor {
     /// Upper bounds of the factor's magnitude and of its first and second derivatives by length.
     pub largest: [f64; 3],
     /// Whether it may be negative.
     pub turns: bool,
-    /// Where it is not smooth.
+    /// Its kinks.
     pub kinks: Vec<Kink>,
 }
 
 impl Factor {
-    /// Of a primitive.
+    /// The bounds for a primitive.
     pub fn of(primitive: &Primitive) -> Self {
         let Some(profile) = &primitive.profile else {
             return Self {
@@ -29,7 +28,7 @@ impl Factor {
         // First and second derivative of the waves' product.
         let (mut first, mut second) = (0.0, 0.0);
         let mut restricted = [0.0; 2];
-        // Of a wave of a parameter that changes by `rate` per unit of length.
+        // Derivatives of a wave whose parameter changes by `rate` per unit of length.
         let steep = |i: usize, rate: f64| {
             let (a, b) = match profile.waves[i] {
                 Wave::One | Wave::Step => (0.0, 0.0),
@@ -50,7 +49,7 @@ impl Factor {
                 let (e1, e2) = (*b - *a, *c - *a);
                 let normal = e1.cross(e2);
                 let area2 = normal.length();
-                // Gradients of u, of v and of what is left.
+                // Gradients of u, of v and of 1 − u − v.
                 let by_u = e2.cross(normal) / (area2 * area2);
                 let by_v = normal.cross(e1) / (area2 * area2);
                 let rate = by_u.length().max(by_v.length()).max((by_u + by_v).length());
@@ -71,7 +70,7 @@ impl Factor {
                 first = (1.3 * w1 + 1.8) * i;
                 second = (4.0 * (w2 + w1) + 16.0 * w1 + 8.0) * i * i;
             }
-            // These have no parameters.
+            // No parameters.
             Skeleton::Point { .. }
             | Skeleton::Polygon { .. }
             | Skeleton::Curve { .. }

@@ -1,4 +1,4 @@
-//! Random scenes and rays on which what pictures show is held against the reference.
+//! Random scenes and rays for comparisons of pictures with the reference.
 use super::common::{Numbers, empty};
 use core::f64::consts::TAU;
 use field::{BlobScale, Kernel, Profile, Wave};
@@ -8,7 +8,7 @@ use std::fmt::Write;
 use tracer::reference::{Fault, Reference};
 use tracer::{Hit, Picture};
 
-/// What a scene's elements are.
+/// Kinds of scenes, by their elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Point,
@@ -54,7 +54,7 @@ pub struct Trial {
     pub size: u32,
     pub rays: Vec<(DVec3, DVec3)>,
     pub reference: Reference,
-    /// How far rays are followed.
+    /// End of rays.
     pub limit: f64,
 }
 
@@ -104,7 +104,7 @@ impl Trial {
         let size = 64 << (n.unit() * 7.0) as u32;
         let tolerance = Picture::new(&scene, [size; 2]).tolerance(f64::INFINITY);
         let mut rays = Vec::new();
-        // Where there is flesh everywhere no ray starts outside it.
+        // Some scenes have no point outside the surface.
         for _ in 0..4 * packets {
             if rays.len() >= packets * PACKET {
                 break;
@@ -333,7 +333,7 @@ fn packet(
                 }
             }
         }
-        // At the very bone, its ends and its flesh's rim.
+        // At the bone itself, its ends, and the edge of the kernel's support.
         6 => {
             for _ in 0..PACKET {
                 made.push((eye, bone + n.vector() * (0.02 * scale) - eye));
@@ -349,7 +349,7 @@ fn packet(
         }
     }
     for (origin, direction) in made {
-        // Which side a ray starts on must be plain.
+        // The side on which a ray starts must be certain.
         let clear = reference.surface_near(origin, 4.0 * tolerance);
         if let (Some(direction), tracer::reference::Near::Beyond) =
             (direction.try_normalize(), clear)
@@ -404,13 +404,13 @@ impl Power for f64 {
 pub struct Row {
     pub rays: u64,
     pub hits: u64,
-    /// Missed where the ray goes deeper than the tolerance, and where it only grazes.
+    /// Missed crossings of rays that go deeper than the tolerance, and of grazing ones.
     pub missed: u64,
     pub grazed: u64,
     pub invented: u64,
-    /// Of the hits that are within it: the largest distance, in tolerances; and of all of them.
+    /// Largest distance of hits within the tolerance, in tolerances; and of all hits.
     pub worst: f64,
-    /// What could not be decided.
+    /// Undecided rays.
     pub uncertain: u64,
 }
 
@@ -431,7 +431,7 @@ impl Row {
     }
 }
 
-/// Judges what `cast` says of a trial's rays; faults are told, one a line.
+/// Judges the results of `cast` for a trial's rays; faults are printed, one a line.
 pub fn check(
     kernel: Kernel,
     kind: Kind,
@@ -447,7 +447,7 @@ pub fn check(
     let mut row = Row::default();
     for (number, (&(origin, direction), hit)) in trial.rays.iter().zip(&hits).enumerate() {
         row.rays += 1;
-        // What is hit further away than the search goes is not asked about.
+        // Hits beyond the search's end are not judged.
         let t = hit.map(|h| h.t).filter(|t| *t < trial.limit);
         row.hits += u64::from(t.is_some());
         let tolerance = |t: f64| picture.tolerance(t);

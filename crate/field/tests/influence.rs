@@ -1,5 +1,4 @@
-//! Everything that is promised of bounds, on random cases: depth of influence, ray intervals,
-//! spheres, Hermite spans, slopes.
+//! Bounds on random primitives: depth of influence, ray intervals, spheres, distances.
 mod common;
 
 use common::{KINDS, Kind, Random, jet, primitive, sensitivity, shaping};

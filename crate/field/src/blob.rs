@@ -1,10 +1,9 @@
-//! A lump's field along rays, with its largest value on any piece of them.
+//! Blobs: primitives whose field along a ray has closed-form bounds on every interval of the ray.
 //!
-//! A *lump* is a primitive whose course along a ray is so simple that bounds on it need no search: a
-//! point, of a compact or the Gaussian kernel, or a Gaussian segment; above zero, of one width, and without a profile but for
-//! one that rises evenly along the segment ([`Ramp`]). For these
+//! A *blob* is a point with a compact or the Gaussian kernel, or a Gaussian segment, that adds to the field, does not taper, and
+//! has no profile other than a linear one along the segment ([`Ramp`]). For these
 //! `q(t) = q₀ + k(t−c)²`, the square of the distance from the point, or from the segment's line, in
-//! units of the kernel's width, is a parabola. Beside it the share W of a segment that is abreast depends on the
+//! units of the kernel's width, is a parabola. A segment's field has one more factor, the fraction W of the Gaussian's integral that lies on it, which depends on the
 //! position x along it, which is linear in t.
 //!
 //! On an interval of t the field is at most its value with the least q and the most central x of the
@@ -20,82 +19,82 @@ use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI};
 use glam::DVec3;
 
-/// Half the length, in kernel widths, from which on a segment is a lump: from there the two error functions
-/// keep enough digits in their difference.
+/// Half the length, in kernel widths, from which a segment is a blob: at that length the difference of the two error
+/// functions keeps enough digits.
 const SHORT: f64 = 0.5;
-/// Amplitudes and width parameters of lumps are at most this.
+/// Amplitudes and width parameters of blobs are at most this.
 const LARGEST: f64 = 1e9;
-/// Newton's steps to a compact lump's surface.
+/// Number of Newton steps to a compact blob's surface.
 const NEWTON: usize = 5;
-/// From this half length on the further end of a Gaussian segment is not felt: erfc 4 = 1.5·10⁻⁸.
+/// Half length, in kernel widths, from which the further end of a Gaussian segment contributes nothing: erfc 4 = 1.5·10⁻⁸.
 const LONG: f64 = 4.0;
 
-/// Rays that far from the ends of a segment, beside it, feel little of them …
+/// Distance inward from a segment's ends, in kernel widths, at which they hardly count …
 const INNER: f64 = 3.0;
-/// … as e^(−9) is less than this.
+/// … since e^(−9) is less than this.
 const INNER_BELL: f64 = 1.3e-4;
 
-/// A lump along rays `origin + t·direction` of unit direction, one a lane.
+/// A blob's field as a function of t on rays `origin + t·direction` with unit directions, one ray per lane.
 #[derive(Clone, Copy, Debug)]
-pub struct Course<R: Real> {
+pub struct BlobOnRay<R: Real> {
     kernel: Kernel,
     amplitude: R,
-    /// q is least here …
+    /// Parameter t at which q is smallest …
     center: R,
-    /// … and is this …
+    /// … the value of q there …
     least: R,
-    /// … and grows by this times the square of the distance from there.
+    /// … and its growth: `q = least + pace·(t − center)²`.
     pace: R,
-    /// `1/√pace`, or where that would be more than 10⁶ so much.
+    /// `1/√pace`, at most 10⁶.
     width: R,
-    /// Of a segment: where along it the ray is, `x = place + rate·t`.
+    /// For a segment: the position along it, `x = place + rate·t`, in kernel widths from its middle.
     place: R,
     rate: R,
-    segment: Option<Abreast<R::Scalar>>,
+    segment: Option<SegmentOnRay<R::Scalar>>,
 }
 
-/// What bounds a lump's field on a piece of a ray.
+/// Upper bounds on a blob's field on an interval of a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits<R> {
-    /// It is nowhere more than this.
+    /// Largest value.
     pub most: R,
-    /// Minus its second derivative is nowhere more than this, but in kinks.
+    /// Largest value of −f″, outside of kinks.
     pub bend: R,
-    /// In kinks its slope falls by no more than this, together.
+    /// Largest total drop of the slope in kinks.
     pub kink: R,
 }
 
-/// What is along a segment: it is |x| ≤ half.
+/// Extent of a segment along its axis, |x| ≤ half in kernel widths, and its ramp.
 #[derive(Clone, Copy, Debug)]
-struct Abreast<S> {
+struct SegmentOnRay<S> {
     half: S,
     long: bool,
     ramp: Option<Ramp<S>>,
 }
 
-/// A lump: a primitive whose course along rays is simple.
+/// A blob in local form: a point or a segment whose field along rays has closed-form bounds ([module](self)).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lump<S> {
+pub struct Blob<S> {
     kernel: Kernel,
     /// The kernel's width parameter.
     scale: S,
     amplitude: S,
-    segment: Option<Rod<S>>,
+    segment: Option<SegmentFrame<S>>,
 }
 
-/// The frame of a segment, and half its length in kernel widths.
+/// Local frame of a segment, and half its length in kernel widths.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Rod<S> {
+struct SegmentFrame<S> {
     half: S,
     axes: [[S; 3]; 3],
     ramp: Option<Ramp<S>>,
 }
 
-/// A bound on lumps' fields by the distance from their bones, one a lane: `peak·G(q)`, where
-/// `√q = scale·distance`; of compact kernels, which are convex in q, the chord 1−q.
+/// An upper bound on a blob's field by the distance from its bone, one blob per lane: `peak·G(q)` with `√q = scale·distance`;
+/// for compact kernels, which are convex in q, the chord `peak·(1−q)`.
 #[derive(Clone, Copy, Debug)]
 pub struct Ceiling<R> {
-    /// The field is nowhere more than this.
+    /// Bound on the field everywhere.
     pub peak: R,
     /// The kernel's width parameter.
     pub scale: R,
@@ -104,7 +103,7 @@ pub struct Ceiling<R> {
 }
 
 impl<R: Real> Ceiling<R> {
-    /// At this distance ≥ 0 from the bone, and beyond it, fields are at most this.
+    /// Returns the bound on the field at this distance ≥ 0 from the bone and beyond.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, distance: R) -> R {
@@ -117,14 +116,15 @@ impl<R: Real> Ceiling<R> {
 }
 
 impl Primitive {
-    /// The primitive as a lump, if it is one. Its place is [`Primitive::lump_middle`].
+    /// Returns the primitive as a blob about [`Primitive::blob_middle`]; `None` if it is none ([module](crate::blob)) or its width
+    /// or amplitude exceed single precision's range.
     #[must_use]
-    pub fn lump<S: Scalar>(&self) -> Option<Lump<S>> {
+    pub fn blob<S: Scalar>(&self) -> Option<Blob<S>> {
         let term = S::prepared(&self.prepared);
         let ends = self.kernel == Kernel::Gauss || self.kernel.is_compact();
         let plain = ends && self.tapered.is_none();
         let amplitude = self.prepared.double.amplitude;
-        // Larger ones leave single precision no room for derivatives.
+        // Derivatives of larger ones overflow single precision.
         if !(plain && amplitude > 0.0 && amplitude <= LARGEST && self.width <= LARGEST) {
             return None;
         }
@@ -142,7 +142,7 @@ impl Primitive {
                     return None;
                 }
                 let ramp = ramp.map(|ramp| ramp.cast(S::round));
-                Some(Rod {
+                Some(SegmentFrame {
                     half: *half,
                     axes: term.frame.axes,
                     ramp,
@@ -150,7 +150,7 @@ impl Primitive {
             }
             _ => return None,
         };
-        Some(Lump {
+        Some(Blob {
             kernel: self.kernel,
             scale: S::round(self.width),
             amplitude: term.amplitude,
@@ -158,15 +158,15 @@ impl Primitive {
         })
     }
 
-    /// The point's place, or the segment's middle.
+    /// Position of the point, or middle of the segment.
     #[must_use]
-    pub fn lump_middle(&self) -> DVec3 {
+    pub fn blob_middle(&self) -> DVec3 {
         DVec3::from_array(self.prepared.double.frame.origin)
     }
 }
 
-impl Lump<f32> {
-    /// A Gaussian point of such a width parameter, and such a field at its centre, if that leaves room for derivatives.
+impl Blob<f32> {
+    /// A Gaussian point with this width parameter and this field at its centre; `None` if its derivatives would overflow.
     pub(crate) fn point(scale: f64, amplitude: f64) -> Option<Self> {
         (amplitude > 0.0 && amplitude <= LARGEST && scale <= LARGEST).then_some(Self {
             kernel: Kernel::Gauss,
@@ -177,9 +177,8 @@ impl Lump<f32> {
     }
 }
 
-impl<S: Scalar> Lump<S> {
-    /// The square q of a distance from the bone, in units of the kernel's width, beyond which the field is at most
-    /// `level`.
+impl<S: Scalar> Blob<S> {
+    /// Returns the squared distance q from the bone, in kernel widths, beyond which the field is at most `level`.
     #[must_use]
     pub fn reach(&self, level: f64) -> f64 {
         if self.kernel != Kernel::Gauss {
@@ -188,13 +187,13 @@ impl<S: Scalar> Lump<S> {
         libm::log((self.peak() / level).max(1.0))
     }
 
-    /// The field is nowhere more than this.
+    /// Bound on the field everywhere.
     fn peak(&self) -> f64 {
         let amplitude = self.amplitude.lane(0);
         match &self.segment {
-            // The integral over an endless line.
-            Some(rod) => {
-                let factor = rod
+            // The integral over an infinite line.
+            Some(segment) => {
+                let factor = segment
                     .ramp
                     .map_or(1.0, |ramp| ramp.cast(|x| x.lane(0)).largest());
                 amplitude * factor * core::f64::consts::PI.sqrt()
@@ -203,8 +202,8 @@ impl<S: Scalar> Lump<S> {
         }
     }
 
-    /// What bounds the field by the distance from the bone. Beyond the ends of a segment of half length H, at
-    /// x along it, this holds because `erf(x+H) − erf(x−H) ≤ erfc(x−H) ≤ exp(−(x−H)²)`.
+    /// Returns a bound on the field by the distance from the bone. It holds beyond the ends of a segment of half length H, too, at x
+    /// along it, because `erf(x+H) − erf(x−H) ≤ erfc(x−H) ≤ exp(−(x−H)²)`.
     #[must_use]
     pub fn ceiling(&self) -> Ceiling<f64> {
         Ceiling {
@@ -214,26 +213,25 @@ impl<S: Scalar> Lump<S> {
         }
     }
 
-    /// From the middle to the end of the segment; of a point 0.
+    /// Vector from the segment's middle to its end; 0 for a point.
     #[must_use]
     pub fn half(&self) -> DVec3 {
-        self.segment.map_or(DVec3::ZERO, |rod| {
+        self.segment.map_or(DVec3::ZERO, |segment| {
             let scale = self.scale.lane(0);
-            let along = DVec3::from_array(rod.axes[0].map(|x| x.lane(0)));
-            along * (rod.half.lane(0) / (scale * scale))
+            let along = DVec3::from_array(segment.axes[0].map(|x| x.lane(0)));
+            along * (segment.half.lane(0) / (scale * scale))
         })
     }
 
-    /// The radius of a ball around the middle that holds all places within this square of the distance.
+    /// Radius of a ball about the middle that holds all points with `q ≤ square`.
     #[must_use]
     pub fn radius(&self, square: f64) -> f64 {
-        let half = self.segment.map_or(0.0, |rod| rod.half.lane(0));
+        let half = self.segment.map_or(0.0, |segment| segment.half.lane(0));
         (half + square.sqrt()) / self.scale.lane(0)
     }
 
-    /// The square of the distance at which the lump alone would have its surface, given its [`Lump::reach`] for
-    /// `level`; negative if it has none. A point's field is at least T from there inwards; near the ends of
-    /// a segment, and of a short one everywhere, it is less.
+    /// Returns the q at which the blob alone would have its surface, given its [`Blob::reach`] for `level`; negative if it has
+    /// none. A point's field is at least T from there inwards; a segment's is less near its ends, and everywhere if it is short.
     #[must_use]
     pub fn core(&self, square: f64, level: f64) -> f64 {
         if self.kernel == Kernel::Gauss {
@@ -250,15 +248,15 @@ impl<S: Scalar> Lump<S> {
         })
     }
 
-    /// About the largest slope that the field has where it is no more than T: across the bone, at this square of the distance,
-    /// where the lump alone would have its surface ([`Lump::core`]), or further out. A compact kernel's `|G′|√q` is no more
-    /// than `|G′|`, which falls; a Gaussian's falls from q = ½ on.
+    /// Estimates the largest slope of the field where it is at most T: perpendicular to the bone, at `q = core`
+    /// ([`Blob::core`]) or further out. A compact kernel's `|G′|√q` is at most `|G′|`, which falls; a Gaussian's falls from
+    /// q = ½ on.
     #[must_use]
     pub fn steepness(&self, core: f64) -> f64 {
         let scale = self.scale.lane(0);
         let twice = 2.0 * scale;
         if self.kernel == Kernel::Gauss {
-            let ramp = self.segment.and_then(|rod| rod.ramp);
+            let ramp = self.segment.and_then(|segment| segment.ramp);
             let ramp = ramp.map_or(0.0, |ramp| scale * ramp.cast(|x| x.lane(0)).steepness());
             return (twice * core.max(0.5).sqrt() + ramp) * THRESHOLD;
         }
@@ -276,7 +274,7 @@ impl<S: Scalar> Lump<S> {
     #[must_use]
     pub fn jet<R: Real<Scalar = S>>(&self, position: [R; 3]) -> Jet<R> {
         let amplitude = R::lift(self.amplitude);
-        let Some(rod) = &self.segment else {
+        let Some(segment) = &self.segment else {
             let scale = R::lift(self.scale);
             let jet = point::jet(self.kernel, position.map(|x| x * scale));
             let steep = amplitude * scale;
@@ -287,12 +285,12 @@ impl<S: Scalar> Lump<S> {
         };
         let frame = Frame {
             origin: [S::splat(0.0); 3],
-            axes: rod.axes,
+            axes: segment.axes,
         };
-        let segment = Segment { half: rod.half };
+        let bone = Segment { half: segment.half };
         let place = frame.local(position);
-        let mut jet = gauss::segment::jet(&segment, place).times(amplitude);
-        if let Some(ramp) = &rod.ramp {
+        let mut jet = gauss::segment::jet(&bone, place).times(amplitude);
+        if let Some(ramp) = &segment.ramp {
             let (factor, rise) = ramp.at(place[0]);
             let rise = rise * jet.value;
             jet = jet.times(factor);
@@ -304,29 +302,28 @@ impl<S: Scalar> Lump<S> {
         }
     }
 
-    /// The field along rays, given the middle relative to their origins.
+    /// The field on rays with these unit directions, given the blob's middle relative to their origins.
     #[inline(always)]
     #[must_use]
-    pub fn course<R: Real<Scalar = S>>(&self, middle: [R; 3], direction: [R; 3]) -> Course<R> {
+    pub fn on_ray<R: Real<Scalar = S>>(&self, middle: [R; 3], direction: [R; 3]) -> BlobOnRay<R> {
         let amplitude = R::lift(self.amplitude);
         let [ox, oy, oz] = middle;
         let [dx, dy, dz] = direction;
-        if let Some(rod) = &self.segment {
+        if let Some(segment) = &self.segment {
             // In the segment's frame; t = 0 at the ray's origin.
             let axis = |i: usize| {
-                let [ax, ay, az]: [S; 3] = rod.axes[i];
+                let [ax, ay, az]: [S; 3] = segment.axes[i];
                 let [ax, ay, az] = [ax, ay, az].map(R::lift);
                 (-(ax * ox + ay * oy + az * oz), ax * dx + ay * dy + az * dz)
             };
             let [(x, rate), (y, vy), (z, vz)] = [axis(0), axis(1), axis(2)];
             let pace = vy * vy + vz * vz;
-            // A ray along the segment is everywhere as far from it; what rounding says of where it is nearest
-            // means nothing.
+            // A ray parallel to the segment has no nearest point; without this, rounding would choose one.
             let still = R::splat(1e-12) * (pace + rate * rate);
             let zero = R::splat(0.0);
             let center = R::select(pace.lt(still), zero, -(y * vy + z * vz) / pace);
             let (y, z) = (y + vy * center, z + vz * center);
-            return Course {
+            return BlobOnRay {
                 kernel: self.kernel,
                 amplitude: amplitude * R::splat(1.0 / FRAC_2_SQRT_PI),
                 center,
@@ -335,10 +332,10 @@ impl<S: Scalar> Lump<S> {
                 width: R::splat(1.0) / pace.max(R::splat(1e-12)).sqrt(),
                 place: x,
                 rate,
-                segment: Some(Abreast {
-                    half: rod.half,
-                    long: rod.half.lane(0) >= LONG,
-                    ramp: rod.ramp,
+                segment: Some(SegmentOnRay {
+                    half: segment.half,
+                    long: segment.half.lane(0) >= LONG,
+                    ramp: segment.ramp,
                 }),
             };
         }
@@ -346,7 +343,7 @@ impl<S: Scalar> Lump<S> {
         let pace = scale * scale;
         // The cross product keeps the digits that a difference of squares would lose.
         let (x, y, z) = (oy * dz - oz * dy, oz * dx - ox * dz, ox * dy - oy * dx);
-        Course {
+        BlobOnRay {
             kernel: self.kernel,
             amplitude,
             center: ox * dx + oy * dy + oz * dz,
@@ -360,22 +357,22 @@ impl<S: Scalar> Lump<S> {
     }
 }
 
-impl<R: Real> Course<R> {
-    /// Value and derivative by t.
+impl<R: Real> BlobOnRay<R> {
+    /// Returns value and derivative at t.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, t: R) -> (R, R) {
         let ahead = self.center - t;
         let swift = self.pace * ahead;
         let (value, fall) = self.kernel.falling(self.least + swift * ahead);
-        let Some(abreast) = &self.segment else {
+        let Some(segment) = &self.segment else {
             let steep = self.amplitude * fall;
             return (self.amplitude * value, steep * (swift + swift));
         };
         let beside = self.amplitude * value;
-        let (share, change) = self.share(abreast, t);
+        let (share, change) = self.share(segment, t);
         let (value, slope) = (beside * share, beside * (change + (swift + swift) * share));
-        match &abreast.ramp {
+        match &segment.ramp {
             None => (value, slope),
             Some(ramp) => {
                 let (factor, rise) = ramp.at(self.place + self.rate * t);
@@ -384,7 +381,7 @@ impl<R: Real> Course<R> {
         }
     }
 
-    /// The same with a bound on the second derivative at t alone, as that of [`Course::most`].
+    /// Returns value and derivative at t, and a bound on −f″ at t alone, like that of [`BlobOnRay::most`].
     #[inline(always)]
     #[must_use]
     pub fn bent(&self, t: R) -> (R, R, R) {
@@ -400,8 +397,8 @@ impl<R: Real> Course<R> {
         (self.amplitude * value, steep * (swift + swift), bend)
     }
 
-    /// At no less than so far from where q is least −g″ is no more than this part of what it may be there: a
-    /// Gaussian's is `g·2k(1 − 2k(t−c)²)`, which is below 0 from the inflection on.
+    /// Factor on the bound on −g″ at this distance or more from the parameter where q is smallest: for a Gaussian
+    /// `−g″ = g·2k(1 − 2k(t−c)²)`, which is negative beyond the inflection.
     #[inline(always)]
     fn share_bent(&self, away: R) -> R {
         let one = R::splat(1.0);
@@ -412,7 +409,7 @@ impl<R: Real> Course<R> {
         }
     }
 
-    /// Upper bounds between two parameters.
+    /// Returns upper bounds between two parameters.
     #[inline(always)]
     #[must_use]
     pub fn most(&self, from: R, to: R) -> Limits<R> {
@@ -421,7 +418,7 @@ impl<R: Real> Course<R> {
         let square = self.least + self.pace * away * away;
         let (value, fall) = match &self.segment {
             None => self.kernel.falling_at_most(square),
-            // Few are near each other, so that a loose bound fails more often than it saves.
+            // Segments overlap less than points do, so a cheap loose bound fails more often than it saves.
             Some(_) => self.kernel.falling(square),
         };
         let twice = self.pace + self.pace;
@@ -431,26 +428,26 @@ impl<R: Real> Course<R> {
                 bend: self.amplitude * fall * twice * self.share_bent(away),
                 kink: R::splat(0.0),
             },
-            Some(abreast) => {
+            Some(segment) => {
                 let beside = self.amplitude * value;
-                let (share, [bell, tail]) = self.most_share(abreast, from, to);
+                let (share, [bell, tail]) = self.most_share(segment, from, to);
                 let most = beside * share;
                 let rate = self.rate.abs();
                 let furthest = (from - self.center).abs().max((to - self.center).abs());
-                // Each of the segment's points bends so much, as their distances change at most at the full rate; or, of
-                // what is beside the segment and what abreast, both bend, and their slopes' product counts twice.
+                // Two bounds, of which the smaller counts: each of the segment's points separately, with the full rate of
+                // change of its distance; or the product rule for the factor e^(−q) and the fraction on the segment.
                 let points = most * (twice + R::splat(2.0) * rate * rate);
                 let two = R::splat(2.0);
                 let ends = two * twice * furthest * bell + two * two * rate * tail;
                 let ends = R::splat(FRAC_2_SQRT_PI) * beside * rate * ends;
                 let bend = points.min(most * twice * self.share_bent(away) + ends);
-                let Some(ramp) = &abreast.ramp else {
+                let Some(ramp) = &segment.ramp else {
                     let kink = R::splat(0.0);
                     return Limits { most, bend, kink };
                 };
                 let [a, b] = [from, to].map(|t| self.place + self.rate * t);
                 let [factor, steep, kink] = ramp.most(a, b);
-                // |g′|, by what is beside the segment and what abreast.
+                // |g′| by the product rule, in the same two factors.
                 let slope =
                     most * twice * furthest + beside * bell * rate * R::splat(FRAC_2_SQRT_PI);
                 Limits {
@@ -462,14 +459,14 @@ impl<R: Real> Course<R> {
         }
     }
 
-    /// Whether this is the course of a Gaussian point.
+    /// Whether the blob is a Gaussian point.
     #[inline(always)]
     #[must_use]
     pub fn is_gaussian_point(&self) -> bool {
         self.kernel == Kernel::Gauss && self.segment.is_none()
     }
 
-    /// The course of a Gaussian point as what it is, for loops over nothing else: they are compiled without all other cases.
+    /// Copy with kernel and kind fixed, for loops over Gaussian points alone: the compiler drops all other cases.
     #[inline(always)]
     #[must_use]
     pub fn gaussian_point(self) -> Self {
@@ -481,25 +478,24 @@ impl<R: Real> Course<R> {
         }
     }
 
-    /// Whether its slope may jump.
+    /// Whether the slope may jump (at a ramp's kinks).
     #[inline(always)]
     #[must_use]
     pub fn has_kinks(&self) -> bool {
         self.segment
             .as_ref()
-            .is_some_and(|abreast| abreast.ramp.is_some())
+            .is_some_and(|segment| segment.ramp.is_some())
     }
 
-    /// Whether the largest value between two parameters is that at the further one, in all lanes: then
-    /// [`Course::bent`] there bounds what is between them, and no worse than [`Course::most`] would.
+    /// Whether the field rises up to `to` in all lanes: then [`BlobOnRay::bent`] at `to` bounds it on any interval that ends
+    /// there, as tightly as [`BlobOnRay::most`].
     #[inline(always)]
     #[must_use]
     pub fn rises_until(&self, to: R) -> bool {
         self.segment.is_none() && !R::any(self.center.lt(to))
     }
 
-    /// The parameters between which q is at most `square`. Where it never is, the first is greater than
-    /// the second.
+    /// Returns the parameters between which q is at most `square`; where it never is, the first is greater than the second.
     #[inline(always)]
     #[must_use]
     pub fn within(&self, square: R) -> [R; 2] {
@@ -509,32 +505,32 @@ impl<R: Real> Course<R> {
         let miss = room.lt(zero);
         let half = R::select(miss, R::splat(f64::NEG_INFINITY), half);
         let [mut near, mut far] = [self.center - half, self.center + half];
-        if let Some(abreast) = &self.segment {
-            // Where |x| ≤ half + √square, unless the ray runs across.
+        if let Some(segment) = &self.segment {
+            // Where |x| ≤ half + √square, unless the ray is perpendicular to the segment.
             let rate = self.rate.abs().max(R::splat(1e-12));
             let middle = -(self.rate.sign_to(self.place)) / rate;
-            let reach = (R::lift(abreast.half) + square.max(zero).sqrt()) / rate;
+            let reach = (R::lift(segment.half) + square.max(zero).sqrt()) / rate;
             near = near.max(middle - reach);
             far = far.min(middle + reach);
         }
         [near, far]
     }
 
-    /// `erf(x+half) − erf(x−half)` and its derivative by t.
+    /// Returns `erf(x+half) − erf(x−half)` and its derivative by t.
     #[inline(always)]
-    fn share(&self, abreast: &Abreast<R::Scalar>, t: R) -> (R, R) {
-        let half = R::lift(abreast.half);
+    fn share(&self, segment: &SegmentOnRay<R::Scalar>, t: R) -> (R, R) {
+        let half = R::lift(segment.half);
         let x = self.place + self.rate * t;
         let side = x.abs();
         let near = side - half;
         if !R::any(R::splat(-LONG).lt(near)) {
-            // No ray feels an end.
+            // No lane is near an end.
             return (R::splat(2.0), R::splat(0.0));
         }
         let bell = (near * near).decay();
         let mut share = reach(near, bell);
         let mut change = -bell;
-        if !abreast.long {
+        if !segment.long {
             let far = side + half;
             let bell = (far * far).decay();
             share = share - far.erfc(bell);
@@ -544,11 +540,11 @@ impl<R: Real> Course<R> {
         (share, change)
     }
 
-    /// Between two parameters: bounds on the share, and on `e^(−y²)` and `|y|e^(−y²)`, where y is how far along the segment
-    /// it is from either of its ends.
+    /// Returns bounds between two parameters on the fraction of [`Self::share`], and on `e^(−y²)` and `|y|e^(−y²)`, with y the
+    /// distance along the segment from either end.
     #[inline(always)]
-    fn most_share(&self, abreast: &Abreast<R::Scalar>, from: R, to: R) -> (R, [R; 2]) {
-        let half = R::lift(abreast.half);
+    fn most_share(&self, segment: &SegmentOnRay<R::Scalar>, from: R, to: R) -> (R, [R; 2]) {
+        let half = R::lift(segment.half);
         let (a, b) = (self.place + self.rate * from, self.place + self.rate * to);
         // The position nearest to the middle, and that furthest from it.
         let last = a.abs().max(b.abs()) - half;
@@ -562,7 +558,7 @@ impl<R: Real> Course<R> {
         let x = zero.max(a.min(b)).min(a.max(b));
         let near = x.abs() - half;
         let bell = (near * near).decay();
-        // What is nearest to an end of the segment; from the other end it is further.
+        // Distance of the interval from the nearer end; from the other end it is larger.
         let apart = near.max(-last).max(zero);
         let at_end = (apart * apart).decay();
         // y·e^(−y²) is largest at √½, and falls from there.

@@ -1,27 +1,27 @@
-//! A scene's lumps, ready to be listed: what lists say of each is computed once.
+//! A scene's blobs, prepared for lists of nearby blobs.
 use crate::beam::Beam;
 use crate::hierarchy::Hierarchy;
 use crate::nearby::{Extent, Near, Nearby, Other};
 use crate::soft::NEXT_TO_NOTHING;
-use field::{Bead, Cut, Lump, Primitive, THRESHOLD};
+use field::{Blob, ChainBlob, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Each lump is followed until its field is below this much of T, divided by the scene's number of primitives.
+/// Field, as a fraction of T divided by the number of primitives, at which a blob's reach ends.
 const LEFT_OUT: f64 = 2e-6;
 
-/// In kernel widths. At a Gaussian's own surface −F″ ≤ 2T; with h = 0.6, `h²·2T` is about what the climb
-/// allows ([`climb`](mod@crate::climb)).
+/// [`Near::lead`] in kernel widths. At a Gaussian's own surface −F″ ≤ 2T; with h = 0.6, `h²·2T` is about what the march's proof
+/// allows ([`climb`](mod@crate::blob_march)).
 const LEAD: f64 = 0.6;
 
-/// Of each of a scene's primitives what lists of lumps say of it, if it is one, or is as good as a sum of them.
+/// The blobs of each of a scene's primitives: itself, its blob chain, or none.
 #[derive(Default)]
-pub struct Stock {
+pub struct BlobSet {
     items: Vec<Item>,
-    /// Where each primitive's items end; they start where those of the primitive before it do.
+    /// End of each primitive's items; they start at the end of the primitive before it.
     ends: Vec<u32>,
-    /// Less than this of each lump is next to nothing.
+    /// Field of a blob below which it is negligible.
     least: f64,
 }
 
@@ -31,29 +31,29 @@ struct Item {
     extent: Extent<f32>,
 }
 
-/// Where there are more primitives that are no lumps, most packets meet one.
+/// Most primitives in a list that are no blobs; with more of them nearly every packet meets one.
 const MOST_OTHERS: usize = 16;
 
-/// Bones are cut into beads until there are this many in a scene.
-const MOST_BEADS: usize = 1 << 17;
+/// Number of points in blob chains in a scene after which no more chains are made.
+const MOST_CHAINED: usize = 1 << 17;
 
-impl Stock {
-    /// The lumps among a scene's primitives, given with their finishes and the bodies' ranges of primitives.
+impl BlobSet {
+    /// Collects the blobs of a scene's primitives, given their finishes and the bodies' ranges of primitives.
     #[must_use]
     pub fn new(primitives: &[Primitive], finish: &[u32], bodies: &[Range<u32>]) -> Self {
-        let mut beads = 0;
-        let strings: BTreeMap<usize, Vec<Bead>> = primitives
+        let mut chain = 0;
+        let strings: BTreeMap<usize, Vec<ChainBlob>> = primitives
             .iter()
             .enumerate()
             .filter_map(|(i, p)| {
-                let own = (beads < MOST_BEADS).then(|| p.beads()).flatten()?;
-                beads += own.len();
+                let own = (chain < MOST_CHAINED).then(|| p.blob_chain()).flatten()?;
+                chain += own.len();
                 Some((i, own))
             })
             .collect();
-        let left_out = LEFT_OUT * THRESHOLD / (primitives.len() + beads).max(1) as f64;
-        let mut stock = Self {
-            items: Vec::with_capacity(primitives.len() + beads),
+        let left_out = LEFT_OUT * THRESHOLD / (primitives.len() + chain).max(1) as f64;
+        let mut blob_set = Self {
+            items: Vec::with_capacity(primitives.len() + chain),
             ends: Vec::with_capacity(primitives.len()),
             least: NEXT_TO_NOTHING / LEFT_OUT * left_out,
         };
@@ -62,46 +62,46 @@ impl Stock {
             while bodies[body as usize].end as usize <= i {
                 body += 1;
             }
-            let item = |lump: Lump<f32>, middle: DVec3, square: f64, core: f64, part: bool| Item {
+            let item = |blob: Blob<f32>, middle: DVec3, square: f64, core: f64, part: bool| Item {
                 middle,
                 near: Near {
-                    lump,
+                    blob,
                     middle: [0.0; 3],
                     square: square as f32,
-                    // A little inside, so that rounding does not put it outside.
+                    // Slightly inside, whatever the rounding.
                     core: core as f32 - 1e-4,
                     part,
-                    lead: (LEAD / lump.ceiling().scale) as f32,
-                    steep: lump.steepness(core) as f32,
+                    lead: (LEAD / blob.ceiling().scale) as f32,
+                    steep: blob.steepness(core) as f32,
                     finish: finish[i],
                     body,
                     from: 0.0,
                 },
-                extent: Extent::of(&lump, lump.radius(square)),
+                extent: Extent::of(&blob, blob.radius(square)),
             };
-            if let Some(lump) = p.lump::<f32>() {
-                let square = lump.reach(left_out);
-                let core = lump.core(square, left_out);
-                stock
+            if let Some(blob) = p.blob::<f32>() {
+                let square = blob.reach(left_out);
+                let core = blob.core(square, left_out);
+                blob_set
                     .items
-                    .push(item(lump, p.lump_middle(), square, core, false));
-            } else if let Some(beads) = strings.get(&i) {
-                let lumps: Option<Vec<_>> = beads.iter().map(Bead::lump).collect();
-                let own = lumps.into_iter().flatten().zip(beads).map(|(lump, bead)| {
-                    // Where the bone has its surface if it goes on as it is there.
-                    let value = p.value(bead.center.to_array());
-                    let square = lump.reach(left_out);
+                    .push(item(blob, p.blob_middle(), square, core, false));
+            } else if let Some(chain) = strings.get(&i) {
+                let blobs: Option<Vec<_>> = chain.iter().map(ChainBlob::blob).collect();
+                let own = blobs.into_iter().flatten().zip(chain).map(|(blob, point)| {
+                    // The bone's surface, as if its field at the point were that of a Gaussian.
+                    let value = p.value(point.center.to_array());
+                    let square = blob.reach(left_out);
                     let core = libm::log(value / THRESHOLD).min(square);
-                    item(lump, bead.center, square, core, true)
+                    item(blob, point.center, square, core, true)
                 });
-                stock.items.extend(own);
+                blob_set.items.extend(own);
             }
-            stock.ends.push(stock.items.len() as u32);
+            blob_set.ends.push(blob_set.items.len() as u32);
         }
-        stock
+        blob_set
     }
 
-    /// The items of a primitive.
+    /// Blobs of a primitive.
     fn of(&self, primitive: usize) -> &[Item] {
         let start = primitive
             .checked_sub(1)
@@ -109,7 +109,7 @@ impl Stock {
         &self.items[start as usize..self.ends[primitive] as usize]
     }
 
-    /// The ball (middle, radius) beyond which a primitive is not followed, if it is a lump or some.
+    /// Ball (middle, radius) that holds a primitive's reach; `None` if it has no blobs.
     #[must_use]
     pub fn ball(&self, primitive: usize) -> Option<(DVec3, f64)> {
         let items = self.of(primitive);
@@ -119,34 +119,35 @@ impl Stock {
         Some((middle, radius))
     }
 
-    /// The balls beyond which each primitive is next to nothing, given those beyond which it is not followed.
+    /// Enlarges the tree of the primitives' balls to those outside which each is negligible.
     #[must_use]
     pub fn reaches(&self, tree: &Hierarchy) -> Hierarchy {
         tree.enlarged(|i, center, radius| {
             let reach = |item: &Item| {
-                let lump = &item.near.lump;
-                item.middle.distance(center) + lump.radius(lump.reach(self.least))
+                let blob = &item.near.blob;
+                item.middle.distance(center) + blob.radius(blob.reach(self.least))
             };
             let items = self.of(i as usize).iter();
             items.map(reach).fold(radius, Cut::at_least)
         })
     }
 
-    /// Whether a primitive that is a lump, or some, can be more than `level` in a ball; others are taken to be.
+    /// Whether one of a primitive's blobs may exceed `level` in a ball; true for primitives without blobs.
     #[must_use]
     pub fn counts(&self, primitive: usize, center: DVec3, radius: f64, level: f64) -> bool {
         let items = self.of(primitive);
         let more = |item: &Item| {
-            let (away, half) = (center - item.middle, item.near.lump.half());
+            let (away, half) = (center - item.middle, item.near.blob.half());
             let share = away.dot(half) / half.length_squared().max(f64::MIN_POSITIVE);
             let apart = (away - half * share.clamp(-1.0, 1.0)).length();
-            item.near.lump.ceiling().at((apart - radius).max(0.0)) > level
+            item.near.blob.ceiling().at((apart - radius).max(0.0)) > level
         };
         items.is_empty() || items.iter().any(more)
     }
 
-    /// Lists the lumps near a beam, up to a parameter, and the few other primitives there. False if those are more than a few.
-    /// `tree` holds the balls of all primitives, `reach` tells how far from its bone one is followed, given its ball's radius.
+    /// Lists the blobs near a beam, up to a parameter, and the other primitives there. Returns false if those are more than 16.
+    /// `tree` holds the balls of all primitives; `reach` returns the distance from its bone at which a primitive's reach ends, given
+    /// its ball's radius.
     pub fn list(
         &self,
         tree: &Hierarchy,
@@ -206,8 +207,7 @@ impl Stock {
     }
 }
 
-/// A parameter ≥ 0, rounded down to single precision, and an index, as one number that is larger for a larger parameter, or, if these
-/// are the same, a larger index: such are sorted quickly.
+/// Packs a parameter ≥ 0, rounded down to single precision, and an index into a sort key: ordered by parameter, then index.
 fn key(parameter: f64, index: u32) -> u64 {
     // Not −0.
     let parameter = parameter + 0.0;
@@ -220,7 +220,7 @@ fn key(parameter: f64, index: u32) -> u64 {
     u64::from(below.to_bits()) << 32 | u64::from(index)
 }
 
-/// What [`key`] was made of.
+/// Unpacks a [`key`] into parameter and index.
 fn unkey(key: u64) -> (f64, u32) {
     (f64::from(f32::from_bits((key >> 32) as u32)), key as u32)
 }
@@ -230,10 +230,10 @@ mod tests {
     use super::*;
     use field::{BlobScale, Kernel, Shaping, Skeleton};
 
-    /// What is said not to count in a ball is nowhere in it more than the level; and what is more there counts.
+    /// A primitive for which `counts` is false stays below the level in the whole ball.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn what_does_not_count_is_small_all_through_a_ball() {
+    fn primitives_that_do_not_count_stay_below_the_level() {
         let mut state = 4u64;
         let mut next = || {
             state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
@@ -246,7 +246,7 @@ mod tests {
             let skeleton = match case % 3 {
                 0 => Skeleton::Point { center: a },
                 1 => Skeleton::Segment { base: a, apex: b },
-                // As a string of beads.
+                // As a blob chain.
                 _ => Skeleton::Curve {
                     control: [a, b, c, a * 0.5],
                 },
@@ -261,16 +261,16 @@ mod tests {
                 taper: None,
             };
             let primitive = Primitive::new(skeleton, &shaping, None).expect("flesh");
-            let stock = Stock::new(
+            let blob_set = BlobSet::new(
                 core::slice::from_ref(&primitive),
                 &[0],
                 core::slice::from_ref(&(0..1)),
             );
-            assert!(stock.ball(0).is_some(), "{case} is no sum of lumps");
+            assert!(blob_set.ball(0).is_some(), "{case} is no sum of blobs");
             for _ in 0..40 {
                 let center = DVec3::new(next(), next(), next());
                 let radius = 0.4 * next().abs();
-                // Beads share what the bone has, each at its own place.
+                // The level counts for each of a chain's points.
                 let level = libm::exp10(-4.0 + 3.0 * next());
                 let value = |p: DVec3| primitive.value(p.to_array());
                 let within = (0..60).map(|_| {
@@ -278,8 +278,8 @@ mod tests {
                     center + aside.normalize_or_zero() * (radius * next().abs())
                 });
                 let most = within.map(value).fold(value(center), f64::max);
-                let items = stock.of(0).len() as f64;
-                if stock.counts(0, center, radius, level) {
+                let items = blob_set.of(0).len() as f64;
+                if blob_set.counts(0, center, radius, level) {
                     counting += 1;
                 } else {
                     small += 1;
@@ -295,7 +295,7 @@ mod tests {
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn what_is_no_lump_counts_anywhere() {
+    fn primitives_without_blobs_count_everywhere() {
         let shaping = Shaping {
             kernel: Kernel::Cauchy,
             radius: 0.2,
@@ -307,9 +307,9 @@ mod tests {
         };
         let corners = [DVec3::X, DVec3::Y, DVec3::Z];
         let face = Primitive::new(Skeleton::Triangle { corners }, &shaping, None).expect("flesh");
-        let stock = Stock::new(&[face], &[0], core::slice::from_ref(&(0..1)));
-        assert!(stock.ball(0).is_none());
-        assert!(stock.counts(0, DVec3::splat(1e6), 0.1, 1.0));
+        let blob_set = BlobSet::new(&[face], &[0], core::slice::from_ref(&(0..1)));
+        assert!(blob_set.ball(0).is_none());
+        assert!(blob_set.counts(0, DVec3::splat(1e6), 0.1, 1.0));
     }
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
@@ -337,7 +337,7 @@ mod tests {
             assert!(key >= before, "{place}");
             before = key;
         }
-        // What single precision cannot tell apart is in the order of the indices.
+        // Parameters that are equal in single precision are ordered by index.
         assert!(key(1.0 + 1e-12, 3) < key(1.0, 4) && key(1.0, 9) < key(1.1, 2));
     }
 }

@@ -1,6 +1,6 @@
-//! Upper bounds on a primitive's field by distance from its skeleton, and the depth of influence.
+//! Depth of influence, and the upper bounds on a field by distance from which it follows.
 //!
-//! All in units of the kernel's width and for a factor of 1.
+//! All lengths are in kernel widths, all fields for a factor of 1.
 use crate::bone::Bone;
 use crate::form::Form;
 use crate::{Cut, Kernel, Skeleton, plane, skeleton};
@@ -45,9 +45,9 @@ fn abreast(kernel: Kernel, length: f64, d: f64) -> f64 {
     form.jet([0.0, d, 0.0]).value
 }
 
-/// The field of any flat piece of this area: at most that of a disc of the same area around the foot
-/// of a perpendicular of length d. For of the piece, what is within a distance r of the point is
-/// within a disc of radius √(r²−d²), or, if the foot lies outside, within a ring of that area.
+/// Bound on the field of any planar region of this area at distance d: the field of a disc of the same area around the foot of
+/// a perpendicular of length d. The part of the region within a distance r of the point lies within a disc of radius √(r²−d²),
+/// or, if the foot lies outside, within a ring of that area.
 fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
     let q = d * d;
     // The difference of two integrals, unless it would have lost its digits.
@@ -60,29 +60,29 @@ fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
     }
 }
 
-/// A bound on the field of an arc. The Cauchy kernel has a sharp one; for others see [`Coil`].
+/// A bound on the field of an arc. The Cauchy kernel has a sharp one; for others see [`Crowding`].
 fn arc_bound(kernel: Kernel, length: f64, radius: f64, d: f64) -> f64 {
     let most = length * kernel.value(d);
     if kernel == Kernel::Cauchy {
         return most.at_most(circle(radius, d));
     }
     let outward = |a: f64, b: f64| kernel.between(a, b);
-    most.at_most(Coil::arc(length, radius).bound(d, |u| kernel.value(u), outward))
+    most.at_most(Crowding::arc(length, radius).bound(d, |u| kernel.value(u), outward))
 }
 
-/// How much of a bone can be near one place.
+/// Bound on the length of a bone within a ball: `gathers·δ` for a radius δ.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Coil {
-    /// Its length.
+pub(crate) struct Crowding {
+    /// Length of the bone.
     length: f64,
-    /// Larger balls than this may hold all of it; …
+    /// Largest radius δ for which the bound holds; larger balls may hold the whole bone.
     radius: f64,
-    /// … one of a radius δ up to that holds no more than this times δ.
+    /// Largest length within a ball, over the ball's radius.
     gathers: f64,
 }
 
-impl Coil {
-    /// Of an arc or a curve with a length, in units of the kernel's width.
+impl Crowding {
+    /// The bound for an arc or a curve of length `measure`, in kernel widths; `None` for other skeletons and without a length.
     pub fn of(skeleton: &Skeleton, measure: f64, width: f64) -> Option<Self> {
         let length = measure * width;
         let [radius, gathers] = match skeleton {
@@ -97,7 +97,7 @@ impl Coil {
         })
     }
 
-    /// Of an arc.
+    /// The bound for an arc.
     fn arc(length: f64, radius: f64) -> Self {
         Self {
             length,
@@ -106,10 +106,10 @@ impl Coil {
         }
     }
 
-    /// A bound on the integral over the bone of a falling function g of the distance, at distance d or more.
+    /// Returns a bound on the integral over the bone of a decreasing function g of the distance, at distance d or more.
     ///
-    /// A ball of radius δ holds no more than κδ of the bone up to some radius r: of a circle πδ up to its own radius; of a
-    /// curve see [`gathers`]. So with l the bone's length the integral is at most
+    /// A ball of radius δ ≤ r holds at most the length κδ of the bone: for a circle κ = π and r is its radius; for a curve see
+    /// [`gathers`]. So with l the bone's length the integral is at most
     /// `κd·g(d) + κ∫g + (l−κr)·g(r)`, the integral from d to the smaller of r and l/κ.
     /// `outward(a, b)` is the integral of g from a to b, or more.
     pub fn bound(&self, d: f64, g: impl Fn(f64) -> f64, outward: impl Fn(f64, f64) -> f64) -> f64 {
@@ -127,19 +127,19 @@ impl Coil {
     }
 }
 
-/// A ball of radius δ holds no more than so many times δ of a Bézier curve.
+/// Returns κ such that a ball of any radius δ holds at most the length κδ of a Bézier curve.
 ///
-/// Of a piece whose direction is nowhere further than φ from a mean one, 2δ/cos φ: along the mean direction all in the ball
-/// is within 2δ. The directions are within the cone of the control polygon's sides. Of any cubic 18δ: each of its three
-/// coordinates goes up and down no more than three times, within 2δ, and no piece is longer than its coordinates' ways
-/// together.
+/// A piece whose directions are within φ of a mean direction has at most 2δ/cos φ in the ball, since along the mean direction
+/// the ball is 2δ wide; its directions are within the cone of the control polygon's sides. Any cubic has at most 18δ: each of
+/// its three coordinates has at most three monotonic pieces, each within 2δ, and a curve is no longer than the sum of its
+/// coordinates' variations.
 fn gathers(control: [DVec3; 4]) -> f64 {
     const ANY: f64 = 18.0;
     let of_piece = |[a, b, c, d]: [DVec3; 4]| {
         let mean = (d - a).normalize_or_zero();
         let along = [b - a, c - b, d - c].map(|side| match side.try_normalize() {
             Some(way) => way.dot(mean),
-            // What has no direction leads nowhere.
+            // A control polygon without a direction has no length.
             None => 1.0,
         });
         let least = along.into_iter().fold(1.0, f64::min);
@@ -155,7 +155,7 @@ fn gathers(control: [DVec3; 4]) -> f64 {
             rest = next;
         }
         best = best.min(sum);
-        // Nothing that is cut in more pieces could have less.
+        // More pieces cannot give less.
         if best <= 2.0 * f64::from(pieces + 1) {
             break;
         }
@@ -192,7 +192,7 @@ pub(crate) fn depth(form: &Form<f64>, factor: f64, level: f64) -> f64 {
         return 0.0;
     }
     if form.kernel.is_compact() {
-        // A tapered bone's unit is the support where that is smallest.
+        // A tapered bone's unit of length is its smallest support.
         return match &form.bone {
             Bone::Curve(curve) => curve.support(),
             _ => 1.0,

@@ -1,13 +1,12 @@
-//! What the spans of a packet leave open: one ray at a time, in double precision.
+//! Root isolation along single rays in double precision, where the spans of a packet leave a ray in doubt.
 //!
-//! Where a ray grazes the surface, the field comes nearer to T than spans of single precision can tell.
-//! On such a stretch the field is interpolated by one cubic, and the stretch is halved until the error bound
-//! proves where the ray crosses, or the pieces are too short to matter. A primitive whose own error on a piece is next to
-//! nothing is *calm* there: its cubic stays, and the halves do not evaluate it any more. Where a profile has a kink
-//! or a jump the ray is cut.
+//! Where a ray grazes the surface, the field comes nearer to T than the error of single precision spans. On such an interval the
+//! field is interpolated by one cubic, and the interval is halved until the error bound isolates the crossings, or the pieces are
+//! shorter than the resolution. A primitive whose own error on a piece is negligible is *resolved* there: its cubic is kept, and
+//! the halves do not evaluate it again. At kinks and jumps of profiles the ray is cut.
 //!
-//! Where very many primitives count, most of them are far, and are interpolated together already. What that is off by mostly leaves
-//! no doubt, so that rays are first asked with these interpolants in place of the far ones ([`Given`]).
+//! Among very many primitives most are far away and have shared interpolants already. Their error seldom matters, so isolation is
+//! first tried with these interpolants in place of the far primitives ([`KnownPart`]).
 use crate::kinks::Kinks;
 use crate::ray::Ray;
 use crate::roots::bracketed;
@@ -17,41 +16,40 @@ use core::ops::Range;
 use field::bound::SpanLength;
 use field::{Bound, Cut, Primitive, THRESHOLD};
 
-/// Pieces that one packet may have looked at; what is left is decided by the signs at its ends.
+/// Most pieces of all rays of a packet; on the rest the signs at the ends decide.
 const MOST_PIECES: u32 = 1 << 16;
-/// A stretch may have the pieces that are left over this: where a ray runs along the surface no number would do, and
-/// what comes behind must not go short.
+/// An interval may use the remaining pieces over this: a ray that runs along the surface would use up any number, and later
+/// intervals need some.
 const AT_ONCE: u32 = 4;
-/// Of the pieces that a stretch may have, one over this is kept for what comes behind its next part, be that one from
-/// kink to kink or the near half of a piece. More would starve what lies in a small part of a long stretch, as
-/// each halving on the way there takes its share; what a part leaves is had by those behind it in any case.
+/// Of an interval's pieces, one over this is kept for the parts after the next one (from kink to kink, or the near half of a
+/// piece). A larger reserve would starve small parts of long intervals, as each halving takes its share; pieces that a part does
+/// not use go to those after it in any case.
 const KEPT: u32 = 8;
-/// But a part may have no fewer than these, if there are so many: they tell a few crossings apart.
-const FEW: u32 = 256;
-/// Pieces halved so often are not halved further: lengths that are not finite would never be short.
+/// Fewest pieces for a part, if there are as many left: enough to isolate a few crossings.
+const FEWEST_PIECES: u32 = 256;
+/// Largest number of halvings of a piece, also for lengths that are not finite.
 const DEEPEST: u32 = 50;
-/// A piece with so many primitives more counts as one more.
+/// Number of primitives for which a piece counts as one more.
 const LONG: u32 = 64;
-/// Calm primitives together are off by at most this part of T.
-const CALM: f64 = 1e-9;
+/// Largest error of all resolved primitives together, in T.
+const RESOLVED: f64 = 1e-9;
 /// Rounding of a field in double precision, relative to the sizes of its terms.
-const ROUNDING: f64 = 1e-12;
+const SUM_ROUNDING: f64 = 1e-12;
 /// The slope of a Hermite cubic is off by at most four times its error bound over its length (for bounds
 /// by the second derivative; for the fourth it is 3.08), and the slope's own Bernstein coefficients are 3/length times the
 /// differences of the cubic's. So the field is monotone where those are larger than the bound times this.
 pub const STEEP: f64 = 1.34;
 
-/// What is known of a part of the field along a stretch of a ray, in place of its primitives.
-pub struct Given<'a> {
-    /// Its value and slope.
+/// A part of the field along an interval of a ray, interpolated in place of its primitives.
+pub struct KnownPart<'a> {
+    /// Value and slope at a parameter.
     pub node: &'a dyn Fn(f64) -> Node<f64>,
-    /// The cubic between the stretch's ends is off by no more than this: so its slope is off by no more than about four times that over
-    /// the length. That of what is left out may be off by more: where the field is within `off` of T, it may cross T three times
-    /// instead of once.
+    /// Bound on the error of the cubic between the interval's ends, and so, times about four over the length, on that of its slope.
+    /// Left out terms may have a larger slope: where the field is within `off` of T, it may cross T three times instead of once.
     pub off: f64,
 }
 
-/// What [`Given`] is off by: nothing, if there is none.
+/// Error of the [`KnownPart`]; 0 without one.
 #[derive(Clone, Copy, Debug, Default)]
 struct Off {
     value: f64,
@@ -59,20 +57,20 @@ struct Off {
     steep: f64,
 }
 
-/// Settles what happens to rays of one packet.
+/// Isolates crossings of the rays of one packet.
 #[derive(Debug)]
-pub struct Settler {
-    /// The primitives that count on the stretch.
+pub struct RootIsolator {
+    /// Primitives that count on the interval.
     pub list: Vec<u32>,
     pieces: u32,
     off: Off,
-    /// Whether what is given is off by too much to tell.
+    /// Whether the known part's error was too large to decide.
     unsure: bool,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
 }
 
-impl Default for Settler {
+impl Default for RootIsolator {
     fn default() -> Self {
         Self {
             list: Vec::new(),
@@ -84,79 +82,79 @@ impl Default for Settler {
     }
 }
 
-/// A stretch of a ray that is being looked at.
+/// A piece of an interval.
 #[derive(Clone, Debug)]
 struct Piece {
     from: f64,
     to: f64,
     /// How many times halved.
     depth: u32,
-    /// How many pieces may be looked at in it.
+    /// Number of pieces that it may be cut into.
     most: u32,
-    /// What is calm, less T.
-    calm: Span<f64>,
-    /// The primitives that are not: a range of the list.
+    /// Sum of the resolved terms and the known part, less T.
+    resolved: Span<f64>,
+    /// The other primitives: a range of the list.
     rest: Range<usize>,
-    /// What those add up to at both ends.
+    /// Sum of their fields at both ends.
     ends: [Node<f64>; 2],
 }
 
-/// The primitives, and what is known of them.
+/// Primitives with their bounds and kinks.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight<'a> {
     /// All primitives.
     pub primitives: &'a [Primitive],
     /// Their bounds.
     pub bounds: &'a [Bound],
-    /// Where they are not smooth.
+    /// Kinks of their profiles.
     pub kinks: &'a Kinks,
 }
 
 /// The field along a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Along<'a> {
-    /// What makes it.
+    /// Its primitives.
     pub sight: Sight<'a>,
     /// The ray, its direction of unit length.
     pub ray: Ray,
-    /// Pieces shorter than this are not looked into.
+    /// Length below which pieces are not halved.
     pub resolution: f64,
 }
 
-impl Settler {
-    /// Calls `tell` with a stretch's start and whether it is inside the surface, and then with each crossing
-    /// and whether it enters, in order, until it says `false`.
+impl RootIsolator {
+    /// Calls `tell` with the start of an interval and whether it is inside the surface, and then with each crossing
+    /// and whether it enters, in order, until `tell` returns false.
     pub fn crossings(
         &mut self,
         along: &Along<'_>,
-        stretch: [f64; 2],
+        interval: [f64; 2],
         tell: impl FnMut(f64, bool) -> bool,
     ) {
         self.off = Off::default();
-        self.follow(along, stretch, &|_| Node::zero(), tell);
+        self.follow(along, interval, &|_| Node::zero(), tell);
     }
 
-    /// The same, of what is given and the listed primitives together. `None` if that is too far off to tell; the crossings of
-    /// the field are within what it is off by.
+    /// Crossings of the sum of a known part and the listed primitives, as of [`RootIsolator::crossings`]. `None` if the known part's
+    /// error leaves one in doubt.
     pub fn crossings_with(
         &mut self,
         along: &Along<'_>,
-        stretch: [f64; 2],
-        given: &Given<'_>,
+        interval: [f64; 2],
+        known: &KnownPart<'_>,
     ) -> Option<Vec<(f64, bool)>> {
         self.off = Off {
-            value: given.off,
-            steep: given.off / (stretch[1] - stretch[0]),
+            value: known.off,
+            steep: known.off / (interval[1] - interval[0]),
         };
         self.unsure = false;
         let pieces = self.pieces;
         let mut told = Vec::new();
-        self.follow(along, stretch, given.node, |t, inside| {
+        self.follow(along, interval, known.node, |t, inside| {
             told.push((t, inside));
             true
         });
         if self.unsure {
-            // Those that all primitives need.
+            // The search with all primitives gets them.
             self.pieces = pieces;
             return None;
         }
@@ -167,11 +165,11 @@ impl Settler {
         &mut self,
         along: &Along<'_>,
         [from, to]: [f64; 2],
-        given: &dyn Fn(f64) -> Node<f64>,
+        known: &dyn Fn(f64) -> Node<f64>,
         mut tell: impl FnMut(f64, bool) -> bool,
     ) {
-        // What every primitive may be off by where it is calm.
-        let share = CALM * THRESHOLD / self.list.len().max(1) as f64;
+        // Error up to which a primitive counts as resolved.
+        let share = RESOLVED * THRESHOLD / self.list.len().max(1) as f64;
         let mut start = from;
         let parts = self.kinks(along, [from, to]);
         let mut left = self.pieces / AT_ONCE;
@@ -197,18 +195,18 @@ impl Settler {
             let before = self.pieces;
             let rest = 0..self.list.len();
             let ends = [first, last].map(|t| self.sum(along, &rest, t));
-            let given = Span::hermite(given(first), given(last), last - first);
-            let calm = Span([-THRESHOLD; 4]).plus(given);
+            let known = Span::hermite(known(first), known(last), last - first);
+            let resolved = Span([-THRESHOLD; 4]).plus(known);
             let piece = Piece {
                 from: first,
                 to: last,
                 depth: 0,
                 most,
-                calm,
+                resolved,
                 rest,
                 ends,
             };
-            if !tell(first, calm.0[0] + ends[0].value >= 0.0)
+            if !tell(first, resolved.0[0] + ends[0].value >= 0.0)
                 || !self.between(along, share, piece, &mut tell)
             {
                 return;
@@ -217,7 +215,7 @@ impl Settler {
         }
     }
 
-    /// Where the primitives of the list are not smooth between two parameters, and the second of these, in order.
+    /// Returns the kinks of the listed primitives between two parameters, and the second parameter, in order.
     fn kinks(&self, along: &Along<'_>, [from, to]: [f64; 2]) -> Vec<f64> {
         let mut found = vec![to];
         if along.sight.kinks.is_empty() {
@@ -235,7 +233,7 @@ impl Settler {
         found
     }
 
-    /// What some primitives of the list add up to.
+    /// Sum of some primitives of the list at t.
     fn sum(&mut self, along: &Along<'_>, range: &Range<usize>, t: f64) -> Node<f64> {
         let point = along.ray.at(t).to_array();
         let sum = self.list[range.clone()]
@@ -245,7 +243,7 @@ impl Settler {
         sum
     }
 
-    /// The crossings on a piece; whether more are wanted.
+    /// Reports the crossings on a piece; returns false if `tell` did.
     fn between(
         &mut self,
         along: &Along<'_>,
@@ -264,9 +262,9 @@ impl Settler {
         let radius = 0.5 * length * (1.0 + 1e-9);
         let span_length = SpanLength::new(length);
         let (mut above, mut size) = (0.0, THRESHOLD);
-        let mut error = CALM * THRESHOLD;
+        let mut error = RESOLVED * THRESHOLD;
         let places = [piece.from, piece.to].map(|t| along.ray.at(t).to_array());
-        let mut calm = [Node::zero(); 2];
+        let mut resolved = [Node::zero(); 2];
         let bottom = self.list.len();
         for at in piece.rest.clone() {
             let p = self.list[at];
@@ -280,7 +278,7 @@ impl Settler {
             let estimate = bound.estimate(bound.nearness(center, radius), &span_length);
             size += estimate.magnitude.at_most(LARGE_TERM);
             if estimate.error <= share {
-                calm = [0, 1].map(|i| calm[i].plus(along.node(p, places[i])));
+                resolved = [0, 1].map(|i| resolved[i].plus(along.node(p, places[i])));
                 self.evaluations += 2;
                 continue;
             }
@@ -291,17 +289,26 @@ impl Settler {
             }
         }
         piece.rest = bottom..self.list.len();
-        piece.calm = piece.calm.plus(Span::hermite(calm[0], calm[1], length));
-        for (end, calm) in piece.ends.iter_mut().zip(calm) {
-            end.value -= calm.value;
-            end.slope -= calm.slope;
+        piece.resolved = piece
+            .resolved
+            .plus(Span::hermite(resolved[0], resolved[1], length));
+        for (end, resolved) in piece.ends.iter_mut().zip(resolved) {
+            end.value -= resolved.value;
+            end.slope -= resolved.slope;
         }
-        let more = self.decide(along, share, &piece, above, error + ROUNDING * size, tell);
+        let more = self.decide(
+            along,
+            share,
+            &piece,
+            above,
+            error + SUM_ROUNDING * size,
+            tell,
+        );
         self.list.truncate(bottom);
         more
     }
 
-    /// The crossings on a piece of which all is known; whether more are wanted.
+    /// Decides a piece by its cubic and error bound, or halves it; returns false if `tell` did.
     fn decide(
         &mut self,
         along: &Along<'_>,
@@ -313,14 +320,14 @@ impl Settler {
     ) -> bool {
         let length = piece.to - piece.from;
         let steep = STEEP * (error + self.off.steep * length);
-        // So near to T what is given tells nothing.
+        // Within this of T the known part's error decides, however short the piece.
         let vague = self.off.value - error;
         let error = error + self.off.value;
-        if piece.calm.max() + above < -error {
+        if piece.resolved.max() + above < -error {
             return true;
         }
         let [left, right] = piece.ends;
-        let span = piece.calm.plus(Span::hermite(left, right, length));
+        let span = piece.resolved.plus(Span::hermite(left, right, length));
         let [a, b, c, d] = span.0;
         if span.max() < -error || span.min() > error {
             return true;
@@ -336,12 +343,12 @@ impl Settler {
         }
         let t = 0.5 * (piece.from + piece.to);
         let middle = self.sum(along, &piece.rest, t);
-        let [near, far] = piece.calm.halves();
+        let [near, far] = piece.resolved.halves();
         let near = Piece {
             to: t,
             depth: piece.depth + 1,
             most: next_share(piece.most),
-            calm: near,
+            resolved: near,
             ends: [left, middle],
             ..piece.clone()
         };
@@ -349,19 +356,19 @@ impl Settler {
         if !self.between(along, share, near, tell) {
             return false;
         }
-        // What the near half left is the far one's.
+        // The far half gets the pieces that the near one left.
         let far = Piece {
             from: t,
             depth: piece.depth + 1,
             most: piece.most.saturating_sub(before - self.pieces),
-            calm: far,
+            resolved: far,
             ends: [middle, right],
             ..piece.clone()
         };
         self.between(along, share, far, tell)
     }
 
-    /// The same where no shorter piece would tell more: the signs at its ends decide, unless it is what is given that leaves it in doubt.
+    /// Decides a piece that is not halved further: by the signs at its ends, unless the known part's error leaves it in doubt.
     fn give_up(
         &mut self,
         along: &Along<'_>,
@@ -375,21 +382,23 @@ impl Settler {
         self.refine(along, piece, tell)
     }
 
-    /// The crossing on a piece if its ends are on different sides.
+    /// Reports the crossing on a piece whose ends have different signs.
     fn refine(
         &mut self,
         along: &Along<'_>,
         piece: &Piece,
         tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
-        let Piece { from, to, calm, .. } = *piece;
-        let enters = calm.0[3] + piece.ends[1].value >= 0.0;
-        if (calm.0[0] + piece.ends[0].value >= 0.0) == enters {
+        let Piece {
+            from, to, resolved, ..
+        } = *piece;
+        let enters = resolved.0[3] + piece.ends[1].value >= 0.0;
+        if (resolved.0[0] + piece.ends[0].value >= 0.0) == enters {
             return true;
         }
         let excess = |t: f64| {
             let rest = self.sum(along, &piece.rest, t);
-            let (value, slope) = calm.value_and_slope((t - from) / (to - from));
+            let (value, slope) = resolved.value_and_slope((t - from) / (to - from));
             (rest.value + value, rest.slope + slope / (to - from))
         };
         let within = 1e-3 * along.resolution;
@@ -397,13 +406,13 @@ impl Settler {
     }
 }
 
-/// What the next part may have of the pieces that it and those behind it may.
+/// Number of pieces for the next part, of those for it and the parts after it.
 fn next_share(pieces: u32) -> u32 {
-    (pieces - pieces / KEPT).max(FEW).min(pieces)
+    (pieces - pieces / KEPT).max(FEWEST_PIECES).min(pieces)
 }
 
 impl Along<'_> {
-    /// A primitive's field and its slope along the ray, at a place on it.
+    /// Field of a primitive and its slope along the ray, at a point on it.
     fn node(&self, primitive: u32, place: [f64; 3]) -> Node<f64> {
         let jet = self.sight.primitives[primitive as usize].jet(place);
         let [gx, gy, gz] = jet.gradient;
@@ -421,11 +430,11 @@ mod tests {
     use field::{BlobScale, Kernel, Shaping, Skeleton};
     use glam::DVec3;
 
-    /// Crossings that are told with something given are those of the field, whatever that really is, within what it is off by; where
-    /// that decides nothing is told.
+    /// Crossings with a known part are those of the field, whatever the error within the bound; where the error decides there is no
+    /// answer.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn what_is_given_hides_no_crossing() {
+    fn a_known_part_hides_no_crossing() {
         const OFF: f64 = 1e-2;
         const LENGTH: f64 = 2.0;
         let shaping = Shaping {
@@ -457,23 +466,23 @@ mod tests {
                 },
                 resolution: 1e-7,
             };
-            // A third of T is given.
-            let given = Given {
+            // A third of T is known.
+            let known = KnownPart {
                 node: &|_| Node {
                     value: 0.3,
                     slope: 0.0,
                 },
                 off: OFF,
             };
-            let mut settler = Settler::default();
+            let mut settler = RootIsolator::default();
             settler.list.extend([0, 1]);
-            let Some(told) = settler.crossings_with(&along, [0.0, LENGTH], &given) else {
+            let Some(told) = settler.crossings_with(&along, [0.0, LENGTH], &known) else {
                 unsure += 1;
                 continue;
             };
             told_of += told.len() - 1;
             for phase in 0..8 {
-                // Its slope is off by no more than four times that over the length, too.
+                // The slope's error is at most four times that over the length.
                 let really = |t: f64| {
                     let wave = libm::cos(f64::from(phase) + 4.0 * t / LENGTH);
                     let point = along.ray.at(t).to_array();
@@ -500,10 +509,10 @@ mod tests {
         );
     }
 
-    /// Where what is given may be off so that a slope is turned round, one crossing may be three.
+    /// Where the known part's error may change the sign of the slope, one crossing may be three.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn a_slope_that_may_be_turned_is_not_told() {
+    fn slopes_of_unknown_sign_are_not_decided() {
         let sight = Sight {
             primitives: &[],
             bounds: &[],
@@ -519,17 +528,17 @@ mod tests {
         };
         // `slope·u − off·sin 2u`, u = t − 1, crosses T three times where the slope is less than 2·off.
         for (slope, told) in [(0.015, None), (0.03, Some(2)), (1.0, Some(2))] {
-            let given = Given {
+            let known = KnownPart {
                 node: &|t| Node {
                     value: THRESHOLD + slope * (t - 1.0),
                     slope,
                 },
                 off: 0.01,
             };
-            let mut settler = Settler::default();
-            let crossings = settler.crossings_with(&along, [0.0, 2.0], &given);
+            let mut settler = RootIsolator::default();
+            let crossings = settler.crossings_with(&along, [0.0, 2.0], &known);
             assert_eq!(crossings.map(|told| told.len()), told, "{slope}");
-            // What told nothing takes no pieces from what does.
+            // A search without an answer uses up no pieces.
             assert_eq!(settler.pieces == MOST_PIECES, told.is_none(), "{slope}");
         }
     }

@@ -1,11 +1,11 @@
-//! What is promised of beads: together they are as good as the bone that they stand for.
+//! Blob chains add up to the bone they stand for.
 mod common;
 
 use common::{Random, primitive};
 use field::{Kernel, Primitive, Real, Skeleton, THRESHOLD, Taper};
 use glam::DVec3;
 
-/// Gaussian bones of each kind that has beads, from short to long in kernel widths.
+/// Gaussian bones of each kind that has a chain, from short to long in kernel widths.
 fn cases() -> Vec<(Primitive, f64)> {
     let mut random = Random::new(71);
     (0..240)
@@ -68,21 +68,21 @@ fn cases() -> Vec<(Primitive, f64)> {
 }
 
 tests! {
-    fn beads_add_up_to_the_bone() {
+    fn chains_add_up_to_the_bone() {
         let mut random = Random::new(72);
         let (mut strings, mut near) = ([0; 4], 0);
         for (i, (primitive, exact)) in cases().into_iter().enumerate() {
-            let Some(beads) = primitive.beads() else { continue };
+            let Some(chain) = primitive.blob_chain() else { continue };
             strings[i % 4] += 1;
             for _ in 0..40 {
-                let bead = random.pick(&beads);
-                let away = random.direction() * random.range(0.0, 3.0) / bead.scale;
-                let point = bead.center + away;
-                let of = |bead: &field::Bead| {
-                    let u = bead.scale * bead.center.distance(point);
-                    bead.amplitude * Real::exp(-u * u)
+                let blob = random.pick(&chain);
+                let away = random.direction() * random.range(0.0, 3.0) / blob.scale;
+                let point = blob.center + away;
+                let of = |blob: &field::ChainBlob| {
+                    let u = blob.scale * blob.center.distance(point);
+                    blob.amplitude * Real::exp(-u * u)
                 };
-                let sum: f64 = beads.iter().map(of).sum();
+                let sum: f64 = chain.iter().map(of).sum();
                 let value = primitive.value(point.to_array());
                 assert!((sum - value).abs() <= exact * (value + 0.01 * THRESHOLD), "{:?} {:?} width {} {point}: {sum} {value}", primitive.skeleton, primitive.tapered, primitive.width);
                 near += u32::from(value > 0.1 * THRESHOLD);
@@ -91,11 +91,11 @@ tests! {
         assert!(strings.iter().all(|&n| n > 30) && near > 2000, "{strings:?} {near}");
     }
 
-    /// What has no beads: straight long bones and faces, other kernels, what takes away, and what is very long.
+    /// No chain: long straight bones, other kernels, bones that subtract, very long bones.
     fn other_bones_have_none() {
         let bone = |kernel: Kernel, strength: f64, skeleton: Skeleton| {
             let shaping = field::Shaping { kernel, strength, ..common::shaping(1.0, -1.0) };
-            primitive(skeleton, &shaping, None).beads()
+            primitive(skeleton, &shaping, None).blob_chain()
         };
         let arc = |radius: f64| Skeleton::Arc { center: DVec3::ZERO, u: DVec3::X, v: DVec3::Y, radius, angle: 2.0 };
         assert!(bone(Kernel::Gauss, 1.0, arc(2.0)).is_some());

@@ -1,8 +1,8 @@
-//! What is promised of lumps: their course along rays is the field's, and its bounds hold.
+//! Blobs along rays: values are the field's, and bounds hold.
 mod common;
 
 use common::{Random, primitive};
-use field::{Kernel, Limits, Lump, Primitive, Profile, Real, Skeleton, Wave};
+use field::{Blob, Kernel, Limits, Primitive, Profile, Real, Skeleton, Wave};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -14,7 +14,7 @@ const KERNELS: [Kernel; 5] = [
     Kernel::Compact6,
 ];
 
-/// Lumps of each kind, with a ray that may run through the middle, along the segment, or far away.
+/// Blobs of each kind, with a ray that may run through the middle, along the segment, or far away.
 fn cases() -> Vec<(Primitive, DVec3, DVec3)> {
     let mut random = Random::new(51);
     let mut cases = Vec::new();
@@ -45,32 +45,32 @@ fn cases() -> Vec<(Primitive, DVec3, DVec3)> {
         };
         let profile = (i % 8 == 0).then_some(ramp);
         let primitive = primitive(skeleton, &shaping, profile);
-        if primitive.lump::<f64>().is_none() {
+        if primitive.blob::<f64>().is_none() {
             continue;
         }
         let aside = random.vector(2.0 * size) * random.pick(&[0.0, 1e-7, 0.3, 1.0]);
         let other = random.direction();
         let direction = random.pick(&[along, other]);
-        let origin = primitive.lump_middle() + aside - direction * size * random.range(0.0, 20.0);
+        let origin = primitive.blob_middle() + aside - direction * size * random.range(0.0, 20.0);
         cases.push((primitive, origin, direction));
     }
     cases
 }
 
-fn course<R: Real>(primitive: &Primitive, origin: DVec3, direction: DVec3) -> field::Course<R> {
-    let lump: Lump<R::Scalar> = primitive.lump().expect("a lump");
-    let middle = (primitive.lump_middle() - origin).to_array().map(R::splat);
-    lump.course(middle, direction.to_array().map(R::splat))
+fn on_ray<R: Real>(primitive: &Primitive, origin: DVec3, direction: DVec3) -> field::BlobOnRay<R> {
+    let blob: Blob<R::Scalar> = primitive.blob().expect("a blob");
+    let middle = (primitive.blob_middle() - origin).to_array().map(R::splat);
+    blob.on_ray(middle, direction.to_array().map(R::splat))
 }
 
 tests! {
     /// Value and slope are those of the primitive, exactly in double and nearly in single precision.
-    fn a_course_is_the_field_along_the_ray() {
+    fn a_blob_on_a_ray_is_the_field() {
         let cases = cases();
         assert!(cases.len() > 200, "{}", cases.len());
         for (primitive, origin, direction) in cases {
-            let exact = course::<f64>(&primitive, origin, direction);
-            let shipped = course::<f32x8>(&primitive, origin, direction);
+            let exact = on_ray::<f64>(&primitive, origin, direction);
+            let shipped = on_ray::<f32x8>(&primitive, origin, direction);
             for i in 0..60 {
                 let t = f64::from(i) * 0.4 / primitive.width;
                 let jet = primitive.jet((origin + direction * t).to_array());
@@ -83,8 +83,8 @@ tests! {
                 let (value, change) = shipped.at(f32x8::splat(t as f32));
                 assert!((value.lane(3) - jet.value).abs() < 3e-4 * size, "{primitive:?} {t}: {} {jet:?}", value.lane(3));
                 assert!((change.lane(3) - slope).abs() < 3e-3 * size * steep, "{primitive:?} {t}");
-                let lump: Lump<f64> = primitive.lump().expect("a lump");
-                let own = lump.jet((origin + direction * t - primitive.lump_middle()).to_array());
+                let blob: Blob<f64> = primitive.blob().expect("a blob");
+                let own = blob.jet((origin + direction * t - primitive.blob_middle()).to_array());
                 assert!((own.value - jet.value).abs() < 1e-12 * size, "{primitive:?} {t}");
                 for (a, b) in own.gradient.into_iter().zip(jet.gradient) {
                     assert!((a - b).abs() < 1e-11 * size * steep, "{primitive:?} {t}");
@@ -93,14 +93,14 @@ tests! {
         }
     }
 
-    /// At no distance from the bone is the field larger than its ceiling, and near the middle of the bone it is about that.
+    /// The ceiling bounds the field at every distance from the bone, and is tight near the bone's middle.
     fn ceilings_hold() {
         let mut random = Random::new(53);
         let mut tight = 0;
         for (primitive, _, _) in cases() {
-            let lump: Lump<f64> = primitive.lump().expect("a lump");
-            let (ceiling, half) = (lump.ceiling(), lump.half());
-            let middle = primitive.lump_middle();
+            let blob: Blob<f64> = primitive.blob().expect("a blob");
+            let (ceiling, half) = (blob.ceiling(), blob.half());
+            let middle = primitive.blob_middle();
             let [a, b] = [middle - half, middle + half];
             for _ in 0..40 {
                 let along = random.range(-1.2, 1.2);
@@ -117,24 +117,23 @@ tests! {
         assert!(tight > 1000, "{tight}");
     }
 
-    /// On any piece nothing is larger, nothing bends down more, and where a course says that it rises the end is the
-    /// largest.
+    /// Bounds on values and second derivatives hold on random intervals; where `rises_until` is true the end is largest.
     fn bounds_on_pieces_hold() {
         let mut random = Random::new(52);
         let mut tight = 0;
         for (primitive, origin, direction) in cases() {
-            let course = course::<f64>(&primitive, origin, direction);
+            let on_ray = on_ray::<f64>(&primitive, origin, direction);
             for _ in 0..20 {
                 let from = random.range(0.0, 20.0) / primitive.width;
                 let to = from + random.decades(-3.0, 1.0) / primitive.width;
-                let Limits { most, bend, kink } = course.most(from, to);
+                let Limits { most, bend, kink } = on_ray.most(from, to);
                 let (mut largest, mut bent) = (0.0f64, 0.0f64);
                 let step = (to - from) / 40.0;
                 let at = |i: u32| from + step * f64::from(i);
                 for i in 0..=40 {
-                    largest = largest.max(course.at(at(i)).0);
+                    largest = largest.max(on_ray.at(at(i)).0);
                     if i > 0 && step * primitive.width > 1e-3 {
-                        bent = bent.max((course.at(at(i - 1)).1 - course.at(at(i)).1) / step);
+                        bent = bent.max((on_ray.at(at(i - 1)).1 - on_ray.at(at(i)).1) / step);
                     }
                 }
                 let room = 1e-9 * (1.0 + largest);
@@ -143,10 +142,10 @@ tests! {
                 let most_bent = bend * (1.0 + 1e-6) + 1e-6 * steep + kink / step;
                 assert!(bent <= most_bent, "{primitive:?} {from} {to}: {bent} {bend} {kink}");
                 tight += u32::from(most <= largest * 1.001 + 1e-12);
-                let (value, slope, here) = course.bent(to);
-                let (same, change) = course.at(to);
+                let (value, slope, here) = on_ray.bent(to);
+                let (same, change) = on_ray.at(to);
                 assert!(value == same && (slope - change).abs() <= 1e-12 * (1.0 + change.abs()));
-                if course.rises_until(to) {
+                if on_ray.rises_until(to) {
                     assert!((value - most).abs() <= room && (here - bend).abs() <= 1e-9 * (1.0 + bend));
                 }
             }
@@ -154,21 +153,21 @@ tests! {
         assert!(tight > 2000, "{tight}");
     }
 
-    /// As shipped bounds hold, too, and those of points are not much more than exact ones: Gaussian ones 7 %.
+    /// Bounds hold in single precision, too, and those of points exceed double precision's by at most 7 %.
     fn bounds_in_single_precision_hold() {
         let mut random = Random::new(55);
         let (mut loose, mut rising) = (0, 0);
         for (primitive, origin, direction) in cases() {
-            let exact = course::<f64>(&primitive, origin, direction);
-            let shipped = course::<f32x8>(&primitive, origin, direction);
-            let ceiling = primitive.lump::<f32>().expect("a lump").ceiling();
+            let exact = on_ray::<f64>(&primitive, origin, direction);
+            let shipped = on_ray::<f32x8>(&primitive, origin, direction);
+            let ceiling = primitive.blob::<f32>().expect("a blob").ceiling();
             let within: [f64; 8] = core::array::from_fn(|_| random.range(0.0, 6.0) / primitive.width);
             let lanes = |x: f64| f32x8::splat(x as f32);
             let [peak, scale, compact] = [ceiling.peak, ceiling.scale, ceiling.compact].map(lanes);
             let most = field::Ceiling { peak, scale, compact }.at(f32x8::from_lanes(|i| within[i]));
             for (i, distance) in within.into_iter().enumerate() {
                 let (most, want) = (most.lane(i), ceiling.at(distance));
-                // 2·10⁻³⁸ of the peak is what bounds do not go below.
+                // Bounds are at least 2·10⁻³⁸ of the peak.
                 let room = 1e-5 * want + 1e-6 * (ceiling.compact + 1e-30) * ceiling.peak;
                 assert!(most >= want - room && most <= 1.07 * want + room, "{primitive:?} {distance}: {most} {want}");
             }
@@ -198,7 +197,7 @@ tests! {
                 loose += u32::from(most > 1.03 * want.most + 1e-5);
             }
             if shipped.rises_until(ends[1]) {
-                // What stands in for it there is no worse.
+                // `bent`, its substitute there, is as tight.
                 let (value, _, here) = shipped.bent(ends[1]);
                 for i in 0..8 {
                     let (value, here) = (value.lane(i), here.lane(i));
@@ -210,13 +209,13 @@ tests! {
         assert!(loose > 100 && rising > 100, "{loose} {rising}");
     }
 
-    /// Where a ramp stops to rise the slope falls by what is said, and where it begins to it does not fall.
-    fn kinks_of_ramps_are_told() {
+    /// Where a ramp stops to rise the slope falls by at most `Limits::kink`; where it starts to rise it does not fall.
+    fn kinks_of_ramps_are_bounded() {
         let mut random = Random::new(54);
         let mut falls = 0;
         for (primitive, ..) in cases() {
-            let lump: Lump<f64> = primitive.lump().expect("a lump");
-            let half = lump.half();
+            let blob: Blob<f64> = primitive.blob().expect("a blob");
+            let half = blob.half();
             if primitive.profile.is_none() {
                 continue;
             }
@@ -224,12 +223,12 @@ tests! {
                 let direction = random.direction();
                 let aside = random.vector(1.0 / primitive.width);
                 // The ray passes the plane at the end of the segment here.
-                let place = primitive.lump_middle() + half * end + (aside - half.normalize() * aside.dot(half.normalize()));
+                let place = primitive.blob_middle() + half * end + (aside - half.normalize() * aside.dot(half.normalize()));
                 let away = 3.0 / primitive.width;
-                let course = course::<f64>(&primitive, place - direction * away, direction);
+                let on_ray = on_ray::<f64>(&primitive, place - direction * away, direction);
                 let near = 1e-6 / primitive.width;
-                let Limits { bend, kink, .. } = course.most(away - near, away + near);
-                let fall = course.at(away - near).1 - course.at(away + near).1;
+                let Limits { bend, kink, .. } = on_ray.most(away - near, away + near);
+                let fall = on_ray.at(away - near).1 - on_ray.at(away + near).1;
                 assert!(fall <= kink + 2.0 * near * bend + 1e-12 * primitive.width, "{primitive:?}: {fall} {kink}");
                 falls += u32::from(kink > 1e-6 * primitive.width && fall > 0.4 * kink);
             }
@@ -237,30 +236,30 @@ tests! {
         assert!(falls > 10, "{falls}");
     }
 
-    /// What single precision has no room for is no lump, nor what is not simple.
-    fn what_is_too_large_or_not_simple_is_no_lump() {
-        let lump = |blobbiness: f64, strength: f64, kernel: Kernel| {
+    /// Primitives that overflow single precision, subtract, or have another kernel are no blobs.
+    fn unsuitable_primitives_are_no_blobs() {
+        let blob = |blobbiness: f64, strength: f64, kernel: Kernel| {
             let shaping = field::Shaping {
                 kernel,
                 strength,
                 ..common::shaping(1.0, blobbiness)
             };
-            primitive(Skeleton::Point { center: DVec3::ZERO }, &shaping, None).lump::<f32>()
+            primitive(Skeleton::Point { center: DVec3::ZERO }, &shaping, None).blob::<f32>()
         };
-        assert!(lump(-4.0, 1.0, Kernel::Gauss).is_some());
-        assert!(lump(-100.0, 1.0, Kernel::Gauss).is_none());
-        assert!(lump(-4.0, -1.0, Kernel::Gauss).is_none());
-        assert!(lump(-4.0, 1.0, Kernel::Cauchy).is_none());
+        assert!(blob(-4.0, 1.0, Kernel::Gauss).is_some());
+        assert!(blob(-100.0, 1.0, Kernel::Gauss).is_none());
+        assert!(blob(-4.0, -1.0, Kernel::Gauss).is_none());
+        assert!(blob(-4.0, 1.0, Kernel::Cauchy).is_none());
     }
 
-    /// Beyond its reach a lump's field is small; outside of what `within` says it is beyond.
-    fn beyond_the_reach_there_is_little() {
+    /// A blob's field is below the level beyond its reach and outside the interval of `within`.
+    fn fields_are_small_beyond_the_reach() {
         let mut random = Random::new(53);
         for (primitive, origin, direction) in cases() {
-            let lump: Lump<f64> = primitive.lump().expect("a lump");
+            let blob: Blob<f64> = primitive.blob().expect("a blob");
             let level = random.decades(-7.0, -2.0);
-            let square = lump.reach(level);
-            let [near, far] = course::<f64>(&primitive, origin, direction).within(square);
+            let square = blob.reach(level);
+            let [near, far] = on_ray::<f64>(&primitive, origin, direction).within(square);
             for i in 0..200 {
                 let t = f64::from(i) * 0.2 / primitive.width;
                 let point = origin + direction * t;
@@ -269,8 +268,8 @@ tests! {
                     assert!(value <= level * (1.0 + 1e-6) + 1e-12, "{primitive:?} {t} {near} {far}: {value} {level}");
                 }
                 if value > level {
-                    let distance = point.distance(primitive.lump_middle());
-                    assert!(distance <= lump.radius(square) * (1.0 + 1e-9));
+                    let distance = point.distance(primitive.blob_middle());
+                    assert!(distance <= blob.radius(square) * (1.0 + 1e-9));
                 }
             }
         }

@@ -1,205 +1,204 @@
-//! Certified climbing: finds the first crossing of rays with a surface of lumps.
+//! Certified ray marching: finds the first crossing of eight rays with a surface of blobs.
 //!
-//! Of a lump the largest value on any piece of a ray is known in closed form, and so is how far its field bends
-//! down (`field::course`). So a ray outside the surface may go on from `from` to `to`
+//! For a blob the largest value on any interval of a ray and the largest −f″ there have closed forms (`field::blob`). So a ray
+//! outside the surface may step from `from` to `to`
 //!
-//! - if the largest values on that piece add up to less than T, or
-//! - if the field is below T at both ends, and on no place of the chord between them the parabola
-//!   `(N/2 + K/h)·x(h−x)` reaches from there up to T, where h is the length, N ≥ −F″ on the piece, and in kinks the slope falls
-//!   by no more than K. With `P = h²/2·N + h·K` and D the difference of the values at the ends, the sum is largest at an end if
-//!   P ≤ D; else it is larger than there by (P−D)²/4P.
+//! - if the largest values on that interval add up to less than T, or
+//! - if the field is below T at both ends, and the chord between them plus the parabola `(N/2 + K/h)·x(h−x)` stays below T,
+//!   where h is the length, N ≥ −F″ on the interval, and K bounds the drop of the slope in kinks. With `P = h²/2·N + h·K` and D
+//!   the difference of the values at the ends, the sum is largest at an end if P ≤ D; else it exceeds that by (P−D)²/4P.
 //!
-//! If F(to) ≥ T there is a crossing on the piece, and when `N·h² + 2K·h < 2(T − F(from))` it is the only one: a
-//! second one before it would need more bending. Then Newton's steps lead to it. All else makes
-//! the piece shorter, as far as may serve, but no shorter than the tolerance. Eight rays go in step; each has its own pieces.
+//! If F(to) ≥ T there is a crossing on the interval, and when `N·h² + 2K·h < 2(T − F(from))` it is the only one: an earlier one
+//! would need a larger −F″. Newton's method then refines it. Otherwise the step is shortened, but to no less than the tolerance.
+//! The eight rays are computed together, each with its own intervals.
 use crate::lanes::least;
-use field::{Course, Limits, Real};
+use field::{BlobOnRay, Limits, Real};
 use wide::f32x8;
 
-/// A lump on the way of a packet's rays.
+/// A blob that a packet's rays may meet.
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
-    /// Its field along the rays.
-    pub course: Course<f32x8>,
-    /// It is strong where the square of the distance, in kernel widths, is at most this.
+pub struct RayBlob {
+    /// Field along the rays.
+    pub on_ray: BlobOnRay<f32x8>,
+    /// Squared distance, in kernel widths, up to which the blob is strong: a step that fails is cut there ([`Sum::closer`]).
     pub strong: f32,
-    /// Its index in the list.
+    /// Index in the list of nearby blobs.
     pub index: u32,
 }
 
-impl Step {
-    /// Its field along the rays; see [`Stairs::plain`].
+impl RayBlob {
+    /// Field along the rays, specialised if all are Gaussian points ([`RayBlobs::plain`]).
     #[inline(always)]
-    fn course<const PLAIN: bool>(&self) -> Course<f32x8> {
+    fn on_ray<const PLAIN: bool>(&self) -> BlobOnRay<f32x8> {
         if PLAIN {
-            self.course.gaussian_point()
+            self.on_ray.gaussian_point()
         } else {
-            self.course
+            self.on_ray
         }
     }
 }
 
-/// Where rays meet a lump.
+/// Range of ray parameters in which rays may meet a blob.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn {
-    /// No ray meets it before this …
+pub struct RayInterval {
+    /// Smallest parameter …
     pub from: f32,
-    /// … nor after this.
+    /// … and largest, over all rays.
     pub to: f32,
-    /// Which of the steps it is.
-    pub step: u32,
+    /// Index of the blob in [`RayBlobs::blobs`].
+    pub blob: u32,
 }
 
-/// The lumps on the way of a packet's rays, and the order in which they are met: that is sorted, as steps are large.
+/// The blobs that a packet's rays may meet. Only the small intervals are sorted, not the large blobs.
 #[derive(Clone, Copy, Debug)]
-pub struct Stairs<'a> {
-    /// Each lump.
-    pub steps: &'a [Step],
-    /// In order of `from`.
-    pub turns: &'a [Turn],
-    /// Whether all of them are Gaussian points, for which the way is compiled apart: nearly all scenes have such packets.
+pub struct RayBlobs<'a> {
+    /// The blobs, in any order.
+    pub blobs: &'a [RayBlob],
+    /// One interval for each blob, in order of `from`.
+    pub intervals: &'a [RayInterval],
+    /// Whether all are Gaussian points, the most common case, for which the march is compiled separately.
     pub plain: bool,
 }
 
-impl<'a> Stairs<'a> {
-    /// The lumps that a ray may meet between two parameters.
+impl<'a> RayBlobs<'a> {
+    /// Iterates over the blobs that a ray may meet between two parameters.
     #[inline(always)]
-    pub fn between(self, first: f32, last: f32) -> impl Iterator<Item = &'a Step> {
-        self.turns
+    pub fn between(self, first: f32, last: f32) -> impl Iterator<Item = &'a RayBlob> {
+        self.intervals
             .iter()
-            .take_while(move |turn| turn.from <= last)
-            .filter(move |turn| turn.to >= first)
-            .map(move |turn| &self.steps[turn.step as usize])
+            .take_while(move |interval| interval.from <= last)
+            .filter(move |interval| interval.to >= first)
+            .map(move |interval| &self.blobs[interval.blob as usize])
     }
 }
 
-/// Where rays climb.
+/// The rays of a packet and the accuracy asked for.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
-    /// Where each ray starts.
+pub struct MarchRays {
+    /// Start of each ray.
     pub from: f32x8,
-    /// Where it ends.
+    /// End of each ray.
     pub to: f32x8,
-    /// A guess at the crossing; infinite where there is none …
+    /// Estimate of the crossing; infinite without one …
     pub guess: f32x8,
-    /// … and where to look first, at or before it: so far that the rest of the way to the guess can be told to hold no
-    /// more than one crossing.
+    /// … and the end of the first step, at or before it, from which the rest up to the estimate can be proved to hold at most
+    /// one crossing.
     pub first: f32x8,
-    /// The rays that go, a bit each.
+    /// The rays to follow, a bit each.
     pub alive: u32,
-    /// Pieces shorter than this are not divided.
+    /// Length below which steps are not shortened.
     pub tolerance: f32,
-    /// Where the field is T it is not known better than this.
+    /// Error of the field where it is T.
     pub noise: f32,
 }
 
-/// Where rays came to.
+/// Result of a march.
 #[derive(Clone, Copy, Debug)]
-pub struct Climbed {
-    /// Near the crossing, on rays that cross.
+pub struct Marched {
+    /// Parameter of the crossing, for rays in `met`.
     pub t: f32x8,
-    /// It lies between these.
+    /// Parameters that bracket the crossing.
     pub between: [f32x8; 2],
-    /// Those rays, a bit each.
+    /// Rays that cross, a bit each.
     pub met: u32,
-    /// Rays that went, as it seems, past the surface, but so near to it that rounding may have hidden it …
+    /// Rays that passed so near to the surface that rounding may have hidden a crossing …
     pub doubtful: u32,
-    /// … and between which parameters that was.
+    /// … and the parameters between which that happened.
     pub doubt: [f32x8; 2],
-    /// Evaluations of lumps, for one ray each.
+    /// Evaluations of blobs, for one ray each.
     pub evaluations: u64,
 }
 
-/// T, less what rounding takes from sums: a ray that rounding alone keeps outside meets the surface.
+/// T less the rounding of sums: a ray that only rounding keeps outside meets the surface.
 const LEVEL: f32 = 1.0 - 1e-6;
 
-/// A field of this much is deep inside.
+/// Field from which a point counts as deep inside.
 const DEEP: f32 = 1.5;
 
-/// From where the field is more than this a step is no longer than …
+/// Where the field is larger than this and rises, a step is no longer than …
 const NEARLY: f32 = 0.15;
-/// … this part of what leads along the tangent to T: Gaussians are convex where they rise, and are at T before.
+/// … this multiple of the step along the tangent to T: Gaussians are convex where they rise, and reach T before.
 const TANGENT: f32 = 1.1;
 
-/// Pieces that rounding leaves in doubt are halved until they are no longer than this.
+/// Length down to which intervals that rounding leaves in doubt are shortened.
 const DOUBTFUL: f32 = 1e-3;
 
-/// A piece of length h would have served, as a chord, if `N·h²` had been 8 times the room left below T; a little less is tried
-/// next …
+/// After a failed step of length h the next one is chosen for `N·h²` = this times T − F; the chord's proof needs at most 8 …
 const SERVES: f32 = 6.0;
-/// … or, where the field falls from the start, as far as this times what the bend can turn; …
+/// … or, where the field falls at the start, this times the length on which the bend can turn the slope; …
 const FALLS: f32 = 1.8;
-/// … but no less than this part of the piece, as on a shorter one N will be less.
+/// … but at least this fraction of the failed step, since N is smaller on a shorter one.
 const LEAST: f32 = 0.1;
 
-/// Evaluations after which a packet is given up; those of the published scenes need some thousand.
+/// Evaluations after which a packet is given up; packets of the published scenes need a few thousand.
 const MOST_EVALUATIONS: u64 = 1 << 24;
 /// Rounds after which a packet is given up.
 const MOST_ROUNDS: u32 = 400;
 
-/// What the lumps add up to at the far end of a piece, and on the piece.
+/// Sums over the blobs: value and slope at the end of a step, and bounds on the step.
 struct Sum {
     value: f32x8,
     slope: f32x8,
     most: f32x8,
     bend: f32x8,
     kink: f32x8,
-    /// Of which lumps: what rays meet between these parameters.
+    /// Parameters between which blobs were added up.
     between: [f32; 2],
 }
 
-/// Climbs. `None` if a ray starts inside or none of this ends, which is for others to deal with. `tops` is working space.
+/// Marches rays to their first crossings. `None` if a ray starts inside or a limit on the work is reached; the caller then takes
+/// the general way. `tops` is working space.
 #[must_use]
-pub fn climb(lumps: Stairs<'_>, way: &Way, tops: &mut Vec<f32x8>) -> Option<Climbed> {
-    if tops.len() < lumps.turns.len() {
-        tops.resize(lumps.turns.len(), f32x8::splat(0.0));
+pub fn march(blobs: RayBlobs<'_>, rays: &MarchRays, tops: &mut Vec<f32x8>) -> Option<Marched> {
+    if tops.len() < blobs.intervals.len() {
+        tops.resize(blobs.intervals.len(), f32x8::splat(0.0));
     }
-    if lumps.plain {
-        climb_among::<true>(lumps, way, tops)
+    if blobs.plain {
+        march_blobs::<true>(blobs, rays, tops)
     } else {
-        climb_among::<false>(lumps, way, tops)
+        march_blobs::<false>(blobs, rays, tops)
     }
 }
 
-/// See [`climb`] and [`Stairs::plain`].
+/// [`march`] for one value of [`RayBlobs::plain`].
 #[inline(never)]
-fn climb_among<const PLAIN: bool>(
-    lumps: Stairs<'_>,
-    way: &Way,
+fn march_blobs<const PLAIN: bool>(
+    blobs: RayBlobs<'_>,
+    rays: &MarchRays,
     tops: &mut [f32x8],
-) -> Option<Climbed> {
+) -> Option<Marched> {
     let zero = f32x8::splat(0.0);
     let level = f32x8::splat(LEVEL);
-    let surely = f32x8::splat(LEVEL - way.noise);
-    let tolerance = f32x8::splat(way.tolerance);
+    let surely = f32x8::splat(LEVEL - rays.noise);
+    let tolerance = f32x8::splat(rays.tolerance);
     let tiny = f32x8::splat(f32::MIN_POSITIVE);
     let mut evaluations = 0;
     let far = f32x8::splat(f32::INFINITY);
     let (mut doubtful, mut doubt) = (0, [far, -far]);
-    // Known: below T up to `low`, with these values there.
-    let mut low = way.from;
-    let mut going = way.alive & low.simd_lt(way.to).to_bitmask();
-    // Where rays come from outside of all lumps' reach there is nothing yet.
+    // Invariant: below T up to `low`, with these values there.
+    let mut low = rays.from;
+    let mut going = rays.alive & low.simd_lt(rays.to).to_bitmask();
+    // Rays that start out of all blobs' reach start at field 0.
     let (mut low_value, mut low_slope) = (zero, zero);
     if low.simd_le(zero).to_bitmask() & going != 0 {
-        (low_value, low_slope) = values::<PLAIN>(lumps, low, way.alive, &mut evaluations);
+        (low_value, low_slope) = values::<PLAIN>(blobs, low, rays.alive, &mut evaluations);
     }
     if level.simd_le(low_value).to_bitmask() & going != 0 {
         return None;
     }
-    // And above T at `high`, on the rays that are known to be that somewhere.
+    // And at least T at `high`, on the rays in `known`.
     let mut known = 0;
     let mut high = f32x8::splat(f32::INFINITY);
     let (mut high_value, mut high_slope, mut high_bend, mut high_kink) = (zero, zero, zero, zero);
     let mut step = f32x8::splat(f32::INFINITY);
-    let mut next = way.first.fast_min(way.to).fast_max(low);
+    let mut next = rays.first.fast_min(rays.to).fast_max(low);
     let mut met = 0;
     for _ in 0..MOST_ROUNDS {
         if evaluations > MOST_EVALUATIONS {
             return None;
         }
         if going == 0 {
-            let mut climbed = Climbed {
+            let mut marched = Marched {
                 t: high,
                 between: [low, high],
                 met,
@@ -209,35 +208,35 @@ fn climb_among<const PLAIN: bool>(
             };
             if met != 0 {
                 polish::<PLAIN>(
-                    lumps,
-                    &mut climbed,
+                    blobs,
+                    &mut marched,
                     low_value,
                     [high_value, high_slope, high_bend],
                 );
             }
-            return Some(climbed);
+            return Some(marched);
         }
         let at = next;
-        let sum = Sum::on::<PLAIN>(lumps, low, at, going, tops, &mut evaluations);
+        let sum = Sum::on::<PLAIN>(blobs, low, at, going, tops, &mut evaluations);
         let length = at - low;
         let short = length.simd_le(tolerance).to_bitmask();
         let above = level.simd_le(sum.value).to_bitmask() & going;
-        // Above the chord by no more than a parabola, whose sum with the chord is largest inside only if it is steeper.
+        // The field is at most the chord plus a parabola; that sum is largest inside only if the parabola is steeper.
         let parabola = length * (f32x8::splat(0.5) * length * sum.bend + sum.kink);
         let steeper = (parabola - (sum.value - low_value).abs()).fast_max(zero);
         let bulge = f32x8::splat(0.25) * steeper * steeper / parabola.fast_max(tiny);
-        // A parabola that is no number proves nothing.
+        // A NaN proves nothing.
         let chord = parabola
             .simd_lt(far)
             .select(low_value.fast_max(sum.value) + bulge, far);
         let below = going & !above;
-        // A chord's bound may be no number.
+        // The chord's bound may be NaN: then neither comparison holds.
         let under = |level| sum.most.simd_lt(level) | chord.simd_lt(level);
-        let calm = below & under(surely).to_bitmask();
-        let mut passed = calm;
-        if below & !calm != 0 {
+        let proved = below & under(surely).to_bitmask();
+        let mut passed = proved;
+        if below & !proved != 0 {
             let brief = length.simd_le(f32x8::splat(DOUBTFUL)) & under(level);
-            let doubted = below & !calm & (short | brief.to_bitmask());
+            let doubted = below & !proved & (short | brief.to_bitmask());
             if doubted != 0 {
                 let mask = mask(doubted);
                 passed |= doubted;
@@ -248,22 +247,22 @@ fn climb_among<const PLAIN: bool>(
         }
         let moved = zero.simd_lt(length).to_bitmask();
         let failed = below & !passed;
-        // Those that go on.
+        // Lanes whose step is proved.
         let mask = mask(passed);
         low = mask.select(at, low);
         low_value = mask.select(sum.value, low_value);
         low_slope = mask.select(sum.slope, low_slope);
-        // A length that served may be doubled.
+        // The next step may be twice as long.
         let doubled = f32x8::splat(2.0) * step.fast_min(length.fast_max(tolerance));
-        // Where the field rises towards T a tangent leads a little beyond the crossing.
+        // Where the field rises towards T the tangent leads a little beyond the crossing.
         let room = f32x8::splat(TANGENT) * (level - sum.value);
         let rises = f32x8::splat(NEARLY).simd_lt(sum.value) & zero.simd_lt(sum.slope);
         let tangent = (room / sum.slope).fast_max(tolerance);
         let doubled = rises.select(doubled.fast_min(tangent), doubled);
         step = self::mask(passed & moved).select(doubled, step);
-        let arrived = passed & way.to.simd_le(low).to_bitmask();
+        let arrived = passed & rays.to.simd_le(low).to_bitmask();
         going &= !arrived;
-        // Those that must look closer.
+        // Lanes that need a shorter step.
         if failed != 0 {
             let room = level - low_value.fast_max(sum.value);
             let served = (f32x8::splat(SERVES) * room.fast_max(zero) / sum.bend).sqrt();
@@ -272,17 +271,17 @@ fn climb_among<const PLAIN: bool>(
                 .fast_max(down)
                 .fast_min(f32x8::splat(0.5) * length)
                 .fast_max(f32x8::splat(LEAST) * length);
-            let closer = sum.closer(lumps, tops, failed, [low, at], low + served, tolerance) - low;
+            let closer = sum.closer(blobs, tops, failed, [low, at], low + served, tolerance) - low;
             step = self::mask(failed).select(closer, step);
         }
-        let goal = low.simd_lt(way.guess).select(way.guess, way.to);
-        let goal = goal.fast_min(way.to);
+        let goal = low.simd_lt(rays.guess).select(rays.guess, rays.to);
+        let goal = goal.fast_min(rays.to);
         next = goal.fast_min(low + step);
         known |= above;
         if known == 0 {
             continue;
         }
-        // Those that know of a crossing.
+        // Lanes with a bracketed crossing.
         let mask = self::mask(above);
         high = mask.select(at, high);
         high_value = mask.select(sum.value, high_value);
@@ -293,11 +292,11 @@ fn climb_among<const PLAIN: bool>(
         let bulge = width * (high_bend * width + f32x8::splat(2.0) * high_kink);
         let only =
             bulge.simd_lt(f32x8::splat(2.0) * (level - low_value)) | width.simd_le(tolerance);
-        let settled = only.to_bitmask() & level.simd_le(high_value).to_bitmask() & going;
-        met |= settled;
-        going &= !settled;
-        // Before the crossing, so far that the rest could be told to be its only one; from deep inside by Newton's
-        // step for the logarithm, which for Gaussians leads out, but not far.
+        let isolated = only.to_bitmask() & level.simd_le(high_value).to_bitmask() & going;
+        met |= isolated;
+        going &= !isolated;
+        // Back to before the crossing, so near to it that the rest can be proved to hold no other; from deep inside by a
+        // Newton step for the field's logarithm, which for Gaussians leads just outside.
         let near = high - (f32x8::splat(1.4) / high_bend).sqrt();
         let deep = f32x8::splat(DEEP).simd_lt(high_value);
         let mut back = near;
@@ -314,7 +313,7 @@ fn climb_among<const PLAIN: bool>(
     None
 }
 
-/// A mask from bits, one a lane.
+/// Converts bits, one a lane, to a mask.
 #[inline(always)]
 pub fn mask(bits: u32) -> f32x8 {
     let bit = wide::i32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
@@ -322,7 +321,7 @@ pub fn mask(bits: u32) -> f32x8 {
     wide::bytemuck::cast(set.simd_eq(bit))
 }
 
-/// The lowest and highest of the lanes given by bits.
+/// Returns the least of `a` and the largest of `b` over the lanes given by bits.
 #[inline(always)]
 pub fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
     let mask = mask(bits);
@@ -331,19 +330,19 @@ pub fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
     (least(low), -least(-high))
 }
 
-/// The field at t, and its slope.
+/// Returns the field at t and its slope.
 #[inline(always)]
 fn values<const PLAIN: bool>(
-    lumps: Stairs<'_>,
+    blobs: RayBlobs<'_>,
     t: f32x8,
     bits: u32,
     evaluations: &mut u64,
 ) -> (f32x8, f32x8) {
     let (first, last) = extremes(t, t, bits);
     let (mut value, mut slope) = (f32x8::splat(0.0), f32x8::splat(0.0));
-    for lump in lumps.between(first, last) {
+    for blob in blobs.between(first, last) {
         *evaluations += 8;
-        let (v, s) = lump.course::<PLAIN>().at(t);
+        let (v, s) = blob.on_ray::<PLAIN>().at(t);
         value += v;
         slope += s;
     }
@@ -351,10 +350,10 @@ fn values<const PLAIN: bool>(
 }
 
 impl Sum {
-    /// Adds up what counts between two parameters. What each lump adds to `most` is written to `tops`.
+    /// Adds up the blobs between two parameters. Each blob's contribution to `most` is written to `tops`.
     #[inline(always)]
     fn on<const PLAIN: bool>(
-        lumps: Stairs<'_>,
+        blobs: RayBlobs<'_>,
         from: f32x8,
         to: f32x8,
         bits: u32,
@@ -371,10 +370,10 @@ impl Sum {
             kink: zero,
             between: [first, last],
         };
-        for (lump, top) in lumps.between(first, last).zip(tops) {
-            let course = lump.course::<PLAIN>();
-            let (value, slope, here) = course.bent(to);
-            let Limits { most, bend, kink } = if course.rises_until(to) {
+        for (blob, top) in blobs.between(first, last).zip(tops) {
+            let on_ray = blob.on_ray::<PLAIN>();
+            let (value, slope, here) = on_ray.bent(to);
+            let Limits { most, bend, kink } = if on_ray.rises_until(to) {
                 Limits {
                     most: value,
                     bend: here,
@@ -382,14 +381,14 @@ impl Sum {
                 }
             } else {
                 *evaluations += 8;
-                course.most(from, to)
+                on_ray.most(from, to)
             };
             *evaluations += 8;
             sum.value += value;
             sum.slope += slope;
             sum.most += most;
             sum.bend += bend;
-            if course.has_kinks() {
+            if on_ray.has_kinks() {
                 sum.kink += kink;
             }
             *top = most;
@@ -397,12 +396,12 @@ impl Sum {
         sum
     }
 
-    /// Where to look instead on a piece about which nothing can be told: up to where the largest lump begins to be strong,
-    /// or to where it ends, or so far as may serve.
+    /// Returns the end of a shorter step after a failed one: where the largest blob begins to be strong, or where it ceases to be,
+    /// or else `served`.
     #[inline(never)]
     fn closer(
         &self,
-        lumps: Stairs<'_>,
+        blobs: RayBlobs<'_>,
         tops: &[f32x8],
         lanes: u32,
         [from, to]: [f32x8; 2],
@@ -411,13 +410,13 @@ impl Sum {
     ) -> f32x8 {
         let [first, last] = self.between;
         let zero = f32x8::splat(0.0);
-        let largest = tops_of(lumps, tops, first, last).fold(zero, |l, (_, top)| l.fast_max(*top));
+        let largest = tops_of(blobs, tops, first, last).fold(zero, |l, (_, top)| l.fast_max(*top));
         let (mut near, mut far) = (f32x8::splat(1.0), f32x8::splat(-1.0));
         let mut left = mask(lanes) & zero.simd_lt(largest);
-        for (lump, top) in tops_of(lumps, tops, first, last) {
+        for (blob, top) in tops_of(blobs, tops, first, last) {
             let here = left & largest.simd_eq(*top);
             if here.any() {
-                let [a, b] = lump.course.within(f32x8::splat(lump.strong));
+                let [a, b] = blob.on_ray.within(f32x8::splat(blob.strong));
                 near = here.select(a, near);
                 far = here.select(b, far);
                 left &= !here;
@@ -430,27 +429,27 @@ impl Sum {
     }
 }
 
-/// The lumps of a [`Sum`] with what each added to `most`.
+/// Iterates over the blobs of a [`Sum`] with their contributions to `most`.
 fn tops_of<'a>(
-    lumps: Stairs<'a>,
+    blobs: RayBlobs<'a>,
     tops: &'a [f32x8],
     first: f32,
     last: f32,
-) -> impl Iterator<Item = (&'a Step, &'a f32x8)> {
-    lumps.between(first, last).zip(tops)
+) -> impl Iterator<Item = (&'a RayBlob, &'a f32x8)> {
+    blobs.between(first, last).zip(tops)
 }
 
-/// Steps towards the crossings: Newton's, or between the ends where those lead out. At the far end value, slope and
-/// bend are known.
+/// Refines bracketed crossings by Newton steps, or by the secant and halving where those leave the bracket. Value, slope and bend
+/// at the far end are given.
 #[inline(never)]
 fn polish<const PLAIN: bool>(
-    lumps: Stairs<'_>,
-    climbed: &mut Climbed,
+    blobs: RayBlobs<'_>,
+    marched: &mut Marched,
     mut low_value: f32x8,
     [mut high_value, slope, bend]: [f32x8; 3],
 ) {
     let level = f32x8::splat(1.0);
-    let [mut low, mut high] = climbed.between;
+    let [mut low, mut high] = marched.between;
     let (mut at, mut value, mut slope) = (high, high_value, slope);
     for step in 0..MOST_STEPS {
         let newton = at - (value - level) / slope;
@@ -459,7 +458,7 @@ fn polish<const PLAIN: bool>(
         let share = share
             .fast_max(f32x8::splat(0.0))
             .fast_min(f32x8::splat(1.0));
-        // Newton's steps could go on for ever within the ends; halving does not.
+        // The secant may converge slowly from one side; halving every fourth time does not.
         let between = if step % 4 == 3 {
             f32x8::splat(0.5)
         } else {
@@ -468,28 +467,28 @@ fn polish<const PLAIN: bool>(
         let next = fits.select(newton, low + (high - low) * between);
         let length = next - at;
         at = next;
-        // What this step leaves, and its look at the surface will mend: a field that bends down by no more than `bend` may bend
-        // up more, Gaussians by about the square of the slope over the value.
+        // The error of this step, which the shading's evaluation corrects. −F″ is at most `bend`; F″ may be larger, for Gaussians
+        // about the slope squared over the value.
         let up = slope * slope / value.fast_max(level);
         let left = (bend + up) * length * length;
         let near = fits & left.simd_lt(f32x8::splat(CLOSE));
-        if !near.to_bitmask() & climbed.met == 0 {
+        if !near.to_bitmask() & marched.met == 0 {
             break;
         }
-        (value, slope) = values::<PLAIN>(lumps, at, climbed.met, &mut climbed.evaluations);
+        (value, slope) = values::<PLAIN>(blobs, at, marched.met, &mut marched.evaluations);
         let over = level.simd_le(value);
         high = over.select(at, high);
         high_value = over.select(value, high_value);
         low = over.select(low, at);
         low_value = over.select(low_value, value);
     }
-    climbed.t = at;
-    climbed.between = [low, high];
+    marched.t = at;
+    marched.between = [low, high];
 }
 
-/// Newton's steps at most.
+/// Largest number of refining steps.
 const MOST_STEPS: u32 = 24;
-/// Where a step ends the field is within about this of T.
+/// Largest error of the field at a refined crossing, about.
 const CLOSE: f32 = 2e-2;
 
 #[cfg(test)]
@@ -508,7 +507,7 @@ mod tests {
     }
 
     /// Points and segments around the origin.
-    fn lumps(next: &mut impl FnMut() -> f64, count: usize) -> Vec<Primitive> {
+    fn blobs(next: &mut impl FnMut() -> f64, count: usize) -> Vec<Primitive> {
         let mut place = || DVec3::new(next(), next(), next()) * 1.6 - 0.8;
         let places: Vec<_> = (0..count).map(|_| (place(), place())).collect();
         let kernels = [
@@ -542,8 +541,8 @@ mod tests {
     }
 
     /// All rays of a packet, through all of it, without a guess.
-    fn way(noise: f32) -> Way {
-        Way {
+    fn way(noise: f32) -> MarchRays {
+        MarchRays {
             from: f32x8::splat(0.0),
             to: f32x8::splat(3.9),
             guess: f32x8::splat(f32::INFINITY),
@@ -554,35 +553,35 @@ mod tests {
         }
     }
 
-    fn plain(steps: &[Step]) -> bool {
-        steps.iter().all(|step| step.course.is_gaussian_point())
+    fn plain(blobs: &[RayBlob]) -> bool {
+        blobs.iter().all(|blob| blob.on_ray.is_gaussian_point())
     }
 
     /// All from the start on.
-    fn turns(steps: &[Step]) -> Vec<Turn> {
-        let turn = |step| Turn {
+    fn intervals(blobs: &[RayBlob]) -> Vec<RayInterval> {
+        let interval = |blob| RayInterval {
             from: 0.0,
             to: 10.0,
-            step,
+            blob,
         };
-        (0..steps.len() as u32).map(turn).collect()
+        (0..blobs.len() as u32).map(interval).collect()
     }
 
     /// What rays meet.
-    fn steps(primitives: &[Primitive], rays: &[(DVec3, DVec3); 8]) -> Vec<Step> {
+    fn ray_blobs(primitives: &[Primitive], rays: &[(DVec3, DVec3); 8]) -> Vec<RayBlob> {
         let lane = |f: &dyn Fn(usize) -> f64| f32x8::from_lanes(f);
         let direction: [f32x8; 3] = [0, 1, 2].map(|k| lane(&|i| rays[i].1[k]));
         primitives
             .iter()
             .enumerate()
             .map(|(index, p)| {
-                let lump = p.lump::<f32>().expect("a lump");
-                let middle = [0, 1, 2].map(|k| lane(&|i| p.lump_middle()[k] - rays[i].0[k]));
-                let course = lump.course(middle, direction);
-                let square = lump.reach(1e-6);
-                let strong = lump.core(square, 1e-6) + 2.0;
-                Step {
-                    course,
+                let blob = p.blob::<f32>().expect("a blob");
+                let middle = [0, 1, 2].map(|k| lane(&|i| p.blob_middle()[k] - rays[i].0[k]));
+                let on_ray = blob.on_ray(middle, direction);
+                let square = blob.reach(1e-6);
+                let strong = blob.core(square, 1e-6) + 2.0;
+                RayBlob {
+                    on_ray,
                     strong: strong as f32,
                     index: index as u32,
                 }
@@ -613,21 +612,21 @@ mod tests {
         let mut next = random(11);
         let (mut hits, mut misses) = (0, 0);
         for case in 0..40 {
-            let primitives = lumps(&mut next, 1 + case % 9);
+            let primitives = blobs(&mut next, 1 + case % 9);
             let rays: [(DVec3, DVec3); 8] = core::array::from_fn(|_| {
                 let origin = DVec3::new(next() - 0.5, next() - 0.5, -4.0) * 0.5;
                 let aim = DVec3::new(next() - 0.5, next() - 0.5, 0.0);
                 (origin, (aim - origin).normalize())
             });
-            let steps = steps(&primitives, &rays);
+            let ray_blobs = ray_blobs(&primitives, &rays);
             let way = way(0.0);
-            let turns = turns(&steps);
-            let lumps = Stairs {
-                steps: &steps,
-                turns: &turns,
-                plain: plain(&steps),
+            let intervals = intervals(&ray_blobs);
+            let blobs = RayBlobs {
+                blobs: &ray_blobs,
+                intervals: &intervals,
+                plain: plain(&ray_blobs),
             };
-            let Some(climbed) = climb(lumps, &way, &mut tops) else {
+            let Some(marched) = march(blobs, &way, &mut tops) else {
                 // Only where a ray starts inside.
                 let starts = rays.iter().any(|&(origin, direction)| {
                     scan(&primitives, origin, direction).0 == Some(0.0)
@@ -637,7 +636,7 @@ mod tests {
             };
             for (i, &(origin, direction)) in rays.iter().enumerate() {
                 let (want, nearest) = scan(&primitives, origin, direction);
-                let got = (climbed.met >> i & 1 != 0).then(|| f64::from(climbed.t.to_array()[i]));
+                let got = (marched.met >> i & 1 != 0).then(|| f64::from(marched.t.to_array()[i]));
                 match (want, got) {
                     (None, None) => misses += 1,
                     (Some(want), Some(got)) if (want - got).abs() < 1e-3 => hits += 1,
@@ -662,9 +661,9 @@ mod tests {
         let mut next = random(23);
         let (mut doubted, mut sure) = (0, 0);
         for case in 0..160 {
-            let primitives = lumps(&mut next, 1 + case % 5);
-            // Past the first lump, close to its surface.
-            let target = primitives[0].lump_middle();
+            let primitives = blobs(&mut next, 1 + case % 5);
+            // Past the first blob, close to its surface.
+            let target = primitives[0].blob_middle();
             let alone = |x: f64| primitives[0].value((target + DVec3::X * x).to_array());
             let radius = (0..200)
                 .map(|i| f64::from(i) * 5e-3)
@@ -676,20 +675,20 @@ mod tests {
                 let aim = target + aside * (radius * (0.95 + 0.2 * next()));
                 (origin, (aim - origin).normalize())
             });
-            let steps = steps(&primitives, &rays);
+            let ray_blobs = ray_blobs(&primitives, &rays);
             let way = way(NOISE as f32);
-            let turns = turns(&steps);
-            let lumps = Stairs {
-                steps: &steps,
-                turns: &turns,
-                plain: plain(&steps),
+            let intervals = intervals(&ray_blobs);
+            let blobs = RayBlobs {
+                blobs: &ray_blobs,
+                intervals: &intervals,
+                plain: plain(&ray_blobs),
             };
-            let Some(climbed) = climb(lumps, &way, &mut tops) else {
+            let Some(marched) = march(blobs, &way, &mut tops) else {
                 continue;
             };
             for (i, &(origin, direction)) in rays.iter().enumerate() {
                 let bit = |mask: u32| mask >> i & 1 != 0;
-                if bit(climbed.met) {
+                if bit(marched.met) {
                     continue;
                 }
                 let field = |t: f64| {
@@ -699,8 +698,8 @@ mod tests {
                 let place = |i: i32| f64::from(i) * 1e-3;
                 let near = |t: &f64| field(*t) > 1.0 - 0.9 * NOISE;
                 let close: Vec<f64> = (0..3900).map(place).filter(near).collect();
-                let [from, to] = climbed.doubt.map(|t| f64::from(t.to_array()[i]));
-                if bit(climbed.doubtful) {
+                let [from, to] = marched.doubt.map(|t| f64::from(t.to_array()[i]));
+                if bit(marched.doubtful) {
                     doubted += 1;
                     let most = (0..3900).map(place).map(field).fold(0.0, f64::max);
                     assert!(most > 1.0 - 1.5 * NOISE, "case {case}, ray {i}: {most}");
@@ -717,7 +716,7 @@ mod tests {
         assert!(doubted > 30 && sure > 100, "{doubted} {sure}");
     }
 
-    /// What is compiled for Gaussian points alone comes to the same bits.
+    /// The march compiled for Gaussian points gives the same bits.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn gaussian_points_alone_are_as_among_others() {
@@ -726,7 +725,7 @@ mod tests {
         let mut next = random(31);
         let mut hits = 0;
         for case in 0..60 {
-            let mut primitives = lumps(&mut next, 4 + case % 20);
+            let mut primitives = blobs(&mut next, 4 + case % 20);
             let gaussian = |p: &Primitive| {
                 matches!(p.skeleton, Skeleton::Point { .. }) && p.kernel == Kernel::Gauss
             };
@@ -736,20 +735,20 @@ mod tests {
                 let aim = DVec3::new(next() - 0.5, next() - 0.5, 0.0);
                 (origin, (aim - origin).normalize())
             });
-            let steps = steps(&primitives, &rays);
-            let turns = turns(&steps);
-            assert!(plain(&steps) && !steps.is_empty());
+            let ray_blobs = ray_blobs(&primitives, &rays);
+            let intervals = intervals(&ray_blobs);
+            assert!(plain(&ray_blobs) && !ray_blobs.is_empty());
             let [alone, among] = [true, false].map(|plain| {
-                let lumps = Stairs {
-                    steps: &steps,
-                    turns: &turns,
+                let blobs = RayBlobs {
+                    blobs: &ray_blobs,
+                    intervals: &intervals,
                     plain,
                 };
-                let climbed = climb(lumps, &way(1e-3), &mut tops)?;
-                hits += climbed.met.count_ones();
-                let places = [climbed.t, climbed.between[0], climbed.between[1]];
+                let marched = march(blobs, &way(1e-3), &mut tops)?;
+                hits += marched.met.count_ones();
+                let places = [marched.t, marched.between[0], marched.between[1]];
                 let bits = places.map(|t| t.to_array().map(f32::to_bits));
-                Some((bits, climbed.met, climbed.doubtful, climbed.evaluations))
+                Some((bits, marched.met, marched.doubtful, marched.evaluations))
             });
             assert_eq!(alone, among, "case {case}");
         }
@@ -760,16 +759,16 @@ mod tests {
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn a_ray_that_starts_inside_is_left_to_others() {
         let mut next = random(5);
-        let primitive = &lumps(&mut next, 1)[0];
-        let lump = primitive.lump::<f32>().expect("a lump");
+        let primitive = &blobs(&mut next, 1)[0];
+        let blob = primitive.blob::<f32>().expect("a blob");
         let zero = f32x8::splat(0.0);
-        let course = lump.course([zero; 3], [zero, zero, f32x8::splat(1.0)]);
-        let steps = [Step {
-            course,
+        let on_ray = blob.on_ray([zero; 3], [zero, zero, f32x8::splat(1.0)]);
+        let ray_blobs = [RayBlob {
+            on_ray,
             strong: -1.0,
             index: 0,
         }];
-        let way = Way {
+        let way = MarchRays {
             from: zero,
             to: f32x8::splat(1.0),
             guess: zero,
@@ -778,12 +777,12 @@ mod tests {
             tolerance: 5e-5,
             noise: 0.0,
         };
-        let turns = turns(&steps);
-        let lumps = Stairs {
-            steps: &steps,
-            turns: &turns,
-            plain: plain(&steps),
+        let intervals = intervals(&ray_blobs);
+        let blobs = RayBlobs {
+            blobs: &ray_blobs,
+            intervals: &intervals,
+            plain: plain(&ray_blobs),
         };
-        assert!(climb(lumps, &way, &mut Vec::new()).is_none());
+        assert!(march(blobs, &way, &mut Vec::new()).is_none());
     }
 }
