@@ -7,7 +7,7 @@ import { colours, decode, shareThatDiffers } from './pictures.mjs';
 import { readFile } from 'node:fs/promises';
 
 /** Width of the pictures; heights follow the frames of the datasets. */
-const WIDTH = 240;
+const WIDTH = 160;
 
 const folder = new URL('../www/examples/', import.meta.url);
 const names = readdirSync(folder)

@@ -71,8 +71,9 @@ for (const [size, options] of Object.entries(SIZES)) {
         const colorScheme = LESSONS.indexOf(lesson) % 2 ? 'light' : 'dark';
         await sinew.page.emulateMedia({ colorScheme });
         if (lesson !== LESSONS[0]) await follow(sinew, lesson);
-        const state = await until(sinew, (state) => state?.lesson === lesson && state.waiting === 0);
-        assert.ok(Object.keys(state.readings).length > 0);
+        // A lesson has readings once its first frame is drawn.
+        const drawn = (state) => Object.keys(state.readings).length > 0;
+        const state = await until(sinew, (state) => state?.lesson === lesson && state.waiting === 0 && drawn(state));
         assert.equal(state.refused, 0, 'everything is drawn');
         if (lesson === 'grid') assert.equal(state.drawn, 16);
         if (lesson === 'profiles') assert.equal(state.drawn, 4);

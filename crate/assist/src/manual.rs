@@ -18,8 +18,38 @@ pub fn page(command: &str) -> Option<String> {
     commands::find(command).map(manual::page)
 }
 
-/// The reference page: an HTML document that needs nothing else. Each command has its name as its
-/// anchor.
+/// The examples of the reference page that make a picture: the name of the command and the text.
+///
+/// ```
+/// let drawn = assist::manual::drawn_examples();
+/// assert!(drawn.iter().any(|(name, _)| *name == "sphere"));
+/// ```
+#[must_use]
+pub fn drawn_examples() -> Vec<(&'static str, String)> {
+    commands::all().filter_map(drawn_example).collect()
+}
+
+/// A command's example if it compiles without errors to a scene that holds something.
+fn drawn_example(spec: &'static CommandSpec) -> Option<(&'static str, String)> {
+    let project = project_of(spec);
+    let compiled = rats::compile(&project);
+    let is_error = |diagnostic: &rats::Diagnostic| diagnostic.severity == rats::Severity::Error;
+    let draws = !compiled.scene.elements.is_empty() && !compiled.diagnostics.iter().any(is_error);
+    draws.then(|| (spec.name, project.files[0].text.clone()))
+}
+
+/// A command's example as a work.
+fn project_of(spec: &CommandSpec) -> Project {
+    Project {
+        files: vec![File {
+            name: format!("{}-example.rat", spec.name),
+            text: format!("{}\n", spec.example),
+        }],
+    }
+}
+
+/// The reference page: an HTML document that needs nothing but the pictures in the folder `reference` beside it. Each command has
+/// its name as its anchor.
 #[must_use]
 pub fn reference() -> String {
     let mut page = String::with_capacity(200_000);
@@ -56,26 +86,15 @@ const HEAD: &str = r#"<!doctype html>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>Sinew: the language</title>
-<style>
-:root { color-scheme: light dark; --line: #8884; --soft: #8882; --ours: #b5500a; }
-@media (prefers-color-scheme: dark) { :root { --ours: #ffb066; } }
-body { font: 16px/1.5 system-ui, sans-serif; margin: 0 auto; max-width: 60rem; padding: 1rem; }
-h2 { border-bottom: 1px solid var(--line); margin-top: 3rem; }
-h3 { margin: 2.5rem 0 .3rem; }
-code, pre, .c { font-family: ui-monospace, monospace; font-size: .92em; }
-pre { background: var(--soft); border-radius: .4rem; overflow-x: auto; padding: .6rem .8rem; }
-table { border-collapse: collapse; margin: .5rem 0; }
-th { font-weight: 600; text-align: left; }
-td, th { border-top: 1px solid var(--line); padding: .15rem .8rem .15rem 0; vertical-align: top; }
-td:first-child { font-family: ui-monospace, monospace; font-size: .92em; white-space: nowrap; }
-nav p { margin: .3rem 0; }
-.ours { border: 1px solid; border-radius: .3rem; color: var(--ours); font-size: .75rem; padding: 0 .3rem; }
-.idle { opacity: .75; }
-.colours { display: flex; flex-wrap: wrap; gap: .2rem .8rem; font-size: .85rem; }
-.colours i { border: 1px solid var(--line); display: inline-block; height: .8rem; width: 1.4rem; }
-</style>
+<link rel="stylesheet" href="reference.css">
+<script type="module" src="reference.js"></script>
+<header>
+<a href="./">Sinew</a>
+<input type="search" id="search" placeholder="Search" aria-label="Search commands, options and colours" autocomplete="off">
+</header>
 <main>
 <h1>The language</h1>
+<p id="none" hidden>Nothing is called that and nothing tells of it.</p>
 "#;
 
 const RULES: &str = r#"<h2>How a text is written</h2>
@@ -162,8 +181,21 @@ fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
         }
     }
     if !spec.example.is_empty() {
+        let link = link_to(spec);
+        page.push_str("<div class=\"example\">\n");
         let _ = writeln!(page, "<pre>{}</pre>", escape(spec.example));
-        if let Some(link) = link_to(spec) {
+        if drawn_example(spec).is_some() {
+            let picture = format!(
+                "<img src=\"reference/{}.png\" width=\"240\" height=\"180\" loading=\"lazy\" alt=\"What the example of {} draws\">",
+                spec.name, spec.name
+            );
+            let _ = match &link {
+                Some(link) => writeln!(page, "<a href=\"./#{link}\">{picture}</a>"),
+                None => writeln!(page, "{picture}"),
+            };
+        }
+        page.push_str("</div>\n");
+        if let Some(link) = link {
             let _ = writeln!(page, "<p><a href=\"./#{link}\">Try it</a></p>");
         }
     }
@@ -172,12 +204,8 @@ fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
 
 /// The fragment that opens a command's example in the page.
 fn link_to(spec: &CommandSpec) -> Option<String> {
-    let file = File {
-        name: format!("{}-example.rat", spec.name),
-        text: format!("{}\n", spec.example),
-    };
     let shared = Shared {
-        project: Project { files: vec![file] },
+        project: project_of(spec),
         camera: None,
     };
     link::encode(&shared).ok()

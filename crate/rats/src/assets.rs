@@ -71,7 +71,7 @@ pub fn shapes(mesh: &TriangleMesh) -> impl Iterator<Item = Shape> {
     })
 }
 
-/// Cost in steps of processing a file. It may have been made before, but what a text means
+/// What making something of a file costs in steps. It may have been made before, but what a text means
 /// must not depend on that.
 #[must_use]
 pub fn cost(asset: &Asset) -> u64 {
@@ -114,7 +114,7 @@ fn make(asset: &Asset, how: How, read: impl FnOnce(&[u8]) -> Result<TriangleMesh
     })
 }
 
-/// Returns the cached result for a file, and marks it as most recently used.
+/// What was made of a file before. It becomes the last one to be dropped.
 fn find(asset: &Asset, how: &How) -> Option<Made> {
     CACHE.with_borrow_mut(|cache| {
         let index = cache.iter().position(|kept| kept.is_of(asset, how))?;

@@ -6,7 +6,7 @@ use crate::intake::Taken;
 use crate::lesson::Lesson;
 use crate::notice::Notice;
 use crate::tray::item::Item;
-use crate::{picture, platform, share, work};
+use crate::{examples, picture, platform, share, work};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 use std::ops::Range;
 
@@ -218,8 +218,13 @@ impl App {
     fn carry_out_on_works(&mut self, ctx: &Context, command: Command, now: f64) {
         match command {
             Command::OpenExample(index) => {
-                let result = self.work.open_example(index);
-                self.opened_or(ctx, result);
+                let files = examples::ALL.get(index).map_or(&[][..], |e| e.files);
+                if files.is_empty() {
+                    let result = self.work.open_example(index, Vec::new());
+                    self.opened_or(ctx, result);
+                } else {
+                    self.fetch_example(index, files);
+                }
             }
             Command::OpenSaved(id) => {
                 let result = self.work.open_saved(&id);
@@ -297,7 +302,7 @@ impl App {
         platform::push_hash(&lesson.hash());
     }
 
-    fn opened_or(&mut self, ctx: &Context, result: Result<(), String>) {
+    pub(crate) fn opened_or(&mut self, ctx: &Context, result: Result<(), String>) {
         match result {
             Ok(()) => {
                 if self.lab.is_open() {

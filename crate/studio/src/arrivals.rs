@@ -6,8 +6,11 @@ use crate::asset::Asset;
 use crate::intake::{self, Sorted, Taken};
 use crate::notice::Notice;
 use crate::platform;
+use crate::request::Request;
 use crate::work::Origin;
 use egui::Context;
+use std::cell::RefCell;
+use std::rc::Rc;
 
 impl App {
     /// Asks the browser for what was dropped on the window; it answers later.
@@ -15,6 +18,27 @@ impl App {
         let dropped = ctx.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
         if !dropped.is_empty() {
             platform::read_dropped(dropped, &self.parts.requests);
+        }
+    }
+
+    /// Fetches the images and meshes of an example, which is opened when all are here. One that does not come is missed by the
+    /// text, which says so.
+    pub(crate) fn fetch_example(&self, index: usize, files: &'static [&'static str]) {
+        let inbox = Rc::new(RefCell::new((files.len(), Vec::new())));
+        for path in files {
+            let (inbox, requests) = (inbox.clone(), self.parts.requests.clone());
+            platform::fetch(path, move |bytes| {
+                let (missing, assets) = &mut *inbox.borrow_mut();
+                *missing -= 1;
+                let name = path.rsplit('/').next().unwrap_or(path).to_owned();
+                assets.extend(bytes.map(|bytes| Asset {
+                    name,
+                    bytes: bytes.into(),
+                }));
+                if *missing == 0 {
+                    requests.ask(Request::Example(index, std::mem::take(assets)));
+                }
+            });
         }
     }
 

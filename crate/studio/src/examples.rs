@@ -4,6 +4,8 @@ use rats::{File, Project};
 
 /// One dataset of the gallery.
 pub struct Example {
+    /// The heading under which the gallery shows it; neighbours in [`ALL`] share one.
+    pub group: &'static str,
     /// Its title.
     pub title: &'static str,
     /// Its subject, in a few words.
@@ -15,9 +17,19 @@ pub struct Example {
     /// Address of its thumbnail, a PNG file beside the page: fetched when the gallery is opened, as few
     /// visits open it.
     pub thumbnail: &'static str,
+    /// Addresses of the images and meshes that its text names, files beside the page: fetched when the example is opened.
+    pub files: &'static [&'static str],
 }
 
 impl Example {
+    /// Whether all words of a search, in small letters, stand in its title, subject, group or file name.
+    #[must_use]
+    pub fn matches(&self, words: &[String]) -> bool {
+        let text = [self.title, self.about, self.group, self.name].join(" ");
+        let text = text.to_lowercase();
+        words.iter().all(|word| text.contains(word))
+    }
+
     /// As a project.
     #[must_use]
     pub fn project(&self) -> Project {
@@ -31,45 +43,49 @@ impl Example {
 }
 
 macro_rules! example {
-    ($title:literal, $about:literal, $name:literal) => {
+    ($group:ident, $title:literal, $about:literal, $name:literal $(, $file:literal)*) => {
         Example {
+            group: $group,
             title: $title,
             about: $about,
             name: concat!($name, ".rat"),
             text: include_str!(concat!("../../../www/examples/", $name, ".rat")),
             thumbnail: concat!("examples/", $name, ".png"),
+            files: &[$(concat!("examples/", $file)),*],
         }
     };
 }
 
-/// All of them. The first one is what a first visit shows.
+const SEA: &str = "From the sea";
+const GROWN: &str = "Grown by commands";
+const FIRST: &str = "First steps";
+const STARFISH: &str = "One skeleton, six kinds of flesh";
+
+/// All of them, group by group. The first one is what a first visit shows.
+#[rustfmt::skip]
 pub const ALL: [Example; 22] = [
-    example!("Cowrie", "a shell with random spikes", "cowrie"),
-    example!("Seahorse", "the classic, all of arcs", "seahorse"),
-    example!("Hermite crab", "988 elements of five kinds", "hermite-crab"),
-    example!("Coral crab", "a few bones and 608 spikes", "coral-crab"),
-    example!("Starfish", "arms made by a loop", "starfish"),
-    example!("Sea urchin", "a ball and 180 needles", "sea-urchin"),
-    example!("Shell I", "361 points on a spiral", "shell-1"),
-    example!("Shell II", "42 lines to one point", "shell-2"),
-    example!("Shell III", "a spiral with horns", "shell-3"),
-    example!("Seaweed", "a tree whose branches fade", "seaweed"),
-    example!("Coral tree", "the same tree, with spikes", "coral-tree"),
-    example!(
-        "Spinal Starecase",
-        "36 legs, wound like a stair",
-        "spinal-starecase"
-    ),
-    example!("Sphereflake", "balls on balls, by recursion", "sphereflake"),
-    example!("Generators", "six commands, a line each", "generators"),
-    example!("T-shape", "two bars that melt together", "tshape"),
-    example!("Icicle", "a first little dataset", "icicle"),
-    example!("Starfish A", "seven arcs, the bare skeleton", "starfish-a"),
-    example!("Starfish B", "soft flesh on the skeleton", "starfish-b"),
-    example!("Starfish C", "very fat: a wide kernel", "starfish-c"),
-    example!("Starfish D", "fleshy arms, firm joints", "starfish-d"),
-    example!("Starfish E", "skinny, webs between the arms", "starfish-e"),
-    example!("Starfish F", "skinny and crisp", "starfish-f"),
+    example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
+    example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
+    example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
+    example!(SEA, "Coral crab", "a few bones and 608 spikes", "coral-crab"),
+    example!(SEA, "Starfish", "arms made by a loop", "starfish"),
+    example!(SEA, "Sea urchin", "a ball and 180 needles", "sea-urchin"),
+    example!(SEA, "Shell I", "361 points on a spiral", "shell-1"),
+    example!(SEA, "Shell II", "42 lines to one point", "shell-2"),
+    example!(SEA, "Shell III", "a spiral with horns", "shell-3"),
+    example!(SEA, "Seaweed", "a tree whose branches fade", "seaweed"),
+    example!(SEA, "Coral tree", "the same tree, with spikes", "coral-tree"),
+    example!(GROWN, "Spinal Starecase", "36 legs, wound like a stair", "spinal-starecase"),
+    example!(GROWN, "Sphereflake", "balls on balls, by recursion", "sphereflake"),
+    example!(GROWN, "Generators", "six commands, a line each", "generators"),
+    example!(FIRST, "T-shape", "two bars that melt together", "tshape"),
+    example!(FIRST, "Icicle", "a first little dataset", "icicle"),
+    example!(STARFISH, "Starfish A", "seven arcs, the bare skeleton", "starfish-a"),
+    example!(STARFISH, "Starfish B", "soft flesh on the skeleton", "starfish-b"),
+    example!(STARFISH, "Starfish C", "very fat: a wide kernel", "starfish-c"),
+    example!(STARFISH, "Starfish D", "fleshy arms, firm joints", "starfish-d"),
+    example!(STARFISH, "Starfish E", "skinny, webs between the arms", "starfish-e"),
+    example!(STARFISH, "Starfish F", "skinny and crisp", "starfish-f"),
 ];
 
 /// Text of a new work.
@@ -129,7 +145,15 @@ mod tests {
     #[test]
     fn every_example_compiles_cleanly_and_has_a_thumbnail() {
         for example in &ALL {
-            let compiled = rats::compile(&example.project());
+            let assets: Vec<rats::Asset> = example
+                .files
+                .iter()
+                .map(|path| rats::Asset {
+                    name: path.rsplit('/').next().unwrap_or(path).to_owned(),
+                    bytes: crate::platform::read(path).expect(path).into(),
+                })
+                .collect();
+            let compiled = rats::compile_at(&example.project(), &assets, 0.0);
             assert_eq!(compiled.diagnostics, [], "{}", example.title);
             assert!(!compiled.scene.elements.is_empty(), "{}", example.title);
             let bytes = crate::platform::read(example.thumbnail).expect(example.title);
@@ -137,6 +161,28 @@ mod tests {
             let largest = thumbnail.size[0].max(thumbnail.size[1]);
             assert!(largest >= 200, "{}", example.title);
         }
+    }
+
+    #[test]
+    fn search_asks_for_all_words() {
+        let found = |query: &str| {
+            let words: Vec<String> = query.split(' ').map(str::to_owned).collect();
+            ALL.iter().filter(|e| e.matches(&words)).count()
+        };
+        assert_eq!(found("shell spiral"), 2);
+        assert_eq!(found("starecase"), 1);
+        assert_eq!(found("nothing of the kind"), 0);
+        assert_eq!(found(""), ALL.len());
+    }
+
+    #[test]
+    fn groups_stay_together() {
+        let mut groups: Vec<&str> = ALL.iter().map(|e| e.group).collect();
+        groups.dedup();
+        let all = groups.len();
+        groups.sort_unstable();
+        groups.dedup();
+        assert_eq!(groups.len(), all);
     }
 
     #[test]

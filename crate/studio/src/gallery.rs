@@ -6,7 +6,7 @@ use crate::theme;
 use crate::{examples, platform};
 use egui::{
     Align2, Button, Color32, ColorImage, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense,
-    TextureHandle, TextureOptions, Ui, Vec2, vec2,
+    TextEdit, TextureHandle, TextureOptions, Ui, Vec2, vec2,
 };
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -15,6 +15,8 @@ use std::rc::Rc;
 #[derive(Default)]
 pub struct Gallery {
     thumbnails: Vec<Thumbnail>,
+    /// The text of the search field.
+    search: String,
     /// The saved works, read when the gallery opens.
     entries: Vec<Entry>,
     /// The work whose deletion waits for a second click.
@@ -67,6 +69,7 @@ impl Gallery {
     pub fn refresh(&mut self, entries: Vec<Entry>) {
         self.entries = entries;
         self.doomed = None;
+        self.search.clear();
     }
 
     /// Shows the gallery; `open` is the id of the open work, `now` milliseconds since 1970.
@@ -87,7 +90,13 @@ impl Gallery {
                 }
             });
         });
-        ui.add_space(8.0);
+        ui.add_space(4.0);
+        ui.add(
+            TextEdit::singleline(&mut self.search)
+                .hint_text("Search examples and my work")
+                .desired_width(f32::INFINITY),
+        );
+        ui.add_space(4.0);
         ScrollArea::vertical()
             .auto_shrink([false, true])
             .show(ui, |ui| {
@@ -102,6 +111,7 @@ impl Gallery {
     }
 
     fn examples(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let palette = theme::palette(ui.visuals());
         if self.thumbnails.is_empty() {
             let fetch = |example: &examples::Example| Thumbnail::fetch(ui, example.thumbnail);
             self.thumbnails = examples::ALL.iter().map(fetch).collect();
@@ -114,18 +124,37 @@ impl Gallery {
             .floor()
             .clamp(2.0, 3.0);
         let width = ((ui.available_width() + gap) / columns - gap).floor();
-        let indices: Vec<usize> = (0..examples::ALL.len()).collect();
-        for row in indices.chunks(columns as usize) {
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = gap;
-                for &index in row {
-                    if self.card(ui, index, width) {
-                        commands.push(Command::OpenExample(index));
+        let words = self.words();
+        let found: Vec<usize> = (0..examples::ALL.len())
+            .filter(|&index| examples::ALL[index].matches(&words))
+            .collect();
+        let of_same_group =
+            |&a: &usize, &b: &usize| examples::ALL[a].group == examples::ALL[b].group;
+        for group in found.chunk_by(of_same_group) {
+            let title = examples::ALL[group[0]].group;
+            ui.label(RichText::new(title).color(palette.weak));
+            for row in group.chunks(columns as usize) {
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = gap;
+                    for &index in row {
+                        if self.card(ui, index, width) {
+                            commands.push(Command::OpenExample(index));
+                        }
                     }
-                }
-            });
-            ui.add_space(gap - ui.spacing().item_spacing.y);
+                });
+                ui.add_space(gap - ui.spacing().item_spacing.y);
+            }
         }
+        if found.is_empty() {
+            let text = format!("No example has “{}” in its name.", self.search.trim());
+            ui.label(RichText::new(text).color(palette.weak));
+        }
+    }
+
+    /// The words of the search, in small letters.
+    fn words(&self) -> Vec<String> {
+        let text = self.search.to_lowercase();
+        text.split_whitespace().map(str::to_owned).collect()
     }
 
     fn card(&self, ui: &mut Ui, index: usize, width: f32) -> bool {
@@ -180,7 +209,12 @@ impl Gallery {
 
     fn works(&mut self, ui: &mut Ui, open: Option<&str>, now: f64, commands: &mut Vec<Command>) {
         let palette = theme::palette(ui.visuals());
-        for entry in &self.entries {
+        let words = self.words();
+        let is_found = |entry: &&Entry| {
+            let name = entry.name.to_lowercase();
+            words.iter().all(|word| name.contains(word))
+        };
+        for entry in self.entries.iter().filter(is_found) {
             let is_open = open == Some(entry.id.as_str());
             ui.horizontal(|ui| {
                 let name = if entry.name.is_empty() {

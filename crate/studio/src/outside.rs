@@ -33,6 +33,10 @@ impl App {
                 answers.push(Box::new(move || answer(result)));
             }
             Request::Files(taken) => self.take_in(ctx, taken, now),
+            Request::Example(index, assets) => {
+                let result = self.work.open_example(index, assets);
+                self.opened_or(ctx, result);
+            }
             Request::SetCamera(camera) => self.work.session.set_camera(camera),
             Request::Picture(answer) => answer(self.renderer.image()),
             Request::Cancel => self.renderer.cancel(),

@@ -1,5 +1,6 @@
 //! Requests from outside the window: from scripts of the page (`handle`) and from the browser itself.
 
+use crate::asset::Asset;
 use crate::intake::Taken;
 use crate::picture::Image;
 use egui::Context;
@@ -24,6 +25,8 @@ pub enum Request {
     Load(Project, Answer),
     /// Take in files that the user dropped or chose.
     Files(Vec<Taken>),
+    /// Open an example of the gallery with its images and meshes, which were fetched.
+    Example(usize, Vec<Asset>),
     /// Look at the scene with this camera; `None`: with the text's.
     SetCamera(Option<Camera>),
     /// Give the traced picture.

@@ -64,7 +64,7 @@ impl Work {
         let last = work.shelf.borrow().last();
         let own = last.is_some_and(|id| work.open_saved(&id).is_ok());
         if !own {
-            work.begin_example(0);
+            work.begin_example(0, Vec::new());
         }
         let trouble = work.open_link(hash).err();
         if compile {
@@ -104,13 +104,13 @@ impl Work {
         Ok(true)
     }
 
-    /// Opens an example.
+    /// Opens an example with its images and meshes.
     ///
     /// # Errors
     /// If the open work cannot be written; then it stays open.
-    pub fn open_example(&mut self, index: usize) -> Result<(), String> {
+    pub fn open_example(&mut self, index: usize, assets: Vec<Asset>) -> Result<(), String> {
         self.leave()?;
-        self.begin_example(index);
+        self.begin_example(index, assets);
         Ok(())
     }
 
@@ -278,10 +278,11 @@ impl Work {
         Ok(shelf.opened().filter(|_| own).map(str::to_owned))
     }
 
-    fn begin_example(&mut self, index: usize) {
+    fn begin_example(&mut self, index: usize, assets: Vec<Asset>) {
         if let Some(example) = examples::ALL.get(index) {
             let kept = Kept {
                 project: example.project(),
+                assets,
                 ..Kept::default()
             };
             self.begin(example.title.to_owned(), Origin::Example, kept);

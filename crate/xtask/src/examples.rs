@@ -81,6 +81,35 @@ pub fn draw() -> Result<()> {
     Ok(())
 }
 
+/// The size of the pictures in the reference page.
+const REFERENCE: [u32; 2] = [240, 180];
+
+/// Writes the reference page and draws the pictures of its examples.
+pub fn reference() -> Result<()> {
+    let sinew = sinew()?;
+    let folder = root().join("www/reference");
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder)?;
+    }
+    std::fs::create_dir_all(&folder)?;
+    let example = ["run", "--package", "assist", "--example", "reference_texts"];
+    run(cargo(&example).arg("--").arg(&folder))?;
+    let mut texts: Vec<PathBuf> = std::fs::read_dir(&folder)?
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .collect();
+    texts.sort();
+    let [width, height] = REFERENCE.map(|side| side.to_string());
+    for text in texts {
+        let picture = text.with_extension("png");
+        let [text, to] = [&text, &picture].map(|path| path.to_string_lossy());
+        let size = ["-r", &width, &height, "-s", "3"];
+        run(command(&sinew, &["render", &text, "-o", &to]).args(size))?;
+        reduce(&picture).with_context(|| to.to_string())?;
+    }
+    let page = ["test", "--package", "assist", "--test", "reference"];
+    run(cargo(&page).env("UPDATE_EXPECT", "1"))
+}
+
 /// A picture's size and kind, and its bytes.
 pub fn read_picture(path: &Path) -> Result<(png::OutputInfo, Vec<u8>)> {
     let mut decoder = png::Decoder::new(BufReader::new(File::open(path)?));

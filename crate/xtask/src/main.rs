@@ -59,6 +59,8 @@ enum Command {
     },
     /// Draw the thumbnails of the examples, www/examples/*.png, with our own renderer.
     Examples,
+    /// Write the reference page, www/reference.html, and draw the pictures of its examples.
+    Reference,
     /// Renew tests/pins.txt, the hashes that pictures are held to, after a change of the pictures that is meant, and show
     /// the old and the new pictures.
     Pins,
@@ -72,6 +74,7 @@ fn main() -> ExitCode {
         Command::Fuzz { minutes } => fuzz::fuzz(minutes),
         Command::Bench { part } => bench::bench(part),
         Command::Examples => examples::draw(),
+        Command::Reference => examples::reference(),
         Command::Pins => pins::renew(),
     };
     match done {

@@ -12,7 +12,7 @@ pub(super) fn archive(members: &[(&str, &[u8])]) -> Vec<u8> {
     for (name, contents) in members {
         let packed = compress_to_vec(contents, LEVEL);
         let start = bytes.len() as u32;
-        // Fields shared by the member's header and the directory entry.
+        // What the member's heading and the directory have in common.
         let mut common: Vec<u8> = Vec::new();
         // Version 2.0, no flags, deflated, midnight on 1 January 1980.
         for word in [20_u16, 0, 8, 0, 0x21] {

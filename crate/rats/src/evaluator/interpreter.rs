@@ -40,7 +40,7 @@ impl<'a> Evaluator<'a> {
             let flow = self.node(node).or_else(|mut problem| {
                 let fatal = problem.fatal;
                 let span = problem.span.clone();
-                // Errors that follow from a reported one are dropped.
+                // What follows from an error that was reported is found and dropped soon.
                 let cost = if problem.quiet {
                     20
                 } else {
@@ -113,7 +113,7 @@ impl<'a> Evaluator<'a> {
             }
             Action::Later => {
                 let given = self.given(command)?;
-                // Commands that are switched off are skipped.
+                // What is switched off is as if it were not there.
                 if given.is_off() {
                     return Ok(Flow::Next);
                 }

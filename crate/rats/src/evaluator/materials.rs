@@ -22,7 +22,7 @@ pub fn surface<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
     Ok(Flow::Next)
 }
 
-/// Values of the fields that are not part of the material itself.
+/// What the fields say besides the material itself.
 #[derive(Debug, Default)]
 struct Fields<'a> {
     textures: Vec<Name<'a>>,

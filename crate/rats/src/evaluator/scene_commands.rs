@@ -47,7 +47,7 @@ pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         })?;
         LightKind::Point { position }
     };
-    // Options that do not apply to this kind of light are reported.
+    // What says nothing about this kind of light is not passed over in silence.
     for chosen in &given.options {
         let counts = match chosen.name {
             "direction" => is_distant || as_point.is_some(),

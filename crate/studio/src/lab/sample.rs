@@ -80,7 +80,7 @@ impl Filling {
         self.grid.values.len() >= self.grid.width * self.grid.height
     }
 
-    /// Continues until the grid is full or `enough`, called now and then, returns true. Returns
+    /// Goes on until the grid is full or `enough` says so, which it is asked now and then. Gives
     /// whether the grid is full.
     pub fn go_on(
         &mut self,
@@ -90,7 +90,7 @@ impl Filling {
     ) -> bool {
         let Grid { width, height, .. } = self.grid;
         let all = width * height;
-        // A batch takes tens of microseconds with any field.
+        // A batch takes some tens of microseconds, whatever the field.
         let primitives: usize = bodies.iter().map(|body| body.primitives.len()).sum();
         let batch = (4000 / primitives.max(1)).clamp(1, 64);
         let mut done = 0;

@@ -7,9 +7,20 @@ use crate::{dist, tools};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
+/// The page and the program under test.
+pub struct Built {
+    page: PathBuf,
+    program: PathBuf,
+}
+
 /// Runs this part.
 pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
-    let (page, program) = built(watch, chosen)?;
+    let built = build(watch, chosen)?;
+    test(watch, chosen, &built)
+}
+
+/// Runs the tests in a browser.
+pub fn test(watch: &mut Watch, chosen: &Chosen, built: &Built) -> Result<String> {
     tools::node_packages()?;
     let chromium = tools::chromium()?;
     let screenshots = target().join("screenshots");
@@ -43,8 +54,8 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
             .args(&tests)
             .current_dir(&folder)
             .env("CHROMIUM", chromium)
-            .env("SINEW_PAGE", page)
-            .env("SINEW_PROGRAM", program)
+            .env("SINEW_PAGE", &built.page)
+            .env("SINEW_PROGRAM", &built.program)
             .env("SINEW_SCREENSHOTS", &screenshots))
     })?;
     let count = tests.len();
@@ -54,18 +65,21 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
     ))
 }
 
-/// The page and the program: those that are shipped, and whose sizes are held to limits, where everything is tested; else what is
-/// built soonest.
-fn built(watch: &mut Watch, chosen: &Chosen) -> Result<(PathBuf, PathBuf)> {
+/// Builds the page and the program: those that are shipped, and whose sizes are held to limits, where everything is tested; else
+/// what is built soonest.
+pub fn build(watch: &mut Watch, chosen: &Chosen) -> Result<Built> {
     if *chosen == Chosen::All {
         let page = watch.step("page", dist::dist)?;
         let program = watch.step("program", portable::build)?.program;
-        return Ok((page, program));
+        return Ok(Built { page, program });
     }
     let folder = page::served();
     watch.step("page", || page::build(Build::Development, &folder))?;
     let build = ["build", "--package", "cli"];
     let message = ["--message-format", "json-render-diagnostics"];
     let made = watch.step("program", || artifacts(cargo(&build).args(message)))?;
-    Ok((folder, executable(&made, "sinew")?))
+    Ok(Built {
+        page: folder,
+        program: executable(&made, "sinew")?,
+    })
 }
