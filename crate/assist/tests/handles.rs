@@ -132,7 +132,7 @@ fn variables_are_moved_where_they_are_set() {
 }
 
 #[test]
-fn what_cannot_be_moved_says_why() {
+fn fixed_numbers_have_a_reason() {
     let fixed = |text: &str, label: &str| {
         let project = project(&format!("{MATERIAL}{text}"));
         let handles = of(&project, 0);

@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_said() {
+    fn nonsensical_options_are_errors() {
         let request = parse(&words("-a -c +g -t -y +m +j a.rat")).expect("understood");
         assert_eq!(request.remarks.len(), 7);
         for (line, why) in [

@@ -369,7 +369,7 @@ fn manifold_rust_agrees() {
 }
 
 #[test]
-fn what_cannot_be_written_is_said() {
+fn meshes_that_cannot_be_written_are_errors() {
     let told = |change: &dyn Fn(&mut Export)| {
         let mut export = export();
         change(&mut export);

@@ -111,7 +111,7 @@ fn solids_are_free_and_shifted_copies_are_not() {
 }
 
 #[test]
-fn what_cannot_be_judged_is_said() {
+fn undecidable_meshes_are_reported() {
     let mesh = |p: DVec3| TriangleMesh::new(vec![p, DVec3::X, DVec3::Y], vec![[0, 1, 2]]);
     for p in [
         DVec3::NAN,

@@ -31,7 +31,7 @@ fn sample(width: u32, height: u32, seed: u32) -> Picture {
 }
 
 #[test]
-fn what_is_written_is_read_again() {
+fn written_files_are_read_back() {
     for &format in FORMATS {
         for (width, height) in [(1, 1), (7, 3), (40, 30)] {
             let picture = sample(width, height, 0);

@@ -49,7 +49,7 @@ fn version_1_is_frozen() {
 }
 
 #[test]
-fn what_is_no_link() {
+fn texts_that_are_no_links_are_refused() {
     for text in ["", "hello world", "!", "AA", "A"] {
         assert_eq!(link::decode(text), Err(LinkError::NotALink), "{text}");
     }
@@ -67,7 +67,7 @@ fn what_is_no_link() {
 }
 
 #[test]
-fn what_is_too_large() {
+fn links_that_are_too_large_are_refused() {
     let long = "A".repeat(link::MAX_FRAGMENT + 1);
     assert_eq!(link::decode(&long), Err(LinkError::TooLong));
     // A bomb: a small fragment that inflates beyond the limit.
@@ -84,7 +84,7 @@ fn what_is_too_large() {
 }
 
 #[test]
-fn what_is_no_project() {
+fn contents_that_are_no_project_are_refused() {
     let refused = |shared: Shared| {
         let json = serde_json::to_vec(&shared).expect("json");
         assert!(

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_surface_is_refused() {
+    fn quadrics_without_a_surface_are_refused() {
         let new = |a: DMat3, b, high| Quadric::new(a, b, 1.0, DVec3::ZERO, high);
         assert!(new(DMat3::IDENTITY, DVec3::ZERO, DVec3::ONE).is_some());
         assert!(new(DMat3::ZERO, DVec3::X, DVec3::ONE).is_some());

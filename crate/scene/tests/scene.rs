@@ -348,7 +348,7 @@ fn pipes_and_patches_have_the_skeletons_of_their_kin() {
 }
 
 #[test]
-fn what_has_no_skeleton_stays_hard() {
+fn shapes_without_a_skeleton_stay_hard() {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let quadric = Quadric {
         square: glam::DMat3::IDENTITY,

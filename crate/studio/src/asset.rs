@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_is_not_is_refused() {
+    fn files_of_another_format_are_refused() {
         for name in [
             "a.obj", "a.ply", "a.stl", "a.glb", "a.png", "a.gif", "a.tif", "a.mtv", "a",
         ] {

@@ -183,7 +183,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_the_help_shows_is_the_language() {
+    fn the_help_shows_the_language() {
         let text: Vec<&str> = LANGUAGE.iter().map(|(code, _)| *code).collect();
         let file = rats::File {
             name: String::from("help.rat"),

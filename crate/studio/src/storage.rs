@@ -444,7 +444,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_left_alone() {
+    fn unreadable_records_are_left_alone() {
         let mut store = Common::default();
         let key = format!("{DOCUMENT}x");
         for strange in [

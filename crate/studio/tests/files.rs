@@ -132,7 +132,7 @@ fn images_and_meshes_are_tabs_that_show_them_and_are_kept_but_not_shared() {
 }
 
 #[test]
-fn what_cannot_be_kept_or_taken_is_said() {
+fn files_that_cannot_be_kept_or_taken_are_reported() {
     let mut window = Window::with_text(TEXT);
     window.edit();
     window.write("# mine\n");

@@ -107,7 +107,7 @@ fn tools_on_two_dropped_pictures_give_results_that_are_shown_saved_and_kept() {
 }
 
 #[test]
-fn what_cannot_be_done_is_said_in_the_program_s_words() {
+fn errors_have_the_program_s_words() {
     let mut window = Window::with_text(&format!(
         "resize no.png 20 10\nconvert ../a.png b.png\nshow color Gold\n{SCENE}"
     ));

@@ -296,7 +296,7 @@ mod tests {
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn what_is_around_a_ball_is_what_meets_it() {
+    fn items_around_a_ball_are_those_that_meet_it() {
         let mut state = 8u64;
         let mut next = || {
             state = state.wrapping_mul(6364136223846793005).wrapping_add(99);

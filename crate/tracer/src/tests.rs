@@ -91,7 +91,7 @@ fn pictures_with_profiles_show_the_exact_surface() {
 /// is the same, with far fewer evaluations than with all primitives for each ray.
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
-fn doubts_in_a_cloud_are_settled_with_what_is_near() {
+fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     let mut numbers = common::Numbers(9);
     let mut scene = common::empty();
     scene.camera.eye = DVec3::Z * 4.0;

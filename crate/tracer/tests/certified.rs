@@ -164,7 +164,7 @@ fn a_primitive_that_is_left_out_is_told() {
 
 /// `cast`, which the checks use, agrees with pictures.
 #[test]
-fn what_is_cast_is_what_pictures_show() {
+fn cast_agrees_with_pictures() {
     const SIDE: u32 = 48;
     let (mut shown, mut differ) = (0, 0);
     for seed in 0..16 {
@@ -302,7 +302,7 @@ fn a_thin_bone_beside_blobs_is_not_stepped_over() {
 /// axis; a very thin curve whose bent-away parts counted as near; crisp faces that single precision moves by more than a very fine
 /// picture's tolerance.
 #[test]
-fn what_was_missed_once_is_found() {
+fn earlier_faults_do_not_recur() {
     let once = [
         (Kernel::Gauss, Kind::Polygon, 138),
         (Kernel::Gauss, Kind::Arc, 89),

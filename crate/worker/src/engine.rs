@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_made_smooth_is_what_it_would_be_alone_picture_after_picture() {
+    fn smooth_tiles_do_not_depend_on_earlier_tiles_or_pictures() {
         let size = [150, 100];
         let mut engine = Engine::default();
         for (generation, x) in [(1, 0.2), (2, -0.2)] {
@@ -394,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn what_another_worker_tells_is_not_traced_again() {
+    fn samples_of_other_workers_are_not_traced_again() {
         let size = [150, 100];
         let tiles = tracer::tile::tiles(size[0], size[1], 64);
         let worker = |shared| {

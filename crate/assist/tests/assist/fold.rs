@@ -13,7 +13,7 @@ fn lines(text: &str) -> Vec<(usize, usize)> {
 }
 
 #[test]
-fn what_lines() {
+fn comments_and_blocks_fold() {
     let text = "\
 # a
 # b
@@ -49,7 +49,7 @@ if b {
 }
 
 #[test]
-fn what_is_open_does_not() {
+fn unclosed_braces_do_not_fold() {
     assert_eq!(lines("object A\n  sphere\nfor {\n}\n"), [(2, 4)]);
     assert_eq!(lines("for {\n { \n }\n"), [(1, 3)]);
     assert_eq!(lines("}\n}\nclose\nclose"), []);

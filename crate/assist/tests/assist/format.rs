@@ -101,14 +101,14 @@ fn examples_and_library() {
 }
 
 #[test]
-fn what_does_not_match_is_left_alone() {
+fn unmatched_brackets_are_left_alone() {
     for text in ["for i=1 to 3 {\n  quit", "  }", "a {{ }", "} {"] {
         assert_eq!(format(text), text);
     }
 }
 
 #[test]
-fn what_would_outgrow_the_limit_is_left_alone() {
+fn texts_that_would_exceed_the_limit_are_left_alone() {
     let text = "a{\n".repeat(40_000) + &"}\n".repeat(40_000);
     assert_eq!(format(&text), text);
 }

@@ -39,7 +39,7 @@ fn stands(text: &str) {
 }
 
 #[test]
-fn what_is_made_last_counts() {
+fn the_last_definition_counts() {
     made("var a = 1\nvar «a» = 2\nsphere s |a P\nvar a = 3\n");
     made("surface T1 diff Red\nsurface «T1» = T0\nsphere T1| 1 0 0 0\nsurface T1 = T0\n");
     made("surface «T1» diff Red\nsurface T1 = |T1\n");
@@ -123,7 +123,7 @@ fn one_kind_of_name_is_not_another() {
 }
 
 #[test]
-fn what_may_be_the_same_is_the_same() {
+fn names_that_may_be_the_same_are_renamed_together() {
     // Set only sometimes: the other variable may be meant.
     stands("var «a|» = 2\ndefine f(b) { if b { var «a» = 1 }\n sphere s «a» 0 0 0 }\n");
     // Without another one there is nothing to be mixed up with.

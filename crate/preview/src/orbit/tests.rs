@@ -39,7 +39,7 @@ fn nothing_moves_without_the_pointer() {
 }
 
 #[test]
-fn what_is_in_front_follows_the_pointer() {
+fn points_in_front_follow_the_pointer() {
     // A point of the scene on the near side of the target must go right and down with the pointer.
     let camera = tilted();
     let point = camera.target + (camera.eye - camera.target) * 0.1;

@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_hidden_can_be_revealed() {
+    fn hidden_lines_can_be_revealed() {
         let mut folding = Folding::default();
         folding.update(0, TEXT);
         folding.toggle(0, 0);

@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_moved_follows_the_pointer() {
+    fn moved_points_follow_the_pointer() {
         let sight = sight();
         let before = sight.screen(DVec3::ONE).expect("visible");
         let by = vec2(12.0, -7.0);

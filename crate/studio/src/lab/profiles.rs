@@ -244,7 +244,7 @@ mod tests {
     use field::{Profile, Wave as Given};
 
     #[test]
-    fn what_is_plotted_is_what_the_language_means() {
+    fn plots_agree_with_the_language() {
         let lesson = Profiles::default();
         for wave in WAVES {
             let file = rats::File {
