@@ -4,62 +4,77 @@
 //! tile of it. A tile's pixels depend on nothing but the scene, so tiles may be traced in any
 //! order, by any number of threads or workers, on any platform, with equal results.
 //!
-//! # How a pixel comes about
+//! ```
+//! use glam::DVec3;
+//! use scene::{Element, Flesh, Scene, Shape};
+//! use tracer::Picture;
 //!
-//! [`picture`] cuts a tile into squares of pixels, and those into packets of eight rays. What the packets of a
-//! square share is in `square`: lists of what is near them, or beams that bounds are known of; packets that meet
-//! nothing send no rays. `packet` finds what the rays of a packet hit, first among the hard elements (`solids`,
-//! [`hard`]), then on the soft surface (`soft`). `shadows` asks which lights the hits see and adds up colours
-//! (`shade`). `refine` sends more rays where neighbouring pixels differ; the hits of all those of one packet's pixels
-//! share beams to the lights.
+//! // Two soft balls that blend.
+//! let mut scene = Scene::default();
+//! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
+//! for x in [-0.6, 0.6] {
+//!     let center = DVec3::X * x;
+//!     scene.elements.push(Element { flesh: Some(0), ..Element::new(Shape::Sphere { center, radius: 0.5 }) });
+//! }
+//! let picture = Picture::new(&scene, [64, 64]);
+//! // A ray towards the first ball: the hit is nearer than the ball's own surface, which the other one inflates.
+//! let ray = (DVec3::new(-0.6, 0.0, 4.0), DVec3::NEG_Z);
+//! let hit = picture.cast(&[ray])[0].expect("a hit");
+//! assert!(hit.t < 3.5 && hit.enters(ray.1));
+//! ```
 //!
-//! The soft surface is found in one of two ways, both certified.
+//! # How a pixel is computed
+//!
+//! [`picture`] cuts a tile into squares of pixels, and those into packets of eight rays. The packets of a square share data
+//! (`square`): lists of nearby primitives, or beams with bounds; packets that can meet nothing trace no rays. `meet` finds the
+//! first crossings of a packet's rays with hard elements (`solids`, [`hard`]) and soft surfaces (`soft`). `shadows` traces
+//! shadow rays and adds up colours (`shade`). `refine` traces more rays where neighbouring pixels differ; the hits of all
+//! those of one packet's pixels share beams to the lights.
+//!
+//! Crossings with the soft surface are found in one of two certified ways.
 //!
 //! - The fast path (`quick`) is for *blobs*, whose largest value on any interval of a ray has a closed form
 //!   (`field::blob`): points with compact or Gaussian kernels, and Gaussian segments. Gaussian arcs, curves and tapered
 //!   limbs are chains of blobs (`field::blob_chain`). `nearby` lists the blobs near a square, a part of it, a packet;
 //!   `blob_march` steps along the packet's rays, each step proved to hold no crossing.
 //! - The general way is the thesis' (chapter 4): `slabs` decides for a whole beam which primitive needs Hermite spans
-//!   of which length (`field::Bound` knows how large a field and the error of a span can be), and `walk` follows single
-//!   packets through the slabs, adds up their spans' cubics (`spans`) and takes their roots (`roots`); `root_isolation` decides
+//!   of which length (`field::Bound` has bounds on fields and on the errors of spans), and `walk` traverses the slabs with
+//!   single packets, adds up their spans' cubics (`spans`) and takes their roots (`roots`); `root_isolation` decides
 //!   the doubtful ones. Nothing is cut off: primitives so far away that they are smooth across the beam are interpolated
 //!   once for all its rays (`shared`), and distant primitives are bounded in groups (`clusters`). `flesh` samples the
 //!   surface at the hits. This way takes packets near anything but blobs, or with a ray that starts inside,
 //!   and all packets of a square whose beam meets more than 16 other primitives.
 //!
-//! Other ways of finding crossings, for comparison, are in `digger`; `map` shows what a picture costs.
+//! Other root finders, for comparison, are in `digger`; `map` shows the cost of each pixel.
 //!
-//! Pictures are checked against [`mod@reference`], which finds the surface by bisection with
-//! bounds of its own (`tests/certified.rs`, `examples/certify.rs`); `cast` follows single rays in the way of
-//! pictures.
+//! Pictures are checked against [`mod@reference`], which finds the surface by bisection with bounds of its own
+//! (`tests/certified.rs`, `examples/certify.rs`); `cast` traces single rays as in pictures.
 //!
 //! # Limits
 //!
-//! - Of all primitives no more than 2·10⁻⁵·T is left out, all together, whatever `influence` says; that and single
-//!   precision (about 10⁻⁶·T) are within the tolerance unless a surface is nearly flat in the field; a ray that they may
-//!   have kept outside is settled where that was, with all of them. Shadows are not. A packet near more
-//!   than 2¹⁶ blobs (points of chains count one each), or that makes more than 2²⁴ evaluations, goes the general way.
-//! - There pictures show a field within 5·10⁻⁴·T of the true one, or as near as rounding lets it come where that is
-//!   less, and what is shared adds at most 4·10⁻⁴·T; hits are then
-//!   moved onto the field itself, unless what is shared moves them by less than half the tolerance; in double precision, where
-//!   rounding may move them by more than that and no more than 2¹⁶ primitives are near.
-//!   [`Picture::hits`] cuts nothing off and shares nothing; it may miss two crossings between which the field is
-//!   within 10⁻⁹·T of T.
-//! - Where spans leave a ray in doubt its crossings are isolated alone (`root_isolation`), among very many primitives within what is shared, if that
-//!   tells enough, and else exactly; stretches shorter than 5·10⁻⁷ of the scene are
-//!   not looked into, and one packet looks at no more than 65536 pieces: a stretch at no more than a quarter of those left (all but an eighth for its next part),
-//!   and what comes after its share is used up is decided by the signs at its ends.
-//! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be
-//!   shared and rounding leaves many rays in doubt: such pictures are slow.
-//! - What is known of a profile holds between its kinks and jumps (`field::kinks`; polygons and curves have none). In
-//!   scenes of at most 16 primitives, where those meet a slab, rays are settled
-//!   alone, each in pieces from kink to kink; that would take too long in larger ones, so that thin flesh next to a
-//!   kink may be missed there, and a hit be off.
-//! - Where rounding may be as large as T, as beside Gaussian faces of blobbiness 20 and more, rays are settled alone at
-//!   once.
-//! - A packet looks at no more than 2¹⁷ list entries (what is evaluated to settle rays counts, too), or 64 times as
-//!   many as there are primitives but never more than 2²²; after that its slabs are settled as they are, and where
-//!   that looks at too many pieces what is left is decided by the signs at its ends. A slab is no shorter than 2⁻⁴⁰ of its beam.
+//! - Fast path: primitives left out add up to at most 2·10⁻⁵·T, whatever `influence` is. With single precision (about 10⁻⁶·T)
+//!   that is within the tolerance unless a surface is nearly flat in the field. A ray that passes so near to the surface is
+//!   searched again there in double precision, with all primitives; shadow rays are not. A packet near more than 2¹⁶ blobs
+//!   (points of chains count one each), or with more than 2²⁴ evaluations, takes the general way.
+//! - General way: the error of the field is at most 5·10⁻⁴·T, or that of rounding where it is larger, plus at most 4·10⁻⁴·T for
+//!   shared interpolants. Hits are then refined on the field itself (with shared interpolants where those move them by less
+//!   than half the tolerance), in double precision where rounding may move them by more than that and at most 2¹⁶ primitives
+//!   are near.
+//! - [`Picture::hits`] leaves out nothing and shares nothing; it may miss two crossings between which the field is within
+//!   10⁻⁹·T of T.
+//! - Rays that spans leave in doubt are isolated one by one (`root_isolation`): among very many primitives with shared
+//!   interpolants if their error allows it, else with all primitives. Intervals shorter than 5·10⁻⁷ of the scene are not
+//!   subdivided. A packet uses at most 65536 pieces, an interval at most a quarter of the remaining ones; after that the signs
+//!   at the ends decide.
+//! - Where a packet is wider than the primitives in it, as in small pictures of clouds of very many, little can be shared and
+//!   rounding leaves many rays in doubt: such pictures are slow.
+//! - Bounds on a profile hold between its kinks and jumps (`field::kinks`; polygons and curves have none). In bodies of at most
+//!   16 primitives, rays that meet a kink are isolated one by one, in pieces from kink to kink. In larger ones, where that
+//!   would take too long, thin parts next to a kink may be missed, and hits there may be inaccurate.
+//! - Where rounding may be as large as T, as beside Gaussian faces of blobbiness 20 and more, rays are isolated at once.
+//! - A packet visits at most 2¹⁷ list entries (evaluations of root isolation count, too), or 64 times the number of primitives,
+//!   but at most 2²²; after that its slabs are decided by root isolation within its limits. A slab is no shorter than 2⁻⁴⁰ of
+//!   its beam.
 //! - Soft planes are followed up to 10⁴ times the scene's size.
 
 mod area;
