@@ -322,7 +322,7 @@ mod tests {
                     outward += along_any_line(kernel, order(kernel), u + middle) * (b - a);
                 }
                 let bound = roughness(kernel, u);
-                // Derivatives themselves; envelopes never fall below what comes further out.
+                // Derivatives themselves; envelopes are running maxima from outside.
                 assert!(
                     line <= bound.line * 1.001,
                     "{kernel:?} {u}: {line} {bound:?}"

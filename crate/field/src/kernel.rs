@@ -311,7 +311,7 @@ impl Kernel {
     #[must_use]
     pub fn between(self, a: f64, b: f64) -> f64 {
         if self == Self::Cubed {
-            // The rest from u on: beside what the pole gives, the difference of two integrals from 0 is lost.
+            // The integral from u on: the difference of two integrals from 0 would be lost beside the pole's part.
             let beyond = |u: f64| {
                 let root = (u * u + inverse::POLE2).sqrt();
                 1.0 / (root * (root + u))
@@ -439,7 +439,7 @@ mod tests {
                     (along - want).abs() < 1e-9,
                     "{kernel:?} {u}: {along} {want}"
                 );
-                // As far as doubles tell beside what the pole gives.
+                // To the accuracy of doubles beside the pole's part.
                 let digits = 1e-15 * kernel.along(u);
                 let want = kernel.along(u) - kernel.along(0.1);
                 assert!(

@@ -127,7 +127,7 @@ mod tests {
 
     /// A step along a ray.
     const STEP: f64 = 1e-4;
-    /// Second differences over the step's square: what is smooth here has less, a kink or a jump mostly more.
+    /// Second difference over the step's square that separates smooth places from kinks and jumps, mostly.
     const SHARP: f64 = 1e3;
 
     fn wavy(which: usize, next: &mut impl FnMut() -> f64) -> Primitive {
@@ -203,7 +203,7 @@ mod tests {
                 }
             }
         }
-        // Most kinks are sharp, of two or three differences each; and few are told that are none.
+        // Most kinks are sharp, of two or three differences each; few listed ones are none.
         assert!(sharp > 100 && told < 3 * sharp, "{sharp} {told}");
     }
 }

@@ -28,7 +28,7 @@
 //!
 //! Where to find what:
 //! - the formula of a Cauchy arc is in `cauchy/arc.rs`, and so on; `form.rs` is the chart that says which
-//!   formula serves which kernel on which bone; [`quadrature`] is what they are tested against;
+//!   formula serves which kernel on which bone; they are tested against [`quadrature`];
 //! - [`Shaping`] turns a radius, a blobbiness and a strength into a kernel's width and height;
 //! - [`Implicit`] is any function with a surface, with value, gradient and proven bounds; [`Sum`] is the convolution
 //!   surface's;

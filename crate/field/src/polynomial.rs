@@ -2,8 +2,8 @@
 //!
 //! Along a line and an arc v is a polynomial of the place and of the azimuth's sine and cosine; over a
 //! polygon Green's theorem leaves polynomials along the edges. So every cell is exact once the bone
-//! is clipped to the ball v ≥ 0. Clipped to, not subtracted from: what is left outside is 0 to the
-//! last bit, and short pieces keep their digits.
+//! is clipped to the ball v ≥ 0. Nothing is subtracted: outside, the field is 0 to the last
+//! bit, and short pieces keep their digits.
 
 pub mod arc;
 pub mod polygon;

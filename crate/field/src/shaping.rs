@@ -154,7 +154,7 @@ impl Shaping {
     /// Of the cubed kernel 1/d³ that is R³ for points, R²/2 for lines and R/2π for planes, in units of length.
     ///
     /// It depends on the skeleton's dimension only, not on its size. So cutting a segment, an arc
-    /// or a triangle in two changes nothing, which is what keeps joints free of bulges.
+    /// or a triangle in two changes nothing, so that joints are free of bulges.
     #[must_use]
     pub fn height(&self, skeleton: &Skeleton) -> Option<f64> {
         let s = self.width()?;

@@ -30,7 +30,7 @@ use wide::f32x8;
 pub struct Sum {
     /// The terms.
     pub primitives: Vec<Primitive>,
-    /// Bounds of each term for enclosures, made when first asked for.
+    /// Bounds of each term for enclosures, made at first use.
     bounds: OnceLock<Vec<Known>>,
 }
 

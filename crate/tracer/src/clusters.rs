@@ -12,7 +12,7 @@ use glam::DVec3;
 const STEPS: usize = 4;
 /// The first entry stands for distances from 0 on, the second for those from 2 to the power of this on …
 const FIRST: i32 = -10;
-/// … and so many octaves follow: the scene is between 2 and 4 large.
+/// … and the number of octaves: the scene's size is between 2 and 4.
 const OCTAVES: usize = 12;
 const ENTRIES: usize = 1 + OCTAVES * STEPS + 1;
 

@@ -88,7 +88,7 @@ struct Hits<'a> {
     places: &'a [(u32, u32)],
     /// Lanes that hit, and those of them whose crossing is exact already.
     met: u32,
-    settled: u32,
+    isolated: u32,
 }
 
 impl Soft {
@@ -105,11 +105,11 @@ impl Soft {
         let mut t = [0.0; PACKET];
         let mut reach = [0.0; PACKET];
         let mut places: [(u32, u32); PACKET] = [(0, 0); PACKET];
-        let (mut different, mut met, mut settled) = (0, 0, 0);
+        let (mut different, mut met, mut isolated) = (0, 0, 0);
         for hit in found {
             let bit = 1 << hit.lane;
             met |= bit;
-            settled |= if hit.settled { bit } else { 0 };
+            isolated |= if hit.isolated { bit } else { 0 };
             t[hit.lane] = hit.t;
             let slab = slabs.slab(hit.slab);
             reach[hit.lane] = slab.to - slab.from;
@@ -132,7 +132,7 @@ impl Soft {
             furthest: f32x8::from_lanes(|i| reach[i]),
             places: &places[..different],
             met,
-            settled,
+            isolated,
         };
         self.refine_hits(&hits, true, scratch);
         let of_slabs = |part: fn(&Spent) -> f64| {
@@ -180,7 +180,7 @@ impl Soft {
             let most = tolerance.clamp(FINEST, COARSEST_OF_SPANS) * gradients[i].length();
             // NaN counts as off.
             let near = error[i] <= most;
-            all | u32::from(!near) << i & hits.met & !hits.settled
+            all | u32::from(!near) << i & hits.met & !hits.isolated
         })
     }
 
@@ -264,7 +264,7 @@ impl Soft {
         let weights = &mut flesh.weights;
         let mut gradient = [f32x8::splat(0.0); 3];
         // Hits that are exact already stay.
-        let free = mask(!hits.settled);
+        let free = mask(!hits.isolated);
         for _ in 0..MOST_POLISHING {
             let point = core::array::from_fn(|k| origin[k] + direction[k] * at);
             let mut value = f32x8::splat(0.0);
@@ -309,14 +309,14 @@ impl Soft {
             let good = next.simd_le(start + furthest) & next.simd_ge(low) & free;
             at = good.select(next, at);
             let off = f32x8::splat(NEAR_ENOUGH).less(excess.abs());
-            if off & hits.met & !hits.settled == 0 {
+            if off & hits.met & !hits.isolated == 0 {
                 break;
             }
         }
         flesh.gradient = gradient;
         flesh.t = at.to_array().map(f64::from);
         for (i, own) in flesh.t.iter_mut().enumerate() {
-            if hits.settled >> i & 1 != 0 {
+            if hits.isolated >> i & 1 != 0 {
                 *own = hits.exact[i];
             }
         }

@@ -246,7 +246,7 @@ mod tests {
                 .filter(|i| beam.meets(i.1, i.2))
                 .map(|i| i.0)
                 .collect();
-            // The tree may skip what a beam grazes by rounding only; it must find the rest.
+            // The tree may skip items that a beam grazes by rounding only; it must find the rest.
             for i in &scanned {
                 let (_, c, r) = items[*i as usize];
                 assert!(found.contains(i) || !beam.meets(c, r * (1.0 - 1e-6)));

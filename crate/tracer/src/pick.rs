@@ -31,7 +31,7 @@ pub struct Picker {
     soft: Vec<(SoftSurface, Option<Ball>)>,
 }
 
-/// Stretches of rays shorter than this part of the scene's size are not looked into.
+/// Length, relative to the scene, below which intervals of rays are not subdivided.
 const PICK_RESOLUTION: f64 = 1e-5;
 /// Surfaces without a support are followed this far, in units of the scene's size.
 const FURTHEST: f64 = 1e4;

@@ -669,7 +669,7 @@ mod tests {
 
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn doubts_are_settled_where_they_are() {
+    fn doubts_are_isolated_where_they_are() {
         let soft = ball();
         let (rays, enters) = past_the_ball();
         let mut near = Nearby::default();
@@ -690,16 +690,16 @@ mod tests {
         };
         // Longer than one part.
         for doubt in [[1.2, 1.6], [0.0, 2.5]] {
-            let settled = marched(0b1111_1011, doubt);
-            assert_eq!(settled.met, 0b1011, "{doubt:?}");
+            let isolated = marched(0b1111_1011, doubt);
+            assert_eq!(isolated.met, 0b1011, "{doubt:?}");
             for (i, enters) in enters.into_iter().enumerate() {
-                let t = settled.t.to_array()[i];
+                let t = isolated.t.to_array()[i];
                 match enters {
                     // The third is not in doubt.
                     Some(enters) if i != 2 => assert!((f64::from(t) + 0.5 - enters).abs() < 1e-6),
                     _ => assert!((t - 9.0).abs() < 1e-6),
                 }
-                let ends = settled.between.map(|end| end.to_array()[i]);
+                let ends = isolated.between.map(|end| end.to_array()[i]);
                 assert_eq!(ends, [t; 2]);
             }
         }

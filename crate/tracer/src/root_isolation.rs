@@ -474,9 +474,9 @@ mod tests {
                 },
                 off: OFF,
             };
-            let mut settler = RootIsolator::default();
-            settler.list.extend([0, 1]);
-            let Some(told) = settler.crossings_with(&along, [0.0, LENGTH], &known) else {
+            let mut isolator = RootIsolator::default();
+            isolator.list.extend([0, 1]);
+            let Some(told) = isolator.crossings_with(&along, [0.0, LENGTH], &known) else {
                 unsure += 1;
                 continue;
             };
@@ -535,11 +535,11 @@ mod tests {
                 },
                 off: 0.01,
             };
-            let mut settler = RootIsolator::default();
-            let crossings = settler.crossings_with(&along, [0.0, 2.0], &known);
+            let mut isolator = RootIsolator::default();
+            let crossings = isolator.crossings_with(&along, [0.0, 2.0], &known);
             assert_eq!(crossings.map(|told| told.len()), told, "{slope}");
             // A search without an answer uses up no pieces.
-            assert_eq!(settler.pieces == MOST_PIECES, told.is_none(), "{slope}");
+            assert_eq!(isolator.pieces == MOST_PIECES, told.is_none(), "{slope}");
         }
     }
 }

@@ -37,8 +37,8 @@ pub(crate) struct Kept {
 const _: () = assert!(COLUMNS == u16::BITS);
 
 impl SampleCache {
-    /// An empty cache for a picture of `size` pixels that keeps at most `room` squares; what comes after those is not
-    /// kept.
+    /// An empty cache for a picture of `size` pixels that keeps at most `room` squares; samples of further
+    /// squares are not kept.
     #[must_use]
     pub(crate) fn new(size: [u32; 2], room: usize) -> Self {
         let [across, down] = size.map(|n| n.div_ceil(SQUARE) as usize);

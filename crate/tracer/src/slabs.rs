@@ -576,7 +576,7 @@ impl<'a> Slabs<'a> {
             return true;
         }
         *looks += 1 + (slab.pending.len() / 64) as u32;
-        // Where there are spans, only rays can tell.
+        // Spans can only be evaluated for rays.
         if !slab.resolved.is_empty() || *looks > MOST_EMPTY_LOOKS {
             return false;
         }

@@ -117,9 +117,9 @@ fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     assert!((100..4000).contains(&plain.shadow_rays), "{plain:?}");
     // A larger bound on rounding leaves more rays in doubt.
     picture.sampler.world.soft.precision.rounding *= 4.0;
-    let (settled, doubted) = trace_counting(&picture);
+    let (isolated, doubted) = trace_counting(&picture);
     let off = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 1;
-    assert_eq!(shown.iter().zip(&settled).filter(|&x| off(x)).count(), 0);
+    assert_eq!(shown.iter().zip(&isolated).filter(|&x| off(x)).count(), 0);
     // With all primitives at once it would be 7 times as many.
     let [plain, doubted] = [plain, doubted].map(|stats| stats.field_evaluations);
     assert!(

@@ -46,7 +46,7 @@ pub struct Found {
     /// The ray's lane.
     pub lane: usize,
     /// Whether t is exact in double precision.
-    pub settled: bool,
+    pub isolated: bool,
 }
 
 /// Traversal state of a bundle.
@@ -281,7 +281,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     }
 
     /// Records on which side the rays are at t; a ray that was on the other side crosses there.
-    fn arrive(&mut self, index: u32, t: f64, outside: u32, inside: u32, settled: bool) {
+    fn arrive(&mut self, index: u32, t: f64, outside: u32, inside: u32, isolated: bool) {
         let outside = outside & self.alive;
         let inside = inside & self.alive & !outside;
         let leaving = outside & self.inside;
@@ -296,7 +296,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 t,
                 slab: index,
                 lane,
-                settled,
+                isolated,
             };
             self.report(found, entering >> lane & 1 != 0);
         }
@@ -391,7 +391,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
         let s = self.slabs.slab(index);
         let interval = [s.from, s.to];
-        let mut settled = 0;
+        let mut isolated = 0;
         for lane in (0..L::LANES).filter(|lane| lanes >> lane & 1 != 0) {
             let along = Along {
                 sight: self.sight,
@@ -408,7 +408,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             self.evaluations += spent;
             let Some(told) = told else { continue };
             let bit = 1u32 << lane;
-            settled |= bit;
+            isolated |= bit;
             for (t, inside) in told {
                 let side = |yes: bool| if yes { bit } else { 0 };
                 self.arrive(index, t, side(!inside), side(inside), false);
@@ -417,7 +417,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 }
             }
         }
-        settled
+        isolated
     }
 
     /// Records the crossings of some rays in a slab whose cubics are final.
@@ -452,7 +452,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                     t: from + x * (to - from),
                     slab: index,
                     lane,
-                    settled: false,
+                    isolated: false,
                 };
                 self.report(found, enters);
             }

@@ -13,7 +13,7 @@
 //!     shared: false,
 //! });
 //! let order = |tile| Order { generation: 1, tile, pass: Pass::Full };
-//! engine.accept(Request::Trace(tiles([8, 8], 8).into_iter().map(order).collect()));
+//! engine.accept(Request::Trace(tiles(8, 8, 8).into_iter().map(order).collect()));
 //! let mut bytes = 0;
 //! while !engine.is_idle() {
 //!     if let Step::Answer(Answer::Traced { pixels, .. }) = engine.step(&|| false, &|| 0.0) {

@@ -14,7 +14,7 @@
 //! Chebyshev coefficients fall like those of e^(−L²x²), which are `e^(−L²/2)·I_k(L²/2)` for the even
 //! degrees 2k. With n nodes those up to degree 2n−1 count exactly, and the rest is about 10⁻⁷ (L = 3.6,
 //! n = 16) or 10⁻¹⁵ (L = 6.3, n = 40) of the peak; of one that falls off from an end less. Where the window would be
-//! wider than a half circle, what is integrated may reach further out than L: there it is up to 10⁻⁶ and 10⁻¹².
+//! wider than a half circle, the integrand may reach further out than L: there the rest is up to 10⁻⁶ and 10⁻¹².
 //!
 //! Azimuths jump by 2π somewhere. An arc of at most a half circle whose middle is at |u| ≤ π
 //! reaches |u| = 3π/2 at most: the window is either narrower than π/2 and meets it in one piece, or
@@ -130,9 +130,9 @@ fn window<R: Real>(coupling: R, nearest: R) -> R {
     )
 }
 
-/// The integrals of `e^(−coupling·s²)·(1, s², s·c)`, s and c the sine and cosine of u/2, over what of
-/// `from + limits` is in the window; `from` apart, lest a short piece lose its length's digits. `ends` is what
-/// coupling·s² is at the nearer of the limits.
+/// Returns the integrals of `e^(−coupling·s²)·(1, s², s·c)`, s and c the sine and cosine of u/2, over the part of
+/// `from + limits` in the window; `from` is separate to keep the digits of a short piece's length. `ends` is
+/// coupling·s² at the nearer of the limits.
 #[inline(always)]
 fn piece<R: Real>(coupling: R, ends: R, from: R, [low, high]: [R; 2]) -> [R; 3] {
     let zero = R::splat(0.0);

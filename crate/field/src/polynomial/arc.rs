@@ -317,7 +317,7 @@ impl<R: Real> Moments<R> {
     }
 }
 
-/// A piece's frame: what it takes to go from integrals around its middle to the local axes.
+/// Frame of a piece, for the conversion of integrals around its middle to the local axes.
 pub(crate) struct Around<R> {
     /// v at the middle.
     pub v: R,

@@ -1,10 +1,10 @@
-//! LG surfaces (Kalra and Barr): halving the ray until two Lipschitz constants settle what is in each
+//! LG surfaces (Kalra and Barr): halving the ray until two Lipschitz constants isolate the root of each
 //! interval.
 //!
 //! Let d be half an interval's length and m its middle. If |F(m)−T| > L·d, where L bounds the rate of
 //! change of F, there is no root. If |F′(m)| > G·d, where G bounds that of F′, F is monotone, so
 //! there is one root or none, as the signs at the ends tell; the regula falsi refines it. Otherwise both
-//! halves are looked at. L and G are found anew for each interval, from bounds per primitive.
+//! halves are searched. L and G are computed for each interval, from bounds per primitive.
 use super::march::Bracket;
 use super::{Side, Sight, Single, regula_falsi};
 use crate::walk::Quest;
@@ -13,8 +13,8 @@ use core::ops::Range;
 /// Intervals shorter than this are not halved.
 const SHORTEST_INTERVAL: f64 = 1e-7;
 /// Most looks at a primitive on a ray, or 64 times its primitives: along a ray that lies in the
-/// surface every interval would have to be halved to the last. What is left then is settled
-/// by its ends.
+/// surface every interval would have to be halved to the last. The signs at the ends decide the
+/// rest.
 const MOST_LG_LOOKS: u64 = 1 << 16;
 
 pub(super) struct Lg;
@@ -38,7 +38,7 @@ impl Single for Lg {
 struct Search<'s, 'a> {
     sight: &'s mut Sight<'a>,
     side: Side,
-    /// The primitives that count in the intervals being looked at, a range for each level.
+    /// Primitives that count in the intervals being searched, a range for each level.
     lists: Vec<u32>,
     looks: u64,
     most: u64,
@@ -61,12 +61,12 @@ impl Search<'_, '_> {
         }
         let list = start..self.lists.len();
         self.looks += 1 + list.len() as u64;
-        let found = self.settle(ends, list);
+        let found = self.isolate(ends, list);
         self.lists.truncate(start);
         found
     }
 
-    fn settle(&mut self, ends: [f64; 2], list: Range<usize>) -> Option<f64> {
+    fn isolate(&mut self, ends: [f64; 2], list: Range<usize>) -> Option<f64> {
         let [from, to] = ends;
         let middle = 0.5 * (from + to);
         let half = 0.5 * (to - from);

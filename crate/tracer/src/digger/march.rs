@@ -7,8 +7,8 @@ use crate::walk::Quest;
 /// Steps in the length on which the sharpest kernel changes. A surface may be missed where the ray is
 /// inside it for less than a step.
 const STEPS: f64 = 8.0;
-/// Most steps on a ray: so many, but fewer where it meets very many primitives, so that it looks at
-/// no more than about [`MOST_MARCH_LOOKS`] of them, or 64 times at each.
+/// Most steps on a ray; fewer where it meets very many primitives, for at most about [`MOST_MARCH_LOOKS`]
+/// evaluations, or 64 of each.
 const MOST_MARCH_STEPS: usize = 4096;
 /// See [`MOST_MARCH_STEPS`].
 const MOST_MARCH_LOOKS: usize = 1 << 18;

@@ -9,14 +9,14 @@
 //! | digger | finds | can miss |
 //! |---|---|---|
 //! | [`hermite`] | roots of Hermite spans with a bounded error; of blobs, by steps with a bound on their bend | little: see the limits of this crate |
-//! | [`hermite2`] | roots of n Hermite spans a primitive | what its spans do not show |
-//! | [`lagrange`] | roots of polynomials through five samples | what is thinner than its samples are apart |
-//! | [`brent`], [`ridder`], [`regula_falsi`] | changes of sign between steps, refined | what is thinner than a step |
+//! | [`hermite2`] | roots of n Hermite spans a primitive | crossings that its spans miss |
+//! | [`lagrange`] | roots of polynomials through five samples | parts thinner than its samples are apart |
+//! | [`brent`], [`ridder`], [`regula_falsi`] | changes of sign between steps, refined | parts thinner than a step |
 //! | [`lg`] | intervals where the field is monotone, by its Lipschitz constants | nothing longer than 10⁻⁷ |
 //! | [`sphere`] | the surface, by safe steps towards it | nothing longer than 10⁻⁶ |
 //!
 //! Lengths are in units of the scene's size. What one ray may cost is limited for each of them, so that
-//! no scene takes unlimited time; the limits are far above what pictures need.
+//! no scene takes unlimited time; the limits are far above the needs of pictures.
 
 mod brent;
 mod hermite;

@@ -8,8 +8,8 @@ use crate::walk::Quest;
 
 /// The shortest step: a hit is this near to the surface, and nothing longer is missed.
 const SHORTEST_STEP: f64 = 1e-6;
-/// After so many looks at a primitive, or 64 times the ray's primitives, a ray that creeps along the
-/// surface is taken to have met it.
+/// Evaluations of a primitive (or 64 times the ray's primitives) after which a ray that creeps along the
+/// surface counts as a hit.
 const MOST_SPHERE_LOOKS: usize = 1 << 16;
 
 pub(super) struct Sphere;

@@ -65,7 +65,7 @@ impl Cone {
         let b = across.dot(drift) - radius * growth;
         let c = across.length_squared() - radius * radius;
         let Some([first, second]) = zeros(a, b, c) else {
-            // The line goes along the axis of what is nearly a cylinder, or passes by.
+            // The line is parallel to the axis of a near-cylinder, or passes by.
             if a <= 0.0 && b == 0.0 && c < 0.0 {
                 clip.finish_from(shift, out);
             }

@@ -3,7 +3,7 @@
 //! All of a piece is at least as far from a point as its ball's near side and at most as far as its far
 //! side, so that its part of the field, its slope and its curvature are at most the piece's mass
 //! times those of the kernel in that shell ([`largest`]). A piece whose ball is large compared to its
-//! distance is halved. Halves are made when they are first asked for and kept.
+//! distance is halved. Halves are made at first use and kept.
 use super::shell::largest;
 use super::waves::Factor;
 use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton};
