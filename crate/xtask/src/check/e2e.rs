@@ -7,20 +7,9 @@ use crate::{dist, tools};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
-/// The page and the program under test.
-pub struct Built {
-    page: PathBuf,
-    program: PathBuf,
-}
-
 /// Runs this part.
 pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
-    let built = build(watch, chosen)?;
-    test(watch, chosen, &built)
-}
-
-/// Runs the tests in a browser.
-pub fn test(watch: &mut Watch, chosen: &Chosen, built: &Built) -> Result<String> {
+    let (page, program) = built(watch, chosen)?;
     tools::node_packages()?;
     let chromium = tools::chromium()?;
     let screenshots = target().join("screenshots");
@@ -54,8 +43,8 @@ pub fn test(watch: &mut Watch, chosen: &Chosen, built: &Built) -> Result<String>
             .args(&tests)
             .current_dir(&folder)
             .env("CHROMIUM", chromium)
-            .env("SINEW_PAGE", &built.page)
-            .env("SINEW_PROGRAM", &built.program)
+            .env("SINEW_PAGE", page)
+            .env("SINEW_PROGRAM", program)
             .env("SINEW_SCREENSHOTS", &screenshots))
     })?;
     let count = tests.len();
@@ -65,21 +54,18 @@ pub fn test(watch: &mut Watch, chosen: &Chosen, built: &Built) -> Result<String>
     ))
 }
 
-/// Builds the page and the program: those that are shipped, and whose sizes are held to limits, where everything is tested; else
-/// what is built soonest.
-pub fn build(watch: &mut Watch, chosen: &Chosen) -> Result<Built> {
+/// The page and the program: those that are shipped, and whose sizes are held to limits, where everything is tested; else what is
+/// built soonest.
+fn built(watch: &mut Watch, chosen: &Chosen) -> Result<(PathBuf, PathBuf)> {
     if *chosen == Chosen::All {
         let page = watch.step("page", dist::dist)?;
         let program = watch.step("program", portable::build)?.program;
-        return Ok(Built { page, program });
+        return Ok((page, program));
     }
     let folder = page::served();
     watch.step("page", || page::build(Build::Development, &folder))?;
     let build = ["build", "--package", "cli"];
     let message = ["--message-format", "json-render-diagnostics"];
     let made = watch.step("program", || artifacts(cargo(&build).args(message)))?;
-    Ok(Built {
-        page: folder,
-        program: executable(&made, "sinew")?,
-    })
+    Ok((folder, executable(&made, "sinew")?))
 }

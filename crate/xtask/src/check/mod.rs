@@ -9,7 +9,7 @@ mod quick;
 mod wasm;
 
 use crate::shell::{in_lane, tell};
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, bail};
 use chosen::Chosen;
 use clap::ValueEnum;
 use std::time::Instant;
@@ -30,7 +30,7 @@ pub enum Part {
     E2e,
 }
 
-/// Times of the steps of a part.
+/// What a part takes, step by step.
 #[derive(Default)]
 pub struct Watch {
     steps: Vec<(&'static str, u64)>,
@@ -86,42 +86,37 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
     Ok(())
 }
 
-/// All parts. The page is built beside the code's tests, with what those leave of the processor; tests in a browser begin when both
-/// are done, as they want the machine for themselves.
+/// All parts, in two lanes one after the other: the code's, then the page's, as tests in a browser want the machine for themselves.
 fn all() -> Vec<Done> {
-    let page = std::thread::spawn(|| {
-        in_lane("page", false, || {
-            let mut watch = Watch::default();
-            let built = e2e::build(&mut watch, &Chosen::All);
-            (watch, built)
-        })
-    });
-    // A thread of its own, so that a panic in one does not keep the other from being run.
-    let code = std::thread::spawn(|| {
-        in_lane("code", true, || {
-            [Part::Lint, Part::Native, Part::Wasm].map(|part| run(part, &Chosen::All))
-        })
-    });
-    let mut done = match code.join() {
-        Ok(parts) => Vec::from(parts),
-        Err(_) => vec![Done {
-            part: Part::Native,
-            said: String::from("the lane of code panicked"),
-            failed: true,
-        }],
+    let lane = |name, parts: &'static [Part]| {
+        move || {
+            in_lane(name, true, || {
+                parts
+                    .iter()
+                    .map(|part| run(*part, &Chosen::All))
+                    .collect::<Vec<Done>>()
+            })
+        }
     };
-    let (watch, built) = page
-        .join()
-        .unwrap_or_else(|_| (Watch::default(), Err(anyhow!("building the page panicked"))));
-    done.push(in_lane("page", true, || {
-        attempt(Part::E2e, watch, |watch| {
-            e2e::test(watch, &Chosen::All, &built?)
+    let lanes = [
+        (
+            Part::Native,
+            lane("code", &[Part::Lint, Part::Native, Part::Wasm]),
+        ),
+        (Part::E2e, lane("page", &[Part::E2e])),
+    ];
+    let done = lanes.into_iter().map(|(part, lane)| {
+        // A thread of its own, so that a panic in one does not keep the other from being run.
+        std::thread::spawn(lane).join().unwrap_or_else(|_| {
+            let said = format!("the lane of {} panicked", name(part));
+            let failed = true;
+            vec![Done { part, said, failed }]
         })
-    }));
-    done
+    });
+    done.flatten().collect()
 }
 
-/// Result of a part.
+/// What a part has come to.
 struct Done {
     part: Part,
     said: String,
@@ -129,20 +124,16 @@ struct Done {
 }
 
 fn run(part: Part, chosen: &Chosen) -> Done {
-    attempt(part, Watch::default(), |watch| match part {
-        Part::Quick => quick::check(watch, chosen),
-        Part::Lint => lint::check(watch, chosen),
-        Part::Native => native::check(watch, chosen),
-        Part::Wasm => wasm::check(watch, chosen),
-        Part::E2e => e2e::check(watch, chosen),
-    })
-}
-
-/// Runs a part, prints its summary and keeps it. `watch` may have steps that were done before.
-fn attempt(part: Part, mut watch: Watch, check: impl FnOnce(&mut Watch) -> Result<String>) -> Done {
     let begun = Instant::now();
+    let mut watch = Watch::default();
     tell(&format!("\n== {} ==", name(part)));
-    let result = check(&mut watch);
+    let result = match part {
+        Part::Quick => quick::check(&mut watch, chosen),
+        Part::Lint => lint::check(&mut watch, chosen),
+        Part::Native => native::check(&mut watch, chosen),
+        Part::Wasm => wasm::check(&mut watch, chosen),
+        Part::E2e => e2e::check(&mut watch, chosen),
+    };
     let failed = result.is_err();
     let said = result.unwrap_or_else(|error| format!("FAILED: {error:#}"));
     let said = format!(
