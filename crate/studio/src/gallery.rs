@@ -3,7 +3,7 @@
 use crate::command::Command;
 use crate::storage::Entry;
 use crate::theme;
-use crate::{examples, platform};
+use crate::{examples, places, platform};
 use egui::{
     Align2, Button, Color32, ColorImage, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense,
     TextEdit, TextureHandle, TextureOptions, Ui, Vec2, vec2,
@@ -91,11 +91,14 @@ impl Gallery {
             });
         });
         ui.add_space(4.0);
-        ui.add(
+        let field = ui.add(
             TextEdit::singleline(&mut self.search)
                 .hint_text("Search examples and my work")
-                .desired_width(f32::INFINITY),
+                .desired_width(f32::INFINITY)
+                .margin(egui::Margin::symmetric(8, 6))
+                .background_color(palette.button),
         );
+        places::note(ui.ctx(), "search examples", field.rect);
         ui.add_space(4.0);
         ScrollArea::vertical()
             .auto_shrink([false, true])

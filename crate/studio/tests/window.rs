@@ -221,6 +221,20 @@ fn the_gallery_opens_examples() {
 }
 
 #[test]
+fn the_gallery_shows_the_examples_that_are_searched_for() {
+    let mut window = Window::with_text(TEXT);
+    let examples = window.place("examples").center();
+    window.click(examples);
+    window.steps(3);
+    let field = window.place("search examples").center();
+    window.click(field);
+    window.write("BARS melt");
+    window.steps(3);
+    assert!(window.harness.query_by_label("Open Cowrie").is_none());
+    assert!(window.harness.query_by_label("Open T-shape").is_some());
+}
+
+#[test]
 fn too_long_a_paste_is_refused_in_words() {
     let mut window = Window::with_text(TEXT);
     window.edit();
