@@ -2,7 +2,7 @@
 //!
 //! A [`Scene`] is a list of [`Element`]s, lights, a camera and settings. An element is a [`Shape`] with a [`Finish`]
 //! (its colours) and, if it is soft, a [`Flesh`] (its kernel). Soft elements blend within their [`Body`] and never
-//! across bodies. The language (`rats`) writes scenes; the tracer, the draft and the mesher read them. This room
+//! across bodies. The language (`rats`) writes scenes; the tracer and the draft read them. This room
 //! does not depend on text, pixels or GPUs. Two things are computed here because all readers must agree
 //! on them: the projection ([`Camera`]), and the field of each body ([`soft`]).
 //!
