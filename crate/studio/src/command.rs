@@ -168,3 +168,15 @@ impl Command {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_that_the_lab_offers_is_there() {
+        let wish = |file| Command::of_lab(lab::Command::OpenExample { file });
+        assert!(matches!(wish("tshape.rat"), Some(Command::OpenExample(_))));
+        assert_eq!(wish("nothing.rat"), None);
+    }
+}
