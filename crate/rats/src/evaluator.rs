@@ -22,6 +22,7 @@ mod picture;
 mod primitives;
 mod run;
 mod scene_commands;
+mod skeleton;
 mod state;
 mod textures;
 mod tools;

@@ -23,6 +23,7 @@
 
 pub mod body;
 pub mod camera;
+pub mod curves;
 pub mod element;
 pub mod finish;
 pub mod flesh;
@@ -37,6 +38,7 @@ pub mod surface;
 
 pub use body::{Body, Frame};
 pub use camera::{Camera, Projection};
+pub use curves::Curves;
 pub use element::{Element, Origin, Shape};
 pub use finish::Finish;
 pub use flesh::Flesh;

@@ -67,6 +67,8 @@ pub enum Names {
     Variable,
     /// A command.
     Command,
+    /// A node of a skeleton.
+    Node,
 }
 
 impl Names {
@@ -79,6 +81,7 @@ impl Names {
             Self::Object => "object",
             Self::Variable => "variable",
             Self::Command => "command",
+            Self::Node => "node",
         }
     }
 }

@@ -115,6 +115,7 @@ pub(crate) enum Routine {
     Rats,
     Table,
     Blobscale,
+    Skeleton,
     Influence,
     Curve,
     Seed,
@@ -156,6 +157,8 @@ pub struct CommandSpec {
     pub default: &'static str,
     /// A small text that uses it, complete and without mistakes.
     pub example: &'static str,
+    /// Whether it is newer than the first published texts.
+    pub(crate) is_newer: bool,
     /// How it is carried out.
     pub(crate) action: Action,
 }
@@ -202,6 +205,13 @@ impl CommandSpec {
             Action::NoEffect(reason) => Some(reason),
             Action::Later => Some("it is not carried out in this version"),
         }
+    }
+
+    /// Whether a command of the same name that a text defines hides it, so that texts from before it still run: those of the
+    /// library, and those that are newer than the first published texts.
+    #[must_use]
+    pub fn yields(&self) -> bool {
+        self.is_newer || self.is_library()
     }
 
     /// Whether a file of the library defines it.

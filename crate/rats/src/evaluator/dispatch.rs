@@ -2,8 +2,8 @@
 
 use super::state::{Evaluator, Flow};
 use super::{
-    camera, materials, objects, options, primitives, run, scene_commands, textures, tools,
-    variables,
+    camera, materials, objects, options, primitives, run, scene_commands, skeleton, textures,
+    tools, variables,
 };
 use crate::commands::Routine;
 use crate::problem::Outcome;
@@ -102,6 +102,7 @@ pub fn function(routine: Routine) -> Run {
         Routine::Blobscale => options::blobscale,
         Routine::Influence => options::influence,
         Routine::Curve => primitives::curve,
+        Routine::Skeleton => skeleton::skeleton,
         Routine::Seed => variables::seed,
     }
 }

@@ -163,7 +163,7 @@ fn bone(shape: &Shape) -> Vec<DVec3> {
             .collect(),
         Shape::Box { center, .. } => vec![*center],
         Shape::Quadric(quadric) => vec![quadric.center],
-        Shape::Function(function) => vec![function.middle()],
+        Shape::Function(function) => function.axis(),
         Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
             let [a, b, c] = *corners;
             let middle = (a + b + c) / 3.0;

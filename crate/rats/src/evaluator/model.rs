@@ -39,6 +39,10 @@ impl Part {
         match &self.element.shape {
             Shape::Polygon { rings, .. } => rings.iter().map(Vec::len).sum(),
             Shape::Curve { .. } => CURVE_WEIGHT,
+            Shape::Function(function) => function.curves().map_or(1, |curves| {
+                let each = if curves.tapers() { CURVE_WEIGHT } else { 1 };
+                curves.pieces().count() * each
+            }),
             _ if self.tapers => CURVE_WEIGHT,
             _ => 1,
         }
@@ -355,7 +359,7 @@ impl<'a> Model<'a> {
     #[must_use]
     pub fn has_round(&self, range: Range<usize>) -> bool {
         self.parts[range].iter().any(|part| {
-            matches!(
+            part.element.shape.curves().is_some() || matches!(
                 part.element.shape,
                 Shape::Sphere { .. }
                     | Shape::Arc { .. }
