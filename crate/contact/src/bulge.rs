@@ -186,7 +186,9 @@ impl Bulge {
         match *self {
             Self::Fast { c } => {
                 let width = THRESHOLD - c;
-                within(c, THRESHOLD, &|x| cubic(x, [0.0, 0.0, width, -width], width));
+                within(c, THRESHOLD, &|x| {
+                    cubic(x, [0.0, 0.0, width, -width], width)
+                });
             }
             Self::Height { c, m, h } => {
                 let rise = [0.0, 0.0, 3.0 * h, -2.0 * h];

@@ -22,10 +22,13 @@
 //! ```
 //!
 //! - `bulge.rs`: the three bulges and bounds on them;
-//! - `squashed.rs`: the deformed function.
+//! - `squashed.rs`: the deformed function;
+//! - `coating.rs`: whether a bulge would wrap the other body.
 
 mod bulge;
+mod coating;
 mod squashed;
 
 pub use bulge::{Bulge, Spread};
+pub use coating::coats;
 pub use squashed::Squashed;

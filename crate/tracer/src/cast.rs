@@ -11,6 +11,8 @@ use glam::DVec3;
 /// Rays whose directions differ by more than this, or whose origins by more than this part of half the scene's
 /// size, are not followed together.
 const WIDEST: f64 = 0.15;
+/// Crossings this near to each other, in units of the scene's size, are at one place.
+const SAME: f64 = 1e-10;
 
 /// A surface that a ray meets.
 #[derive(Clone, Copy, Debug)]
@@ -128,6 +130,14 @@ impl World {
             });
         }
         found.sort_by(|a, b| a.t.total_cmp(&b.t));
+        // Where two bodies touch a ray leaves the one before it enters the other.
+        for i in 1..found.len() {
+            let [a, b] = [found[i - 1], found[i]];
+            let enters = |cast: &Cast| cast.normal.dot(ray.direction) < 0.0;
+            if b.t - a.t <= SAME * (1.0 + b.t) && enters(&a) && !enters(&b) {
+                found.swap(i - 1, i);
+            }
+        }
         found
     }
 

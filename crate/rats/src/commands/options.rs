@@ -581,6 +581,48 @@ pub static SKELETON: &[OptionSpec] = &[
 /// Schemes of subdivision.
 pub static SCHEMES: &[OptionSpec] = &[
     plain("cubic", "the smoothest: cubic B-splines"),
-    plain("chaikin", "nearer to the nodes: corners are cut, quadratic B-splines"),
+    plain(
+        "chaikin",
+        "nearer to the nodes: corners are cut, quadratic B-splines",
+    ),
     plain("fourpoint", "through every node"),
+];
+
+const BULGE_START: Parameter =
+    number("c", "the other's field where the bulge begins").from(0.001, 0.999);
+const BULGE_HEIGHT: Parameter = number("h", "the height of the bulge").from(0.0, 0.999);
+
+/// `contact`.
+pub static CONTACT: &[OptionSpec] = &[
+    option(
+        "fast",
+        &[BULGE_START],
+        "0.2",
+        "a plain bulge, which begins where the other's field is c",
+    ),
+    option(
+        "height",
+        &[
+            BULGE_START,
+            number("m", "the other's field where the bulge is highest").from(0.001, 0.999),
+            BULGE_HEIGHT,
+        ],
+        "",
+        "a bulge from c on that is highest, h, where the other's field is m",
+    ),
+    option(
+        "ripple",
+        &[
+            BULGE_START,
+            BULGE_HEIGHT,
+            super::parameter::whole(
+                "n",
+                0,
+                contact::Bulge::MOST_RIPPLES,
+                "the number of ripples",
+            ),
+        ],
+        "",
+        "a bulge of height h with n ripples outside it, from c on",
+    ),
 ];

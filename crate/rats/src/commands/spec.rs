@@ -116,6 +116,7 @@ pub(crate) enum Routine {
     Table,
     Blobscale,
     Skeleton,
+    Contact,
     Influence,
     Curve,
     Seed,

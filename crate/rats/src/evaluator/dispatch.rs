@@ -2,8 +2,8 @@
 
 use super::state::{Evaluator, Flow};
 use super::{
-    camera, materials, objects, options, primitives, run, scene_commands, skeleton, textures,
-    tools, variables,
+    camera, contact, materials, objects, options, primitives, run, scene_commands, skeleton,
+    textures, tools, variables,
 };
 use crate::commands::Routine;
 use crate::problem::Outcome;
@@ -103,6 +103,7 @@ pub fn function(routine: Routine) -> Run {
         Routine::Influence => options::influence,
         Routine::Curve => primitives::curve,
         Routine::Skeleton => skeleton::skeleton,
+        Routine::Contact => contact::contact,
         Routine::Seed => variables::seed,
     }
 }

@@ -21,6 +21,7 @@ impl Evaluator<'_> {
                 .into_iter()
                 .chain(self.model.bodies.iter().cloned())
                 .collect(),
+            contacts: self.model.contacts.clone(),
             flesh: surfaces.map(|surface| surface.flesh.clone()).collect(),
             finishes: finishes.collect(),
             frames: vec![Frame::WORLD],

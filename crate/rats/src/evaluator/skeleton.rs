@@ -163,15 +163,13 @@ impl<'a> Read<'a> {
 
     fn find(&self, name: &Name<'_>) -> Outcome<usize> {
         let names = || self.nodes.iter().map(|(own, _)| own.text);
-        names()
-            .position(|own| own == name.text)
-            .ok_or_else(|| {
-                Problem::new(
-                    name.span.clone(),
-                    format!("this skeleton has no node `{}`", name.text),
-                )
-                .maybe_hint(suggest::hint(name.text, names()))
-            })
+        names().position(|own| own == name.text).ok_or_else(|| {
+            Problem::new(
+                name.span.clone(),
+                format!("this skeleton has no node `{}`", name.text),
+            )
+            .maybe_hint(suggest::hint(name.text, names()))
+        })
     }
 
     /// The names of nodes that are on no curve.

@@ -59,7 +59,10 @@ pub fn lines(shape: &Shape, size: f64) -> Vec<Vec<DVec3>> {
             None => cross(function.middle(), 0.15 * size),
             Some(curves) => {
                 let place = |(p, _)| function.to_world.transform_point3(p);
-                curves.pieces().map(|ends| ends.map(place).to_vec()).collect()
+                curves
+                    .pieces()
+                    .map(|ends| ends.map(place).to_vec())
+                    .collect()
             }
         },
     }

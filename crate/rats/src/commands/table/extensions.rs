@@ -47,6 +47,19 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         ])
         .details("More points, three at a time, join more curves: each begins where the last one ends.")
         .example(flesh!("curve Flesh 0.6, <-3 -1 0> <-1 3 0> <1 -3 0> <3 1 0>")),
+    row("contact", "let two bodies touch instead of overlap", run(Routine::Contact))
+        .newer()
+        .takes(&[
+            parameter("A", Kind::Known(Names::Object), "a body's name"),
+            parameter("B", Kind::Known(Names::Object), "the other body's name"),
+        ])
+        .options(o::CONTACT)
+        .default("fast 0.2")
+        .details("Where the bodies would overlap, each is pressed flat against the other, and beside it both swell a little. Fields are in units \
+            of the threshold: the other body's surface is where its field is 1, and the bulge begins where it is c. The smaller c, the \
+            wider the bulge; where the fields fall slowly a wide and high one would coat the other body, which a warning tells. A body can \
+            touch many others.")
+        .example(flesh!("body LEFT\n  sphere Flesh 1.2, -0.9 0 0\nclose\nbody RIGHT\n  sphere Flesh 1.2, 0.9 0 0\nclose\ncontact LEFT RIGHT")),
     row("skeleton", "curves that branch, with flesh around them", run(Routine::Skeleton))
         .newer()
         .takes(&[
