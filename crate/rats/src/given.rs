@@ -363,6 +363,10 @@ impl<'a> Reader<'_, 'a> {
             Kind::Known(_) => Operand::Name(self.known_name(what)?),
             Kind::New(_) => Operand::Name(self.new_name(what)?),
             Kind::File | Kind::NewFile => Operand::Name(self.file_name(what)?),
+            Kind::Backdrop => match self.image_name() {
+                Some(name) => Operand::Name(name),
+                None => Operand::Colour(self.colour(what)?),
+            },
             Kind::Text => {
                 self.at = self.items.len();
                 Operand::Text
