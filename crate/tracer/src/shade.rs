@@ -68,7 +68,7 @@ pub fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
         LightKind::Distant { towards } => {
             (towards.try_normalize().unwrap_or(DVec3::Z), f64::INFINITY)
         }
-        LightKind::Point { position } => {
+        LightKind::Point { position } | LightKind::Spot { position, .. } => {
             let way = position - point;
             (way.try_normalize().unwrap_or(DVec3::Z), way.length())
         }

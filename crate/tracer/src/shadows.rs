@@ -57,7 +57,7 @@ impl World {
                         towards(light, hit.position)
                     };
                     let normal = hit.facing(seen.rays[i].direction);
-                    if normal.dot(direction) > 0.0 {
+                    if normal.dot(direction) > 0.0 && light.share(hit.position) > 0.0 {
                         shadows.push(Shadow {
                             hit: (k, i),
                             ray: Ray {
@@ -85,7 +85,7 @@ impl World {
                 };
                 let view = seen[k].rays[i].direction;
                 sample.colour += hit.finish.lit(
-                    Vec3::from(light.colour),
+                    Vec3::from(light.colour) * light.share(hit.position) as f32,
                     hit.facing(view).as_vec3(),
                     shadow.ray.direction.as_vec3(),
                     view.as_vec3(),

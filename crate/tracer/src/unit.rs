@@ -144,8 +144,12 @@ impl Unit {
             frame.to_world = to_unit * frame.to_world;
         }
         for light in &mut scene.lights {
-            if let LightKind::Point { position } = &mut light.kind {
-                *position = self.map(*position);
+            match &mut light.kind {
+                LightKind::Point { position } | LightKind::Spot { position, .. } => {
+                    *position = self.map(*position);
+                    light.size *= k;
+                }
+                LightKind::Distant { .. } => {}
             }
         }
         scene.camera.eye = self.map(scene.camera.eye);

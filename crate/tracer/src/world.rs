@@ -67,7 +67,10 @@ impl World {
             scene.finishes.iter().map(Finish::of).collect(),
             scene.lights.clone(),
         );
-        let (background, bodies) = (Vec3::from(scene.background), scene.bodies.len() as u32);
+        let (background, bodies) = (
+            Vec3::from(scene.background.mean()),
+            scene.bodies.len() as u32,
+        );
         let soft = Soft::new(scene);
         Self {
             unit,

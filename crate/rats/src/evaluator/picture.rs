@@ -25,9 +25,10 @@ impl Evaluator<'_> {
             finishes: finishes.collect(),
             frames: vec![Frame::WORLD],
             lights: self.lights.clone(),
-            background: self.background,
+            background: self.background.into(),
             camera: self.settled_camera(),
             settings: self.settings,
+            ..Scene::default()
         };
         let mut placements = Vec::with_capacity(parts.len());
         if scene.finishes.is_empty() {

@@ -84,6 +84,7 @@ pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         kind,
         colour: colour.map(|c| c * intensity as f32),
         shadow,
+        size: 0.0,
     });
     Ok(Flow::Next)
 }
