@@ -60,7 +60,9 @@ pub fn is_image(name: &str) -> bool {
 
 fn has_ending(name: &str, endings: &[&str]) -> bool {
     name.rsplit_once('.').is_some_and(|(_, ending)| {
-        endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
+        endings
+            .iter()
+            .any(|known| ending.eq_ignore_ascii_case(known))
     })
 }
 
@@ -146,6 +148,9 @@ mod tests {
     fn images_and_meshes_are_found() {
         let text = "mesh Clay, parts/bunny.ply\nif 1 { terra Clay hills.png 0 0 0 1 1 1 }\nmesh robust\n\
             texture Mona { diffuse mona.tif plain, scale 2 2 1 }\nbackground Red\nbackground sky.png\n";
-        assert_eq!(asset_names(text), ["parts/bunny.ply", "hills.png", "mona.tif", "sky.png"]);
+        assert_eq!(
+            asset_names(text),
+            ["parts/bunny.ply", "hills.png", "mona.tif", "sky.png"]
+        );
     }
 }

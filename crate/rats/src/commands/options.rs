@@ -261,8 +261,16 @@ pub static TEXTURE: &[OptionSpec] = &[
         "",
         "tiles shown (1) and left out (0), row by row: as many as the scale has tiles along x, times those along y",
     ),
-    plain("replace", "values take the place of the target's, instead of scaling them"),
-    option("texture", LAYERS, "", "layers of other textures, upon this one"),
+    plain(
+        "replace",
+        "values take the place of the target's, instead of scaling them",
+    ),
+    option(
+        "texture",
+        LAYERS,
+        "",
+        "layers of other textures, upon this one",
+    ),
 ];
 
 /// `light`.

@@ -163,7 +163,10 @@ pub fn cloud<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         let (middle, reach) = extent(parts.map(|part| &part.element.shape)).ok_or_else(|| {
             Problem::new(
                 name.span.clone(),
-                format!("the object `{}` has no middle: it is empty or endless", name.text),
+                format!(
+                    "the object `{}` has no middle: it is empty or endless",
+                    name.text
+                ),
             )
             .hint("give the cloud a `position`")
         })?;

@@ -2,8 +2,8 @@
 
 use super::state::{Evaluator, Flow};
 use super::{
-    air, camera, lights, materials, objects, options, primitives, run, scene_commands, textures, tools,
-    variables,
+    air, camera, lights, materials, objects, options, primitives, run, scene_commands, textures,
+    tools, variables,
 };
 use crate::commands::Routine;
 use crate::problem::Outcome;

@@ -14,7 +14,8 @@ pub fn extent<'s>(shapes: impl Iterator<Item = &'s Shape>) -> Option<(DVec3, f64
         });
     }
     let size = high - low;
-    (size.is_finite() && size.min_element() >= 0.0).then(|| (0.5 * (low + high), 0.5 * size.length()))
+    (size.is_finite() && size.min_element() >= 0.0)
+        .then(|| (0.5 * (low + high), 0.5 * size.length()))
 }
 
 /// Calls a function with points and half the sizes of boxes around them, which together hold the shape.
@@ -34,7 +35,10 @@ fn each_corner(shape: &Shape, with: &mut impl FnMut(DVec3, DVec3)) {
             corners.iter().for_each(|corner| with(*corner, ball));
         }
         Shape::Polygon { rings, .. } => {
-            rings.iter().flatten().for_each(|corner| with(*corner, ball));
+            rings
+                .iter()
+                .flatten()
+                .for_each(|corner| with(*corner, ball));
         }
         Shape::Curve { control, .. } => control.iter().for_each(|point| with(*point, ball)),
         Shape::Box { center, axes } => with(*center, across(*axes)),

@@ -28,7 +28,7 @@ impl<'a> Evaluator<'a> {
         }
         self.scope.step(assets::cost(asset), &name.span)?;
         let image = assets::image(asset)
-            .map_err(|error| Problem::new(name.span.clone(), format!("`{}`: {error}", name.text)))?;
+            .map_err(|error| Problem::new(name.span.clone(), error.to_string()))?;
         let pixels = |image: &Rgb8| u64::from(image.size[0]) * u64::from(image.size[1]);
         let total: u64 = self.images.all.iter().map(|image| pixels(image)).sum();
         if total + pixels(&image) > MAX_IMAGE_PIXELS {

@@ -19,9 +19,7 @@ pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
     let given = run.given(command)?;
     let kinds = ["point", "distant", "spot"];
     let mut named = given.options.iter().map(|chosen| chosen.name);
-    let name = named
-        .rfind(|name| kinds.contains(name))
-        .unwrap_or(kinds[0]);
+    let name = named.rfind(|name| kinds.contains(name)).unwrap_or(kinds[0]);
     let kind = match name {
         "distant" => distant(&given, command)?,
         "spot" => spot(&given, command)?,
@@ -98,11 +96,8 @@ fn spot(given: &Given<'_>, command: &Command) -> Outcome<LightKind> {
     let direction = vector(given, "direction")
         .or_else(to_origin)
         .ok_or_else(|| {
-            Problem::new(
-                command.span.clone(),
-                "a spot at 0 0 0 needs a direction",
-            )
-            .hint("add `direction x y z`")
+            Problem::new(command.span.clone(), "a spot at 0 0 0 needs a direction")
+                .hint("add `direction x y z`")
         })?;
     let degrees = |option, parameter| Some(given.option(option)?.given.number(parameter));
     let angle = degrees("angle", "a").unwrap_or(SPOT_ANGLE);

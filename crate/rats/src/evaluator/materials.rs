@@ -66,7 +66,11 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     run.palette.insert(&name, surface)
 }
 
-fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, textures: &mut Vec<Name<'a>>) -> Outcome<()> {
+fn field<'a>(
+    chosen: Chosen<'a>,
+    surface: &mut Surface,
+    textures: &mut Vec<Name<'a>>,
+) -> Outcome<()> {
     let Chosen { name, span, given } = chosen;
     let flesh = &mut surface.flesh;
     let finish = &mut surface.finish;

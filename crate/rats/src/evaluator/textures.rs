@@ -117,7 +117,9 @@ fn own_layer<'a>(
                     span,
                     "a strength varies along the bone only: it takes two waves",
                 )
-                .hint("write two waves, such as `sin one`; `normal` with this method makes bumps"));
+                .hint(
+                    "write two waves, such as `sin one`; `normal` with this method makes bumps",
+                ));
             }
         };
         let profile = Profile {
@@ -203,9 +205,10 @@ fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
             _ => {}
         }
     }
-    let is_solid =
-        |layer: &texture::Texture| matches!(layer.method, texture::Method::Solid(_));
-    if matches!(*name, "turbulence" | "octaves") && !layers.is_empty() && !layers.iter().any(is_solid)
+    let is_solid = |layer: &texture::Texture| matches!(layer.method, texture::Method::Solid(_));
+    if matches!(*name, "turbulence" | "octaves")
+        && !layers.is_empty()
+        && !layers.iter().any(is_solid)
     {
         return Some(format!(
             "`{name}` says nothing here: it is the noise of solids such as `wood`"
