@@ -21,7 +21,7 @@ fn ball(finish: Finish, lights: Vec<Light>) -> Scene {
         )],
         finishes: vec![finish],
         lights,
-        background: [0.1, 0.2, 0.3],
+        background: [0.1, 0.2, 0.3].into(),
         camera: look([0.0, 0.0, 5.0], [0.0; 3], 30.0),
         ..Scene::default()
     }
@@ -146,7 +146,7 @@ fn four_samples_are_averaged_as_light() {
             diffuse: [0.0; 3],
             ..Finish::default()
         }],
-        background: [0.0, 0.5, 1.0],
+        background: [0.0, 0.5, 1.0].into(),
         camera: look([0.0, 0.0, 5.0], [0.0; 3], 60.0),
         ..Scene::default()
     };

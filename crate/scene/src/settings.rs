@@ -32,8 +32,9 @@ pub struct Settings {
     /// `vanish v`: reflected and refracted rays that add less than this share of their light to each channel of the
     /// pixel are not sent. ≥ 0.
     pub vanish: f32,
-    /// `epsilon e`: how far, as a share of the scene's size, reflected and refracted rays start from hard surfaces.
-    /// In (0, 0.1]. Convolution surfaces know their own error, and the rays from them start as near as it allows.
+    /// `epsilon e`: precision of hits with hard surfaces, > 0. Rays from there to lights, reflected and refracted ones
+    /// start a hundredth of it above the surface, in halves of the scene's size. (Convolution surfaces know their own
+    /// error, and the rays from them start as near as it allows.)
     pub epsilon: f64,
     /// `penumbra on`: lights with a size have soft shadows.
     pub penumbra: bool,

@@ -77,6 +77,7 @@
 //!   its beam.
 //! - Soft planes are followed up to 10⁴ times the scene's size.
 
+mod air;
 mod area;
 mod beam;
 mod beams;
@@ -84,20 +85,27 @@ mod blob_march;
 mod blob_set;
 mod cast;
 mod clusters;
+mod coloured;
 mod digger;
 mod dug;
 mod flesh;
+mod free;
 mod function;
 pub mod hard;
 mod hierarchy;
 mod kinks;
 mod known;
+mod lamps;
 mod lanes;
 mod layout;
 mod lens;
+mod look;
 mod map;
+mod material;
+mod media;
 mod meet;
 mod nearby;
+mod paths;
 mod pick;
 pub mod picture;
 mod quick;
@@ -106,6 +114,7 @@ pub mod reference;
 mod refine;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
+mod rich;
 mod root_isolation;
 mod roots;
 mod sample;
