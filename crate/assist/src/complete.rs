@@ -287,7 +287,7 @@ impl Offers {
                 self.add("off", CompletionKind::Word, "");
             }
             Kind::Word(list) => self.words(list),
-            Kind::Method if part == 1 => self.words(options::WAVES),
+            Kind::Method if part == 1 || is_strength(here) => self.words(options::WAVES),
             Kind::Method if part == 2 => self.words(options::MAPPINGS),
             Kind::Method => {
                 self.words(options::SOLIDS);
@@ -406,6 +406,13 @@ impl Offers {
             });
         }
     }
+}
+
+/// Whether a texture's target is the strength, which takes waves only.
+fn is_strength(here: &Here<'_>) -> bool {
+    here.operands
+        .iter()
+        .any(|(_, slot)| matches!(slot.what, What::Word(word) if word.name == "strength"))
 }
 
 /// A colour as `#rrggbb`.

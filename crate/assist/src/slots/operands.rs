@@ -13,7 +13,10 @@ impl<'p> Slots<'_, 'p> {
         named: bool,
     ) {
         for (index, parameter) in parameters.iter().enumerate() {
-            if matches!(parameter.kind, Kind::Block) {
+            // Layers of other textures are a target without a method.
+            let is_layers = matches!(parameter.kind, Kind::Method)
+                && self.slots.last().is_some_and(|slot| slot.option.is_some());
+            if matches!(parameter.kind, Kind::Block) || is_layers {
                 continue;
             }
             if named && self.more() && self.is_named() {
