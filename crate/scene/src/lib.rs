@@ -4,7 +4,7 @@
 //! (its look) and, if it is soft, a [`Flesh`] (its kernel). Soft elements blend within their [`Body`] and never
 //! across bodies. The language (`rats`) writes scenes; the tracer and the draft read them. This room
 //! does not depend on text, pixels or GPUs. Two things are computed here because all readers must agree
-//! on them: the projection ([`Camera`]), and the field of each body ([`soft`]).
+//! on them: the projection ([`Camera`]), and the function of each body ([`surface`]).
 //!
 //! ```
 //! use glam::DVec3;
@@ -17,8 +17,8 @@
 //!     flesh: Some(0),
 //!     ..Element::new(Shape::Sphere { center, radius: 1.0 })
 //! });
-//! let surfaces = scene.soft_surfaces();
-//! assert!(surfaces[0].sum.jet(center).value > field::THRESHOLD);
+//! let surfaces = scene.surfaces();
+//! assert!(surfaces[0].function().jet(center).value > field::THRESHOLD);
 //! ```
 
 pub mod body;
@@ -26,6 +26,7 @@ pub mod camera;
 pub mod element;
 pub mod finish;
 pub mod flesh;
+pub mod function;
 pub mod light;
 pub mod limbs;
 pub mod parts;
@@ -33,6 +34,7 @@ pub mod quadric;
 pub mod settings;
 mod shared;
 pub mod soft;
+pub mod surface;
 pub mod surroundings;
 
 pub use body::{Body, Frame};
@@ -40,10 +42,12 @@ pub use camera::{Camera, Projection};
 pub use element::{Element, Origin, Shape};
 pub use finish::{Finish, Skip};
 pub use flesh::Flesh;
+pub use function::{Form, Function};
 pub use light::{Light, LightKind};
 pub use quadric::Quadric;
 pub use settings::{Digger, Fragile, Settings, Tone};
 pub use soft::SoftSurface;
+pub use surface::{ComposedSurface, Surface};
 pub use surroundings::{Background, Cloud, Fog, Ground, Lens, Sky};
 
 use glam::DVec3;

@@ -34,13 +34,18 @@ impl World {
                     .shares(self.unit.world(hit.position), &mut own);
                 let first = body.finish.first().copied().unwrap_or(0);
                 shares.extend(own.into_iter().map(|(element, share)| {
+                    let of = body.element.get(element as usize);
                     let finish = body.finish.get(element as usize);
-                    (u32::MAX, finish.copied().unwrap_or(first), share)
+                    (
+                        of.copied().unwrap_or(u32::MAX),
+                        finish.copied().unwrap_or(first),
+                        share,
+                    )
                 }));
                 first
             }
         };
-        let mixed = materials.mixed(&shares, hit.position, hit.normal);
+        let mixed = materials.mixed(shares, hit.position, hit.normal);
         mixed.unwrap_or_else(|| materials.plain(first, hit.normal))
     }
 

@@ -150,7 +150,21 @@ impl Materials {
 
     /// The material where some elements, each given with its finish and its share, make a surface; shares need not sum to
     /// 1. Rays pass by as the element with the largest share says.
-    pub fn mixed(&self, shares: &[(u32, u32, f64)], point: DVec3, normal: DVec3) -> Option<Look> {
+    pub fn mixed(
+        &self,
+        mut shares: Vec<(u32, u32, f64)>,
+        point: DVec3,
+        normal: DVec3,
+    ) -> Option<Look> {
+        // Pieces of a limb are one element.
+        shares.sort_unstable_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+        shares.dedup_by(|next, kept| {
+            let same = (next.0, next.1) == (kept.0, kept.1);
+            if same {
+                kept.2 += next.2;
+            }
+            same
+        });
         let most = shares.iter().map(|s| s.2).fold(0.0, f64::max);
         let counts = |s: &&(u32, u32, f64)| s.2 > NEGLIGIBLE * most || shares.len() == 1;
         let looks = shares
@@ -296,6 +310,7 @@ fn chart(shape: &Shape, to: &DAffine3) -> Chart {
                 None => Chart::Plane([first, normal]),
             }
         }
+        Shape::Function(ref function) => Chart::Sphere(point(function.middle())),
         Shape::Box { center, axes } => Chart::Box(point(center), axes.map(vector)),
         Shape::Quadric(ref quadric) => Chart::Box(point(quadric.center), quadric.axes.map(vector)),
     }

@@ -14,7 +14,7 @@ use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
 use field::{Bound, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
-use scene::Scene;
+use scene::{Scene, SoftSurface};
 use std::ops::Range;
 use std::sync::OnceLock;
 use wide::f32x8;
@@ -86,10 +86,10 @@ const MOST_STRIDES: usize = 32;
 const CLOSE_BEAM: f64 = 0.05;
 
 impl Soft {
-    /// Collects a scene's soft elements. The scene is dropped before their bounds are made, which saves memory.
+    /// Collects the primitives of a scene's convolution surfaces. The scene is dropped before their bounds are made, which saves
+    /// memory.
     #[must_use]
-    pub fn new(scene: Scene) -> Self {
-        let surfaces = scene.soft_surfaces();
+    pub fn new(scene: Scene, surfaces: Vec<SoftSurface>) -> Self {
         let count: usize = surfaces.iter().map(|s| s.element.len()).sum();
         let finishes = surfaces.iter().flat_map(|s| &s.element);
         let finish: Vec<u32> = finishes
@@ -209,7 +209,6 @@ impl Soft {
     pub fn shares(&self, body: u32, point: DVec3, shares: &mut Vec<(u32, u32, f64)>) {
         let body = &self.bodies[body as usize];
         let at = point.to_array();
-        let first = shares.len();
         let mut add = |number: u32| {
             let i = number as usize;
             let value = self.primitives[i].value::<f64>(at);
@@ -222,15 +221,6 @@ impl Soft {
             if body.range.contains(&i) {
                 add(i);
             }
-        });
-        // Pieces of a limb are one element.
-        shares[first..].sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.2.total_cmp(&b.2)));
-        shares.dedup_by(|next, kept| {
-            let same = next.0 == kept.0 && next.1 == kept.1;
-            if same {
-                kept.2 += next.2;
-            }
-            same
         });
     }
 

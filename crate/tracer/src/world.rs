@@ -8,7 +8,7 @@ use crate::solids::Solids;
 use crate::unit::Unit;
 use field::Implicit;
 use glam::{DVec3, Vec3};
-use scene::{Light, Scene};
+use scene::{Light, Scene, Surface};
 use std::sync::Arc;
 
 /// A scene's surfaces and lights, in units of the scene's size.
@@ -93,14 +93,21 @@ impl World {
             Vec3::from(scene.background.mean()),
             scene.bodies.len() as u32,
         );
-        let soft = Soft::new(scene);
         let epsilon = settings.epsilon.clamp(1e-9, 0.1);
+        let (mut sums, mut functions) = (Vec::new(), Vec::new());
+        for surface in scene.surfaces() {
+            match surface {
+                Surface::Sum(sum) => sums.push(sum),
+                Surface::Composed(composed) => functions.push(FunctionBody::of(composed, &scene)),
+            }
+        }
+        let soft = Soft::new(scene, sums);
         Self {
             hard_lift: HARD_LIFT * (epsilon / EPSILON),
             rich: rich.map(|rich| rich.with(&soft)),
             unit,
             soft,
-            functions: Vec::new(),
+            functions,
             solids,
             finishes,
             lights,
@@ -123,6 +130,8 @@ impl World {
             support: function.support(),
             function,
             finish,
+            element: Vec::new(),
+            unit: self.unit,
         });
         number
     }
