@@ -43,6 +43,10 @@ fn each_corner(shape: &Shape, with: &mut impl FnMut(DVec3, DVec3)) {
         Shape::Curve { control, .. } => control.iter().for_each(|point| with(*point, ball)),
         Shape::Box { center, axes } => with(*center, across(*axes)),
         Shape::Quadric(quadric) => with(quadric.center, across(quadric.axes)),
+        Shape::Function(function) => {
+            let (low, high) = function.corners();
+            with(0.5 * (low + high), 0.5 * (high - low));
+        }
         Shape::Plane { .. } => {}
     }
 }
