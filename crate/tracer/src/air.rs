@@ -192,7 +192,7 @@ fn through(cloud: &Cloud, origin: DVec3, direction: DVec3, length: f64) -> f64 {
     let way = (cloud.position - origin) / radius;
     let along = way.dot(direction);
     let c = 1.0 - (way - direction * along).length_squared();
-    if !(c > 0.0) {
+    if c <= 0.0 || c.is_nan() {
         return 0.0;
     }
     let half = c.sqrt();

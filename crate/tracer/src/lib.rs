@@ -31,6 +31,10 @@
 //! shadow rays and adds up colours (`shade`). `refine` traces more rays where neighbouring pixels differ; the hits of all
 //! those of one packet's pixels share beams to the lights.
 //!
+//! Scenes that have more than Phong's model on one background colour (`rich`) are shaded in waves of rays instead (`paths`): each
+//! surface point adds its own light (`lamps`, `coloured`), with the material of its elements and their textures (`material`), and asks
+//! for reflected and refracted rays, which `free` follows; `air` is what they pass and see beside surfaces.
+//!
 //! Crossings with the soft surface are found in one of two certified ways.
 //!
 //! - The fast path (`quick`) is for *blobs*, whose largest value on any interval of a ray has a closed form

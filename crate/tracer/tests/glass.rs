@@ -24,7 +24,7 @@ fn through_ball(origin: DVec3, direction: DVec3, index: f64) -> Option<(DVec3, D
     let b = origin.dot(direction);
     let root = b * b - origin.length_squared() + 1.0;
     // Rays near the rim are bent too much for the ruler's divisions.
-    if root < 0.3 {
+    if root < 0.5 {
         return None;
     }
     let at = origin + direction * (-b - root.sqrt());
@@ -72,7 +72,7 @@ fn a_ball_of_glass_bends_light_by_snells_law() {
                 add(&mut scene, shape, glass(index));
             }
             // A soft ball is found within its tolerance, which bends rays by as much.
-            let bound = if soft { 4.0 } else { 1.5 };
+            let bound = if soft { 6.0 } else { 1.5 };
             let count = compare(&scene, 4.0, (0, bound), |o, d| {
                 through_ball(o, d, f64::from(index))
             });
