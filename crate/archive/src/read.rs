@@ -2,8 +2,8 @@
 
 use crate::Error;
 use crate::checksum::checksum;
-use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use miniz_oxide::inflate::TINFLStatus;
+use miniz_oxide::inflate::decompress_to_vec_with_limit;
 
 /// A member as the directory tells of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -94,10 +94,12 @@ impl<'a> Archive<'a> {
         let content = match entry.method {
             0 if packed.len() > most => return Err(Error::Large(most)),
             0 => packed.to_vec(),
-            8 => decompress_to_vec_with_limit(packed, most).map_err(|error| match error.status {
-                TINFLStatus::HasMoreOutput => Error::Large(most),
-                _ => Error::Damaged,
-            })?,
+            8 => {
+                decompress_to_vec_with_limit(packed, most).map_err(|error| match error.status {
+                    TINFLStatus::HasMoreOutput => Error::Large(most),
+                    _ => Error::Damaged,
+                })?
+            }
             other => return Err(Error::Method(other)),
         };
         if checksum(&content) != entry.checksum {
@@ -136,7 +138,10 @@ fn directory(bytes: &[u8]) -> Result<usize, Error> {
 
 /// The entry at a place of the directory, and where the next one begins; `None` at the directory's end.
 fn entry(bytes: &[u8], at: usize) -> Result<Option<(Entry, usize)>, Error> {
-    let Some(head) = bytes.get(at..).filter(|rest| rest.starts_with(b"PK\x01\x02")) else {
+    let Some(head) = bytes
+        .get(at..)
+        .filter(|rest| rest.starts_with(b"PK\x01\x02"))
+    else {
         return Ok(None);
     };
     let short = |at| short(head, at).ok_or(Error::Broken);

@@ -92,7 +92,10 @@ fn bombs_are_not_unpacked() {
     };
     assert_eq!(open(&bytes), Err(Error::Large(1_000_000)));
     // The size that the directory tells is a lie.
-    let directory = bytes.windows(4).rposition(|four| four == b"PK\x01\x02").unwrap();
+    let directory = bytes
+        .windows(4)
+        .rposition(|four| four == b"PK\x01\x02")
+        .unwrap();
     bytes[directory + 24..][..4].copy_from_slice(&5_u32.to_le_bytes());
     assert_eq!(open(&bytes), Err(Error::Large(1_000_000)));
     let many = vec![Member::new("a", b""); 12];
@@ -104,7 +107,10 @@ fn bombs_are_not_unpacked() {
 #[test]
 fn what_is_wrong_is_told() {
     let good = write(&[Member::new("a.txt", b"aaaaaaaaaaaaaaaaaaaaaaaa")]).unwrap();
-    let directory = good.windows(4).rposition(|four| four == b"PK\x01\x02").unwrap();
+    let directory = good
+        .windows(4)
+        .rposition(|four| four == b"PK\x01\x02")
+        .unwrap();
     let told = |at: usize, byte: u8| {
         let mut bytes = good.clone();
         bytes[at] = byte;

@@ -9,7 +9,6 @@ use crate::command::Command;
 use crate::draft::Draft;
 use crate::editor::Editor;
 use crate::film::Player;
-use crate::film::Saving;
 use crate::gallery::Gallery;
 use crate::hands::Hands;
 use crate::help::Help;
@@ -18,6 +17,7 @@ use crate::lab::Lab;
 use crate::lesson::Lesson;
 use crate::notice::Notice;
 use crate::reading::MeshReading;
+use crate::recording::{Saving, VideoFormat};
 use crate::render::{Phase, Renderer};
 use crate::report::Shared;
 use crate::request::{Answer, Requests};
@@ -108,6 +108,8 @@ pub struct App {
     pub(crate) help: Help,
     pub(crate) player: Player,
     pub(crate) saving: Option<Saving>,
+    /// The browser's encoders of videos, once they were asked for.
+    pub(crate) videos: Option<Vec<VideoFormat>>,
     pub(crate) tray: Tray,
     pub(crate) lab: Lab,
     /// Large meshes on their way into the work.
@@ -201,6 +203,7 @@ impl App {
             help: Help::default(),
             player: Player::default(),
             saving: None,
+            videos: None,
             tray: Tray::default(),
             dialog: None,
             notice: None,
@@ -284,7 +287,7 @@ impl App {
             self.titled = title.to_owned();
             platform::set_title(&self.titled);
         }
-        self.screen(now);
+        self.screen(ctx, now);
         self.trace(ctx, now);
         if self.work.session.enabled() && !self.healthy && now - started > HEALTHY {
             self.healthy = true;

@@ -93,7 +93,10 @@ fn samples(video: &Video, configuration: &[u8], start: u32) -> Vec<u8> {
     let mut decoded: Vec<u64> = packets.iter().map(|packet| packet.time).collect();
     decoded.sort_unstable();
     let ends = decoded.iter().skip(1).copied().chain([video.end()]);
-    let lasts: Vec<u32> = ends.zip(&decoded).map(|(end, at)| (end - at) as u32).collect();
+    let lasts: Vec<u32> = ends
+        .zip(&decoded)
+        .map(|(end, at)| (end - at) as u32)
+        .collect();
     let shown = packets.iter().zip(&decoded);
     let delays: Vec<u32> = shown
         .map(|(packet, at)| (packet.time as i64 - *at as i64) as i32 as u32)
@@ -125,7 +128,15 @@ fn entry(video: &Video, configuration: &[u8]) -> Vec<u8> {
     let [width, height] = video.size.map(u16::to_be_bytes);
     let colours = video.colours;
     let range = if colours.full_range { 0x80 } else { 0 };
-    let code = [0, colours.primaries, 0, colours.transfer, 0, colours.matrix, range];
+    let code = [
+        0,
+        colours.primaries,
+        0,
+        colours.transfer,
+        0,
+        colours.matrix,
+        range,
+    ];
     atom(
         b"avc1",
         &[

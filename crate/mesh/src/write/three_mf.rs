@@ -82,9 +82,7 @@ pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> Result<Vec<u8>, 
         Member::new("_rels/.rels", RELATIONS.as_bytes()),
         Member::new("3D/3dmodel.model", text.as_bytes()),
     ])
-    .map_err(|_| {
-        Error("this mesh is too large for a 3MF file; choose a larger tolerance".into())
-    })
+    .map_err(|_| Error("this mesh is too large for a 3MF file; choose a larger tolerance".into()))
 }
 
 fn object(text: &mut String, id: usize, part: &Prepared<'_>, colors: &BTreeMap<[u8; 3], usize>) {
