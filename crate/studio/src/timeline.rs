@@ -12,7 +12,7 @@ use egui::{
 };
 
 /// Width of the strip in points above which all controls stand in it.
-const WIDE: f32 = 640.0;
+const WIDE: f32 = 520.0;
 
 /// Shows the strip in all of `ui`.
 pub fn show(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {

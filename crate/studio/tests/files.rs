@@ -174,6 +174,8 @@ fn files_can_be_chosen_with_a_button_on_a_desk_and_on_a_phone() {
 #[test]
 fn a_project_is_one_file_and_is_taken_back() {
     let mut window = Window::with_text(TEXT);
+    window.edit();
+    window.write("# a bone\n");
     take_in(&mut window, &[("leg.rat", b"# leg\n"), ("bone.obj", OBJ)]);
     let saved = files(&window);
     let menu = window.place("download").center();

@@ -52,8 +52,8 @@ fn a_frame_can_be_chosen_and_the_film_saved() {
         reader.next_frame(&mut rgba).unwrap();
         frames.push(rgba);
     }
-    assert_eq!(frames[0], first);
-    assert_ne!(frames[1], frames[2]);
+    let opaque: Vec<u8> = first.chunks(4).flat_map(|p| p[..3].to_vec()).collect();
+    assert!(frames[0] == opaque && frames[1] != frames[2]);
     window.harness.get_by_label_contains("Saved Main-film.png");
 
     // There and back, as a video.
@@ -67,9 +67,8 @@ fn a_frame_can_be_chosen_and_the_film_saved() {
     assert_eq!(frames, 4, "0 1 2 1");
     window.harness.get_by_label_contains("Saved Main-film.webm");
     window.finish();
-    assert_eq!(
-        window.image(),
-        first,
+    assert!(
+        window.image() == first,
         "the frame from before is on show again"
     );
 }
