@@ -3,12 +3,12 @@
 use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::intake::Taken;
-use crate::lesson::Lesson;
 use crate::notice::Notice;
 use crate::project_file::{self, Project};
 use crate::tray::item::Item;
 use crate::{asset, examples, picture, platform, share, work};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
+use lab::Lesson;
 use std::ops::Range;
 
 impl App {

@@ -6,12 +6,12 @@
 
 use crate::asset::Asset;
 use crate::examples;
-use crate::lesson::Lesson;
 use crate::platform;
 use crate::project_file;
 use crate::session::{Kept, Session, check_assets, check_size};
 use crate::share;
 use crate::storage::{DELAY, Shelf};
+use lab::Lesson;
 use rats::{File, Project};
 use scene::Camera;
 use std::cell::RefCell;
