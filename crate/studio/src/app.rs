@@ -314,6 +314,8 @@ impl App {
             waits.push(self.renderer.wait(now));
         }
         waits.push(self.player.wait(now));
+        // A frame that was finished just now is taken into the film at the next tick.
+        waits.push((self.saving.is_some() && self.is_finished()).then_some(0.0));
         waits.push(self.tray.wait(now).filter(|_| !self.lab.is_open()));
         waits.push(match &self.notice {
             Some(notice) => notice.until.map(|until| until - now),

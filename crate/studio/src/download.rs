@@ -8,7 +8,7 @@ use egui::{Button, RichText, Ui};
 
 /// Lists what there is to download.
 pub fn menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    ui.set_min_width(250.0);
+    ui.set_width(270.0);
     let size = app.renderer.image().map(|image| image.size);
     let picture = match size {
         Some([width, height]) => format!("PNG, {width} × {height} pixels"),

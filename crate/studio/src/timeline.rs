@@ -42,7 +42,7 @@ pub fn show(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
             let save = icon::button(ui, Icon::Save, "Save the film", true);
             places::note(ui.ctx(), "save film", save.rect);
             Popup::menu(&save).show(|ui| {
-                ui.set_min_width(260.0);
+                ui.set_width(270.0);
                 download::films(app, ui, commands);
             });
             if wide {
