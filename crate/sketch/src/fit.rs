@@ -326,7 +326,10 @@ mod tests {
         assert!(nodes.iter().all(|node| node.position.is_finite()));
         assert_eq!(fit(&samples([DVec3::ONE; 5].into_iter()), 0.1), None);
         assert_eq!(fit(&[], 0.1), None);
-        assert_eq!(fit(&samples([DVec3::NAN, DVec3::ONE].into_iter()), 0.1), None);
+        assert_eq!(
+            fit(&samples([DVec3::NAN, DVec3::ONE].into_iter()), 0.1),
+            None
+        );
         let two = samples([DVec3::ZERO, DVec3::ONE].into_iter());
         assert_eq!(fit(&two, 0.1).map(|nodes| nodes.len()), Some(2));
         assert_eq!(fit(&two, 0.0), None);
