@@ -93,6 +93,7 @@ fn count(ui: &mut Ui, player: &Player, commands: &mut Vec<Command>) {
         .add(DragValue::new(&mut count).range(2..=MAX_FRAMES))
         .accessible_name("Number of frames")
         .on_hover_text("How many frames are played and saved");
+    places::note(ui.ctx(), "film length", field.rect);
     if field.changed() {
         commands.push(Command::SetFilmLength(count));
     }
