@@ -235,11 +235,12 @@ impl Basis {
 fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<DVec3>) -> Vec<DVec3> {
     let n = right.len();
     for k in 0..n {
-        let pivot = matrix[k][k];
-        for i in k + 1..n {
-            let factor = matrix[i][k] / pivot;
-            for j in k..n {
-                matrix[i][j] -= factor * matrix[k][j];
+        let (above, below) = matrix.split_at_mut(k + 1);
+        let pivot = &above[k];
+        for (i, row) in (k + 1..n).zip(below) {
+            let factor = row[k] / pivot[k];
+            for (own, other) in row.iter_mut().zip(pivot) {
+                *own -= factor * other;
             }
             right[i] = right[i] - right[k] * factor;
         }

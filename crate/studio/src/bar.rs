@@ -131,6 +131,7 @@ fn more(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
             commands.push(Command::PickFiles);
         }
         ui.separator();
+        download::label(ui, "Download");
         download::menu(app, ui, commands);
         ui.separator();
         for theme in [
