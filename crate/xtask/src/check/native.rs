@@ -42,7 +42,7 @@ struct Tests {
 /// Compiles all tests, and gives them without [`portable::SAME`], which the part `wasm` runs.
 fn compiled() -> Result<Vec<Tests>> {
     let message = ["--message-format", "json-render-diagnostics"];
-    let all = ["test", "--no-run", "--workspace"];
+    let all = ["test", "--no-run", "--package", "mesh", "--package", "picture", "--package", "worker"];
     let mut tests = Vec::new();
     for made in artifacts(cargo(&all).args(message))? {
         let (manifest, file) = (&made["manifest_path"], &made["target"]["name"]);
@@ -76,7 +76,7 @@ fn compiled() -> Result<Vec<Tests>> {
 fn run_all(tests: Vec<Tests>) -> Result<Vec<String>> {
     let documentation = (
         String::from("documentation"),
-        cargo(&["test", "--doc", "--workspace"]),
+        cargo(&["test", "--doc", "--package", "mesh"]),
     );
     let tests = tests.into_iter().map(|tests| {
         let mut program = command(&tests.program, &[]);
