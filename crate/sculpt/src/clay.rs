@@ -308,7 +308,11 @@ fn is_near(p: DVec3) -> bool {
 
 /// Triangles whose vertices at the same place are one, and which vertex each was first.
 fn joined(mesh: &TriangleMesh) -> (PolygonSoup, Vec<u32>) {
-    let key = |i: &u32| (mesh.positions[*i as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
+    let key = |i: &u32| {
+        (mesh.positions[*i as usize] + DVec3::ZERO)
+            .to_array()
+            .map(f64::to_bits)
+    };
     let mut order: Vec<u32> = (0..mesh.positions.len() as u32).collect();
     order.sort_by_key(|i| (key(i), *i));
     let mut same = vec![0; order.len()];

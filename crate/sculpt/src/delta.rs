@@ -67,9 +67,10 @@ impl Delta {
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let topology = self.topology.as_ref().map_or(0, |t| {
-            t.mesh.bytes() + t.colors.bytes() + t.masks.bytes()
-        });
+        let topology = self
+            .topology
+            .as_ref()
+            .map_or(0, |t| t.mesh.bytes() + t.colors.bytes() + t.masks.bytes());
         let region = match &self.region {
             Some(Region::Faces(faces)) => 4 * faces.len(),
             _ => 0,

@@ -101,7 +101,9 @@ impl<'a> Drag<'a> {
             return;
         };
         let way = point.position - from.position;
-        let steps = (way.length() / self.solid.step()).ceil().clamp(1.0, MAX_STEPS);
+        let steps = (way.length() / self.solid.step())
+            .ceil()
+            .clamp(1.0, MAX_STEPS);
         for i in 1..=steps as u32 {
             let t = f64::from(i) / steps;
             let between = PathPoint {
@@ -160,12 +162,21 @@ impl<'a> Drag<'a> {
         let touched = self.touched(clay, signs, center);
         let sources: Vec<Source> = touched.into_iter().map(source).collect();
         let reached = self.spread(clay, &sources);
-        reached.into_iter().map(|(v, _, weight)| (v, weight)).collect()
+        reached
+            .into_iter()
+            .map(|(v, _, weight)| (v, weight))
+            .collect()
     }
 
     /// Vertices that sources reach, with the source's index and the weight.
     fn spread(&self, clay: &mut Clay, sources: &[Source]) -> Vec<(u32, u32, f64)> {
-        let reached = spread(&clay.mesh, &mut clay.scratch, sources, self.decay, self.range);
+        let reached = spread(
+            &clay.mesh,
+            &mut clay.scratch,
+            sources,
+            self.decay,
+            self.range,
+        );
         clay.work += reached.len() as u64;
         let plain = reached.into_iter().map(|r| (r.vertex, r.source, r.weight));
         plain.collect()
@@ -194,7 +205,9 @@ impl<'a> Drag<'a> {
             Action::Region(_) => {
                 for signs in self.copies.clone() {
                     let touched = self.touched(clay, signs, point.position);
-                    let faces = touched.iter().flat_map(|v| clay.mesh.vertex_faces(VertexId(*v)));
+                    let faces = touched
+                        .iter()
+                        .flat_map(|v| clay.mesh.vertex_faces(VertexId(*v)));
                     self.chosen.extend(faces);
                 }
             }
@@ -231,7 +244,13 @@ impl<'a> Drag<'a> {
     }
 
     /// The motions that drive vertices out of a copy of the tool.
-    fn driven_out(&self, clay: &Clay, vertices: &[u32], signs: DVec3, point: PathPoint) -> Vec<Motion> {
+    fn driven_out(
+        &self,
+        clay: &Clay,
+        vertices: &[u32],
+        signs: DVec3,
+        point: PathPoint,
+    ) -> Vec<Motion> {
         let motion = |v: &u32| {
             let local = clay.mesh.position(VertexId(*v)) * signs - point.position;
             let out = self.solid.driven_out(local)? - local;
@@ -250,8 +269,10 @@ impl<'a> Drag<'a> {
             let free = 1.0 - f64::from(clay.mask(v));
             let motion = match group {
                 [(_, only)] => *only,
-                _ => group.iter().fold(DVec3::ZERO, |sum, (_, m)| sum.max(*m))
-                    + group.iter().fold(DVec3::ZERO, |sum, (_, m)| sum.min(*m)),
+                _ => {
+                    group.iter().fold(DVec3::ZERO, |sum, (_, m)| sum.max(*m))
+                        + group.iter().fold(DVec3::ZERO, |sum, (_, m)| sum.min(*m))
+                }
             };
             let motion = match self.constraint {
                 None => motion,

@@ -210,7 +210,9 @@ impl Clay {
         let first = rim[0];
         let copies = self.mesh.delete_faces(part)?;
         if !copies.is_empty() || !self.mesh.has_half_edge(first) {
-            return fail("a part of the region cannot become one face: faces around it would fall apart");
+            return fail(
+                "a part of the region cannot become one face: faces around it would fall apart",
+            );
         }
         Ok(self.mesh.close_hole(first)?)
     }

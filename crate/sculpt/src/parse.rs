@@ -3,16 +3,12 @@
 use crate::decay::Decay;
 use crate::grammar::COMMANDS;
 use crate::holes::Deletion;
-use crate::limits::{
-    LARGEST, MAX_BYTES, MAX_LEVELS, MAX_POINTS, MAX_STROKES, SMALLEST,
-};
+use crate::limits::{LARGEST, MAX_BYTES, MAX_LEVELS, MAX_POINTS, MAX_STROKES, SMALLEST};
 use crate::refine::Refinement;
 use crate::region::{Choice, RegionChange};
 use crate::script::{Diagnostic, Place, Script};
 use crate::start::{Shape, Start};
-use crate::stroke::{
-    Action, Beginning, Constraint, MaskChange, PathPoint, Stroke, Sweep,
-};
+use crate::stroke::{Action, Beginning, Constraint, MaskChange, PathPoint, Stroke, Sweep};
 use crate::tool::{Form, Tool};
 use glam::DVec3;
 
@@ -375,8 +371,10 @@ impl<'a> Line<'a> {
                 return Ok(Stroke::Region(change));
             }
         }
-        let growth: [(&str, fn(u32) -> RegionChange); 2] =
-            [("grow", RegionChange::Grow), ("shrink", RegionChange::Shrink)];
+        let growth: [(&str, fn(u32) -> RegionChange); 2] = [
+            ("grow", RegionChange::Grow),
+            ("shrink", RegionChange::Shrink),
+        ];
         for (name, change) in growth {
             if self.takes(name) {
                 let times = match self.is_done() {

@@ -92,7 +92,11 @@ impl Script {
     }
 
     pub(crate) fn at_start(&self, error: &Error) -> Diagnostic {
-        self.places.first().cloned().unwrap_or_default().problem(error.0.clone())
+        self.places
+            .first()
+            .cloned()
+            .unwrap_or_default()
+            .problem(error.0.clone())
     }
 
     pub(crate) fn at(&self, stroke: usize, error: &Error) -> Diagnostic {

@@ -92,7 +92,10 @@ impl Start {
         if n == 0 {
             return fail("a start shape has one division or more");
         }
-        match n.checked_mul(n).and_then(|n| n.checked_mul(self.shape.faces())) {
+        match n
+            .checked_mul(n)
+            .and_then(|n| n.checked_mul(self.shape.faces()))
+        {
             Some(faces) if faces <= MAX_FACES => Ok(()),
             _ => fail(format!("this would be more than {MAX_FACES} faces")),
         }

@@ -110,10 +110,10 @@ impl MeshPatch {
         let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
         let (before, after) = (old.lists(), new.lists());
         Self {
-            positions: ListPatch::between(&old.positions, &new.positions, |a, b| bits(a) == bits(b)),
-            lists: core::array::from_fn(|i| {
-                ListPatch::between(before[i], after[i], |a, b| a == b)
+            positions: ListPatch::between(&old.positions, &new.positions, |a, b| {
+                bits(a) == bits(b)
             }),
+            lists: core::array::from_fn(|i| ListPatch::between(before[i], after[i], |a, b| a == b)),
         }
     }
 
@@ -172,8 +172,12 @@ mod tests {
             &[1, 2, 3],
             &[1, 9, 3, 4],
             &[7; 40],
-            &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23],
-            &[0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 0, 0],
+            &[
+                1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23,
+            ],
+            &[
+                0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 0, 0,
+            ],
         ];
         for old in lists {
             for new in lists {

@@ -70,7 +70,11 @@ pub fn sweep(random: &mut Random, action: Action) -> Sweep {
     for _ in 0..=random.below(4) {
         sweep.path.push(PathPoint {
             position: p,
-            pressure: if random.below(2) == 0 { 1.0 } else { random.share() },
+            pressure: if random.below(2) == 0 {
+                1.0
+            } else {
+                random.share()
+            },
         });
         p += random.point(0.3);
     }
@@ -130,7 +134,9 @@ pub fn stroke(random: &mut Random, faces: usize) -> Stroke {
 /// The vertices that must stay.
 pub fn held(clay: &Clay) -> Vec<(VertexId, [u64; 3])> {
     let vertices = clay.mesh().vertices().filter(|v| clay.mask(*v) == 1.0);
-    vertices.map(|v| (v, bits(clay.mesh().position(v)))).collect()
+    vertices
+        .map(|v| (v, bits(clay.mesh().position(v))))
+        .collect()
 }
 
 pub fn bits(p: DVec3) -> [u64; 3] {
@@ -140,7 +146,8 @@ pub fn bits(p: DVec3) -> [u64; 3] {
 /// Checks the clay after a stroke.
 pub fn check(clay: &Clay, stroke: &Stroke, before: &Before) {
     let mesh = clay.mesh();
-    mesh.validate().unwrap_or_else(|error| panic!("{stroke}: {error}"));
+    mesh.validate()
+        .unwrap_or_else(|error| panic!("{stroke}: {error}"));
     let mut euler = 0;
     for shell in mesh.shells() {
         let twice = 2 - shell.boundary_loops as i64 - shell.euler_characteristic();
@@ -171,8 +178,15 @@ pub fn check(clay: &Clay, stroke: &Stroke, before: &Before) {
     };
     for (v, place) in &before.held {
         assert!(mesh.has_vertex(*v), "{stroke}: a held vertex is lost");
-        assert_eq!(bits(mesh.position(*v)), *place, "{stroke}: a held vertex moved");
-        assert!(changes_masks || clay.mask(*v) == 1.0, "{stroke}: a mask is lost");
+        assert_eq!(
+            bits(mesh.position(*v)),
+            *place,
+            "{stroke}: a held vertex moved"
+        );
+        assert!(
+            changes_masks || clay.mask(*v) == 1.0,
+            "{stroke}: a mask is lost"
+        );
     }
     if let sculpt::Region::Faces(faces) = clay.region() {
         assert!(faces.is_sorted_by(|a, b| a < b), "{stroke}");
@@ -232,6 +246,10 @@ pub fn run(seed: u64, count: usize) -> usize {
     let again: Script = script.to_string().parse().expect("its own text");
     assert_eq!(again.strokes, script.strokes);
     let replayed = replay(&again, &mut |_| Err(String::new()), u64::MAX, |_, _, _| ());
-    assert_eq!(replayed.expect("replayed").digest(), last, "the replayed bits");
+    assert_eq!(
+        replayed.expect("replayed").digest(),
+        last,
+        "the replayed bits"
+    );
     refused
 }
