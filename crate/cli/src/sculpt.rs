@@ -96,7 +96,7 @@ impl Sculpt {
     }
 
     fn show(&self, text: &str, problem: &Diagnostic) {
-        let file = SimpleFile::new(self.file.display(), text);
+        let file = SimpleFile::new(self.file.display().to_string(), text);
         let label = Label::primary((), problem.span.clone());
         let shown = Shown::error()
             .with_message(&problem.message)

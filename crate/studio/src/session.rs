@@ -446,6 +446,16 @@ impl Session {
         Some(scene)
     }
 
+    /// The dataset as the lab sees it. Its scene has the text's camera.
+    #[must_use]
+    pub fn dataset(&self) -> lab::Dataset<'_> {
+        lab::Dataset {
+            generation: self.generation,
+            scene: self.good.as_ref(),
+            camera: self.camera(),
+        }
+    }
+
     /// The frame of the scene to draw, pixels.
     #[must_use]
     pub fn frame(&self) -> [u32; 2] {
@@ -459,7 +469,7 @@ impl Session {
     pub fn background(&self) -> scene::Rgb {
         self.good
             .as_ref()
-            .map_or(scene::DEFAULT_BACKGROUND, |scene| scene.background)
+            .map_or(scene::DEFAULT_BACKGROUND, |scene| scene.background.mean())
     }
 
     /// The camera in use.
@@ -612,7 +622,11 @@ fn same_picture(a: &Scene, b: &Scene) -> bool {
         && a.frames == b.frames
         && a.lights == b.lights
         && a.background == b.background
-        && a.camera == b.camera
+        && (a.sky, a.ground, a.fog, a.up) == (b.sky, b.ground, b.fog, b.up)
+        && a.clouds == b.clouds
+        && a.images == b.images
+        && (a.camera, a.lens) == (b.camera, b.lens)
+        && a.moments == b.moments
         && a.settings == b.settings
 }
 

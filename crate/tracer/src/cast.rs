@@ -5,23 +5,8 @@ use crate::layout::PACKET;
 use crate::ray::Ray;
 use crate::scratch::Scratch;
 use crate::walk::Quest;
-use crate::world::World;
+use crate::world::{Owner, World};
 use glam::DVec3;
-
-/// Rays whose directions differ by more than this, or whose origins by more than this part of half the scene's
-/// size, are not followed together.
-const WIDEST: f64 = 0.15;
-
-/// A surface that a ray meets.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Owner {
-    /// The convolution surface of a body, by its number among the soft ones.
-    Soft(u32),
-    /// The surface of a function.
-    Function(usize),
-    /// A hard element's.
-    Solid(u32),
-}
 
 /// A crossing in units of the scene's size.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +72,7 @@ impl World {
                     let limit = found.map_or(f64::INFINITY, |cast: Cast| cast.t);
                     let (nearer, _) = self.function_crossing(body, ray, limit, Quest::First);
                     if let Some(t) = nearer {
-                        let normal = body.normal(self.unit.world(ray.at(t)));
+                        let normal = body.normal(ray.at(t));
                         *found = Some(Cast {
                             t,
                             normal: normal.unwrap_or(-ray.direction),
@@ -118,7 +103,7 @@ impl World {
         }
         for (number, body) in self.functions.iter().enumerate() {
             self.function_crossings(body, ray, f64::INFINITY, |t, _| {
-                let normal = body.normal(self.unit.world(ray.at(t)));
+                let normal = body.normal(ray.at(t));
                 found.push(Cast {
                     t,
                     normal: normal.unwrap_or(-ray.direction),
@@ -146,12 +131,7 @@ impl World {
         let Some(first) = rays.first().and_then(|r| self.ray(r)) else {
             return 1;
         };
-        let near = |r: &&(DVec3, DVec3)| {
-            self.ray(r).is_some_and(|ray| {
-                ray.direction.distance(first.direction) <= WIDEST
-                    && ray.origin.distance(first.origin) <= WIDEST
-            })
-        };
+        let near = |r: &&(DVec3, DVec3)| self.ray(r).is_some_and(|ray| first.runs_with(&ray));
         rays.iter().take(PACKET).take_while(near).count().max(1)
     }
 
@@ -169,7 +149,12 @@ impl World {
     pub fn owner(&self, cast: &Cast, ray: &Ray) -> (Option<u32>, Option<u32>) {
         match cast.owner {
             Owner::Solid(number) => (None, Some(self.solids.element(number))),
-            Owner::Function(number) => (Some(self.functions[number].number), None),
+            Owner::Function(number) => {
+                let body = &self.functions[number];
+                let point = body.unit.world(ray.at(cast.t));
+                let element = scene::surface::strongest(&*body.function, &body.element, point);
+                (Some(body.number), element)
+            }
             Owner::Soft(body) => {
                 let point = ray.at(cast.t).to_array();
                 // Pieces of a limb are one element.

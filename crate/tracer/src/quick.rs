@@ -237,11 +237,11 @@ pub struct Asked<'l> {
 }
 
 impl<'l> Asked<'l> {
-    /// Query for the first crossing of each ray.
-    pub fn first(limits: &'l [f64; PACKET]) -> Self {
+    /// Query for the first crossing of each ray of some lanes.
+    pub fn first(limits: &'l [f64; PACKET], alive: u32) -> Self {
         Self {
             limits,
-            alive: (1 << PACKET) - 1,
+            alive,
             quest: Quest::First,
         }
     }
@@ -635,7 +635,8 @@ mod tests {
             kernel: Kernel::Gauss,
             ..element(Shape::Sphere { center, radius }, 0)
         }];
-        Soft::new(scene)
+        let surfaces = scene.soft_surfaces();
+        Soft::new(scene, surfaces)
     }
 
     /// Rays along z at growing distances from the ball's middle, of which the first four meet it.

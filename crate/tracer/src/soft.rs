@@ -14,7 +14,7 @@ use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
 use field::{Bound, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
-use scene::Scene;
+use scene::{Scene, SoftSurface};
 use std::ops::Range;
 use std::sync::OnceLock;
 use wide::f32x8;
@@ -86,10 +86,10 @@ const MOST_STRIDES: usize = 32;
 const CLOSE_BEAM: f64 = 0.05;
 
 impl Soft {
-    /// Collects a scene's soft elements. The scene is dropped before their bounds are made, which saves memory.
+    /// Collects the primitives of a scene's convolution surfaces. The scene is dropped before their bounds are made, which saves
+    /// memory.
     #[must_use]
-    pub fn new(scene: Scene) -> Self {
-        let surfaces = scene.soft_surfaces();
+    pub fn new(scene: Scene, surfaces: Vec<SoftSurface>) -> Self {
         let count: usize = surfaces.iter().map(|s| s.element.len()).sum();
         let finishes = surfaces.iter().flat_map(|s| &s.element);
         let finish: Vec<u32> = finishes
@@ -194,6 +194,34 @@ impl Soft {
     pub(crate) fn bounds(&self) -> &[Bound] {
         self.bounds
             .get_or_init(|| self.primitives.iter().map(Bound::new).collect())
+    }
+
+    /// For each body whether all its primitives have one finish, and the first's finish.
+    pub fn only_finishes(&self) -> Vec<(bool, u32)> {
+        let only = |body: &SoftBody| {
+            let own = &self.finish[body.range.start as usize..body.range.end as usize];
+            (own.iter().all(|finish| *finish == own[0]), own[0])
+        };
+        self.bodies.iter().map(only).collect()
+    }
+
+    /// Appends the elements that add to a body's field at a point: element, finish and field.
+    pub fn shares(&self, body: u32, point: DVec3, shares: &mut Vec<(u32, u32, f64)>) {
+        let body = &self.bodies[body as usize];
+        let at = point.to_array();
+        let mut add = |number: u32| {
+            let i = number as usize;
+            let value = self.primitives[i].value::<f64>(at);
+            if value > 0.0 {
+                shares.push((self.element[i], self.finish[i], value));
+            }
+        };
+        body.everywhere.iter().for_each(|&i| add(i));
+        self.tree.around(point, 0.0, |i, _, _| {
+            if body.range.contains(&i) {
+                add(i);
+            }
+        });
     }
 
     /// Whether there is no soft surface at all.

@@ -33,6 +33,12 @@ pub struct Unit {
 }
 
 impl Unit {
+    /// The map that changes nothing.
+    pub const IDENTITY: Self = Self {
+        center: DVec3::ZERO,
+        scale: 1.0,
+    };
+
     /// The map that fits a scene, and the scene mapped. Elements with coordinates that are not
     /// finite, which no ray can meet, are made hard balls of radius 0, which have no surface: so all keep their numbers.
     #[must_use]
@@ -62,10 +68,7 @@ impl Unit {
             };
             Self { center, scale }
         } else {
-            Self {
-                center: DVec3::ZERO,
-                scale: 1.0,
-            }
+            Self::IDENTITY
         };
         unit.apply(&mut mapped);
         (unit, mapped)
@@ -132,24 +135,33 @@ impl Unit {
                     quadric.center = self.map(quadric.center);
                     quadric.axes = quadric.axes.map(|axis| axis * k);
                 }
+                Shape::Function(function) => **function = function.moved(&self.to_unit()),
             }
         }
         for frame in &mut scene.frames {
             frame.growth *= k;
-            let to_unit = DAffine3::from_scale_rotation_translation(
-                DVec3::splat(k),
-                DQuat::IDENTITY,
-                -k * self.center,
-            );
-            frame.to_world = to_unit * frame.to_world;
+            frame.to_world = self.to_unit() * frame.to_world;
         }
         for light in &mut scene.lights {
-            if let LightKind::Point { position } = &mut light.kind {
-                *position = self.map(*position);
+            match &mut light.kind {
+                LightKind::Point { position } | LightKind::Spot { position, .. } => {
+                    *position = self.map(*position);
+                    light.size *= k;
+                }
+                LightKind::Distant { .. } => {}
             }
         }
         scene.camera.eye = self.map(scene.camera.eye);
         scene.camera.target = self.map(scene.camera.target);
+    }
+
+    /// From the world to the unit scene.
+    fn to_unit(self) -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(
+            DVec3::splat(self.scale),
+            DQuat::IDENTITY,
+            -self.scale * self.center,
+        )
     }
 
     /// A point of the world in the unit scene.
@@ -169,6 +181,21 @@ impl Unit {
     pub fn length(&self, length: f64) -> f64 {
         length / self.scale
     }
+}
+
+/// The least height of a scene's elements along the scene's `up`, apart from planes; 0 without any.
+#[must_use]
+pub fn lowest(scene: &Scene) -> f64 {
+    let up = scene.up.normalize_or(DVec3::Y);
+    let bottom = |element: &Element| {
+        let (low, high) = corners(&element.shape);
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        middle.dot(up) - half.dot(up.abs()) - scene.radius(element).abs()
+    };
+    let bounded = |e: &&Element| !matches!(e.shape, Shape::Plane { .. });
+    let heights = scene.elements.iter().filter(bounded).map(bottom);
+    let lowest = heights.fold(f64::INFINITY, f64::min);
+    if lowest.is_finite() { lowest } else { 0.0 }
 }
 
 /// The corners of a box that holds a shape's skeleton.
@@ -203,6 +230,7 @@ fn corners(shape: &Shape) -> (DVec3, DVec3) {
         Shape::Plane { point, .. } => (point, point),
         Shape::Box { center, axes } => boxed(center, axes),
         Shape::Quadric(ref quadric) => boxed(quadric.center, quadric.axes),
+        Shape::Function(ref function) => function.corners(),
     }
 }
 

@@ -94,8 +94,17 @@ pub(crate) enum Routine {
     Fragile,
     Sample,
     Mesh,
+    Penumbra,
+    Epsilon,
+    Vanish,
+    Maxdepth,
+    Tone,
     Light,
+    Fog,
     Background,
+    Cloud,
+    Sky,
+    Ground,
     Remove,
     Report,
     Reset,
@@ -135,8 +144,6 @@ pub(crate) enum Action {
     Library,
     /// It never changes the picture, for the reason given.
     NoEffect(&'static str),
-    /// Not in this version.
-    Later,
 }
 
 /// A command.
@@ -200,7 +207,6 @@ impl CommandSpec {
                 None
             }
             Action::NoEffect(reason) => Some(reason),
-            Action::Later => Some("it is not carried out in this version"),
         }
     }
 

@@ -14,19 +14,37 @@ impl Evaluator<'_> {
     /// The scene of these shapes as all else is now, and how its elements came there.
     pub(super) fn picture(&mut self, parts: Vec<Part>) -> (Scene, Vec<Placement>) {
         let surfaces = self.palette.surfaces.iter();
-        let finishes = surfaces.clone().map(|surface| surface.finish.clone());
+        let dark = self.air.sky.is_some();
+        let finishes = surfaces.clone().map(|surface| Finish {
+            ambient: match surface.colours.ambient {
+                None if dark => [0.0; 3],
+                _ => surface.finish.ambient,
+            },
+            ..surface.finish.clone()
+        });
+        let finishes = finishes.collect();
+        let flesh = surfaces.map(|surface| surface.flesh.clone()).collect();
+        let camera = self.settled_camera();
         let mut scene = Scene {
             elements: Vec::with_capacity(parts.len()),
             bodies: [Body::default()]
                 .into_iter()
                 .chain(self.model.bodies.iter().cloned())
                 .collect(),
-            flesh: surfaces.map(|surface| surface.flesh.clone()).collect(),
-            finishes: finishes.collect(),
+            flesh,
+            finishes,
             frames: vec![Frame::WORLD],
             lights: self.lights.clone(),
-            background: self.background,
-            camera: self.settled_camera(),
+            background: self.air.background(),
+            sky: self.air.sky.map(|(sky, _)| sky),
+            ground: self.air.ground,
+            fog: self.air.fog(camera.eye.distance(camera.target)),
+            clouds: self.air.clouds.clone(),
+            up: camera.up.try_normalize().unwrap_or(DVec3::Y),
+            images: self.images.all.clone(),
+            camera,
+            lens: self.lens,
+            moments: Vec::new(),
             settings: self.settings,
         };
         let mut placements = Vec::with_capacity(parts.len());
@@ -169,6 +187,7 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
         } => a == b && b == c && c == d,
         Shape::Box { axes, .. } => scene::quadric::inverse(axes).is_none(),
         Shape::Quadric(ref quadric) => !quadric.is_surface(),
+        Shape::Function(ref function) => function.implicit().is_none(),
     };
     if is_soft && scene.is_too_long(element) {
         return Some((
@@ -197,6 +216,9 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
                 String::from(
                     "this quadric is no surface, or its box has no volume, so it is left out",
                 )
+            },
+            Shape::Function(_) => || {
+                String::from("this function's numbers cannot be computed with, so it is left out")
             },
             Shape::Arc { .. } => || {
                 String::from("this arc has no length (sweep radius or width 0), so it is left out")
@@ -247,6 +269,9 @@ fn is_in_bounds(part: &Part) -> bool {
         Shape::Polygon { ref rings, .. } => rings.iter().flatten().copied().all(fits),
         Shape::Curve { control, .. } => control.into_iter().all(fits),
         Shape::Plane { point, normal, .. } => fits(point) && normal.is_finite(),
+        Shape::Function(ref function) => <[glam::DVec3; 2]>::from(function.corners())
+            .into_iter()
+            .all(fits),
     };
     places && shape.radius().abs() <= MAX_MAGNITUDE && (1e-9..=1e9).contains(&part.growth)
 }

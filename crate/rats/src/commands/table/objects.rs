@@ -44,8 +44,8 @@ pub static OBJECTS: &[CommandSpec] = &[
         .takes(&[parameter("x y z", Kind::Vector, "the shares"), OBJECT])
         .details("Each shape moves away from the middle of the object, by the share x, y, z of its distance along each axis: 0 leaves it, 1 doubles the distance.")
         .example(clay!("object PARTS\n  sphere Clay 0.8, -0.5 0 0\n  sphere Clay 0.8, 0.5 0 0\n  sphere Clay 0.8, 0 0.8 0\nclose\nexplode 2 2 0, PARTS")),
-    row("transform", "apply transforms now", run(Routine::Transform))
+    row("transform", "hold an object still while the shutter is open", run(Routine::Transform))
         .takes(&[OBJECT])
-        .details("They always are; RATS needed this to blur what moves.")
-        .example(clay!("sphere Clay 1, 0 0 0\ntranslate 1 0 0\ntransform")),
+        .details("Transforms are applied at once. What variables that change with every frame have done to the object so far is then the same for the whole time of the `shutter`; what comes after this is blurred.")
+        .example(clay!("var x = -1.5 += 3\nshutter 1\nsample 3\nobject STILL\n  sphere Clay 1, x 1.2 0\nclose\ntransform STILL\nobject MOVING\n  sphere Clay 1, x -1.2 0\nclose")),
 ];
