@@ -101,7 +101,7 @@ impl Grid {
         let low = bounds.min.to_array().map(|x| self.cell(x));
         let high = bounds.max.to_array().map(|x| self.cell(x));
         let sides = [0, 1, 2].map(|i| (high[i].saturating_sub(low[i])) as f64 + 1.0);
-        if !(sides[0] * sides[1] * sides[2] <= self.heads.len() as f64) {
+        if sides[0] * sides[1] * sides[2] > self.heads.len() as f64 {
             let entered = self.bucket.iter().zip(0..).filter(|(b, _)| **b != NONE);
             out.extend(entered.map(|(_, v)| v));
             return;

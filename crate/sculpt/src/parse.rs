@@ -371,17 +371,16 @@ impl<'a> Line<'a> {
                 return Ok(Stroke::Region(change));
             }
         }
-        let growth: [(&str, fn(u32) -> RegionChange); 2] = [
-            ("grow", RegionChange::Grow),
-            ("shrink", RegionChange::Shrink),
-        ];
-        for (name, change) in growth {
+        for (name, is_growth) in [("grow", true), ("shrink", false)] {
             if self.takes(name) {
                 let times = match self.is_done() {
                     true => 1,
                     false => self.whole_number("how often", 1, MAX_LEVELS)?,
                 };
-                return Ok(Stroke::Region(change(times)));
+                return Ok(Stroke::Region(match is_growth {
+                    true => RegionChange::Grow(times),
+                    false => RegionChange::Shrink(times),
+                }));
             }
         }
         let word = self.peek();

@@ -43,7 +43,7 @@ impl Solid for Body<'_> {
     }
 
     fn contains(&self, point: DVec3) -> bool {
-        self.function.jet(point).value > f64::from(THRESHOLD)
+        self.function.jet(point).value > THRESHOLD
     }
 
     /// Newton's method along the gradient; a step is never longer than an eighth of the box, so that it does not leave
@@ -54,9 +54,9 @@ impl Solid for Body<'_> {
         for i in 0..MAX_STEPS {
             let jet = self.function.jet(p);
             let gradient = DVec3::from_array(jet.gradient);
-            let excess = jet.value - f64::from(THRESHOLD);
+            let excess = jet.value - THRESHOLD;
             let steep = gradient.length();
-            if i == 0 && !(excess > 0.0) {
+            if i == 0 && (excess <= 0.0 || excess.is_nan()) {
                 return None;
             }
             if excess.abs() < 1e-9 {

@@ -310,7 +310,7 @@ fn a_body_of_a_model_is_a_tool() {
     impl Implicit for Round {
         fn jet(&self, p: DVec3) -> Jet<f64> {
             Jet {
-                value: f64::from(field::THRESHOLD) + 0.25 - p.length_squared(),
+                value: field::THRESHOLD + 0.25 - p.length_squared(),
                 gradient: (p * -2.0).to_array(),
             }
         }
