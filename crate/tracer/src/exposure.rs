@@ -192,10 +192,12 @@ fn follow(
     let mut seen = Vec::new();
     for (shots, hits) in shots.chunks(PACKET).zip(hits.chunks(PACKET)) {
         // Lanes not in use repeat the last ray, and meet nothing.
-        let mut packet = Seen::default();
-        packet.rays = core::array::from_fn(|i| shots[i.min(shots.len() - 1)].ray);
+        let mut packet = Seen {
+            rays: core::array::from_fn(|i| shots[i.min(shots.len() - 1)].ray),
+            costs: [1.0; PACKET],
+            ..Seen::default()
+        };
         packet.hits[..hits.len()].copy_from_slice(hits);
-        packet.costs = [1.0; PACKET];
         seen.push(packet);
     }
     let draw = |packet: usize, lane: usize| {

@@ -7,9 +7,6 @@ use crate::{dist, tools};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
-/// Files of tests that measure how the page behaves in time: each has the machine to itself.
-const ALONE: [&str; 2] = ["rest.test.mjs", "speed.test.mjs"];
-
 /// What is tested, and with what.
 pub struct Built {
     page: PathBuf,
@@ -39,28 +36,21 @@ pub fn check(watch: &mut Watch, chosen: &Chosen, built: Built) -> Result<String>
             pattern = Some(filter);
         }
     }
-    let count = tests.len();
-    let (alone, together) = tests
-        .into_iter()
-        .partition(|name: &String| ALONE.contains(&name.as_str()));
-    let run = |tests: Vec<String>, at_once: &str| {
-        if tests.is_empty() {
-            return Ok(());
-        }
-        let mut node = command("node", &["--test", "--test-reporter=spec", at_once]);
-        if let Some(pattern) = pattern {
-            node.args(["--test-name-pattern", pattern]);
-        }
-        run(node
-            .args(tests)
+    // One after the other: each has the machine to itself.
+    let mut options = vec!["--test", "--test-concurrency=1", "--test-reporter=spec"];
+    if let Some(pattern) = pattern {
+        options.extend(["--test-name-pattern", pattern]);
+    }
+    watch.step("tests", || {
+        run(command("node", &options)
+            .args(&tests)
             .current_dir(&folder)
             .env("CHROMIUM", &built.chromium)
             .env("SINEW_PAGE", &built.page)
             .env("SINEW_PROGRAM", &built.program)
             .env("SINEW_SCREENSHOTS", &screenshots))
-    };
-    watch.step("tests", || run(together, "--test-concurrency=2"))?;
-    watch.step("alone", || run(alone, "--test-concurrency=1"))?;
+    })?;
+    let count = tests.len();
     Ok(format!(
         "{count} files of tests passed, screenshots in {}",
         screenshots.display()
