@@ -186,8 +186,7 @@ impl Sibson {
         near.clear();
         let distance = |(k, site): (u32, &DVec3)| (site.distance_squared(point), k);
         near.extend((0..).zip(&self.sites).map(distance));
-        let by_distance =
-            |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let by_distance = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let outside = u32::MAX;
         cell.set_cube(CUBE * self.size, outside);
         let (mut sorted, mut used) = (0, 0);

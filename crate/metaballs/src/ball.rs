@@ -70,7 +70,11 @@ pub fn circumscribed(corners: &[DVec3; 3]) -> (DVec3, f64) {
     let direction = across
         .try_normalize()
         .unwrap_or_else(|| along.any_orthonormal_vector());
-    let t = if t.is_nan() { -largest } else { t.clamp(-largest, largest) };
+    let t = if t.is_nan() {
+        -largest
+    } else {
+        t.clamp(-largest, largest)
+    };
     let radius = (half * half + t * t).sqrt();
     (middle + direction * t, radius)
 }

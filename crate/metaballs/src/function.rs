@@ -145,10 +145,7 @@ impl Metaballs {
                 }
                 (
                     Facets::Triangles(facets.iter().map(Triangle::new).collect(), thickness),
-                    Facets::Triangles(
-                        facets.iter().map(Triangle::new).collect(),
-                        thickness as f32,
-                    ),
+                    Facets::Triangles(facets.iter().map(Triangle::new).collect(), thickness as f32),
                     facets.iter().map(|f| around(f, thickness)).collect(),
                     thickness,
                 )

@@ -51,7 +51,11 @@ pub(crate) fn range(low: f64, high: f64) -> Range {
     }
     let decay = low.max(DEEP).decay();
     // φ falls with s. With the step w, |w′| ≤ 0.47 and |w″| ≤ 0.37: |φ′| = e^−s (w + |w′|), |φ″| ≤ e^−s (w + 2|w′| + |w″|).
-    let (first, second) = if high <= FADE { (1.0, 1.0) } else { (1.47, 2.31) };
+    let (first, second) = if high <= FADE {
+        (1.0, 1.0)
+    } else {
+        (1.47, 2.31)
+    };
     Range {
         value: [profile(high).0, profile(low).0],
         slope: decay * first,
@@ -86,7 +90,10 @@ mod tests {
             let [before, (value, slope), after] = [s - h, s, s + h].map(profile);
             let scale = libm::exp(-s.max(DEEP));
             let first = (after.0 - before.0) / (2.0 * h);
-            assert!((first - slope).abs() <= 1e-4 * scale, "{s}: {first} {slope}");
+            assert!(
+                (first - slope).abs() <= 1e-4 * scale,
+                "{s}: {first} {slope}"
+            );
             let second = (after.1 - before.1) / (2.0 * h);
             let bound = range(s - 0.01, s + 0.3);
             assert!(bound.value[0] <= value && value <= bound.value[1]);

@@ -19,7 +19,10 @@ pub(crate) struct Triangle<S> {
 impl<S: Scalar> Triangle<S> {
     pub fn new(corners: &[DVec3; 3]) -> Self {
         let lengths = [0, 1, 2].map(|i| corners[i].distance_squared(corners[(i + 1) % 3]));
-        let first = (1..3).fold(0, |best, i| if lengths[i] > lengths[best] { i } else { best });
+        let first = (1..3).fold(
+            0,
+            |best, i| if lengths[i] > lengths[best] { i } else { best },
+        );
         let [a, b, c] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
         let x = (b - a).try_normalize().unwrap_or(DVec3::X);
         let height = (c - a) - x * (c - a).dot(x);
@@ -66,7 +69,10 @@ impl<S: Scalar> Triangle<S> {
             let square = dx * dx + dy * dy;
             let nearer = square.lt(least);
             least = R::select(nearer, square, least);
-            nearest = [R::select(nearer, dx, nearest[0]), R::select(nearer, dy, nearest[1])];
+            nearest = [
+                R::select(nearer, dx, nearest[0]),
+                R::select(nearer, dy, nearest[1]),
+            ];
             inside = R::both(inside, zero.lt(wx * py - wy * px));
         }
         let [dx, dy] = nearest.map(|d| R::select(inside, zero, d));

@@ -15,7 +15,10 @@ const KINDS: [(Kind, f64); 3] = [
 
 fn balls(kind: Kind, k: f64, rings: u32) -> (Metaballs, Vec<[DVec3; 3]>) {
     let (positions, triangles) = lumpy_sphere(rings, 7);
-    let facets = triangles.iter().map(|t| t.map(|i| positions[i as usize])).collect();
+    let facets = triangles
+        .iter()
+        .map(|t| t.map(|i| positions[i as usize]))
+        .collect();
     let made = Metaballs::new(&positions, &triangles, kind, k).expect("a good mesh");
     (made, facets)
 }
@@ -30,7 +33,10 @@ fn plain(facets: &[[DVec3; 3]], kind: Kind, k: f64, p: DVec3) -> Jet<f64> {
         };
         let value = libm::exp(-k * (p.distance(from) - radius));
         let gradient = (p - from).normalize_or_zero() * (-k * value);
-        sum = sum.plus(Jet { value, gradient: gradient.to_array() });
+        sum = sum.plus(Jet {
+            value,
+            gradient: gradient.to_array(),
+        });
     }
     sum
 }
@@ -111,7 +117,10 @@ fn single_precision_is_near_and_lanes_are_equal_to_it() {
             let together = balls.jet8(lanes);
             for (lane, p) in points.iter().enumerate() {
                 let alone = balls.jet32(p.to_array().map(|x| x as f32));
-                assert_eq!(together.value.to_array()[lane].to_bits(), alone.value.to_bits());
+                assert_eq!(
+                    together.value.to_array()[lane].to_bits(),
+                    alone.value.to_bits()
+                );
                 for (g, alone) in together.gradient.iter().zip(alone.gradient) {
                     assert_eq!(g.to_array()[lane].to_bits(), alone.to_bits());
                 }
@@ -140,7 +149,10 @@ fn enclosures_hold() {
             for _ in 0..20 {
                 let p = center + numbers.direction() * radius * numbers.next();
                 let jet = balls.jet(p);
-                assert!(low <= jet.value && jet.value <= high, "{kind:?} {center} {radius}");
+                assert!(
+                    low <= jet.value && jet.value <= high,
+                    "{kind:?} {center} {radius}"
+                );
                 let gradient = DVec3::from_array(jet.gradient);
                 assert!(gradient.length() <= enclosure.slope * (1.0 + 1e-9));
                 // The gradient between two points of the ball, as far as the bound says.
@@ -228,10 +240,14 @@ fn cost_grows_with_what_is_near() {
     // Facets found near the surface, with lengths in proportion to the mean edge.
     let found = |rings: u32| {
         let edge = 3.0 / f64::from(rings);
-        let kind = Kind::Triangular { thickness: 0.2 * edge };
+        let kind = Kind::Triangular {
+            thickness: 0.2 * edge,
+        };
         let (balls, _) = balls(kind, 12.0 / edge, rings);
         let mut numbers = Numbers(9);
-        let near: usize = (0..200).map(|_| balls.near(numbers.direction()).count()).sum();
+        let near: usize = (0..200)
+            .map(|_| balls.near(numbers.direction()).count())
+            .sum();
         near as f64 / 200.0
     };
     let [coarse, fine] = [24, 150].map(found);
@@ -249,13 +265,19 @@ fn bad_input_is_told() {
     assert_eq!(make(&corners, &[[0, 1, 3]], thin, 1.0), Error::Broken(0));
     let nowhere = [DVec3::ZERO, DVec3::NAN, DVec3::Y];
     assert_eq!(make(&nowhere, &[[0, 1, 2]], thin, 1.0), Error::Broken(0));
-    assert_eq!(make(&corners, &[[0, 1, 2]], thin, 0.0), Error::Sharpness(0.0));
+    assert_eq!(
+        make(&corners, &[[0, 1, 2]], thin, 0.0),
+        Error::Sharpness(0.0)
+    );
     assert_eq!(
         make(&corners, &[[0, 1, 2]], thin, f64::INFINITY),
         Error::Sharpness(f64::INFINITY)
     );
     let inside_out = Kind::Triangular { thickness: -1.0 };
-    assert_eq!(make(&corners, &[[0, 1, 2]], inside_out, 1.0), Error::Thickness(-1.0));
+    assert_eq!(
+        make(&corners, &[[0, 1, 2]], inside_out, 1.0),
+        Error::Thickness(-1.0)
+    );
     let many = vec![[0, 1, 2]; mesh::limits::MAX_TRIANGLES + 1];
     assert_eq!(make(&corners, &many, thin, 1.0), Error::TooMany(many.len()));
 }

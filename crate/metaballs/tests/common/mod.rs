@@ -41,7 +41,11 @@ pub fn lumpy_sphere(rings: u32, seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     for i in 1..rings {
         for j in 0..around {
             let (a, b) = (turn * f64::from(i), turn * f64::from(j));
-            let p = DVec3::new(libm::sin(a) * libm::cos(b), libm::sin(a) * libm::sin(b), libm::cos(a));
+            let p = DVec3::new(
+                libm::sin(a) * libm::cos(b),
+                libm::sin(a) * libm::sin(b),
+                libm::cos(a),
+            );
             positions.push(p + numbers.point() * 0.3 * turn);
         }
     }
