@@ -262,7 +262,7 @@ impl Implicit for Metaballs {
     fn support(&self) -> Option<field::Ball> {
         // n facets at the distance ln n/k beyond their ρ make 1 at most.
         let count = self.bvh.len() as f64;
-        let beyond = count.ln().min(CUT) / self.sharpness;
+        let beyond = Real::ln(count).min(CUT) / self.sharpness;
         let Aabb { min, max } = self.bvh.bounds();
         Some(field::Ball {
             center: 0.5 * (min + max),

@@ -7,6 +7,7 @@
 
 mod call;
 mod camera;
+mod deform;
 mod dispatch;
 mod interpreter;
 mod later;

@@ -2,7 +2,7 @@
 
 use super::state::{Evaluator, Flow};
 use super::{
-    camera, materials, objects, options, primitives, run, scene_commands, textures, tools,
+    camera, deform, materials, objects, options, primitives, run, scene_commands, textures, tools,
     variables,
 };
 use crate::commands::Routine;
@@ -63,6 +63,7 @@ pub fn function(routine: Routine) -> Run {
         Routine::Scale => objects::scale,
         Routine::Explode => objects::explode,
         Routine::Transform => objects::transform,
+        Routine::Deform => deform::deform,
         Routine::SilentSwitch => options::silent_switch,
         Routine::Warning => options::warning,
         Routine::Verbose => options::verbose,
