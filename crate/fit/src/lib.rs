@@ -1,8 +1,14 @@
-//! Deformation of meshes by control points.
+//! Deformation of meshes by control points, and meshes fitted to measured points and outlines.
 //!
-//! [`Sibson`] gives the natural-neighbour coordinates of points in space with respect to control points that lie
-//! anywhere; [`Deformation`] moves the vertices of a mesh with them: Dirichlet free-form deformation, after Moccozet and
-//! Magnenat-Thalmann. Knows meshes and fields, no scenes and no pages.
+//! - [`Sibson`] gives the natural-neighbour coordinates of points in space with respect to control points that lie
+//!   anywhere; [`Deformation`] moves the vertices of a mesh with them: Dirichlet free-form deformation, after Moccozet and
+//!   Magnenat-Thalmann.
+//! - [`fit()`] finds the moves of control points that bring a mesh, or the implicit surface around it, onto
+//!   [`Observations`]: points, and lines of sight that graze it. After Ilić and Fua.
+//! - [`cloud()`] and [`outlines()`] read those from files; [`Disturbance`] makes measurements of perfect ones; [`trial`]
+//!   has a head to try all this on.
+//!
+//! Knows meshes and fields, no scenes and no pages.
 //!
 //! ```
 //! use fit::Deformation;
@@ -18,11 +24,33 @@
 //! # Ok::<(), fit::Error>(())
 //! ```
 
+mod align;
 mod cell;
+mod cloud;
+mod contour;
 mod deformation;
+mod disturb;
 mod error;
+mod field;
+mod normal;
+mod outlines;
+mod problem;
 mod sibson;
+mod sight;
+mod solve;
+mod stiffness;
+pub mod trial;
 
+pub use align::Rigid;
+pub use cloud::cloud;
 pub use deformation::Deformation;
+pub use disturb::{Disturbance, Numbers};
 pub use error::Error;
+pub use field::Kind;
+pub use outlines::{Outline, outlines, sights};
+pub use problem::{
+    MAX_FITTED_CONTROLS, MAX_OBSERVATIONS, Observations, Options, Problem, mean_edge,
+};
 pub use sibson::{MAX_CONTROLS, Sibson};
+pub use sight::Sight;
+pub use solve::{Fitted, Progress, fit};

@@ -13,3 +13,4 @@ mod zip;
 
 pub use any::read;
 pub use mtl::read_mtl;
+pub use ply::read_points;
