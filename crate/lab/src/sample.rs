@@ -1,6 +1,6 @@
 //! The field on a plane, eight points at a time, a little in each frame.
 
-use super::contour::Grid;
+use crate::contour::Grid;
 use field::{BlobScale, Kernel, Shaping, Sum};
 use glam::DVec3;
 use wide::f32x8;

@@ -3,13 +3,12 @@
 //! The field is sampled coarsely at once and then ever more finely, a few milliseconds in each
 //! frame, so that nothing stutters however large the dataset is.
 
-use super::bench::Bench;
-use super::plot::{self, number};
-use super::sample::{self, Filling, Window};
-use super::tools::{Stage, choice, heading, reading, remark, slider};
+use crate::bench::Bench;
 use crate::command::Command;
-use crate::session::Session;
-use crate::{examples, theme};
+use crate::dataset::Dataset;
+use crate::plot::{self, number};
+use crate::sample::{self, Filling, Window};
+use crate::tools::{Stage, choice, heading, reading, remark, slider};
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions,
     Ui, pos2, vec2,
@@ -17,6 +16,7 @@ use egui::{
 use field::{Sum, THRESHOLD};
 use glam::DVec3;
 use scene::{Scene, SoftSurface};
+use widgets::theme;
 
 /// Samples across, from the first look to the last.
 const LEVELS: [usize; 5] = [24, 48, 96, 192, 320];
@@ -90,17 +90,17 @@ impl Default for Slice {
 
 impl Slice {
     /// Reads the scene anew if it changed.
-    fn look(&mut self, session: &Session) {
-        let generation = session.generation();
+    fn look(&mut self, dataset: Dataset<'_>) {
+        let generation = dataset.generation;
         let known = self.subject.as_ref().map(|subject| subject.generation);
         if known == Some(generation) {
             return;
         }
-        let (bodies, (center, reach)) = session.scene().map_or_else(
+        let (bodies, (center, reach)) = dataset.scene.map_or_else(
             || (Vec::new(), (DVec3::ZERO, 2.0)),
             |scene| {
                 let soft = scene.soft_surfaces();
-                let place = extent(&scene, &soft);
+                let place = extent(scene, &soft);
                 let bodies: Vec<Sum> = soft.into_iter().map(|surface| surface.sum).collect();
                 let place = framed(&bodies, place).unwrap_or(place);
                 (bodies, place)
@@ -115,14 +115,14 @@ impl Slice {
     }
 
     /// The plane's window.
-    fn window(&self, session: &Session, tall: f64) -> Option<(Window, DVec3)> {
+    fn window(&self, dataset: Dataset<'_>, tall: f64) -> Option<(Window, DVec3)> {
         let subject = self.subject.as_ref()?;
         let (right, up, normal) = match self.axis {
             Axis::X => (DVec3::NEG_Z, DVec3::Y, DVec3::X),
             Axis::Y => (DVec3::X, DVec3::NEG_Z, DVec3::Y),
             Axis::Z => (DVec3::X, DVec3::Y, DVec3::Z),
             Axis::Camera => {
-                let view = session.camera().projection(4, 3).world_from_view;
+                let view = dataset.camera.projection(4, 3).world_from_view;
                 (view.x_axis, view.y_axis, view.z_axis)
             }
         };
@@ -143,11 +143,11 @@ impl Slice {
             self.filling = grid(0, cut.tall);
         }
         let Some(subject) = &self.subject else { return };
-        let begun = crate::clock::stopwatch();
+        let begun = widgets::clock::stopwatch();
         let frame = f64::from(ui.input(|input| input.unstable_dt));
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
         while self.level < LEVELS.len() {
-            let enough = || crate::clock::stopwatch() - begun > budget;
+            let enough = || widgets::clock::stopwatch() - begun > budget;
             if !self.filling.go_on(&subject.bodies, &cut.window, enough) {
                 break;
             }
@@ -185,7 +185,7 @@ impl Slice {
             if self.level < LEVELS.len() {
                 self.filling = grid(self.level, cut.tall);
             }
-            if crate::clock::stopwatch() - begun > budget {
+            if widgets::clock::stopwatch() - begun > budget {
                 break;
             }
         }
@@ -196,7 +196,7 @@ impl Slice {
 
     /// Shows the lesson.
     pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        self.look(bench.session);
+        self.look(bench.dataset);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.95);
         let soft = self.subject.as_ref().map_or(0, |subject| {
             let bodies = subject.bodies.iter();
@@ -212,8 +212,8 @@ impl Slice {
         let tall = f64::from(place.height() / place.width().max(1.0));
         // Samples are square, and their number does not change with every pixel of the window.
         let tall = (tall * 40.0).round().max(1.0) / 40.0;
-        if let Some((window, _)) = self.window(bench.session, tall) {
-            let generation = bench.session.generation();
+        if let Some((window, _)) = self.window(bench.dataset, tall) {
+            let generation = bench.dataset.generation;
             self.work(
                 ui,
                 Cut {
@@ -491,7 +491,7 @@ const SHADES: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-pub(super) fn shade(share: f32, dark: bool) -> Color32 {
+pub(crate) fn shade(share: f32, dark: bool) -> Color32 {
     let at = share.clamp(0.0, 1.0) * (SHADES.len() - 1) as f32;
     let index = (at as usize).min(SHADES.len() - 2);
     let t = at - index as f32;
@@ -567,13 +567,10 @@ fn nothing(ui: &mut Ui, stage: &Stage, bench: &mut Bench<'_>) {
         palette.weak,
     );
     let place = Rect::from_center_size(center + vec2(0.0, 14.0), vec2(180.0, 36.0));
-    let tee = examples::ALL.iter().position(|e| e.name == "tshape.rat");
-    if let Some(index) = tee
-        && ui
-            .place(place, egui::Button::new("Open the T-shape"))
-            .clicked()
-    {
-        bench.commands.push(Command::OpenExample(index));
+    let button = egui::Button::new("Open the T-shape");
+    if ui.place(place, button).clicked() {
+        let file = "tshape.rat";
+        bench.commands.push(Command::OpenExample { file });
     }
 }
 
