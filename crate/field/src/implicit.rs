@@ -12,6 +12,26 @@ pub struct Ball {
     pub radius: f64,
 }
 
+impl Ball {
+    /// A ball that holds both, the smallest up to rounding.
+    #[must_use]
+    pub fn around(&self, other: &Self) -> Self {
+        let apart = self.center.distance(other.center);
+        if apart + other.radius <= self.radius {
+            return *self;
+        }
+        if apart + self.radius <= other.radius {
+            return *other;
+        }
+        let radius = 0.5 * (apart + self.radius + other.radius);
+        let towards = (other.center - self.center) / apart;
+        Self {
+            center: self.center + towards * (radius - self.radius),
+            radius: radius * (1.0 + 1e-12),
+        }
+    }
+}
+
 /// Proven bounds on a function in a ball.
 ///
 /// Where the function is not smooth in the ball the bounds that do not exist are infinite: `curvature` where its
@@ -90,4 +110,13 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
 
     /// A ball outside of which the function is below the threshold; `None` if there is none or none is known.
     fn support(&self) -> Option<Ball>;
+
+    /// A ball outside of which the function is at most `level` > 0; `None` if there is none or none is known. Sums of functions ask
+    /// for levels below the threshold.
+    fn support_at(&self, level: f64) -> Option<Ball> {
+        if level < crate::THRESHOLD {
+            return None;
+        }
+        self.support()
+    }
 }

@@ -150,7 +150,11 @@ impl Implicit for Sum {
     }
 
     fn support(&self) -> Option<Ball> {
-        let share = THRESHOLD / self.primitives.len().max(1) as f64;
+        self.support_at(THRESHOLD)
+    }
+
+    fn support_at(&self, level: f64) -> Option<Ball> {
+        let share = level / self.primitives.len().max(1) as f64;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for (p, Known { bound, .. }) in self.primitives.iter().zip(self.known()) {
             if !bound.adds() {

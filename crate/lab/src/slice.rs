@@ -13,9 +13,9 @@ use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions,
     Ui, pos2, vec2,
 };
-use field::{Sum, THRESHOLD};
+use field::{Implicit, THRESHOLD};
 use glam::DVec3;
-use scene::{Scene, SoftSurface};
+use scene::{Scene, Surface};
 use widgets::theme;
 
 /// Samples across, from the first look to the last.
@@ -45,12 +45,18 @@ struct Cut {
     tall: f64,
 }
 
-/// The fields of a scene's bodies and where they are.
+/// The functions of a scene's bodies and where they are.
 struct Subject {
     generation: u64,
-    bodies: Vec<Sum>,
+    bodies: Vec<Surface>,
     center: DVec3,
     reach: f64,
+}
+
+impl Subject {
+    fn functions(&self) -> Vec<&dyn Implicit> {
+        self.bodies.iter().map(Surface::function).collect()
+    }
 }
 
 /// The lesson's state.
@@ -99,9 +105,8 @@ impl Slice {
         let (bodies, (center, reach)) = dataset.scene.map_or_else(
             || (Vec::new(), (DVec3::ZERO, 2.0)),
             |scene| {
-                let soft = scene.soft_surfaces();
-                let place = extent(scene, &soft);
-                let bodies: Vec<Sum> = soft.into_iter().map(|surface| surface.sum).collect();
+                let bodies = scene.surfaces();
+                let place = extent(scene, &bodies);
                 let place = framed(&bodies, place).unwrap_or(place);
                 (bodies, place)
             },
@@ -143,12 +148,15 @@ impl Slice {
             self.filling = grid(0, cut.tall);
         }
         let Some(subject) = &self.subject else { return };
+        let functions = subject.functions();
+        let elements = elements_of(&subject.bodies);
         let begun = widgets::clock::stopwatch();
         let frame = f64::from(ui.input(|input| input.unstable_dt));
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
         while self.level < LEVELS.len() {
             let enough = || widgets::clock::stopwatch() - begun > budget;
-            if !self.filling.go_on(&subject.bodies, &cut.window, enough) {
+            let filling = &mut self.filling;
+            if !filling.go_on(&functions, elements, &cut.window, enough) {
                 break;
             }
             let grid_done = core::mem::take(&mut self.filling).grid;
@@ -198,10 +206,8 @@ impl Slice {
     pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         self.look(bench.dataset);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.95);
-        let soft = self.subject.as_ref().map_or(0, |subject| {
-            let bodies = subject.bodies.iter();
-            bodies.map(|body| body.primitives.len()).sum::<usize>()
-        });
+        let subject = self.subject.as_ref();
+        let soft = subject.map_or(0, |subject| elements_of(&subject.bodies));
         bench.readings.insert("primitives", soft as f64);
         if soft == 0 {
             nothing(ui, &stage, bench);
@@ -326,7 +332,7 @@ impl Slice {
         };
         let x = f64::from((pointer.x - place.left()) / place.width());
         let y = f64::from((place.bottom() - pointer.y) / place.height());
-        let value = sample::one(&subject.bodies, window.at(x, y));
+        let value = sample::one(&subject.functions(), window.at(x, y));
         bench.readings.insert("value", value);
         let text = format!("F = {}", number(value));
         let font = FontId::proportional(14.0);
@@ -411,9 +417,17 @@ fn grid(level: usize, tall: f64) -> Filling {
 }
 
 /// The middle of all skeletons and how far flesh may be from it. Planes count for nothing.
-fn extent(scene: &Scene, soft: &[SoftSurface]) -> (DVec3, f64) {
-    let spheres: Vec<(DVec3, f64)> = soft
+fn extent(scene: &Scene, surfaces: &[Surface]) -> (DVec3, f64) {
+    let functions = surfaces.iter().filter_map(|surface| match surface {
+        Surface::Sum(_) => None,
+        Surface::Composed(surface) => surface.function.support(),
+    });
+    let spheres: Vec<(DVec3, f64)> = surfaces
         .iter()
+        .filter_map(|surface| match surface {
+            Surface::Sum(surface) => Some(surface),
+            Surface::Composed(_) => None,
+        })
         .flat_map(|surface| surface.sum.primitives.iter().zip(&surface.element))
         .filter_map(|(primitive, element)| {
             let (center, radius) = primitive.skeleton.bounding_sphere()?;
@@ -421,6 +435,7 @@ fn extent(scene: &Scene, soft: &[SoftSurface]) -> (DVec3, f64) {
             let flesh = 2.2 * scene.radius(&scene.elements[*element as usize]);
             Some((center, radius + flesh.min(primitive.influence)))
         })
+        .chain(functions.map(|ball| (ball.center, ball.radius)))
         .collect();
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for (center, radius) in &spheres {
@@ -435,16 +450,21 @@ fn extent(scene: &Scene, soft: &[SoftSurface]) -> (DVec3, f64) {
     (center, reach.clamp(1e-6, 1e9))
 }
 
+/// How many elements the functions of some bodies have.
+fn elements_of(bodies: &[Surface]) -> usize {
+    bodies.iter().map(|body| body.element().len()).sum()
+}
+
 /// The same more closely: where the flesh really is, as far as a coarse look in space finds it.
-fn framed(bodies: &[Sum], (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
+fn framed(bodies: &[Surface], (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
     /// Samples along each axis.
     const SIDE: usize = 20;
     /// More primitives would take too long for a look.
     const MOST: usize = 1500;
-    let primitives: usize = bodies.iter().map(|body| body.primitives.len()).sum();
-    if primitives > MOST {
+    if elements_of(bodies) > MOST {
         return None;
     }
+    let functions: Vec<&dyn Implicit> = bodies.iter().map(Surface::function).collect();
     let step = 2.0 * reach / (SIDE - 1) as f64;
     let at = |index: usize| {
         let (x, y, z) = (index % SIDE, index / SIDE % SIDE, index / SIDE / SIDE);
@@ -453,7 +473,7 @@ fn framed(bodies: &[Sum], (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)>
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for first in (0..SIDE * SIDE * SIDE).step_by(8) {
         let points = core::array::from_fn(|lane| at(first + lane));
-        for (value, point) in sample::eight(bodies, points).into_iter().zip(points) {
+        for (value, point) in sample::eight(&functions, points).into_iter().zip(points) {
             if f64::from(value) > 0.5 * THRESHOLD {
                 low = low.min(point);
                 high = high.max(point);

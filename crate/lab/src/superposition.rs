@@ -205,9 +205,7 @@ impl Key {
         };
         let differences = [difference(&convolution), difference(&distance)];
         let swelling = {
-            let by = |index: usize| {
-                self.thickness(|at| sample::one(core::slice::from_ref(&fields[index]), at))
-            };
+            let by = |index: usize| self.thickness(|at| sample::one(&[&fields[index]], at));
             let far = |parts: &[Skeleton]| self.thickness(|at| self.by_distance(parts, at));
             [by(1) / by(0).max(1e-9), far(&parts) / far(&whole).max(1e-9)]
         };
