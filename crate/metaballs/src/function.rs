@@ -9,10 +9,11 @@ use field::{Implicit, Jet, Real};
 use glam::DVec3;
 use mesh::limits::MAX_TRIANGLES;
 use mesh::{Aabb, Bvh};
+use serde::{Deserialize, Serialize};
 use wide::f32x8;
 
 /// What surrounds a facet.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Kind {
     /// A ball: dᵢ is the distance from the circumcentre, ρᵢ the circumradius ([`circumscribed`]).
     Spherical,

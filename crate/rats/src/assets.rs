@@ -3,7 +3,7 @@
 
 use crate::project::Asset;
 use glam::DVec3;
-use mesh::{Error, TriangleMesh};
+use mesh::{Error, Topology, TriangleMesh};
 use scene::Shape;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -21,6 +21,8 @@ struct Kept {
     bytes: Weak<[u8]>,
     how: How,
     made: Made,
+    /// The mesh's topology, once it was asked for.
+    topology: Option<Option<Rc<Topology>>>,
 }
 
 impl Kept {
@@ -41,6 +43,19 @@ thread_local! {
 pub fn mesh(asset: &Asset) -> Made {
     make(asset, (asset.name.clone(), None), |bytes| {
         mesh::read(&asset.name, bytes)
+    })
+}
+
+/// The topology of a mesh that [`mesh`] has given; `None` if there is none, or it cannot be told.
+pub fn topology(asset: &Asset) -> Option<Rc<Topology>> {
+    let made = mesh(asset).ok()?;
+    let how = (asset.name.clone(), None);
+    CACHE.with_borrow_mut(|cache| {
+        let kept = cache.iter_mut().find(|kept| kept.is_of(asset, &how))?;
+        let topology = kept
+            .topology
+            .get_or_insert_with(|| Topology::of(&made).ok().map(Rc::new));
+        topology.clone()
     })
 }
 
@@ -133,6 +148,7 @@ fn keep(asset: &Asset, how: How, made: Made) {
             bytes: Arc::downgrade(&asset.bytes),
             how,
             made,
+            topology: None,
         });
     });
 }

@@ -9,6 +9,7 @@ mod call;
 mod camera;
 mod deform;
 mod dispatch;
+mod implicit_mesh;
 mod interpreter;
 mod later;
 mod lints;

@@ -1,6 +1,6 @@
 //! Soft shapes whose field is no convolution of a skeleton.
 
-use crate::Shape;
+use crate::{ImplicitMesh, Shape};
 use field::{Exponentials, Implicit, Placed};
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -25,6 +25,8 @@ pub enum Form {
         /// Centres and radii.
         balls: Arc<Vec<(DVec3, f64)>>,
     },
+    /// The implicit surface of a mesh.
+    Mesh(Arc<ImplicitMesh>),
 }
 
 impl Function {
@@ -35,8 +37,18 @@ impl Function {
             Form::Metaballs { hardness, balls } => {
                 Arc::new(Exponentials::new(*hardness, balls.to_vec())?)
             }
+            Form::Mesh(mesh) => mesh.function().ok()?,
         };
         Some(Arc::new(Placed::new(own, self.to_world)?))
+    }
+
+    /// As how many shapes it counts where their number is limited.
+    #[must_use]
+    pub fn weight(&self) -> usize {
+        match &self.form {
+            Form::Metaballs { balls, .. } => balls.len(),
+            Form::Mesh(mesh) => mesh.triangles.len(),
+        }
     }
 
     /// The function after a map of the world.
@@ -60,6 +72,16 @@ impl Function {
                 };
                 balls.iter().map(ball).collect()
             }
+            Form::Mesh(mesh) => {
+                let place = |i: u32| mesh.positions.get(i as usize).copied();
+                let corners = |[a, b, c]: &[u32; 3]| Some([place(*a)?, place(*b)?, place(*c)?]);
+                let triangles = mesh.triangles.iter().filter_map(corners);
+                let triangle = |corners: [DVec3; 3]| Shape::Triangle {
+                    corners: corners.map(|p| self.to_world.transform_point3(p)),
+                    radius: 0.0,
+                };
+                triangles.map(triangle).collect()
+            }
         }
     }
 
@@ -73,6 +95,7 @@ impl Function {
                     (low.min(center - radius), high.max(center + radius))
                 })
             }
+            Form::Mesh(mesh) => mesh.corners(),
         };
         let middle = self.to_world.transform_point3(0.5 * (low + high));
         let half = 0.5 * (high - low);

@@ -9,11 +9,12 @@ use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use fit::Deformation;
 use glam::DVec3;
-use scene::Shape;
+use scene::{Form, ImplicitMesh, Shape};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// Deformations that are kept: a text is compiled at every keystroke, and while a control point is dragged only its move
 /// changes.
@@ -143,6 +144,19 @@ impl Vertices {
                     *corners = [next(), next(), next()];
                     normals.turn(&before, corners, own);
                 }
+                Shape::Function(function) => {
+                    if let Form::Mesh(mesh) = &mut function.form {
+                        let to_own = function.to_world.inverse();
+                        let count = mesh.positions.len();
+                        let positions = (0..count).map(|_| to_own.transform_point3(next()));
+                        *mesh = Arc::new(ImplicitMesh::new(
+                            positions.collect(),
+                            mesh.triangles.clone(),
+                            mesh.kind,
+                            mesh.sharpness,
+                        ));
+                    }
+                }
                 _ => {}
             }
         }
@@ -162,6 +176,17 @@ impl Vertices {
 fn corners(shape: &Shape) -> Option<Vec<DVec3>> {
     match shape {
         Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => Some(corners.to_vec()),
+        Shape::Function(function) => match &function.form {
+            Form::Mesh(mesh) => {
+                let places = mesh.positions.iter();
+                Some(
+                    places
+                        .map(|p| function.to_world.transform_point3(*p))
+                        .collect(),
+                )
+            }
+            _ => None,
+        },
         _ => None,
     }
 }

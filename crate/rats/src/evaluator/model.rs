@@ -39,6 +39,7 @@ impl Part {
         match &self.element.shape {
             Shape::Polygon { rings, .. } => rings.iter().map(Vec::len).sum(),
             Shape::Curve { .. } => CURVE_WEIGHT,
+            Shape::Function(function) => function.weight(),
             _ if self.tapers => CURVE_WEIGHT,
             _ => 1,
         }
