@@ -180,6 +180,16 @@ impl Offers {
         }
     }
 
+    /// The images of the library.
+    fn images(&mut self) {
+        for asset in library::assets() {
+            if rats::is_image(&asset.name) {
+                let kind = CompletionKind::Name(SymbolKind::File);
+                self.add(&asset.name, kind, "an image of the library");
+            }
+        }
+    }
+
     fn operand(
         &mut self,
         index: &Index<'_>,
@@ -277,19 +287,20 @@ impl Offers {
                 self.add("off", CompletionKind::Word, "");
             }
             Kind::Word(list) => self.words(list),
+            Kind::Method if part == 1 || is_strength(here) => self.words(options::WAVES),
+            Kind::Method if part == 2 => self.words(options::MAPPINGS),
             Kind::Method => {
+                self.words(options::SOLIDS);
                 self.words(options::WAVES);
-                if part == 0 {
-                    self.words(options::SOLIDS);
-                    self.colours();
-                }
+                self.images();
+                self.colours();
             }
             Kind::Number { .. } | Kind::Whole { .. } | Kind::Condition => {
                 self.values(here, Some(Type::Number), &detail);
             }
             Kind::Vector | Kind::Direction if part == 0 => self.values(here, None, &detail),
             Kind::Vector | Kind::Direction => self.values(here, Some(Type::Number), &detail),
-            Kind::Colour | Kind::Share if part == 0 => {
+            Kind::Colour | Kind::Backdrop | Kind::Share if part == 0 => {
                 self.variables(here, None, &detail);
                 self.functions(|name| name == "rgb");
                 self.colours();
@@ -299,7 +310,7 @@ impl Offers {
                 self.values(here, None, &detail);
                 self.colours();
             }
-            Kind::Colour | Kind::Share | Kind::Value => {
+            Kind::Colour | Kind::Backdrop | Kind::Share | Kind::Value => {
                 self.values(here, Some(Type::Number), &detail);
             }
             Kind::New(_) | Kind::NewFile | Kind::Text | Kind::Block => {}
@@ -395,6 +406,13 @@ impl Offers {
             });
         }
     }
+}
+
+/// Whether a texture's target is the strength, which takes waves only.
+fn is_strength(here: &Here<'_>) -> bool {
+    here.operands
+        .iter()
+        .any(|(_, slot)| matches!(slot.what, What::Word(word) if word.name == "strength"))
 }
 
 /// A colour as `#rrggbb`.

@@ -139,7 +139,8 @@ impl State {
             return TokenKind::Option;
         }
         let is_texture = std::ptr::eq(self.options, options::TEXTURE);
-        if is_texture && (in_list(options::TARGETS) || in_list(options::SOLIDS)) {
+        let methods = [options::TARGETS, options::SOLIDS, options::MAPPINGS];
+        if is_texture && methods.into_iter().any(in_list) {
             return TokenKind::Option;
         }
         let plain = ["hot", "on", "off", "to", "step", "and", "or", "not", "one"];

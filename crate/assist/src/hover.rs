@@ -240,7 +240,7 @@ fn role(slot: &Slot<'_>) -> Option<String> {
 fn is_colour(slot: &Slot<'_>) -> bool {
     use rats::commands::Kind;
     let kind = slot.parameter.map(|parameter| parameter.kind);
-    matches!(kind, Some(Kind::Colour | Kind::Share))
+    matches!(kind, Some(Kind::Colour | Kind::Backdrop | Kind::Share))
 }
 
 fn slot_is_triple(slot: &Slot<'_>) -> bool {
@@ -248,7 +248,7 @@ fn slot_is_triple(slot: &Slot<'_>) -> bool {
     let kind = slot.parameter.map(|parameter| parameter.kind);
     matches!(
         kind,
-        Some(Kind::Colour | Kind::Share | Kind::Vector | Kind::Direction)
+        Some(Kind::Colour | Kind::Backdrop | Kind::Share | Kind::Vector | Kind::Direction)
     )
 }
 

@@ -58,8 +58,9 @@ pub fn outlines(bytes: &[u8]) -> Result<Vec<Outline>, Error> {
     let mut count = 0;
     for (outline, number) in outlines.iter().zip(1..) {
         let [width, height] = outline.size;
-        let sized = [width, height].iter().all(|s| s.is_finite() && *s > 0.0);
-        if !sized || !(outline.fov > 0.0 && outline.fov < 180.0) {
+        let is_sized = [width, height].iter().all(|s| s.is_finite() && *s > 0.0);
+        let is_lens = outline.fov > 0.0 && outline.fov < 180.0;
+        if !is_sized || !is_lens {
             return fail(format!(
                 "outline {number}: its size or its fov is out of range (fov from 0 to 180 degrees)"
             ));

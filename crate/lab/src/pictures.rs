@@ -208,7 +208,7 @@ impl Pictures {
                 continue;
             }
             let mut scene = compiled.scene;
-            scene.background = wish.background;
+            scene.background = wish.background.into();
             // Enough for something so small.
             scene.settings.samples = scene.settings.samples.min(2);
             self.number += 1;

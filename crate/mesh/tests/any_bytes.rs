@@ -97,26 +97,11 @@ fn written(format: mesh::Format) -> Vec<u8> {
 
 /// A 3MF file's description, unpacked, in an archive that does not pack it: so that changes reach it.
 fn stored(xml: &[u8]) -> Vec<u8> {
-    let name = b"3D/3dmodel.model";
-    let mut bytes = b"PK\x03\x04".to_vec();
-    let mut directory = b"PK\x01\x02\x14\x00".to_vec();
-    let mut common = vec![20, 0, 0, 0, 0, 0, 0, 0, 0x21, 0, 0, 0, 0, 0];
-    common.extend((xml.len() as u32).to_le_bytes());
-    common.extend((xml.len() as u32).to_le_bytes());
-    common.extend([name.len() as u8, 0, 0, 0]);
-    bytes.extend(&common);
-    bytes.extend(name);
-    bytes.extend(xml);
-    directory.extend(&common);
-    directory.extend([0; 14]);
-    directory.extend(name);
-    let start = bytes.len() as u32;
-    bytes.extend(&directory);
-    bytes.extend(b"PK\x05\x06\0\0\0\0\x01\0\x01\0");
-    bytes.extend((directory.len() as u32).to_le_bytes());
-    bytes.extend(start.to_le_bytes());
-    bytes.extend([0; 2]);
-    bytes
+    let description = archive::Member {
+        packed: true,
+        ..archive::Member::new("3D/3dmodel.model", xml)
+    };
+    archive::write(&[description]).unwrap()
 }
 
 /// Everything that the 3MF reader knows.

@@ -105,7 +105,7 @@ mod tests {
         for height in [0.2, 0.1, 1e-3, 1e-9, 1e-300, 0.0] {
             let corners = [DVec3::ZERO, 2.0 * DVec3::X, DVec3::new(0.9, height, 0.0)];
             let (center, radius) = circumscribed(&corners);
-            assert!(radius <= 2.0 + 1e-12 && radius >= 1.0, "{height}");
+            assert!((1.0..=2.0 + 1e-12).contains(&radius), "{height}");
             assert!((center.length() - radius).abs() < 1e-12);
         }
         let (center, radius) = circumscribed(&[DVec3::ONE; 3]);

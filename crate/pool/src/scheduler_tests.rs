@@ -9,6 +9,7 @@ use tracer::{Pass, Tile};
 const STATS: Stats = Stats {
     primary_rays: 1,
     shadow_rays: 2,
+    secondary_rays: 0,
     field_evaluations: 3,
     // As many as make smoothing take as long as the first samples do.
     edges: 150,

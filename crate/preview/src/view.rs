@@ -33,6 +33,7 @@ impl Tone {
             gamma,
             background: scene
                 .background
+                .mean()
                 .map(|channel| f64::from(libm::powf(finite(channel).clamp(0.0, 1.0), 1.0 / gamma))),
         }
     }
@@ -110,7 +111,9 @@ impl Lights {
         let mut packed = [PackedLight::zeroed(); MAX_LIGHTS];
         for (slot, light) in packed.iter_mut().zip(&order) {
             let (place, w) = match light.kind {
-                LightKind::Point { position } => (units.place(position).0, 1.0),
+                LightKind::Point { position } | LightKind::Spot { position, .. } => {
+                    (units.place(position).0, 1.0)
+                }
                 LightKind::Distant { towards } => {
                     (towards.normalize_or_zero().as_vec3().to_array(), 0.0)
                 }

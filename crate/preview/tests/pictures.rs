@@ -21,7 +21,7 @@ fn ball(finish: Finish, lights: Vec<Light>) -> Scene {
         )],
         finishes: vec![finish],
         lights,
-        background: [0.1, 0.2, 0.3],
+        background: [0.1, 0.2, 0.3].into(),
         camera: look([0.0, 0.0, 5.0], [0.0; 3], 30.0),
         ..Scene::default()
     }
@@ -50,6 +50,7 @@ fn phong_with_point_and_distant_lights_and_gamma() {
             },
             colour: [0.9, 0.8, 0.7],
             shadow: true,
+            size: 0.0,
         },
         Light {
             kind: LightKind::Distant {
@@ -57,6 +58,7 @@ fn phong_with_point_and_distant_lights_and_gamma() {
             },
             colour: [0.2, 0.5, 1.4],
             shadow: true,
+            size: 0.0,
         },
     ];
     let mut scene = ball(shiny(), lights.clone());
@@ -75,7 +77,7 @@ fn phong_with_point_and_distant_lights_and_gamma() {
                 let middle = -projection.eye.dot(ray);
                 let square = 1.0 - (projection.eye + ray * middle).length_squared();
                 let light = if square <= 0.0 {
-                    scene.background.map(f64::from)
+                    scene.background.mean().map(f64::from)
                 } else {
                     seen += 1;
                     phong(
@@ -107,7 +109,9 @@ fn phong(p: DVec3, ray: DVec3, lights: &[Light]) -> [f64; 3] {
     let mut sum = material.ambient.map(f64::from);
     for light in lights {
         let towards = match light.kind {
-            LightKind::Point { position } => (position - p).normalize(),
+            LightKind::Point { position } | LightKind::Spot { position, .. } => {
+                (position - p).normalize()
+            }
             LightKind::Distant { towards } => towards,
         };
         let slope = normal.dot(towards);
@@ -142,7 +146,7 @@ fn four_samples_are_averaged_as_light() {
             diffuse: [0.0; 3],
             ..Finish::default()
         }],
-        background: [0.0, 0.5, 1.0],
+        background: [0.0, 0.5, 1.0].into(),
         camera: look([0.0, 0.0, 5.0], [0.0; 3], 60.0),
         ..Scene::default()
     };
@@ -189,6 +193,7 @@ fn more_lights_than_fit_leaves_the_weakest() {
         kind: LightKind::Distant { towards: DVec3::Z },
         colour: [strength; 3],
         shadow: false,
+        size: 0.0,
     };
     let mut lights = vec![light(0.001); 40];
     lights.push(light(0.5));
@@ -350,11 +355,12 @@ fn scenes_without_sense_are_drawn_without_harm() {
             },
             colour: [f32::NAN; 3],
             shadow: false,
+            size: 0.0,
         }],
     );
     scene.elements = elements;
     scene.settings.gamma = f32::NAN;
-    scene.background = [f32::NAN, 2.0, -1.0];
+    scene.background = [f32::NAN, 2.0, -1.0].into();
     for gpu in gpus() {
         let mut draft = Draft::new(&gpu.device, &gpu.queue);
         let drawn = draft.set_scene(&gpu.device, &gpu.queue, &scene);

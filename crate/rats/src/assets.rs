@@ -1,61 +1,99 @@
-//! Meshes and height fields made of a project's files, kept while the files are: a text is compiled at
+//! Meshes, height fields and images made of a project's files, kept while the files are: a text is compiled at
 //! every keystroke, a large file should be read once.
 
+use crate::limits::MAX_IMAGE_PIXELS;
 use crate::project::Asset;
 use glam::DVec3;
 use mesh::{Error, Topology, TriangleMesh};
+use picture::Format;
 use scene::Shape;
 use std::cell::RefCell;
+use std::path::Path;
 use std::rc::Rc;
 use std::sync::{Arc, Weak};
+use texture::Rgb8;
 
-/// How many are kept: more than a work has files.
+/// How many of each kind are kept: more than a work has files.
 const KEPT: usize = 24;
 
-type Made = Result<Rc<TriangleMesh>, Error>;
+type Made<T> = Result<T, Error>;
 /// The file's name, and the size of a height field.
 type How = (String, Option<DVec3>);
 
-/// A mesh made of some bytes.
-struct Kept {
+/// A mesh or image made of some bytes.
+struct Kept<T> {
     bytes: Weak<[u8]>,
     how: How,
-    made: Made,
-    /// The mesh's topology, once it was asked for.
-    topology: Option<Option<Rc<Topology>>>,
+    made: Made<T>,
 }
 
-impl Kept {
+impl<T> Kept<T> {
     fn is_of(&self, asset: &Asset, how: &How) -> bool {
         let bytes = self.bytes.upgrade();
         self.how == *how && bytes.is_some_and(|bytes| Arc::ptr_eq(&bytes, &asset.bytes))
     }
 }
 
+/// The last [`KEPT`] results, the one used last at the end.
+struct Cache<T>(Vec<Kept<T>>);
+
+impl<T: Clone> Cache<T> {
+    /// What was made of a file before. It becomes the last one to be dropped.
+    fn find(&mut self, asset: &Asset, how: &How) -> Option<Made<T>> {
+        let index = self.0.iter().position(|kept| kept.is_of(asset, how))?;
+        self.0[index..].rotate_left(1);
+        self.0.last().map(|kept| kept.made.clone())
+    }
+
+    fn keep(&mut self, asset: &Asset, how: How, made: Made<T>) {
+        self.0.retain(|kept| kept.bytes.strong_count() > 0);
+        if self.0.len() >= KEPT {
+            self.0.remove(0);
+        }
+        self.0.push(Kept {
+            bytes: Arc::downgrade(&asset.bytes),
+            how,
+            made,
+        });
+    }
+
+    fn get(&mut self, asset: &Asset, how: How, read: impl FnOnce(&[u8]) -> Made<T>) -> Made<T> {
+        self.find(asset, &how).unwrap_or_else(|| {
+            let made = read(&asset.bytes);
+            self.keep(asset, how, made.clone());
+            made
+        })
+    }
+}
+
 thread_local! {
-    static CACHE: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
+    static MESHES: RefCell<Cache<Rc<TriangleMesh>>> = const { RefCell::new(Cache(Vec::new())) };
+    static TOPOLOGIES: RefCell<Cache<Rc<Topology>>> = const { RefCell::new(Cache(Vec::new())) };
+    static IMAGES: RefCell<Cache<Arc<Rgb8>>> = const { RefCell::new(Cache(Vec::new())) };
 }
 
 /// The triangles of an OBJ, PLY, STL or GLB file.
 ///
 /// # Errors
 /// Says what is wrong with the file.
-pub fn mesh(asset: &Asset) -> Made {
-    make(asset, (asset.name.clone(), None), |bytes| {
-        mesh::read(&asset.name, bytes)
+pub fn mesh(asset: &Asset) -> Made<Rc<TriangleMesh>> {
+    MESHES.with_borrow_mut(|cache| {
+        cache.get(asset, (asset.name.clone(), None), |bytes| {
+            mesh::read(&asset.name, bytes).map(Rc::new)
+        })
     })
 }
 
-/// The topology of a mesh that [`mesh`] has given; `None` if there is none, or it cannot be told.
-pub fn topology(asset: &Asset) -> Option<Rc<Topology>> {
-    let made = mesh(asset).ok()?;
-    let how = (asset.name.clone(), None);
-    CACHE.with_borrow_mut(|cache| {
-        let kept = cache.iter_mut().find(|kept| kept.is_of(asset, &how))?;
-        let topology = kept
-            .topology
-            .get_or_insert_with(|| Topology::of(&made).ok().map(Rc::new));
-        topology.clone()
+/// The topology of a mesh that [`mesh`] gives.
+///
+/// # Errors
+/// If there is none, or it cannot be told.
+pub fn topology(asset: &Asset) -> Made<Rc<Topology>> {
+    let mesh = mesh(asset)?;
+    TOPOLOGIES.with_borrow_mut(|cache| {
+        cache.get(asset, (asset.name.clone(), None), |_| {
+            Topology::of(&mesh).map(Rc::new)
+        })
     })
 }
 
@@ -63,9 +101,31 @@ pub fn topology(asset: &Asset) -> Option<Rc<Topology>> {
 ///
 /// # Errors
 /// Says what is wrong with the file.
-pub fn terra(asset: &Asset, size: DVec3) -> Made {
-    make(asset, (asset.name.clone(), Some(size)), |bytes| {
-        mesh::terra(&mesh::heights(bytes)?, size)
+pub fn terra(asset: &Asset, size: DVec3) -> Made<Rc<TriangleMesh>> {
+    MESHES.with_borrow_mut(|cache| {
+        cache.get(asset, (asset.name.clone(), Some(size)), |bytes| {
+            mesh::terra(&mesh::heights(bytes)?, size).map(Rc::new)
+        })
+    })
+}
+
+/// The pixels of a picture; opacity does not count.
+///
+/// # Errors
+/// Says what is wrong with the file.
+pub fn image(asset: &Asset) -> Made<Arc<Rgb8>> {
+    let read = |bytes: &[u8]| {
+        let format = Format::of(Path::new(&asset.name))?;
+        let picture = picture::file::decode_at_most(bytes, format, MAX_IMAGE_PIXELS)?;
+        Ok(Arc::new(Rgb8 {
+            size: picture.size(),
+            bytes: picture.rgb(),
+        }))
+    };
+    IMAGES.with_borrow_mut(|cache| {
+        cache.get(asset, (asset.name.clone(), None), |bytes| {
+            read(bytes).map_err(|problem: picture::Problem| Error(problem.to_string()))
+        })
     })
 }
 
@@ -110,46 +170,17 @@ pub fn cost(asset: &Asset) -> u64 {
 /// read it.
 #[must_use]
 pub fn is_mesh_read(asset: &Asset) -> bool {
-    find(asset, &(asset.name.clone(), None)).is_some()
+    let how = (asset.name.clone(), None);
+    MESHES.with_borrow_mut(|cache| cache.find(asset, &how).is_some())
 }
 
 /// Keeps the mesh of a file that was read elsewhere, or the error message of its reader, for all
 /// compilations by this thread while the file's bytes are kept. It must be what [`mesh::read`] gives.
 pub fn keep_mesh(asset: &Asset, mesh: Result<TriangleMesh, String>) {
     let how = (asset.name.clone(), None);
-    CACHE.with_borrow_mut(|cache| cache.retain(|kept| !kept.is_of(asset, &how)));
-    keep(asset, how, mesh.map(Rc::new).map_err(Error));
-}
-
-fn make(asset: &Asset, how: How, read: impl FnOnce(&[u8]) -> Result<TriangleMesh, Error>) -> Made {
-    find(asset, &how).unwrap_or_else(|| {
-        let made = read(&asset.bytes).map(Rc::new);
-        keep(asset, how, made.clone());
-        made
-    })
-}
-
-/// What was made of a file before. It becomes the last one to be dropped.
-fn find(asset: &Asset, how: &How) -> Option<Made> {
-    CACHE.with_borrow_mut(|cache| {
-        let index = cache.iter().position(|kept| kept.is_of(asset, how))?;
-        cache[index..].rotate_left(1);
-        cache.last().map(|kept| kept.made.clone())
-    })
-}
-
-fn keep(asset: &Asset, how: How, made: Made) {
-    CACHE.with_borrow_mut(|cache| {
-        cache.retain(|kept| kept.bytes.strong_count() > 0);
-        if cache.len() >= KEPT {
-            cache.remove(0);
-        }
-        cache.push(Kept {
-            bytes: Arc::downgrade(&asset.bytes),
-            how,
-            made,
-            topology: None,
-        });
+    MESHES.with_borrow_mut(|cache| {
+        cache.0.retain(|kept| !kept.is_of(asset, &how));
+        cache.keep(asset, how, mesh.map(Rc::new).map_err(Error));
     });
 }
 
@@ -188,6 +219,6 @@ mod tests {
             assert!(is_mesh_read(&used));
         }
         assert!(!is_mesh_read(&others[0]));
-        assert!(CACHE.with_borrow(|cache| cache.len() <= KEPT));
+        assert!(MESHES.with_borrow(|cache| cache.0.len() <= KEPT));
     }
 }

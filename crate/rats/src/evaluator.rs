@@ -5,18 +5,23 @@
 //! [`crate::commands`]; `dispatch` maps the table's routines to them; `interpreter` runs files, blocks, loops
 //! and calls; this file begins and ends a run.
 
+mod air;
 mod call;
 mod camera;
 mod deform;
 mod dispatch;
+mod extent;
+mod images;
 mod implicit_mesh;
 mod interpreter;
 mod later;
+mod lights;
 mod lints;
 mod lookup;
 mod materials;
 mod messages;
 mod model;
+mod moments;
 mod objects;
 mod options;
 mod palette;
@@ -34,12 +39,13 @@ mod watched;
 mod words;
 
 use crate::Project;
-use crate::compiled::Compiled;
+use crate::compiled::{Compiled, Placement};
 use crate::project::Asset;
 use crate::provenance::Provenance;
 use crate::scope::Scope;
 use crate::sources::Sources;
-use scene::Origin;
+use moments::Exposure;
+use scene::{Origin, Scene};
 use state::Evaluator;
 use watched::Watch;
 
@@ -52,24 +58,23 @@ pub fn run<'a>(
     moment: f64,
     scope: Scope<'a>,
 ) -> Compiled {
+    let symbols = scope.symbols.clone();
     let mut state = Evaluator::new(sources, assets, moment, scope);
-    if !state.sources.all.is_empty() {
-        state.run_file(0);
-    }
-    if !state.report.is_cut_off() {
-        state.check_open_objects();
-    }
-    state.check_camera();
-    state.check_words();
-    let (scene, placements) = match state.shot.take() {
-        Some(shot) => shot,
-        None => {
-            let parts = std::mem::take(&mut state.model.parts);
-            state.picture(parts)
-        }
-    };
+    let (mut scene, placements) = state.run_all();
     state.note_unused_materials();
     state.lint(&scene);
+    if state.animated && state.shutter > 0.0 && !state.report.has_errors() {
+        let exposure = Exposure {
+            sources,
+            assets,
+            symbols,
+            from: moment,
+            length: state.shutter,
+            frozen: std::mem::take(&mut state.frozen),
+            steps: state.scope.steps(),
+        };
+        scene.moments = exposure.moments(&scene);
+    }
     Compiled {
         scene,
         placements,
@@ -79,6 +84,25 @@ pub fn run<'a>(
         tool_origins: state.tool_origins,
         output: state.output,
         animated: state.animated,
+    }
+}
+
+impl Evaluator<'_> {
+    /// Runs the first file to its end; returns the picture of `shoot`, or that of all there is at the end.
+    fn run_all(&mut self) -> (Scene, Vec<Placement>) {
+        if !self.sources.all.is_empty() {
+            self.run_file(0);
+        }
+        if !self.report.is_cut_off() {
+            self.check_open_objects();
+        }
+        self.check_camera();
+        self.check_penumbra();
+        self.check_words();
+        self.shot.take().unwrap_or_else(|| {
+            let parts = std::mem::take(&mut self.model.parts);
+            self.picture(parts)
+        })
     }
 }
 

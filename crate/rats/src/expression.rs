@@ -178,9 +178,11 @@ impl<'a> Reader<'_, 'a> {
             }
             Some(Datum::Word(symbol)) => {
                 let word = self.scope.symbols.word(symbol);
-                // A variable hides a function of the same name, unless it is plainly called.
-                let is_variable = self.scope.get(symbol).is_some() && !self.is_called();
-                if !is_variable && let Some(function) = functions::find(word) {
+                // A variable or colour (`Tan`) hides a function of the same name, unless it is plainly called.
+                let is_known = self.scope.get(symbol).is_some() || colours::find(word).is_some();
+                if (!is_known || self.is_called())
+                    && let Some(function) = functions::find(word)
+                {
                     return self.call(function, span.start);
                 }
                 let value = self.word_value(symbol)?;

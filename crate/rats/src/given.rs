@@ -148,14 +148,6 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// Whether the first operand is `off`.
-    pub fn is_off(&self) -> bool {
-        matches!(
-            self.operands.first().map(|filled| &filled.operand),
-            Some(Operand::Switch(false))
-        )
-    }
-
     /// A word of the table that may have been left out.
     pub fn word(&self, parameter: &'static str) -> Option<&'static str> {
         match self.one(parameter) {
@@ -303,9 +295,12 @@ impl<'a> Reader<'_, 'a> {
         }
         match parameter.kind {
             Kind::Number { .. } | Kind::Whole { .. } => self.is_number_next(options),
-            Kind::Vector | Kind::Direction | Kind::Colour | Kind::Share | Kind::Value => {
-                !self.is_option_next(options)
-            }
+            Kind::Vector
+            | Kind::Direction
+            | Kind::Colour
+            | Kind::Backdrop
+            | Kind::Share
+            | Kind::Value => !self.is_option_next(options),
             Kind::Word(words) => self.is_option_next(words),
             Kind::Copy(_) => self.datum() == Some(Datum::Sign(b'=')),
             Kind::Known(crate::commands::Names::Texture) => self.datum() == Some(Datum::Sign(b'+')),
@@ -363,6 +358,10 @@ impl<'a> Reader<'_, 'a> {
             Kind::Known(_) => Operand::Name(self.known_name(what)?),
             Kind::New(_) => Operand::Name(self.new_name(what)?),
             Kind::File | Kind::NewFile => Operand::Name(self.file_name(what)?),
+            Kind::Backdrop => match self.image_name() {
+                Some(name) => Operand::Name(name),
+                None => Operand::Colour(self.colour(what)?),
+            },
             Kind::Text => {
                 self.at = self.items.len();
                 Operand::Text

@@ -63,5 +63,5 @@ pub use compile::{compile, compile_at, provenance};
 pub use compiled::{Compiled, HotValue, HotVariable, Output, Placement};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
-pub use reads::{ASSET_ENDINGS, asset_names, places, reads};
+pub use reads::{ASSET_ENDINGS, asset_names, is_image, places, reads};
 pub use tool::Tool;

@@ -57,6 +57,14 @@ pub const MAX_MATERIALS: usize = 10_000;
 pub const MAX_LAYERS: usize = 12;
 /// Lights in a scene.
 pub const MAX_LIGHTS: usize = 256;
+/// Clouds of light in a scene.
+pub const MAX_CLOUDS: usize = 256;
+/// Colours of a background.
+pub const MAX_BACKDROPS: usize = 16;
+/// Pixels of all images of a scene together.
+pub const MAX_IMAGE_PIXELS: u64 = 1 << 23;
+/// Moments of a shutter that is open.
+pub const MAX_MOMENTS: usize = 16;
 /// Largest magnitude of a number given to a command, so that squares and cubes of it stay finite.
 pub const MAX_MAGNITUDE: f64 = 1e12;
 /// Messages about one project.

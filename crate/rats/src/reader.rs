@@ -5,6 +5,7 @@
 
 use crate::commands::{CommandSpec, OptionSpec};
 use crate::problem::{Outcome, Problem};
+use crate::reads::is_image;
 use crate::scope::Scope;
 use crate::suggest;
 use crate::symbol::Symbol;
@@ -236,6 +237,17 @@ impl<'e, 'a> Reader<'e, 'a> {
         self.glued(what, |datum| {
             !matches!(datum, Datum::Sign(b',' | b'<' | b'>'))
         })
+    }
+
+    /// The name of an image, if its ending says so; else nothing is taken.
+    pub fn image_name(&mut self) -> Option<Name<'a>> {
+        let back = self.at;
+        let name = self.peek_word().and_then(|_| self.file_name("").ok());
+        let name = name.filter(|name| is_image(name.text));
+        if name.is_none() {
+            self.at = back;
+        }
+        name
     }
 
     fn glued(&mut self, what: &str, sign: fn(Datum) -> bool) -> Outcome<Name<'a>> {

@@ -45,22 +45,36 @@ fn joined(folder: &str, name: &str) -> Option<String> {
 }
 
 /// Endings of the files that are no texts: images and meshes.
-pub const ASSET_ENDINGS: [&str; 5] = ["png", "obj", "ply", "stl", "glb"];
+pub const ASSET_ENDINGS: [&str; 10] = [
+    "png", "tif", "tiff", "tga", "gif", "mtv", "obj", "ply", "stl", "glb",
+];
 
-/// The images and meshes that a text asks for (`mesh`, `terra`), in order, wherever it does.
+/// How many of [`ASSET_ENDINGS`] are those of images.
+const IMAGES: usize = 6;
+
+/// Whether a name has the ending of an image.
+#[must_use]
+pub fn is_image(name: &str) -> bool {
+    has_ending(name, &ASSET_ENDINGS[..IMAGES])
+}
+
+fn has_ending(name: &str, endings: &[&str]) -> bool {
+    name.rsplit_once('.').is_some_and(|(_, ending)| {
+        endings
+            .iter()
+            .any(|known| ending.eq_ignore_ascii_case(known))
+    })
+}
+
+/// The images and meshes that a text asks for (`mesh`, `terra`, `texture`, `background`), in order, wherever it does.
 #[must_use]
 pub fn asset_names(text: &str) -> Vec<String> {
     let mut symbols = Symbols::default();
     let syntax = parse(text, &mut symbols);
     let mut names = Vec::new();
-    collect(&syntax.block, &["mesh", "terra"], &syntax, text, &mut names);
-    names.retain(|name| {
-        name.rsplit_once('.').is_some_and(|(_, ending)| {
-            ASSET_ENDINGS
-                .iter()
-                .any(|known| ending.eq_ignore_ascii_case(known))
-        })
-    });
+    let commands = ["mesh", "terra", "texture", "background"];
+    collect(&syntax.block, &commands, &syntax, text, &mut names);
+    names.retain(|name| has_ending(name, &ASSET_ENDINGS));
     names
 }
 
@@ -132,8 +146,11 @@ mod tests {
 
     #[test]
     fn images_and_meshes_are_found() {
-        let text =
-            "mesh Clay, parts/bunny.ply\nif 1 { terra Clay hills.png 0 0 0 1 1 1 }\nmesh robust";
-        assert_eq!(asset_names(text), ["parts/bunny.ply", "hills.png"]);
+        let text = "mesh Clay, parts/bunny.ply\nif 1 { terra Clay hills.png 0 0 0 1 1 1 }\nmesh robust\n\
+            texture Mona { diffuse mona.tif plain, scale 2 2 1 }\nbackground Red\nbackground sky.png\n";
+        assert_eq!(
+            asset_names(text),
+            ["parts/bunny.ply", "hills.png", "mona.tif", "sky.png"]
+        );
     }
 }

@@ -77,6 +77,12 @@ impl<'a> Scope<'a> {
         .fatal())
     }
 
+    /// Work counted so far.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps.get()
+    }
+
     /// Counts work that the next [`Self::step`] may refuse to go on from.
     fn charge(&self, cost: u64) {
         self.steps.set(self.steps.get().saturating_add(cost));

@@ -15,7 +15,7 @@ impl Symbol {
 }
 
 /// All words met so far.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Symbols<'a> {
     symbols: HashMap<&'a str, Symbol>,
     words: Vec<&'a str>,

@@ -61,8 +61,15 @@ fn absent(scene: &scene::Scene) -> usize {
     };
     let flesh = scene.flesh.iter().flat_map(of);
     let hard = scene.elements.iter().map(|element| element.flesh.is_none());
-    let map = scene.settings.map.is_none();
-    flesh.chain(hard).chain([map]).filter(|&is| is).count()
+    let around = [
+        scene.settings.map.is_none(),
+        scene.sky.is_none(),
+        scene.ground.is_none_or(|ground| ground.height.is_none()),
+        scene.fog.is_none_or(|fog| fog.height.is_none()),
+        scene.lens.focus.is_none(),
+    ];
+    let moments: usize = scene.moments.iter().map(absent).sum();
+    moments + flesh.chain(hard).chain(around).filter(|&is| is).count()
 }
 
 fn one_file(text: String) -> Project {
@@ -132,6 +139,16 @@ fn soup(u: &mut Unstructured<'_>) -> Result<String> {
         "rad .1",
         "text",
         "strength sin one",
+        "pigment wood",
+        "texture T normal moon, scale 2 2 1\n",
+        "texture",
+        "hills.png plain",
+        "region",
+        "mask 1 0",
+        "shutter 1\n",
+        "+= 1",
+        "transform\n",
+        "cloud Red object A\n",
         "all",
         "\n",
         "\n",

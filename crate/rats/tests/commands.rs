@@ -490,6 +490,7 @@ fn options() {
         influence: 0.01,
         digger: Digger::Spans(4),
         map: Some(2.0),
+        ..Settings::default()
     };
     assert_eq!(settings, wanted);
     for (text, digger) in [
@@ -530,13 +531,16 @@ fn lights() {
 
 #[test]
 fn background_and_reset() {
-    assert_eq!(scene("background 0.1 0.2 0.3").background, [0.1, 0.2, 0.3]);
+    assert_eq!(
+        scene("background 0.1 0.2 0.3").background,
+        [0.1, 0.2, 0.3].into()
+    );
     let all = "background Red\neyep 1 2 3\nsample 4\nlight White pos 1 1 1\nsurface s diff Red\nsphere s 1 0 0 0\n\
                var x = 1 hot\n";
     let compiled = run(&format!("{all}reset all"));
     assert_eq!(compiled.scene.elements, []);
     assert_eq!(compiled.scene.lights, []);
-    assert_eq!(compiled.scene.background, scene::DEFAULT_BACKGROUND);
+    assert_eq!(compiled.scene.background, scene::Background::default());
     assert_eq!(compiled.scene.camera, scene::Camera::default());
     assert_eq!(compiled.scene.settings, Settings::default());
     assert_eq!(compiled.hot, []);
@@ -589,7 +593,7 @@ fn a_failed_command_changes_nothing() {
     assert_eq!(compiled.scene.camera.eye, v(1.0, 2.0, 3.0));
     assert_eq!(compiled.scene.finishes[0].diffuse, [1.0, 0.0, 0.0]);
     assert_eq!(compiled.scene.settings.fragile, Fragile::ALL);
-    assert_eq!(compiled.scene.background, [1.0, 0.0, 0.0]);
+    assert_eq!(compiled.scene.background, [1.0, 0.0, 0.0].into());
     assert_eq!(compiled.diagnostics.len(), 4);
 }
 

@@ -185,7 +185,7 @@ fn lights() {
 
 #[test]
 fn layers() {
-    let text = "texture T strength sin one\ntexture T texture T + T\n".to_owned()
+    let text = "texture T pigment sin one\ntexture T texture T + T\n".to_owned()
         + &"texture T texture T + T\n".repeat(4);
     fails(text, "layers");
 }
@@ -276,7 +276,7 @@ fn magnitudes() {
 fn messages() {
     let mut text = String::new();
     for i in 0..500 {
-        let _ = writeln!(text, "fog Gray # {i}");
+        let _ = writeln!(text, "texture T pigment Red, octaves 2 # {i}");
     }
     for _ in 0..300 {
         text += "wibble\n";
@@ -292,7 +292,7 @@ fn messages() {
     let last = compiled.diagnostics.last().map(|d| d.message.as_str());
     assert_eq!(last, Some("… and 601 more messages"));
     // One error among many warnings is not lost.
-    let compiled = run("fog Gray\n".repeat(1000) + "wibble");
+    let compiled = run("texture T pigment Red, octaves 2\n".repeat(1000) + "wibble");
     assert!(
         compiled
             .diagnostics

@@ -22,7 +22,7 @@ rotate 1 1 0 30, SHELL
 ";
 
 /// Hash (FNV-1a) of the scene's bytes.
-const SCENE: u64 = 0x5F18_BA98_95DE_AB3F;
+const SCENE: u64 = 0x8EE8_B55D_7C5B_D6EF;
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]

@@ -1,7 +1,7 @@
 //! Scenes: the description of a picture as plain data.
 //!
 //! A [`Scene`] is a list of [`Element`]s, lights, a camera and settings. An element is a [`Shape`] with a [`Finish`]
-//! (its colours) and, if it is soft, a [`Flesh`] (its kernel). Soft elements blend within their [`Body`] and never
+//! (its look) and, if it is soft, a [`Flesh`] (its kernel). Soft elements blend within their [`Body`] and never
 //! across bodies. The language (`rats`) writes scenes; the tracer and the draft read them. This room
 //! does not depend on text, pixels or GPUs. Two things are computed here because all readers must agree
 //! on them: the projection ([`Camera`]), and the function of each body ([`surface`]).
@@ -33,23 +33,29 @@ pub mod limbs;
 pub mod parts;
 pub mod quadric;
 pub mod settings;
+mod shared;
 pub mod soft;
 pub mod surface;
+pub mod surroundings;
 
 pub use body::{Body, Frame};
 pub use camera::{Camera, Projection};
 pub use element::{Element, Origin, Shape};
-pub use finish::Finish;
+pub use finish::{Finish, Skip};
 pub use flesh::Flesh;
 pub use function::{Form, Function};
 pub use implicit_mesh::ImplicitMesh;
 pub use light::{Light, LightKind};
 pub use quadric::Quadric;
-pub use settings::{Digger, Fragile, Settings};
+pub use settings::{Digger, Fragile, Settings, Tone};
 pub use soft::SoftSurface;
 pub use surface::{ComposedSurface, Surface};
+pub use surroundings::{Background, Cloud, Fog, Ground, Lens, Sky};
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use texture::Rgb8;
 
 /// A linear colour, red, green, blue; 0 is none and 1 the full light. Values above 1 are allowed.
 pub type Rgb = [f32; 3];
@@ -69,12 +75,36 @@ pub struct Scene {
     pub frames: Vec<Frame>,
     /// Light sources. A scene without any is lit by ambient light only.
     pub lights: Vec<Light>,
-    /// Colour of a ray that meets nothing.
-    pub background: Rgb,
+    /// What a ray sees that meets nothing.
+    pub background: Background,
+    /// Light from everywhere, if any.
+    pub sky: Option<Sky>,
+    /// A plane to stand on, if any.
+    pub ground: Option<Ground>,
+    /// Air that is not clear, if so.
+    pub fog: Option<Fog>,
+    /// Clouds of light.
+    pub clouds: Vec<Cloud>,
+    /// Unit vector that is up for sky, ground, fog and background.
+    pub up: DVec3,
+    /// Images for textures and the background, shared by all copies of the scene.
+    #[serde(with = "shared")]
+    pub images: Vec<Arc<Rgb8>>,
     /// From where the scene is seen.
     pub camera: Camera,
+    /// The camera's lens.
+    pub lens: Lens,
+    /// The scene at moments evenly spread over the time that the shutter is open, if anything moves then; the camera may
+    /// move too. Samples of a pixel are taken from these in turn, with the settings of the scene that holds them. At most
+    /// [`Scene::MAX_MOMENTS`]; those of the moments themselves are not looked at.
+    pub moments: Vec<Scene>,
     /// Options that steer modelling and rendering.
     pub settings: Settings,
+}
+
+impl Scene {
+    /// Most moments of a shutter.
+    pub const MAX_MOMENTS: usize = 64;
 }
 
 impl Default for Scene {
@@ -86,7 +116,15 @@ impl Default for Scene {
             finishes: vec![Finish::default()],
             frames: vec![Frame::WORLD],
             lights: Vec::new(),
-            background: DEFAULT_BACKGROUND,
+            background: Background::default(),
+            sky: None,
+            ground: None,
+            fog: None,
+            clouds: Vec::new(),
+            up: DVec3::Y,
+            images: Vec::new(),
+            lens: Lens::default(),
+            moments: Vec::new(),
             camera: Camera::default(),
             settings: Settings::default(),
         }

@@ -27,6 +27,19 @@ pub struct Settings {
     pub influence: f64,
     /// Root finder for the soft surface.
     pub digger: Digger,
+    /// `maxdepth n`: how many surfaces may mirror or refract a ray, one after the other. 0 … [`Settings::MAX_DEPTH`].
+    pub max_depth: u32,
+    /// `vanish v`: reflected and refracted rays that add less than this share of their light to each channel of the
+    /// pixel are not sent. ≥ 0.
+    pub vanish: f32,
+    /// `epsilon e`: precision of hits with hard surfaces, > 0. Rays from there to lights, reflected and refracted ones
+    /// start a hundredth of it above the surface, in halves of the scene's size. (Convolution surfaces know their own
+    /// error, and the rays from them start as near as it allows.)
+    pub epsilon: f64,
+    /// `penumbra on`: lights with a size have soft shadows.
+    pub penumbra: bool,
+    /// `tone NAME`: how bright light becomes colours of the screen.
+    pub tone: Tone,
     /// `map on g`: instead of colours the picture shows what its pixels cost, raised to 1/g.
     pub map: Option<f32>,
 }
@@ -36,6 +49,8 @@ impl Settings {
     pub const MAX_FRAME: u32 = 8192;
     /// Largest sampling grid side.
     pub const MAX_SAMPLES: u32 = 16;
+    /// Largest depth of reflections and refractions.
+    pub const MAX_DEPTH: u32 = 32;
     /// Most Hermite spans a primitive ([`Digger::Spans`]).
     pub const MAX_SPANS: u32 = 64;
 }
@@ -53,9 +68,24 @@ impl Default for Settings {
             fragile: Fragile::default(),
             influence: 1e-3,
             digger: Digger::Hermite,
+            max_depth: 5,
+            vanish: 4e-3,
+            epsilon: 1e-4,
+            penumbra: false,
+            tone: Tone::None,
             map: None,
         }
     }
+}
+
+/// How light without limit becomes a channel of 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Tone {
+    /// What is above 1 is cut.
+    #[default]
+    None,
+    /// A shoulder like film's ([`texture::tone::filmic`]).
+    Filmic,
 }
 
 /// `digger NAME`: the ways of finding where a ray meets the soft surface. All but the first are there

@@ -190,6 +190,7 @@ fn a_scene_survives_the_journey_to_a_worker() {
         kind: LightKind::Distant { towards: DVec3::Z },
         colour: [1.0, 0.5, 0.25],
         shadow: true,
+        size: 0.0,
     }];
     let bytes = postcard::to_allocvec(&scene).expect("packs");
     assert_eq!(

@@ -4,8 +4,9 @@ use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::intake::Taken;
 use crate::notice::Notice;
+use crate::project_file::{self, Project};
 use crate::tray::item::Item;
-use crate::{examples, picture, platform, share, work};
+use crate::{asset, examples, picture, platform, share, work};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 use lab::Lesson;
 use std::ops::Range;
@@ -98,7 +99,9 @@ impl App {
             | Command::Play
             | Command::SetFilmFrame(_)
             | Command::SetFilmLength(_)
-            | Command::SaveFilm
+            | Command::SetFilmRate(_)
+            | Command::SetPlayback(_)
+            | Command::SaveFilm(_)
             | Command::StopFilm => self.carry_out_on_picture(ctx, command, now),
             Command::ShowResult(_)
             | Command::SaveResult(_)
@@ -106,6 +109,7 @@ impl App {
             | Command::FindResult(_)
             | Command::FoldTray(_) => self.carry_out_in_tray(ctx, command, now),
             Command::SavePng => self.save_png(now),
+            Command::SaveProject => self.save_project(now),
             Command::Share => self.share(ctx, now),
             Command::OpenExample(_)
             | Command::OpenSaved(_)
@@ -163,13 +167,15 @@ impl App {
                 self.settings.theme = theme;
                 ctx.set_theme(theme);
             }
-            Command::Play => self.player.toggle(now),
+            Command::Play => self.play(now),
             Command::SetFilmFrame(frame) => {
                 self.player.pause();
                 session.set_film_frame(frame);
             }
             Command::SetFilmLength(count) => self.player.count = count,
-            Command::SaveFilm => self.begin_film(ctx),
+            Command::SetFilmRate(rate) => self.player.rate = rate,
+            Command::SetPlayback(playback) => self.player.playback = playback,
+            Command::SaveFilm(kind) => self.begin_film(ctx, kind, now),
             Command::StopFilm => self.stop_film("You stopped it."),
             _ => {}
         }
@@ -334,6 +340,26 @@ impl App {
             }
             Err(error) => self.notice = Some(Notice::trouble(error.to_string())),
         }
+    }
+
+    /// Gives the user all texts, images and meshes as one file.
+    fn save_project(&mut self, now: f64) {
+        let session = &self.work.session;
+        let packed = project_file::pack(&Project {
+            name: self.work.name.clone(),
+            texts: session.project().files.clone(),
+            assets: session.assets().to_vec(),
+            camera: session.chosen_camera(),
+        });
+        self.notice = Some(match packed {
+            Ok(bytes) => {
+                let name = format!("{}.zip", work::file_stem(&self.work.name));
+                platform::download(&name, "application/zip", &bytes);
+                let size = asset::size(bytes.len());
+                Notice::done(format!("Saved {name}, {size}. Open takes it back."), now)
+            }
+            Err(trouble) => Notice::trouble(trouble),
+        });
     }
 
     fn save_result(&mut self, index: usize, now: f64) {

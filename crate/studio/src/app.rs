@@ -9,13 +9,13 @@ use crate::command::Command;
 use crate::draft::Draft;
 use crate::editor::Editor;
 use crate::film::Player;
-use crate::film::Saving;
 use crate::gallery::Gallery;
 use crate::hands::Hands;
 use crate::help::Help;
 use crate::keyboard::Keyboard;
 use crate::notice::Notice;
 use crate::reading::MeshReading;
+use crate::recording::{Saving, VideoFormat};
 use crate::render::{Phase, Renderer};
 use crate::report::Shared;
 use crate::request::{Answer, Requests};
@@ -107,6 +107,8 @@ pub struct App {
     pub(crate) help: Help,
     pub(crate) player: Player,
     pub(crate) saving: Option<Saving>,
+    /// The browser's encoders of videos, once they were asked for.
+    pub(crate) videos: Option<Vec<VideoFormat>>,
     pub(crate) tray: Tray,
     pub(crate) lab: Lab,
     /// Large meshes on their way into the work.
@@ -200,6 +202,7 @@ impl App {
             help: Help::default(),
             player: Player::default(),
             saving: None,
+            videos: None,
             tray: Tray::default(),
             dialog: None,
             notice: None,
@@ -283,7 +286,7 @@ impl App {
             self.titled = title.to_owned();
             platform::set_title(&self.titled);
         }
-        self.screen(now);
+        self.screen(ctx, now);
         self.trace(ctx, now);
         if self.work.session.enabled() && !self.healthy && now - started > HEALTHY {
             self.healthy = true;
@@ -311,6 +314,8 @@ impl App {
             waits.push(self.renderer.wait(now));
         }
         waits.push(self.player.wait(now));
+        // A frame that was finished just now is taken into the film at the next tick.
+        waits.push((self.saving.is_some() && self.is_finished()).then_some(0.0));
         waits.push(self.tray.wait(now).filter(|_| !self.lab.is_open()));
         waits.push(match &self.notice {
             Some(notice) => notice.until.map(|until| until - now),

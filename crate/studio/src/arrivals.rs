@@ -6,6 +6,7 @@ use crate::asset::Asset;
 use crate::intake::{self, Sorted, Taken};
 use crate::notice::Notice;
 use crate::platform;
+use crate::project_file::{self, Project};
 use crate::request::Request;
 use crate::work::Origin;
 use egui::Context;
@@ -44,6 +45,14 @@ impl App {
 
     /// Makes texts into tabs or a new work, and puts images and meshes beside them.
     pub(crate) fn take_in(&mut self, ctx: &Context, taken: Vec<Taken>, now: f64) {
+        let (projects, taken): (Vec<_>, Vec<_>) = taken
+            .into_iter()
+            .partition(|file| project_file::is_project(&file.name));
+        if let Some(project) = projects.into_iter().next() {
+            // What was dropped with it would only mix with it.
+            self.take_project(ctx, project, now);
+            return;
+        }
         let Sorted {
             texts,
             assets,
@@ -70,12 +79,60 @@ impl App {
                 }
             })
         } else {
-            self.work.open_files(texts, assets).map(|()| {
+            let project = Project {
+                texts,
+                assets,
+                ..Project::default()
+            };
+            self.work.open_files(project).map(|()| {
                 platform::set_hash("");
                 self.opened(ctx);
                 format!("Opened {all} as a new work.")
             })
         };
+        self.tell(outcome, &refused, now);
+        ctx.request_repaint();
+    }
+
+    /// Opens an archive of a whole work as a new one, or adds its images and meshes to the open one if it
+    /// has no texts.
+    fn take_project(&mut self, ctx: &Context, file: Taken, now: f64) {
+        let unpacked = file
+            .bytes
+            .and_then(|bytes| project_file::unpack(&bytes).map_err(|why| format!("it {why}")));
+        let (mut project, refused) = match unpacked {
+            Ok(unpacked) => unpacked,
+            Err(reason) => {
+                self.tell(
+                    Ok(String::new()),
+                    &[format!("{}: {reason}.", file.name)],
+                    now,
+                );
+                return;
+            }
+        };
+        let names = project.assets.iter().map(|asset| asset.name.clone());
+        let names = listed(&names.collect::<Vec<_>>());
+        let outcome = if project.texts.is_empty() {
+            let added = self.add(Vec::new(), project.assets, now);
+            added.map(|_| format!("Added {names}."))
+        } else {
+            if project.name.is_empty() {
+                let name = file.name.rsplit(['/', '\\']).next().unwrap_or_default();
+                project.name = name.strip_suffix(".zip").unwrap_or(name).to_owned();
+            }
+            self.work.open_files(project).map(|()| {
+                platform::set_hash("");
+                self.opened(ctx);
+                format!("Opened {} as a new work.", self.work.name)
+            })
+        };
+        self.tell(outcome, &refused, now);
+        ctx.request_repaint();
+    }
+
+    /// Says what became of files, and which were not taken.
+    fn tell(&mut self, outcome: Result<String, String>, refused: &[String], now: f64) {
         let mut said = Vec::new();
         let bad = outcome.is_err() || !refused.is_empty();
         match outcome {
@@ -97,7 +154,6 @@ impl App {
                 Notice::done(text, now)
             });
         }
-        ctx.request_repaint();
     }
 
     /// Adds to the open work. Gives the names of texts that were replaced.

@@ -1,19 +1,15 @@
 //! The strip at the top: examples, the name of the work, undo, and above all Share.
 
+use crate::app::App;
 use crate::command::Command;
 use crate::icon::{self, Icon};
 use crate::work::{Origin, Work};
-use crate::{places, theme};
+use crate::{download, places, theme};
 use egui::{Align, Button, Layout, RichText, TextEdit, Ui};
 
 /// Shows the bar.
-pub fn show(
-    ui: &mut Ui,
-    work: &Work,
-    theme_choice: theme::Choice,
-    narrow: bool,
-    commands: &mut Vec<Command>,
-) {
+pub fn show(app: &App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
+    let (work, theme_choice) = (&app.work, app.settings.theme);
     let palette = theme::palette(ui.visuals());
     ui.horizontal_centered(|ui| {
         ui.add_space(if narrow { 6.0 } else { 12.0 });
@@ -57,7 +53,7 @@ pub fn show(
                 commands.push(Command::Share);
             }
             if narrow {
-                more(ui, theme_choice, commands);
+                more(app, ui, commands);
             } else {
                 if icon::button(ui, Icon::Help, "How it works", true).clicked() {
                     commands.push(Command::ShowHelp);
@@ -122,7 +118,8 @@ fn name(ui: &mut Ui, work: &Work, commands: &mut Vec<Command>) {
     }
 }
 
-fn more(ui: &mut Ui, choice: theme::Choice, commands: &mut Vec<Command>) {
+fn more(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let choice = app.settings.theme;
     let button = icon::button(ui, Icon::More, "More", true);
     places::note(ui.ctx(), "more", button.rect);
     egui::Popup::menu(&button).show(|ui| {
@@ -133,9 +130,9 @@ fn more(ui: &mut Ui, choice: theme::Choice, commands: &mut Vec<Command>) {
         if ui.button("Open files…").clicked() {
             commands.push(Command::PickFiles);
         }
-        if ui.button("Save picture").clicked() {
-            commands.push(Command::SavePng);
-        }
+        ui.separator();
+        download::label(ui, "Download");
+        download::menu(app, ui, commands);
         ui.separator();
         for theme in [
             theme::Choice::System,

@@ -2,6 +2,8 @@
 //! carries them out after the frame, in one place ([`crate::app`]).
 
 use crate::asset::Asset;
+use crate::film::Playback;
+use crate::recording::Kind;
 use crate::settings::Show;
 use crate::{examples, size, theme};
 use lab::Lesson;
@@ -94,8 +96,12 @@ pub enum Command {
     SetFilmFrame(u32),
     /// How many frames the film has.
     SetFilmLength(u32),
+    /// How many frames of the film are shown in a second.
+    SetFilmRate(u16),
+    /// What comes after the film's last frame.
+    SetPlayback(Playback),
     /// Write all frames of the film to a file.
-    SaveFilm,
+    SaveFilm(Kind),
     /// Give that up.
     StopFilm,
     /// Show a result of the text's jobs on pictures large.
@@ -110,6 +116,8 @@ pub enum Command {
     FoldTray(bool),
     /// Write the picture to a file.
     SavePng,
+    /// Write all texts, images and meshes to one file.
+    SaveProject,
     /// Make a link, copy it, and put it into the address bar.
     Share,
     /// Open an example.

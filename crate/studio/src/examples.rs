@@ -63,7 +63,7 @@ const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 22] = [
+pub const ALL: [Example; 23] = [
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -78,6 +78,7 @@ pub const ALL: [Example; 22] = [
     example!(GROWN, "Spinal Starecase", "36 legs, wound like a stair", "spinal-starecase"),
     example!(GROWN, "Sphereflake", "balls on balls, by recursion", "sphereflake"),
     example!(GROWN, "Generators", "six commands, a line each", "generators"),
+    example!(GROWN, "Three heads", "a coarse mesh, as balls and as shells", "heads", "head.obj"),
     example!(FIRST, "T-shape", "two bars that melt together", "tshape"),
     example!(FIRST, "Icicle", "a first little dataset", "icicle"),
     example!(STARFISH, "Starfish A", "seven arcs, the bare skeleton", "starfish-a"),

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `ready` | promise, resolved when the app runs; rejected with the reason when it cannot start |
 //! | `load(text)`, `load({name: text, …})` | opens texts (the first one is run) like an example: the user's own work is kept; promise, resolved when they are compiled, rejected when they are too long |
-//! | `take({name: text or Uint8Array, …})` | takes in texts, images and meshes as if they were dropped on the page |
+//! | `take({name: text or Uint8Array, …})` | takes in texts, images, meshes and projects (.zip) as if they were dropped on the page |
 //! | `text()` | the text of the first file |
 //! | `files()` | all texts, as `{name: text, …}` |
 //! | `status()` | the state, see below |

@@ -2,6 +2,7 @@
 //! images and meshes beside it, and which are refused, with the reason.
 
 use crate::asset::{self, Asset, MAX_ASSET};
+use crate::project_file;
 use crate::session::MAX_TEXT;
 use rats::File;
 use rats::link::MAX_NAME;
@@ -9,7 +10,7 @@ use rats::link::MAX_NAME;
 /// Extensions of texts.
 const TEXTS: [&str; 5] = ["rat", "art", "ice", "dat", "txt"];
 /// The kinds of files that are accepted, in words.
-pub const KINDS: &str = "texts (.rat .art .ice .dat .txt), images (.png .gif .tga .tif .mtv) and meshes (.obj .ply .stl .glb)";
+pub const KINDS: &str = "texts (.rat .art .ice .dat .txt), images (.png .gif .tga .tif .mtv), meshes (.obj .ply .stl .glb) and projects (.zip)";
 /// Files that are read at once.
 pub const MOST: usize = 32;
 
@@ -38,7 +39,9 @@ pub struct Sorted {
 /// # Errors
 /// Says the limit.
 pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
-    let (most, what) = if asset::kind(name).is_some() {
+    let (most, what) = if project_file::is_project(name) {
+        (project_file::MAX_BYTES, "a project")
+    } else if asset::kind(name).is_some() {
         (MAX_ASSET, "an image or a mesh")
     } else {
         (MAX_TEXT, "a text")
@@ -53,18 +56,46 @@ pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// Sorts files from outside.
+/// Sorts files from outside. Their folders are forgotten.
 #[must_use]
 pub fn sort(taken: Vec<Taken>) -> Sorted {
+    let last = |name: &str| {
+        name.rsplit(['/', '\\'])
+            .next()
+            .unwrap_or_default()
+            .to_owned()
+    };
+    let plain = taken.into_iter().map(|file| Taken {
+        name: plain_name(&last(&file.name)),
+        ..file
+    });
+    sort_named(plain.collect(), MOST)
+}
+
+/// Sorts files of an archive. They keep their folders.
+#[must_use]
+pub fn sort_archive(taken: Vec<Taken>) -> Sorted {
+    let plain = taken.into_iter().map(|file| {
+        let parts = file.name.split(['/', '\\']).map(plain_name);
+        let parts = parts.filter(|part| !part.chars().all(|c| c == '.'));
+        Taken {
+            name: parts.collect::<Vec<_>>().join("/"),
+            ..file
+        }
+    });
+    sort_named(plain.collect(), project_file::MOST)
+}
+
+fn sort_named(taken: Vec<Taken>, most: usize) -> Sorted {
     let mut sorted = Sorted::default();
     for (index, file) in taken.into_iter().enumerate() {
-        let name = plain_name(&file.name);
-        let outcome = if index >= MOST {
-            Err(format!("only {MOST} files are taken at once"))
-        } else if name.is_empty() || name.len() > MAX_NAME {
-            Err(String::from("its name is empty or too long"))
+        let name = file.name;
+        let outcome = if index >= most {
+            Err(format!("only {most} files are taken at once"))
         } else {
-            file.bytes.and_then(|bytes| take(&mut sorted, &name, bytes))
+            check_name(&name)
+                .and(file.bytes)
+                .and_then(|bytes| take(&mut sorted, &name, bytes))
         };
         if let Err(reason) = outcome {
             sorted.refused.push(format!("{name}: {reason}."));
@@ -76,21 +107,49 @@ pub fn sort(taken: Vec<Taken>) -> Sorted {
         .iter()
         .flat_map(|file| rats::reads(&file.text))
         .collect();
-    let run = |file: &File| !read.contains(&file.name);
+    let is_read = |file: &File| {
+        let own = |wanted: &String| {
+            let ends = file.name.strip_suffix(wanted.trim_start_matches("./"));
+            ends.is_some_and(|before| before.is_empty() || before.ends_with('/'))
+        };
+        read.iter().any(own)
+    };
+    let run = |file: &File| !is_read(file);
     if let Some(first) = sorted.texts.iter().position(run) {
         sorted.texts[..=first].rotate_right(1);
     }
     sorted
 }
 
+/// Whether a file of a work may have this name.
+///
+/// # Errors
+/// If it is empty or too long.
+pub fn check_name(name: &str) -> Result<(), String> {
+    if name.is_empty() || name.len() > MAX_NAME {
+        return Err(String::from("its name is empty or too long"));
+    }
+    Ok(())
+}
+
+/// An image or a mesh of a work.
+///
+/// # Errors
+/// If it is too large, or not what its name says.
+pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
+    check_length(name, bytes.len() as f64)?;
+    let asset = Asset {
+        name: name.to_owned(),
+        bytes: bytes.into(),
+    };
+    asset::facts(&asset)?;
+    Ok(asset)
+}
+
 fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     check_length(name, bytes.len() as f64)?;
     if asset::kind(name).is_some() {
-        let asset = Asset {
-            name: name.to_owned(),
-            bytes: bytes.into(),
-        };
-        asset::facts(&asset)?;
+        let asset = asset(name, bytes)?;
         sorted.assets.retain(|other| other.name != name);
         sorted.assets.push(asset);
     } else if TEXTS.contains(&asset::extension(name).as_str()) {
@@ -106,15 +165,14 @@ fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     Ok(())
 }
 
-/// The name without folders, in letters that a text can name it by.
+/// A name, or a part of one between folders, in letters that a text can name it by.
 fn plain_name(name: &str) -> String {
-    let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let plain = |c: char| match c {
         '.' | '_' | '-' => c,
         c if c.is_alphanumeric() => c,
         _ => '-',
     };
-    last.trim().chars().map(plain).collect()
+    name.trim().chars().map(plain).collect()
 }
 
 /// A text in UTF-8, or in Latin-1 as old datasets are; `None` if it is none.

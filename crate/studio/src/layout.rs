@@ -10,12 +10,12 @@ use crate::settings::Show;
 use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery};
 use crate::{
-    bar, files, intake, notice, places, platform, problems, screen, size, sliders, status,
-    timeline, tray,
+    bar, download, files, intake, notice, places, platform, problems, screen, size, sliders,
+    status, timeline, tray,
 };
 use egui::{
-    Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Rect, RichText,
-    ScrollArea, Stroke, Ui, UiBuilder, Vec2, pos2, vec2,
+    Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
+    RichText, ScrollArea, Stroke, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 
 /// Draws everything.
@@ -43,7 +43,7 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         .exact_size(bar_height)
         .frame(flat)
         .show(ui, |ui| {
-            bar::show(ui, &app.work, app.settings.theme, narrow, commands);
+            bar::show(app, ui, narrow, commands);
         });
     Panel::bottom("status")
         .exact_size(if narrow { 40.0 } else { 32.0 })
@@ -206,9 +206,10 @@ fn picture_head(app: &App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>
     }
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.add_space(10.0);
-        if icon::button(ui, Icon::Save, "Save the picture as PNG (Ctrl+S)", true).clicked() {
-            commands.push(Command::SavePng);
-        }
+        let tip = "Download: picture (Ctrl+S), project";
+        let save = icon::button(ui, Icon::Save, tip, true);
+        places::note(ui.ctx(), "download", save.rect);
+        Popup::menu(&save).show(|ui| download::menu(app, ui, commands));
         if icon::button(ui, Icon::Frame, "See the whole model", true).clicked() {
             commands.push(Command::ShowAll);
         }
@@ -314,8 +315,7 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         place.max.y = strip.top();
         ui.painter().rect_filled(strip, 0.0, palette.panel);
         let builder = UiBuilder::new().max_rect(strip).id_salt("timeline");
-        let frame = app.work.session.film_frame();
-        timeline::show(&mut ui.new_child(builder), &app.player, frame, commands);
+        timeline::show(app, &mut ui.new_child(builder), commands);
     }
     if app.tray.is_used() && has_tray(place, narrow) {
         let height = tray::strip::height(narrow, app.tray.folded);

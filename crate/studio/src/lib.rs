@@ -18,6 +18,7 @@ pub mod code;
 pub mod command;
 #[cfg(target_arch = "wasm32")]
 pub mod crash;
+mod download;
 pub mod draft;
 mod draw;
 pub mod editor;
@@ -47,7 +48,9 @@ pub mod pad;
 pub mod picture;
 pub mod platform;
 pub mod problems;
+pub mod project_file;
 pub mod reading;
+pub mod recording;
 pub mod reference;
 pub mod render;
 pub mod report;

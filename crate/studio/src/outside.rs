@@ -37,6 +37,7 @@ impl App {
                 let result = self.work.open_example(index, assets);
                 self.opened_or(ctx, result);
             }
+            Request::Videos(formats) => self.videos = Some(formats),
             Request::SetCamera(camera) => self.work.session.set_camera(camera),
             Request::Picture(answer) => answer(self.renderer.image()),
             Request::Cancel => self.renderer.cancel(),

@@ -3,6 +3,7 @@
 use crate::asset::Asset;
 use crate::intake::Taken;
 use crate::picture::Image;
+use crate::recording::VideoFormat;
 use egui::Context;
 use rats::Project;
 use scene::Camera;
@@ -27,6 +28,8 @@ pub enum Request {
     Files(Vec<Taken>),
     /// Open an example of the gallery with its images and meshes, which were fetched.
     Example(usize, Vec<Asset>),
+    /// The browser has these encoders of videos.
+    Videos(Vec<VideoFormat>),
     /// Look at the scene with this camera; `None`: with the text's.
     SetCamera(Option<Camera>),
     /// Give the traced picture.

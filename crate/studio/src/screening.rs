@@ -1,10 +1,10 @@
 //! Playback of an animated work, and saving of its frames: the app's part, frame by frame.
 
 use crate::app::App;
-use crate::command::Command;
-use crate::film::{Recording, Saving};
 use crate::notice::Notice;
+use crate::recording::{Kind, Recording, Saving};
 use crate::render::Phase;
+use crate::request::Request;
 use crate::settings::Show;
 use crate::{platform, work};
 use egui::Context;
@@ -20,16 +20,28 @@ impl App {
                 .is_some_and(|(_, shown)| shown == generation)
     }
 
-    fn go_to_frame(&mut self, frame: u32) {
+    pub(crate) fn go_to_frame(&mut self, frame: u32) {
         self.work.session.set_film_frame(frame);
         self.work.session.compile();
     }
 
+    /// Plays from the frame on show, or pauses.
+    pub(crate) fn play(&mut self, now: f64) {
+        let frame = self.work.session.film_frame();
+        let first = self.player.toggle(frame, now);
+        self.go_to_frame(first);
+    }
+
     /// Shows the next frame if its time has come; saves the one that is finished.
-    pub(crate) fn screen(&mut self, now: f64) {
+    pub(crate) fn screen(&mut self, ctx: &Context, now: f64) {
+        if self.work.session.is_animated() && self.videos.is_none() {
+            self.videos = Some(Vec::new());
+            let requests = self.parts.requests.clone();
+            platform::video_formats(move |formats| requests.ask(Request::Videos(formats)));
+        }
         if self.saving.is_some() {
             self.player.pause();
-            self.save_frame(now);
+            self.save_frame(ctx, now);
             return;
         }
         if !self.work.session.is_animated() || self.lab.is_open() {
@@ -44,18 +56,19 @@ impl App {
     }
 
     /// Begins to save all frames.
-    pub(crate) fn begin_film(&mut self, ctx: &Context) {
-        let size = self.size(ctx);
-        let before = self.work.session.film_frame();
-        match Recording::begin(self.player.count, size, before) {
+    pub(crate) fn begin_film(&mut self, ctx: &Context, kind: Kind, now: f64) {
+        let size = kind.size(self.size(ctx));
+        let formats = self.videos.as_deref().unwrap_or_default();
+        match Recording::begin(kind, &self.player, size, formats, now) {
             Ok(recording) => {
                 self.saving = Some(Saving {
                     recording,
                     revision: self.work.session.revision(),
+                    before: self.work.session.film_frame(),
                     forced: self.forced_size.replace(size),
                 });
+                self.notice = None;
                 self.go_to_frame(0);
-                self.tell_progress();
             }
             Err(trouble) => self.notice = Some(Notice::trouble(trouble)),
         }
@@ -65,12 +78,12 @@ impl App {
     pub(crate) fn stop_film(&mut self, why: &str) {
         if let Some(saving) = self.saving.take() {
             self.forced_size = saving.forced;
-            self.go_to_frame(saving.recording.before);
+            self.go_to_frame(saving.before);
             self.notice = Some(Notice::trouble(format!("{why} The film was not saved.")));
         }
     }
 
-    fn save_frame(&mut self, now: f64) {
+    fn save_frame(&mut self, ctx: &Context, now: f64) {
         let finished = self.is_finished();
         let Some(saving) = &mut self.saving else {
             return;
@@ -83,39 +96,43 @@ impl App {
             self.stop_film("The picture was stopped.");
             return;
         }
-        let Some(image) = self.renderer.image().filter(|_| finished) else {
-            return;
-        };
-        match saving.recording.add(image) {
-            Ok(None) => {
-                let next = saving.recording.next();
-                self.go_to_frame(next);
-                self.tell_progress();
+        if saving.recording.wanted().is_some() {
+            let Some(image) = self.renderer.image().filter(|_| finished) else {
+                return;
+            };
+            match saving.recording.add(image) {
+                Ok(()) => {
+                    if let Some(next) = saving.recording.wanted() {
+                        self.go_to_frame(next);
+                        return;
+                    }
+                }
+                Err(trouble) => {
+                    self.stop_film(&trouble);
+                    return;
+                }
             }
-            Ok(Some(bytes)) => {
-                let name = format!("{}-film.png", work::file_stem(&self.work.name));
-                platform::download(&name, "image/apng", &bytes);
-                let size = crate::asset::size(bytes.len());
-                let text = format!("Saved {name}, {} frames, {size}.", saving.recording.next());
-                let before = saving.recording.before;
-                self.forced_size = saving.forced;
-                self.saving = None;
-                self.go_to_frame(before);
-                self.notice = Some(Notice::done(text, now));
-            }
+        }
+        match saving.recording.finish() {
+            // A video's encoder works beside the page.
+            Ok(None) => ctx.request_repaint_after_secs(0.01),
+            Ok(Some(bytes)) => self.film_is_complete(&bytes, now),
             Err(trouble) => self.stop_film(&trouble),
         }
     }
 
-    fn tell_progress(&mut self) {
-        if let Some(saving) = &self.saving {
-            let notice = Notice {
-                text: saving.recording.words(),
-                bad: false,
-                action: None,
-                until: None,
-            };
-            self.notice = Some(notice.offering("Stop", Command::StopFilm));
-        }
+    fn film_is_complete(&mut self, bytes: &[u8], now: f64) {
+        let Some(saving) = self.saving.take() else {
+            return;
+        };
+        let kind = saving.recording.kind;
+        let stem = work::file_stem(&self.work.name);
+        let name = format!("{stem}-film.{}", kind.extension());
+        platform::download(&name, kind.mime(), bytes);
+        let size = crate::asset::size(bytes.len());
+        let text = format!("Saved {name}, {} frames, {size}.", self.player.count);
+        self.forced_size = saving.forced;
+        self.go_to_frame(saving.before);
+        self.notice = Some(Notice::done(text, now));
     }
 }

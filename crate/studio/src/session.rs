@@ -88,6 +88,21 @@ pub fn check_size(project: &Project) -> Result<(), Refused> {
     Ok(())
 }
 
+/// Checks the images and meshes of a work against the limits.
+///
+/// # Errors
+/// If there are too many or they are too large.
+pub fn check_assets(all: &[Asset]) -> Result<(), Refused> {
+    let bytes = all.iter().map(|asset| asset.bytes.len()).sum();
+    if all.len() > MAX_ASSETS || bytes > MAX_ALL {
+        return Err(Refused::TooManyAssets {
+            assets: all.len(),
+            bytes,
+        });
+    }
+    Ok(())
+}
+
 /// The part of a session that is kept when the page is closed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
@@ -319,13 +334,7 @@ impl Session {
                 None => all.push(asset),
             }
         }
-        let bytes = all.iter().map(|asset| asset.bytes.len()).sum();
-        if all.len() > MAX_ASSETS || bytes > MAX_ALL {
-            return Err(Refused::TooManyAssets {
-                assets: all.len(),
-                bytes,
-            });
-        }
+        check_assets(&all)?;
         // The same content in other memory is taken over, too: a file whose reading failed may be put again.
         let is_same = |(new, old): (&Asset, &Asset)| {
             new.name == old.name && Arc::ptr_eq(&new.bytes, &old.bytes)
@@ -469,7 +478,7 @@ impl Session {
     pub fn background(&self) -> scene::Rgb {
         self.good
             .as_ref()
-            .map_or(scene::DEFAULT_BACKGROUND, |scene| scene.background)
+            .map_or(scene::DEFAULT_BACKGROUND, |scene| scene.background.mean())
     }
 
     /// The camera in use.
@@ -622,7 +631,11 @@ fn same_picture(a: &Scene, b: &Scene) -> bool {
         && a.frames == b.frames
         && a.lights == b.lights
         && a.background == b.background
-        && a.camera == b.camera
+        && (a.sky, a.ground, a.fog, a.up) == (b.sky, b.ground, b.fog, b.up)
+        && a.clouds == b.clouds
+        && a.images == b.images
+        && (a.camera, a.lens) == (b.camera, b.lens)
+        && a.moments == b.moments
         && a.settings == b.settings
 }
 

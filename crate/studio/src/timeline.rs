@@ -1,15 +1,30 @@
-//! The strip under the picture of an animated work: play, go to a frame, save the film.
+//! The strip under the picture of an animated work: play, go to a frame, save the film. While a film is
+//! saved it shows how far that is.
 
+use crate::app::App;
 use crate::command::Command;
-use crate::film::{MAX_FRAMES, Player};
+use crate::film::{MAX_FRAMES, MAX_RATE, Playback, Player};
 use crate::icon::{self, Icon};
-use crate::{places, slider, theme};
-use egui::{DragValue, RichText, Slider, Ui};
+use crate::recording::Recording;
+use crate::{download, places, platform, slider, theme};
+use egui::{
+    Align, Button, DragValue, Layout, Popup, PopupCloseBehavior, ProgressBar, RichText, Slider, Ui,
+};
 
-/// Shows the strip in all of `ui`; `frame` is the frame on show.
-pub fn show(ui: &mut Ui, player: &Player, frame: u32, commands: &mut Vec<Command>) {
-    let palette = theme::palette(ui.visuals());
+/// Width of the strip in points above which all controls stand in it.
+const WIDE: f32 = 520.0;
+
+/// Shows the strip in all of `ui`.
+pub fn show(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     places::note(ui.ctx(), "timeline", ui.max_rect());
+    if let Some(saving) = &app.saving {
+        progress(ui, &saving.recording, commands);
+        return;
+    }
+    let player = &app.player;
+    let frame = app.work.session.film_frame();
+    let palette = theme::palette(ui.visuals());
+    let wide = ui.available_width() >= WIDE;
     ui.horizontal_centered(|ui| {
         ui.add_space(10.0);
         let (sign, tip) = if player.is_playing() {
@@ -22,37 +37,149 @@ pub fn show(ui: &mut Ui, player: &Player, frame: u32, commands: &mut Vec<Command
         if play.clicked() {
             commands.push(Command::Play);
         }
-        let mut shown = frame;
-        let last = player.count.saturating_sub(1).max(1);
-        let width = (ui.available_width() - 200.0).clamp(60.0, 520.0);
-        let slider = ui.scope(|ui| {
-            slider::colours(ui);
-            ui.spacing_mut().slider_width = width;
-            ui.add(
-                Slider::new(&mut shown, 0..=last)
-                    .clamping(egui::SliderClamping::Never)
-                    .show_value(false),
-            )
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add_space(10.0);
+            let save = icon::button(ui, Icon::Save, "Save the film", true);
+            places::note(ui.ctx(), "save film", save.rect);
+            Popup::menu(&save).show(|ui| {
+                ui.set_width(270.0);
+                download::films(app, ui, commands);
+            });
+            if wide {
+                playback(ui, player, commands);
+                rate(ui, player, commands);
+                count(ui, player, commands);
+                ui.label(RichText::new(format!("frame {frame} of")).color(palette.weak));
+            } else {
+                let more = icon::button(ui, Icon::More, "Number of frames, speed, playback", true);
+                places::note(ui.ctx(), "film settings", more.rect);
+                Popup::menu(&more)
+                    .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+                    .show(|ui| settings(ui, player, commands));
+                let text = format!("{frame} / {}", player.count);
+                ui.label(RichText::new(text).color(palette.weak));
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                scrub(ui, player, frame, commands);
+            });
         });
-        let slider = slider.inner.accessible_name("Frame of the film");
-        places::note(ui.ctx(), "slider frame", slider.rect);
-        if slider.changed() {
-            commands.push(Command::SetFilmFrame(shown));
+    });
+}
+
+/// The slider of frames, as wide as there is room.
+fn scrub(ui: &mut Ui, player: &Player, frame: u32, commands: &mut Vec<Command>) {
+    let mut shown = frame;
+    let last = player.count.saturating_sub(1).max(1);
+    let width = (ui.available_width() - 12.0).max(40.0);
+    let slider = ui.scope(|ui| {
+        slider::colours(ui);
+        ui.spacing_mut().slider_width = width;
+        ui.add(
+            Slider::new(&mut shown, 0..=last)
+                .clamping(egui::SliderClamping::Never)
+                .show_value(false),
+        )
+    });
+    let slider = slider.inner.accessible_name("Frame of the film");
+    places::note(ui.ctx(), "slider frame", slider.rect);
+    if slider.changed() {
+        commands.push(Command::SetFilmFrame(shown));
+    }
+}
+
+fn count(ui: &mut Ui, player: &Player, commands: &mut Vec<Command>) {
+    let mut count = player.count;
+    let field = ui
+        .add(DragValue::new(&mut count).range(2..=MAX_FRAMES))
+        .accessible_name("Number of frames")
+        .on_hover_text("How many frames are played and saved");
+    places::note(ui.ctx(), "film length", field.rect);
+    if field.changed() {
+        commands.push(Command::SetFilmLength(count));
+    }
+}
+
+fn rate(ui: &mut Ui, player: &Player, commands: &mut Vec<Command>) {
+    let mut rate = player.rate;
+    let field = ui
+        .add(DragValue::new(&mut rate).range(1..=MAX_RATE).suffix(" fps"))
+        .accessible_name("Frames in a second")
+        .on_hover_text("How many frames are shown in a second, played and saved");
+    if field.changed() {
+        commands.push(Command::SetFilmRate(rate));
+    }
+}
+
+fn playback(ui: &mut Ui, player: &Player, commands: &mut Vec<Command>) {
+    let menu = ui.menu_button(player.playback.label(), |ui| {
+        for playback in Playback::ALL {
+            let chosen = player.playback == playback;
+            if ui.selectable_label(chosen, playback.label()).clicked() {
+                commands.push(Command::SetPlayback(playback));
+                ui.close();
+            }
         }
-        ui.label(RichText::new(format!("frame {frame} of")).color(palette.weak));
-        let mut count = player.count;
-        let field = ui
-            .add(DragValue::new(&mut count).range(2..=MAX_FRAMES))
-            .accessible_name("Number of frames")
-            .on_hover_text("How many frames are played and saved");
-        if field.changed() {
-            commands.push(Command::SetFilmLength(count));
+    });
+    places::note(ui.ctx(), "playback", menu.response.rect);
+    menu.response
+        .on_hover_text("What comes after the last frame, played and saved");
+}
+
+/// What has no room in a narrow strip.
+fn settings(ui: &mut Ui, player: &Player, commands: &mut Vec<Command>) {
+    egui::Grid::new("film settings")
+        .num_columns(2)
+        .spacing([16.0, 8.0])
+        .show(ui, |ui| {
+            download::label(ui, "Frames");
+            count(ui, player, commands);
+            ui.end_row();
+            download::label(ui, "Speed");
+            rate(ui, player, commands);
+            ui.end_row();
+        });
+    ui.separator();
+    for playback in Playback::ALL {
+        let chosen = player.playback == playback;
+        let choice = ui.selectable_label(chosen, playback.label());
+        places::note(
+            ui.ctx(),
+            format!("playback {}", playback.label()),
+            choice.rect,
+        );
+        if choice.clicked() {
+            commands.push(Command::SetPlayback(playback));
         }
-        let tip = "Save all frames as an animated PNG";
-        let save = icon::button(ui, Icon::Save, tip, true);
-        places::note(ui.ctx(), "save film", save.rect);
-        if save.clicked() {
-            commands.push(Command::SaveFilm);
-        }
+    }
+}
+
+/// How far a film is, and a button that stops it.
+fn progress(ui: &mut Ui, recording: &Recording, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let now = platform::now(ui.ctx());
+    ui.horizontal_centered(|ui| {
+        ui.add_space(12.0);
+        let words = RichText::new(recording.words(now)).color(palette.text);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add_space(10.0);
+            let stop = Button::new(RichText::new("Stop").color(palette.on_accent));
+            let stop = ui.add(stop.fill(palette.accent));
+            places::note(ui.ctx(), "stop film", stop.rect);
+            if stop.clicked() {
+                commands.push(Command::StopFilm);
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.label(words);
+                let width = ui.available_width() - 8.0;
+                if width > 30.0 {
+                    let bar = ProgressBar::new(recording.fraction());
+                    let bar = bar
+                        .desired_width(width)
+                        .desired_height(6.0)
+                        .fill(palette.accent);
+                    ui.add(bar);
+                }
+            });
+        });
     });
 }

@@ -7,7 +7,8 @@
 use crate::asset::Asset;
 use crate::examples;
 use crate::platform;
-use crate::session::{Kept, Session, check_size};
+use crate::project_file;
+use crate::session::{Kept, Session, check_assets, check_size};
 use crate::share;
 use crate::storage::{DELAY, Shelf};
 use lab::Lesson;
@@ -177,20 +178,28 @@ impl Work {
     /// Opens files from outside as a work that is not edited yet.
     ///
     /// # Errors
-    /// If they are too long, or the open work cannot be written; then it stays open.
-    pub fn open_files(&mut self, files: Vec<File>, assets: Vec<Asset>) -> Result<(), String> {
-        let project = Project { files };
-        check_size(&project).map_err(|refused| refused.to_string())?;
+    /// If they are too long or too large, or the open work cannot be written; then it stays open.
+    pub fn open_files(&mut self, given: project_file::Project) -> Result<(), String> {
+        let project = Project { files: given.texts };
+        check_size(&project)
+            .and_then(|()| check_assets(&given.assets))
+            .map_err(|refused| refused.to_string())?;
         self.leave()?;
-        let name = title(&project);
+        let name = if given.name.is_empty() {
+            title(&project)
+        } else {
+            given.name
+        };
         let kept = Kept {
             project,
+            assets: given.assets,
             ..Kept::default()
         };
         self.begin(name, Origin::Fresh, kept);
-        self.session
-            .put_assets(assets)
-            .map_err(|refused| refused.to_string())
+        // Refused with a number that is not finite.
+        self.session.set_camera(given.camera);
+        self.note();
+        Ok(())
     }
 
     /// The own work to go back to, if a link took its place.

@@ -170,3 +170,38 @@ fn files_can_be_chosen_with_a_button_on_a_desk_and_on_a_phone() {
     take_in(&mut window, &[("tri.obj", OBJ)]);
     window.place("tab tri.obj");
 }
+
+#[test]
+fn a_project_is_one_file_and_is_taken_back() {
+    let mut window = Window::with_text(TEXT);
+    window.edit();
+    window.write("# a bone\n");
+    take_in(&mut window, &[("leg.rat", b"# leg\n"), ("bone.obj", OBJ)]);
+    let saved = files(&window);
+    let menu = window.place("download").center();
+    window.click(menu);
+    let choice = window.place("download project").center();
+    window.click(choice);
+    let (name, bytes) = platform::downloaded().expect("a file");
+    assert_eq!(name, "Main.zip");
+    window.harness.get_by_label_contains("Saved Main.zip");
+
+    // Somewhere else, with a work of one's own open: that is left as it is.
+    let mut window = Window::open(1000.0, 700.0);
+    window.edit();
+    window.write("# mine\n");
+    take_in(&mut window, &[("downloads/Main (1).zip", &bytes)]);
+    window
+        .harness
+        .get_by_label_contains("Opened Main as a new work");
+    assert_eq!(files(&window), saved);
+    let outbox = window.parts.outbox.borrow();
+    assert_eq!(outbox.report.assets, ["bone.obj"]);
+    assert_eq!(outbox.report.name, "Main");
+    drop(outbox);
+    take_in(&mut window, &[("bad.zip", &bytes[..bytes.len() / 2])]);
+    window
+        .harness
+        .get_by_label_contains("bad.zip: it is cut off or no zip archive");
+    assert_eq!(files(&window), saved, "the work stays");
+}

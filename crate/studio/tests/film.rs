@@ -40,18 +40,7 @@ fn a_frame_can_be_chosen_and_the_film_saved() {
     }
     window.write("3");
     window.key(egui::Modifiers::NONE, egui::Key::Enter);
-    let save = window.place("save film").center();
-    window.click(save);
-    let mut file = None;
-    for _ in 0..2000 {
-        window.steps(1);
-        file = platform::downloaded();
-        if file.is_some() {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
-    let (name, bytes) = file.expect("a film");
+    let (name, bytes) = save(&mut window, "png");
     assert_eq!(name, "Main-film.png");
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
         .read_info()
@@ -63,9 +52,41 @@ fn a_frame_can_be_chosen_and_the_film_saved() {
         reader.next_frame(&mut rgba).unwrap();
         frames.push(rgba);
     }
-    assert_eq!(frames[0], first);
-    assert_ne!(frames[1], frames[2]);
+    let opaque: Vec<u8> = first.chunks(4).flat_map(|p| p[..3].to_vec()).collect();
+    assert!(frames[0] == opaque && frames[1] != frames[2]);
     window.harness.get_by_label_contains("Saved Main-film.png");
+
+    // There and back, as a video.
+    let playback = window.place("playback").center();
+    window.click(playback);
+    window.harness.get_by_label("There and back").click();
+    window.steps(2);
+    let (name, bytes) = save(&mut window, "webm");
+    assert_eq!(name, "Main-film.webm");
+    let frames = bytes.windows(4).filter(|four| four == b"\x89PNG").count();
+    assert_eq!(frames, 4, "0 1 2 1");
+    window.harness.get_by_label_contains("Saved Main-film.webm");
+    window.finish();
+    assert!(
+        window.image() == first,
+        "the frame from before is on show again"
+    );
+}
+
+/// Saves the film in a format and returns the file.
+fn save(window: &mut Window, format: &str) -> (String, Vec<u8>) {
+    let menu = window.place("save film").center();
+    window.click(menu);
+    let choice = window.place(&format!("download {format}")).center();
+    window.click(choice);
+    for _ in 0..2000 {
+        window.steps(1);
+        if let Some(file) = platform::downloaded() {
+            return file;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    panic!("no film");
 }
 
 #[test]
@@ -94,8 +115,12 @@ fn playing_goes_through_the_frames_and_editing_stops_a_film() {
     assert!(seen.len() >= 3, "{seen:?}");
     window.click(play);
 
-    let save = window.place("save film").center();
-    window.click(save);
+    let menu = window.place("save film").center();
+    window.click(menu);
+    let choice = window.place("download gif").center();
+    window.click(choice);
+    let words = window.harness.get_by_label_contains("Frame 1 of 24");
+    assert!(words.rect().is_positive());
     window.harness.get_by_label("Stop");
     window.edit();
     window.write("# edited\n");
@@ -103,4 +128,27 @@ fn playing_goes_through_the_frames_and_editing_stops_a_film() {
         .harness
         .get_by_label_contains("The film was not saved");
     assert_eq!(platform::downloaded(), None);
+}
+
+#[test]
+fn a_film_can_be_stopped_on_a_phone() {
+    let mut window = Window::open(390.0, 844.0);
+    window.load(TEXT);
+    window.finish();
+    let settings = window.place("film settings").center();
+    window.click(settings);
+    let once = window.place("playback Once").center();
+    window.click(once);
+    window.key(egui::Modifiers::NONE, egui::Key::Escape);
+    let menu = window.place("save film").center();
+    window.click(menu);
+    let choice = window.place("download gif").center();
+    window.click(choice);
+    let stop = window.place("stop film").center();
+    window.click(stop);
+    window
+        .harness
+        .get_by_label_contains("You stopped it. The film was not saved");
+    assert_eq!(platform::downloaded(), None);
+    window.place("slider frame");
 }

@@ -5,23 +5,8 @@ use crate::layout::PACKET;
 use crate::ray::Ray;
 use crate::scratch::Scratch;
 use crate::walk::Quest;
-use crate::world::World;
+use crate::world::{Owner, World};
 use glam::DVec3;
-
-/// Rays whose directions differ by more than this, or whose origins by more than this part of half the scene's
-/// size, are not followed together.
-const WIDEST: f64 = 0.15;
-
-/// A surface that a ray meets.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Owner {
-    /// The convolution surface of a body, by its number among the soft ones.
-    Soft(u32),
-    /// The surface of a function.
-    Function(usize),
-    /// A hard element's.
-    Solid(u32),
-}
 
 /// A crossing in units of the scene's size.
 #[derive(Clone, Copy, Debug)]
@@ -146,12 +131,7 @@ impl World {
         let Some(first) = rays.first().and_then(|r| self.ray(r)) else {
             return 1;
         };
-        let near = |r: &&(DVec3, DVec3)| {
-            self.ray(r).is_some_and(|ray| {
-                ray.direction.distance(first.direction) <= WIDEST
-                    && ray.origin.distance(first.origin) <= WIDEST
-            })
-        };
+        let near = |r: &&(DVec3, DVec3)| self.ray(r).is_some_and(|ray| first.runs_with(&ray));
         rays.iter().take(PACKET).take_while(near).count().max(1)
     }
 

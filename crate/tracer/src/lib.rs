@@ -31,6 +31,10 @@
 //! shadow rays and adds up colours (`shade`). `refine` traces more rays where neighbouring pixels differ; the hits of all
 //! those of one packet's pixels share beams to the lights.
 //!
+//! Scenes that have more than Phong's model on one background colour (`rich`) are shaded in waves of rays instead (`paths`): each
+//! surface point adds its own light (`lamps`, `coloured`), with the material of its elements and their textures (`material`), and asks
+//! for reflected and refracted rays, which `free` follows; `air` is what they pass and see beside surfaces.
+//!
 //! Crossings with the soft surface are found in one of two certified ways.
 //!
 //! - The fast path (`quick`) is for *blobs*, whose largest value on any interval of a ray has a closed form
@@ -77,6 +81,7 @@
 //!   its beam.
 //! - Soft planes are followed up to 10⁴ times the scene's size.
 
+mod air;
 mod area;
 mod beam;
 mod beams;
@@ -84,20 +89,27 @@ mod blob_march;
 mod blob_set;
 mod cast;
 mod clusters;
+mod coloured;
 mod digger;
 mod dug;
 mod flesh;
+mod free;
 mod function;
 pub mod hard;
 mod hierarchy;
 mod kinks;
 mod known;
+mod lamps;
 mod lanes;
 mod layout;
 mod lens;
+mod look;
 mod map;
+mod material;
+mod media;
 mod meet;
 mod nearby;
+mod paths;
 mod pick;
 pub mod picture;
 mod quick;
@@ -106,6 +118,7 @@ pub mod reference;
 mod refine;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
+mod rich;
 mod root_isolation;
 mod roots;
 mod sample;

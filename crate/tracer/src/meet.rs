@@ -96,7 +96,7 @@ impl World {
         }
         if !self.solids.is_empty() {
             for (hit, ray) in seen.hits.iter_mut().zip(&seen.rays) {
-                *hit = self.hard_point(ray, &mut work.crossings);
+                *hit = self.hard_point(ray, self.one_sided, &mut work.crossings);
             }
         }
         if let Some(digger) = &self.digger {
@@ -105,7 +105,7 @@ impl World {
             self.meet_soft(square, place, rays, seen, &mut exact, work);
         }
         if !self.functions.is_empty() {
-            self.meet_functions(seen, &mut work.scratch);
+            self.meet_functions(seen, ALL, &mut work.scratch);
         }
         stats.field_evaluations += work.scratch.evaluations;
         seen.costs = work.costs(PACKET);
@@ -140,7 +140,7 @@ impl World {
                     seen.rays = (rays.exact)();
                     *exact = true;
                 }
-                self.meet_slabs(body, slabs, base, number, seen, &mut work.scratch);
+                self.meet_slabs(body, slabs, base, (number, ALL), seen, &mut work.scratch);
             }
         }
         work.general = general;
@@ -163,7 +163,7 @@ impl World {
                 let fan = (rays.fan)(lens);
                 let lanes = lens.rays(&fan, near);
                 let wide = || lens.wide(&fan);
-                let left = self.meet_lumps_by(near, general, &lanes, &wide, seen, work);
+                let left = self.meet_lumps_by(near, general, &lanes, &wide, ALL, seen, work);
                 if seen.something() {
                     seen.rays = wide();
                 }
@@ -173,7 +173,7 @@ impl World {
                 self.make_exact(rays, seen, exact);
                 let lanes = Rays::new(&seen.rays, near);
                 let wide = seen.rays;
-                self.meet_lumps_by(near, general, &lanes, &|| wide, seen, work)
+                self.meet_lumps_by(near, general, &lanes, &|| wide, ALL, seen, work)
             }
         };
         if !left.is_empty() && !*exact {
@@ -183,7 +183,7 @@ impl World {
             let wide = seen.rays;
             let others = (0..self.soft.bodies.len() as u32).filter(|body| !left.contains(body));
             let others: Vec<(f64, u32)> = others.map(|body| (0.0, body)).collect();
-            left = self.meet_lumps_by(near, &others, &lanes, &|| wide, seen, work);
+            left = self.meet_lumps_by(near, &others, &lanes, &|| wide, ALL, seen, work);
         }
         for body in left {
             let scratch = &mut work.scratch;
@@ -193,7 +193,7 @@ impl World {
                 self.soft.slabs(body, beam, whole, f64::INFINITY, spaces)
             });
             if let Some((mut slabs, base)) = slabs {
-                self.meet_slabs(body, &mut slabs, base, 0, seen, scratch);
+                self.meet_slabs(body, &mut slabs, base, (0, ALL), seen, scratch);
                 scratch.evaluations += slabs.evaluations();
                 scratch.spaces.push(slabs.into_space());
             }
@@ -207,13 +207,15 @@ impl World {
         }
     }
 
-    /// The same for rays that are made. Gives the bodies for which this is not the way.
-    fn meet_lumps_by(
+    /// The same for rays that are made, of some lanes. Gives the bodies for which this is not the way.
+    #[expect(clippy::too_many_arguments, reason = "each is something else")]
+    pub fn meet_lumps_by(
         &self,
         near: &Nearby,
         general: &[(f64, u32)],
         lanes: &Rays,
         wide: &dyn Fn() -> [Ray; PACKET],
+        alive: u32,
         seen: &mut Seen,
         work: &mut Workspace,
     ) -> Vec<u32> {
@@ -233,12 +235,12 @@ impl World {
                     &mut seen.hits,
                 );
             }
-            (seen.limits(), ALL)
+            (seen.limits(), alive)
         };
         if self.soft.bodies.len() == 1 {
             let looked = self
                 .soft
-                .quick(near, lanes, wide, Asked::first(&limits), quick);
+                .quick(near, lanes, wide, Asked::first(&limits, alive), quick);
             return match looked {
                 Some(looked) => {
                     tell(looked, &quick.flesh);
@@ -248,18 +250,19 @@ impl World {
             };
         }
         let general: Vec<u32> = general.iter().map(|&(_, body)| body).collect();
-        let asked = Asked::first(&limits);
+        let asked = Asked::first(&limits, alive);
         self.soft
             .quick_each(near, &general, lanes, wide, asked, quick, tell)
     }
 
-    /// The points on the surface of a body, by the slabs of a beam around the rays, which start at parameter `base`.
-    fn meet_slabs(
+    /// The points where the rays of some lanes meet the surface of a body, by the slabs of a beam around the rays, which start at
+    /// parameter `base`.
+    pub fn meet_slabs(
         &self,
         body: u32,
         slabs: &mut Slabs<'_>,
         base: f64,
-        number: usize,
+        (number, alive): (usize, u32),
         seen: &mut Seen,
         scratch: &mut Scratch,
     ) {
@@ -270,7 +273,7 @@ impl World {
         let bundle = Bundle {
             rays: &based,
             limits: &seen.limits().map(|limit| limit - base),
-            alive: ALL,
+            alive,
             number,
         };
         let found = self.soft.walk(body, slabs, bundle, Quest::First, scratch);
@@ -282,16 +285,21 @@ impl World {
         self.soft_points(body, &seen.rays, &scratch.flesh, base, met, &mut seen.hits);
     }
 
-    /// What a ray meets first among the hard elements.
-    fn hard_point(&self, ray: &Ray, crossings: &mut Vec<Crossing>) -> Option<SurfacePoint> {
-        let (number, crossing) =
-            self.solids
-                .first(ray, f64::INFINITY, self.one_sided, crossings)?;
+    /// What a ray meets first among the hard elements, or their front faces.
+    pub fn hard_point(
+        &self,
+        ray: &Ray,
+        front_only: bool,
+        crossings: &mut Vec<Crossing>,
+    ) -> Option<SurfacePoint> {
+        let (number, crossing) = self
+            .solids
+            .first(ray, f64::INFINITY, front_only, crossings)?;
         Some(SurfacePoint {
             t: crossing.t,
             position: ray.at(crossing.t),
             normal: crossing.normal,
-            lift: 1e-6 * (1.0 + crossing.t),
+            lift: self.hard_lift * (1.0 + crossing.t),
             finish: self.finishes[self.solids.finish(number)],
             surface: self.surface_of_solid(number),
         })
@@ -343,9 +351,12 @@ impl World {
     }
 
     /// Replaces what rays meet by points on the surfaces of other functions that are nearer.
-    fn meet_functions(&self, seen: &mut Seen, scratch: &mut Scratch) {
+    pub fn meet_functions(&self, seen: &mut Seen, alive: u32, scratch: &mut Scratch) {
         for body in &self.functions {
             for (lane, (ray, hit)) in seen.rays.iter().zip(&mut seen.hits).enumerate() {
+                if alive >> lane & 1 == 0 {
+                    continue;
+                }
                 let limit = hit.map_or(f64::INFINITY, |hit| hit.t);
                 let (found, cost) = self.function_crossing(body, ray, limit, Quest::First);
                 scratch.evaluations += cost;

@@ -237,11 +237,11 @@ pub struct Asked<'l> {
 }
 
 impl<'l> Asked<'l> {
-    /// Query for the first crossing of each ray.
-    pub fn first(limits: &'l [f64; PACKET]) -> Self {
+    /// Query for the first crossing of each ray of some lanes.
+    pub fn first(limits: &'l [f64; PACKET], alive: u32) -> Self {
         Self {
             limits,
-            alive: (1 << PACKET) - 1,
+            alive,
             quest: Quest::First,
         }
     }

@@ -4,6 +4,7 @@
 //! grid of n×n, whose mean replaces the single sample. Which pixels those are depends on the first
 //! samples only, so it does not matter in which order, or in which tile, pixels are treated.
 use crate::area::{Area, Samples};
+use crate::lamps::Draw;
 use crate::layout::{PACKET, PACKET_SIZE, SQUARE};
 use crate::lens::Lens;
 use crate::meet::{PacketRays, Seen};
@@ -65,7 +66,14 @@ impl Sampler {
                 let corner = |x, y| self.view.ray(f64::from(x), f64::from(y)).direction;
                 let across =
                     corner(packet.left, packet.top).distance(corner(packet.right, packet.bottom));
-                self.world.shine(&seen[..owners.len()], across, work, stats);
+                let seen = &seen[..owners.len()];
+                match &self.world.rich {
+                    Some(rich) => {
+                        let draw = |_, _| Draw::Middle;
+                        self.world.illuminate(rich, seen, &draw, work, stats);
+                    }
+                    None => self.world.shine(seen, across, work, stats),
+                }
                 for (found, &(owner, count)) in work.samples.iter().zip(&*owners) {
                     let (_, _, sum, cost) = &mut means[owner];
                     *sum += found[..count].iter().map(|s| s.colour).sum::<Vec3>();
@@ -137,7 +145,11 @@ impl Sampler {
             self.world
                 .meet(square, [column, row], &rays, seen, work, stats);
             let count = count as usize;
-            if seen.something() {
+            let rich = self.needs_more_light(seen).is_some();
+            if rich && !seen.something() {
+                seen.rays = exact();
+            }
+            if rich || seen.something() {
                 // The last ones are repeated.
                 seen.hits[count..].fill(None);
                 owners.push((owner, count));

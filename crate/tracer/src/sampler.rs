@@ -1,8 +1,10 @@
 //! Samples of a picture: one ray for each cell of an area.
 use crate::area::{Area, Samples};
+use crate::lamps::Draw;
 use crate::layout::{PACKET, PACKET_SIZE, SQUARE};
 use crate::lens::Lens;
 use crate::meet::{PacketRays, Seen};
+use crate::rich::Rich;
 use crate::sample::Sample;
 use crate::sample_cache::SampleCache;
 use crate::shade;
@@ -97,7 +99,17 @@ impl Sampler {
                 };
                 self.world
                     .meet(square, [i, j], &rays, &mut seen, work, stats);
-                if seen.something() {
+                if let Some(rich) = self.needs_more_light(&seen) {
+                    if !seen.something() {
+                        seen.rays = exact();
+                    }
+                    let seen = core::slice::from_ref(&seen);
+                    let draw = |_, _| Draw::Middle;
+                    self.world.illuminate(rich, seen, &draw, work, stats);
+                    for ((x, y), sample) in pixels.into_iter().zip(&work.samples[0]) {
+                        samples.set(x, y, *sample);
+                    }
+                } else if seen.something() {
                     let [first, .., last] = &seen.rays;
                     let across = first.direction.distance(last.direction);
                     let across = if scale > 1 { SPARSE * across } else { across };
@@ -123,10 +135,19 @@ impl Sampler {
         Some(samples)
     }
 
-    /// The sample of a ray that meets nothing.
+    /// What a scene has beyond Phong's model, where a packet sees any of it.
+    pub fn needs_more_light(&self, seen: &Seen) -> Option<&Rich> {
+        let rich = self.world.rich.as_ref();
+        rich.filter(|rich| seen.something() || !rich.air.is_plain())
+    }
+
+    /// The sample of a ray that meets nothing, where all such rays see the same.
     pub fn nothing(&self) -> Sample {
         Sample {
-            colour: shade::clamped(self.world.background),
+            colour: match &self.world.rich {
+                Some(rich) => shade::clamped(rich.toned(self.world.background)),
+                None => shade::clamped(self.world.background),
+            },
             key: 0,
             depth: f32::INFINITY,
             cost: 1.0,

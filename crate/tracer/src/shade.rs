@@ -4,6 +4,7 @@
 //! the light, R is L mirrored at N and V points to the eye.
 use glam::{DVec3, Vec3};
 use scene::{Light, LightKind};
+use texture::Surface;
 use wide::f32x4;
 
 /// A surface's colours for Phong's model; those of several materials can be mixed.
@@ -25,6 +26,32 @@ impl Finish {
             specular: Vec3::from(finish.specular),
             shine: finish.shine.max(0.0),
         }
+    }
+
+    /// The part of a material that Phong's model needs.
+    #[must_use]
+    pub fn of_surface(surface: &Surface) -> Self {
+        Self {
+            ambient: surface.ambient,
+            diffuse: surface.diffuse,
+            specular: surface.specular,
+            shine: surface.shine,
+        }
+    }
+
+    /// A surface that only scatters light.
+    #[must_use]
+    pub fn dull(diffuse: Vec3) -> Self {
+        Self {
+            diffuse,
+            ..Self::default()
+        }
+    }
+
+    /// Share of light that is scattered evenly.
+    #[must_use]
+    pub fn diffuse(&self) -> Vec3 {
+        self.diffuse
     }
 
     /// Adds a share of another finish.
@@ -68,7 +95,7 @@ pub fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
         LightKind::Distant { towards } => {
             (towards.try_normalize().unwrap_or(DVec3::Z), f64::INFINITY)
         }
-        LightKind::Point { position } => {
+        LightKind::Point { position } | LightKind::Spot { position, .. } => {
             let way = position - point;
             (way.try_normalize().unwrap_or(DVec3::Z), way.length())
         }

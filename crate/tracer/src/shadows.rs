@@ -57,7 +57,7 @@ impl World {
                         towards(light, hit.position)
                     };
                     let normal = hit.facing(seen.rays[i].direction);
-                    if normal.dot(direction) > 0.0 {
+                    if normal.dot(direction) > 0.0 && light.share(hit.position) > 0.0 {
                         shadows.push(Shadow {
                             hit: (k, i),
                             ray: Ray {
@@ -85,7 +85,7 @@ impl World {
                 };
                 let view = seen[k].rays[i].direction;
                 sample.colour += hit.finish.lit(
-                    Vec3::from(light.colour),
+                    Vec3::from(light.colour) * light.share(hit.position) as f32,
                     hit.facing(view).as_vec3(),
                     shadow.ray.direction.as_vec3(),
                     view.as_vec3(),
@@ -108,14 +108,7 @@ impl World {
         work: &mut Workspace,
         stats: &mut Stats,
     ) {
-        for shadow in &mut *shadows {
-            shadow.cost = 1.0;
-            let (ray, limit) = (&shadow.ray, shadow.limit);
-            let solid = self.solids.first(ray, limit, false, &mut work.crossings);
-            if solid.is_some() || self.function_darkens(shadow, stats) {
-                shadow.state = State::Dark;
-            }
-        }
+        self.look_for_others(shadows, work, stats);
         if self.soft.is_empty() {
             return;
         }
@@ -124,22 +117,72 @@ impl World {
         while let Some(leader) = shadows.iter().position(|s| s.state == State::Unknown) {
             let (first, depth) = (shadows[leader].ray.origin, shadows[leader].depth);
             let patch = PATCH * across * depth;
-            for shadow in &mut shadows[leader..] {
-                if shadow.state == State::Unknown && shadow.ray.origin.distance(first) <= patch {
-                    shadow.state = State::Asked;
-                }
+            self.look_at_members(
+                &mut shadows[leader..],
+                |shadow| shadow.ray.origin.distance(first) <= patch,
+                work,
+                stats,
+            );
+        }
+    }
+
+    /// Finds out which rays, in any directions, have something between them and their ends: those that run together share a beam.
+    pub fn look_for_shadows_apart(
+        &self,
+        shadows: &mut [Shadow],
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) {
+        self.look_for_others(shadows, work, stats);
+        if self.soft.is_empty() {
+            return;
+        }
+        while let Some(leader) = shadows.iter().position(|s| s.state == State::Unknown) {
+            let first = shadows[leader].ray;
+            self.look_at_members(
+                &mut shadows[leader..],
+                |shadow| first.runs_with(&shadow.ray),
+                work,
+                stats,
+            );
+        }
+    }
+
+    /// Darkens the rays that meet a hard element or enter a function before their ends.
+    fn look_for_others(&self, shadows: &mut [Shadow], work: &mut Workspace, stats: &mut Stats) {
+        for shadow in shadows {
+            shadow.cost = 1.0;
+            let (ray, limit) = (&shadow.ray, shadow.limit);
+            let solid = self.solids.first(ray, limit, false, &mut work.crossings);
+            if solid.is_some() || self.function_darkens(shadow, stats) {
+                shadow.state = State::Dark;
             }
-            // The leader is in its own patch even where its position is not a number.
-            shadows[leader].state = State::Asked;
-            let mut members: Vec<&mut Shadow> = shadows[leader..]
-                .iter_mut()
-                .filter(|shadow| shadow.state == State::Asked)
-                .collect();
-            self.look_from_a_patch(&mut members, work, stats);
-            for shadow in members {
-                if shadow.state == State::Asked {
-                    shadow.state = State::Lit;
-                }
+        }
+    }
+
+    /// Decides the first of some rays, and with it those of the others that belong to its patch.
+    fn look_at_members(
+        &self,
+        shadows: &mut [Shadow],
+        belongs: impl Fn(&Shadow) -> bool,
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) {
+        for shadow in &mut *shadows {
+            if shadow.state == State::Unknown && belongs(shadow) {
+                shadow.state = State::Asked;
+            }
+        }
+        // The first one is in its own patch even where its position is not a number.
+        shadows[0].state = State::Asked;
+        let mut members: Vec<&mut Shadow> = shadows
+            .iter_mut()
+            .filter(|shadow| shadow.state == State::Asked)
+            .collect();
+        self.look_from_a_patch(&mut members, work, stats);
+        for shadow in members {
+            if shadow.state == State::Asked {
+                shadow.state = State::Lit;
             }
         }
     }
@@ -243,7 +286,7 @@ impl World {
     }
 
     /// Lists the lumps near the rays of a patch, and the bodies that take the general way; whether any body is left to the lumps.
-    fn general_from_a_patch(
+    pub fn general_from_a_patch(
         &self,
         beam: &Beam,
         furthest: f64,

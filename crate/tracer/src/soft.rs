@@ -196,6 +196,34 @@ impl Soft {
             .get_or_init(|| self.primitives.iter().map(Bound::new).collect())
     }
 
+    /// For each body whether all its primitives have one finish, and the first's finish.
+    pub fn only_finishes(&self) -> Vec<(bool, u32)> {
+        let only = |body: &SoftBody| {
+            let own = &self.finish[body.range.start as usize..body.range.end as usize];
+            (own.iter().all(|finish| *finish == own[0]), own[0])
+        };
+        self.bodies.iter().map(only).collect()
+    }
+
+    /// Appends the elements that add to a body's field at a point: element, finish and field.
+    pub fn shares(&self, body: u32, point: DVec3, shares: &mut Vec<(u32, u32, f64)>) {
+        let body = &self.bodies[body as usize];
+        let at = point.to_array();
+        let mut add = |number: u32| {
+            let i = number as usize;
+            let value = self.primitives[i].value::<f64>(at);
+            if value > 0.0 {
+                shares.push((self.element[i], self.finish[i], value));
+            }
+        };
+        body.everywhere.iter().for_each(|&i| add(i));
+        self.tree.around(point, 0.0, |i, _, _| {
+            if body.range.contains(&i) {
+                add(i);
+            }
+        });
+    }
+
     /// Whether there is no soft surface at all.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -59,6 +59,12 @@ impl Solids {
         self.solids.is_empty()
     }
 
+    /// How many solids there are.
+    #[must_use]
+    pub fn len(&self) -> u32 {
+        self.solids.len() as u32
+    }
+
     /// The finish of a solid.
     #[must_use]
     pub fn finish(&self, number: u32) -> usize {

@@ -8,6 +8,8 @@ pub struct Stats {
     pub primary_rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,
+    /// Reflected and refracted rays.
+    pub secondary_rays: u64,
     /// Evaluations of one primitive's field at one point.
     pub field_evaluations: u64,
     /// Pixels of a full pass that differ from the next one on the right or below, if there is a smooth pass: it takes more
@@ -19,6 +21,7 @@ impl std::ops::AddAssign for Stats {
     fn add_assign(&mut self, other: Self) {
         self.primary_rays += other.primary_rays;
         self.shadow_rays += other.shadow_rays;
+        self.secondary_rays += other.secondary_rays;
         self.field_evaluations += other.field_evaluations;
         self.edges += other.edges;
     }

@@ -143,8 +143,12 @@ impl Unit {
             frame.to_world = self.to_unit() * frame.to_world;
         }
         for light in &mut scene.lights {
-            if let LightKind::Point { position } = &mut light.kind {
-                *position = self.map(*position);
+            match &mut light.kind {
+                LightKind::Point { position } | LightKind::Spot { position, .. } => {
+                    *position = self.map(*position);
+                    light.size *= k;
+                }
+                LightKind::Distant { .. } => {}
             }
         }
         scene.camera.eye = self.map(scene.camera.eye);
@@ -177,6 +181,21 @@ impl Unit {
     pub fn length(&self, length: f64) -> f64 {
         length / self.scale
     }
+}
+
+/// The least height of a scene's elements along the scene's `up`, apart from planes; 0 without any.
+#[must_use]
+pub fn lowest(scene: &Scene) -> f64 {
+    let up = scene.up.normalize_or(DVec3::Y);
+    let bottom = |element: &Element| {
+        let (low, high) = corners(&element.shape);
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        middle.dot(up) - half.dot(up.abs()) - scene.radius(element).abs()
+    };
+    let bounded = |e: &&Element| !matches!(e.shape, Shape::Plane { .. });
+    let heights = scene.elements.iter().filter(bounded).map(bottom);
+    let lowest = heights.fold(f64::INFINITY, f64::min);
+    if lowest.is_finite() { lowest } else { 0.0 }
 }
 
 /// The corners of a box that holds a shape's skeleton.

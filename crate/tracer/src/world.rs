@@ -1,6 +1,7 @@
 //! Everything that rays can meet, made ready.
 use crate::digger::{self, Digger};
 use crate::function::FunctionBody;
+use crate::rich::Rich;
 use crate::shade::Finish;
 use crate::soft::Soft;
 use crate::solids::Solids;
@@ -26,8 +27,28 @@ pub(crate) struct World {
     pub digger: Option<Box<dyn Digger>>,
     /// Whether faces seen from behind are hidden.
     pub one_sided: bool,
+    /// How far rays start from hard surfaces, for each unit of distance more than 0.
+    pub hard_lift: f64,
+    /// What only some scenes need.
+    pub rich: Option<Rich>,
     /// How many bodies the scene has.
     bodies: u32,
+}
+
+/// [`World::hard_lift`] where `epsilon` is [`EPSILON`].
+const HARD_LIFT: f64 = 1e-6;
+/// The default `epsilon`.
+const EPSILON: f64 = 1e-4;
+
+/// A surface that a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Owner {
+    /// The convolution surface of a body, by its number among the soft ones.
+    Soft(u32),
+    /// The surface of a function.
+    Function(usize),
+    /// A hard element's.
+    Solid(u32),
 }
 
 /// A point where a ray meets a surface.
@@ -59,15 +80,20 @@ impl SurfacePoint {
 
 impl World {
     /// Prepares a scene.
-    pub fn new(scene: &Scene) -> Self {
-        let (unit, scene) = Unit::fit(scene);
+    pub fn new(world: &Scene) -> Self {
+        let (unit, scene) = Unit::fit(world);
         let solids = Solids::new(&scene);
+        let rich = Rich::new(world, unit, &scene, &solids);
         let settings = scene.settings;
         let (finishes, lights) = (
             scene.finishes.iter().map(Finish::of).collect(),
             scene.lights.clone(),
         );
-        let (background, bodies) = (Vec3::from(scene.background), scene.bodies.len() as u32);
+        let (background, bodies) = (
+            Vec3::from(scene.background.mean()),
+            scene.bodies.len() as u32,
+        );
+        let epsilon = settings.epsilon.clamp(1e-9, 0.1);
         let (mut sums, mut functions) = (Vec::new(), Vec::new());
         for surface in scene.surfaces() {
             match surface {
@@ -77,6 +103,8 @@ impl World {
         }
         let soft = Soft::new(scene, sums);
         Self {
+            hard_lift: HARD_LIFT * (epsilon / EPSILON),
+            rich: rich.map(|rich| rich.with(&soft)),
             unit,
             soft,
             functions,
@@ -116,6 +144,22 @@ impl World {
     /// The number that tells the surface of a hard element from others.
     pub fn surface_of_solid(&self, number: u32) -> u32 {
         1 + self.bodies + number
+    }
+
+    /// Whose surface a number of [`World::surface_of_body`] or [`World::surface_of_solid`] tells.
+    pub fn owner_of(&self, surface: u32) -> Owner {
+        let number = surface - 1;
+        if number >= self.bodies {
+            return Owner::Solid(number - self.bodies);
+        }
+        let bodies = &self.soft.bodies;
+        match bodies.binary_search_by_key(&number, |body| body.number) {
+            Ok(body) => Owner::Soft(body as u32),
+            Err(_) => {
+                let own = |body: &FunctionBody| body.number == number;
+                Owner::Function(self.functions.iter().position(own).unwrap_or(0))
+            }
+        }
     }
 
     /// Whether there is nothing but convolution surfaces found in the certified way.

@@ -169,7 +169,7 @@ fn cast_agrees_with_pictures() {
     let (mut shown, mut differ) = (0, 0);
     for seed in 0..16 {
         let mut scene = common::blend(seed, 5);
-        scene.background = [0.0, 0.0, 1.0];
+        scene.background = [0.0, 0.0, 1.0].into();
         for finish in &mut scene.finishes {
             finish.ambient = [0.5, 0.5, 0.0];
         }
@@ -203,7 +203,7 @@ fn cast_agrees_with_pictures() {
 
 /// Counts a picture's pixels that show the surface, and those that disagree with their exact rays.
 fn shown(mut scene: Scene, side: u32) -> [usize; 2] {
-    scene.background = [0.0, 0.0, 1.0];
+    scene.background = [0.0, 0.0, 1.0].into();
     for finish in &mut scene.finishes {
         finish.ambient = [0.5, 0.5, 0.0];
     }

@@ -69,7 +69,7 @@ fn pictures_agree_with_exact_hits() {
     for seed in 0..8 {
         let mut scene = blend(seed, 6);
         scene.lights.clear();
-        scene.background = [1.0; 3];
+        scene.background = [1.0; 3].into();
         // Rays that leave through the far end of a plane are beyond what is compared.
         scene
             .elements
@@ -117,7 +117,7 @@ fn a_coarse_block_has_the_colour_of_its_middle() {
 fn smoothing_touches_edges_only_and_tends_to_the_true_coverage() {
     let mut scene = empty();
     scene.lights.clear();
-    scene.background = [0.0; 3];
+    scene.background = [0.0; 3].into();
     scene.finishes = vec![Finish {
         ambient: [1.0; 3],
         ..Finish::default()
@@ -461,7 +461,7 @@ fn a_tile_is_given_up_when_asked_to_stop() {
 fn seen_from_inside_the_surface_is_lit() {
     let mut scene = empty();
     clothe(&mut scene, vec![soft(-0.5, 1.0)]);
-    scene.background = [0.0, 0.0, 1.0];
+    scene.background = [0.0, 0.0, 1.0].into();
     scene.camera.eye = DVec3::ZERO;
     scene.camera.target = DVec3::X;
     scene.lights[0].kind = scene::LightKind::Point {

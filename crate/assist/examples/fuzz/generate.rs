@@ -245,6 +245,8 @@ impl Writer {
                     ],
                 ),
             },
+            Kind::Backdrop if u.ratio(1, 4)? => self.choose(u, &["img.png", "a/b-c.tif"]),
+            Kind::Backdrop => self.colour(u),
             Kind::File | Kind::NewFile => self.choose(
                 u,
                 &[

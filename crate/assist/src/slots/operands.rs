@@ -13,7 +13,10 @@ impl<'p> Slots<'_, 'p> {
         named: bool,
     ) {
         for (index, parameter) in parameters.iter().enumerate() {
-            if matches!(parameter.kind, Kind::Block) {
+            // Layers of other textures are a target without a method.
+            let is_layers = matches!(parameter.kind, Kind::Method)
+                && self.slots.last().is_some_and(|slot| slot.option.is_some());
+            if matches!(parameter.kind, Kind::Block) || is_layers {
                 continue;
             }
             if named && self.more() && self.is_named() {
@@ -210,6 +213,16 @@ impl<'p> Slots<'_, 'p> {
                 self.glued(|datum| !matches!(datum, Datum::Sign(b',' | b'<' | b'>')));
                 self.push(start, What::File);
             }
+            Kind::Backdrop => {
+                if self.word().is_some() {
+                    self.glued(|datum| !matches!(datum, Datum::Sign(b',' | b'<' | b'>')));
+                    if rats::is_image(self.span(start)) {
+                        return self.push(start, What::File);
+                    }
+                    self.at = start;
+                }
+                self.triple(false);
+            }
             Kind::Text => {
                 self.at = self.items.len();
                 self.push(start, What::Other);
@@ -318,23 +331,27 @@ impl<'p> Slots<'_, 'p> {
             self.glued(|datum| !matches!(datum, Datum::Sign(b',' | b'<' | b'>')));
             let end = self.at;
             if self.more()
-                && let Some(how) = self.word()
-                && ["plain", "region"]
-                    .iter()
-                    .any(|w| w.eq_ignore_ascii_case(how))
+                && let Some(how) = self.word().and_then(|word| exact(options::MAPPINGS, word))
             {
                 let how_at = self.at;
                 self.at = end;
                 self.push(start, What::File);
                 self.at = how_at + 1;
-                self.push(how_at, What::Lead);
-                if how.eq_ignore_ascii_case("region") {
-                    for _ in 0..6 {
-                        if self.more() && !self.stopped {
-                            self.triple(false);
-                        }
+                self.push(how_at, What::Word(how));
+                for _ in how.parameters {
+                    if self.more() && !self.stopped {
+                        self.triple(false);
                     }
                 }
+                return;
+            }
+            if rats::is_image(
+                &self.text[self.items[start].span().start..self.items[end - 1].span().end],
+            ) {
+                self.at = end;
+                self.push(start, What::File);
+                self.want(2);
+                self.stopped = true;
                 return;
             }
             self.at = start;

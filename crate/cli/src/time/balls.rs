@@ -39,6 +39,7 @@ pub fn scene(count: u32, kernel: Kernel, apart: f64) -> Scene {
         },
         colour: [1.0; 3],
         shadow: false,
+        size: 0.0,
     });
     scene.settings.frame = [512, 512];
     scene

@@ -9,7 +9,6 @@ mod ply;
 mod stl;
 mod three_mf;
 mod xml;
-mod zip;
 
 pub use any::read;
 pub use mtl::read_mtl;

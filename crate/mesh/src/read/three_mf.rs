@@ -5,13 +5,16 @@
 //! beams and support are passed over.
 
 use super::xml::{Tag, Tags};
-use super::zip;
 use crate::color::linear_from_srgb;
 use crate::error::{Error, fail};
-use crate::limits::{MAX_MATERIALS, MAX_TRIANGLES, MAX_VERTICES};
+use crate::limits::{MAX_MATERIALS, MAX_TRIANGLES, MAX_VERTICES, MAX_XML};
 use crate::triangle_mesh::{Group, Material, TriangleMesh};
+use archive::Archive;
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::{BTreeMap, HashMap};
+
+/// Members of an archive that are looked at.
+const MAX_MEMBERS: usize = 10_000;
 
 /// A property of a corner: a resource's number and an index into it.
 type Property = (u32, u32);
@@ -38,17 +41,29 @@ struct Model {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
-    let main = main_part(bytes)?;
-    let Some(text) = zip::member(bytes, &main)? else {
+    let archive = Archive::open(bytes, MAX_MEMBERS).map_err(unread)?;
+    let main = main_part(&archive)?;
+    let Some(text) = member(&archive, &main)? else {
         return fail("this zip archive has no 3MF model");
     };
     let text = String::from_utf8_lossy(&text);
     Model::read(&text)?.placed()
 }
 
+/// The content of a member; `None` if there is none of this name.
+fn member(archive: &Archive<'_>, name: &str) -> Result<Option<Vec<u8>>, Error> {
+    let entry = archive.entry(name);
+    let content = entry.map(|entry| archive.read(entry, MAX_XML));
+    content.transpose().map_err(unread)
+}
+
+fn unread(error: archive::Error) -> Error {
+    Error(format!("this 3MF file {error}"))
+}
+
 /// The name of the member that describes the model.
-fn main_part(bytes: &[u8]) -> Result<String, Error> {
-    let relations = zip::member(bytes, "_rels/.rels")?.unwrap_or_default();
+fn main_part(archive: &Archive<'_>) -> Result<String, Error> {
+    let relations = member(archive, "_rels/.rels")?.unwrap_or_default();
     let text = String::from_utf8_lossy(&relations);
     let mut tags = Tags::new(&text);
     while let Some(tag) = tags.next()? {

@@ -8,6 +8,5 @@ mod ply;
 mod prepared;
 mod stl;
 mod three_mf;
-mod zip;
 
 pub use export::{Export, ExportedFile, Format, Part};

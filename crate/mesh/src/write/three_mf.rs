@@ -2,9 +2,9 @@
 
 use super::export::Export;
 use super::prepared::{Prepared, materials};
-use super::zip;
 use crate::color::srgb_from_linear;
-use crate::error::{Error, fail};
+use crate::error::Error;
+use archive::Member;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::fmt::Write;
@@ -77,14 +77,12 @@ pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> Result<Vec<u8>, 
         );
     }
     text += "</build>\n</model>\n";
-    if u32::try_from(text.len()).is_err() {
-        return fail("this mesh is too large for a 3MF file; choose a larger tolerance");
-    }
-    Ok(zip::archive(&[
-        ("[Content_Types].xml", TYPES.as_bytes()),
-        ("_rels/.rels", RELATIONS.as_bytes()),
-        ("3D/3dmodel.model", text.as_bytes()),
-    ]))
+    archive::write(&[
+        Member::new("[Content_Types].xml", TYPES.as_bytes()),
+        Member::new("_rels/.rels", RELATIONS.as_bytes()),
+        Member::new("3D/3dmodel.model", text.as_bytes()),
+    ])
+    .map_err(|_| Error("this mesh is too large for a 3MF file; choose a larger tolerance".into()))
 }
 
 fn object(text: &mut String, id: usize, part: &Prepared<'_>, colors: &BTreeMap<[u8; 3], usize>) {

@@ -24,7 +24,7 @@ pub fn by_index(shapes: &[Shape], camera: Camera) -> Scene {
                 ..Finish::default()
             })
             .collect(),
-        background: colour_of(None),
+        background: colour_of(None).into(),
         camera,
         ..Scene::default()
     }
@@ -54,6 +54,7 @@ pub fn by_normal(shapes: &[Shape], camera: Camera, sign: f64) -> Scene {
             },
             colour,
             shadow: false,
+            size: 0.0,
         }
     };
     Scene {
@@ -64,7 +65,7 @@ pub fn by_normal(shapes: &[Shape], camera: Camera, sign: f64) -> Scene {
             ..Finish::default()
         }],
         lights: vec![light(DVec3::X, 0), light(DVec3::Y, 1), light(DVec3::Z, 2)],
-        background: [0.0; 3],
+        background: [0.0; 3].into(),
         camera,
         ..Scene::default()
     }

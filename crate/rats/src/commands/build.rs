@@ -40,10 +40,6 @@ pub(super) const fn run(routine: Routine) -> Action {
     Action::Run(routine)
 }
 
-pub(super) const fn later() -> Action {
-    Action::Later
-}
-
 pub(super) const fn idle(reason: &'static str) -> Action {
     Action::NoEffect(reason)
 }

@@ -220,19 +220,19 @@ pub static TEXTURE: &[OptionSpec] = &[
         "translate",
         &[vector("XYZ", "the shift")],
         "0 0 0",
-        "moves the texture",
+        "moves the texture, in units of the object; of waves and images in shares of u and v",
     ),
     option(
         "scale",
         &[parameter("XYZ", Kind::Vector, "the scale")],
         "1 1 1",
-        "scales the texture",
+        "factors on the place: the larger, the finer the texture",
     ),
     option(
         "times",
         &[parameter("RGB", Kind::Vector, "the factor")],
         "1 1 1",
-        "scales its values",
+        "scales its values, and the height of bumps",
     ),
     option(
         "bounds",
@@ -241,28 +241,36 @@ pub static TEXTURE: &[OptionSpec] = &[
             parameter("RGB", Kind::Vector, "the highest value"),
         ],
         "0 0 0 1 1 1",
-        "its lowest and highest value",
+        "its lowest and highest value: two colours between which it goes",
     ),
     option(
         "turbulence",
         &[number("t", "the turbulence").at_least(0.0)],
         "1",
-        "noise",
+        "noise of solids: 0 is none",
     ),
     option(
         "octaves",
         &[number("r", "the octaves").from(0.0, 32.0)],
         "5",
-        "detail of the noise",
+        "detail of the noise of solids",
     ),
     option(
         "mask",
         &[super::parameter::whole("1 0", 0, 1, "an entry of the mask").many()],
         "",
-        "tiles shown and left out",
+        "tiles shown (1) and left out (0), row by row: as many as the scale has tiles along x, times those along y",
     ),
-    plain("replace", "values replace the target instead of scaling it"),
-    option("texture", LAYERS, "", "layers of other textures"),
+    plain(
+        "replace",
+        "values take the place of the target's, instead of scaling them",
+    ),
+    option(
+        "texture",
+        LAYERS,
+        "",
+        "layers of other textures, upon this one",
+    ),
 ];
 
 /// `light`.
@@ -273,7 +281,6 @@ pub static LIGHT: &[OptionSpec] = &[
     ),
     plain("distant", "shines from infinity"),
     plain("spot", "shines in a cone"),
-    plain("extended", "shines from a ball"),
     option(
         "position",
         &[vector("XYZ", "the light's position")],
@@ -283,8 +290,8 @@ pub static LIGHT: &[OptionSpec] = &[
     option(
         "direction",
         &[direction("XYZ", "the light's direction")],
-        "",
-        "where a distant light shines to",
+        "to 0 0 0",
+        "where a distant light or a spot shines to",
     ),
     option(
         "intensity",
@@ -295,15 +302,136 @@ pub static LIGHT: &[OptionSpec] = &[
     plain("noshadow", "nothing stops it"),
     option(
         "angle",
-        &[degrees("a", "the opening").from(0.0, 180.0)],
+        &[degrees("a", "the spot's angle").from(0.01, 180.0)],
+        "30",
+        "angle of a spot from its axis to the end of its light (ours)",
+    ),
+    option(
+        "edge",
+        &[degrees("e", "the spot's soft edge").from(0.0, 180.0)],
+        "a quarter of the angle",
+        "angle at the end of a spot over which its light fades (ours)",
+    ),
+    option(
+        "size",
+        &[length("s", "the light's radius").from(0.0, 1e6)],
+        "0",
+        "radius, for soft shadows with `penumbra on`; of a distant light at the distance 1 (ours)",
+    ),
+];
+
+/// `fog`.
+pub static FOG: &[OptionSpec] = &[
+    option(
+        "distance",
+        &[length("d", "the distance").at_least(1e-9)],
+        "twice as far as vrp",
+        "where 37% of the light is left, 14% at twice that (ours)",
+    ),
+    option(
+        "height",
+        &[length("h", "the height").at_least(1e-9)],
+        "as dense everywhere",
+        "over which the fog thins out to 37%, upwards from 0 (ours)",
+    ),
+];
+
+/// `cloud`.
+pub static CLOUD: &[OptionSpec] = &[
+    option(
+        "position",
+        &[vector("XYZ", "the cloud's middle")],
+        "0 0 0",
+        "its middle (ours)",
+    ),
+    option(
+        "object",
+        &[parameter(
+            "name",
+            Kind::Known(Names::Object),
+            "the object's name",
+        )],
         "",
-        "opening of a spot",
+        "an object in the middle of it, in place of a position: a halo (ours)",
     ),
     option(
         "radius",
-        &[length("r", "the light's radius").from(0.0, 1e6)],
+        &[length("r", "the cloud's radius").at_least(1e-9)],
+        "1; of a halo, twice the object's",
+        "how far it reaches (ours)",
+    ),
+    option(
+        "density",
+        &[number("k", "the density").from(0.0, 1e6)],
+        "1",
+        "multiplies its light (ours)",
+    ),
+];
+
+/// `background`.
+pub static BACKGROUND: &[OptionSpec] = &[option(
+    "to",
+    &[colour("Color", "the colour below")],
+    "",
+    "another colour below the first: they change over around the horizon (ours)",
+)];
+
+/// `sky`.
+pub static SKY: &[OptionSpec] = &[
+    option(
+        "to",
+        &[colour("Color", "the horizon's colour")],
+        "as above",
+        "light from the horizon and below",
+    ),
+    option(
+        "intensity",
+        &[number("k", "the intensity").from(0.0, 1e6)],
+        "1",
+        "multiplies its light, not what is seen of it",
+    ),
+    option(
+        "samples",
+        &[super::parameter::whole(
+            "n",
+            1,
+            scene::Sky::MAX_SAMPLES,
+            "the number of directions",
+        )],
+        "4",
+        "directions in which each ray looks for the sky",
+    ),
+];
+
+/// `ground`.
+pub static GROUND: &[OptionSpec] = &[option(
+    "height",
+    &[length("h", "the height")],
+    "just below everything",
+    "where it is, along the direction up",
+)];
+
+/// `tone`.
+pub static TONES: &[OptionSpec] = &[
+    plain("none", "what is brighter than the screen is cut"),
+    plain("filmic", "bright light fades softly into white, as on film"),
+];
+
+/// How an image lies on a surface.
+pub static MAPPINGS: &[OptionSpec] = &[
+    plain("plain", "by u and v, over the whole shape"),
+    option(
+        "region",
+        &[
+            vector("MIN", "the region's lowest corner"),
+            vector("MAX", "the region's highest corner"),
+            vector("P1", "the rectangle's lower left corner"),
+            vector("P2", "the rectangle's lower right corner"),
+            vector("P3", "the rectangle's upper right corner"),
+            vector("P4", "the rectangle's upper left corner"),
+        ],
         "",
-        "radius of an extended light",
+        "on points in a box whose normals pass through a rectangle",
     ),
 ];
 
@@ -315,8 +443,8 @@ pub static RESET: &[OptionSpec] = &[
     plain("surfaces", "materials"),
     plain("textures", "textures"),
     plain("lights", "lights"),
-    plain("background", "the background"),
-    plain("clouds", "clouds"),
+    plain("background", "the background, sky and ground"),
+    plain("clouds", "clouds of light"),
     plain("fog", "fog"),
     plain("cameras", "the camera"),
     plain("options", "all settings"),

@@ -44,6 +44,8 @@ pub enum Kind {
     Copy(Names),
     /// How to texture: a solid, two waves, a colour or an image.
     Method,
+    /// A colour, or an image of the project.
+    Backdrop,
     /// A file of the project.
     File,
     /// A file that the command writes.

@@ -95,8 +95,17 @@ pub(crate) enum Routine {
     Fragile,
     Sample,
     Mesh,
+    Penumbra,
+    Epsilon,
+    Vanish,
+    Maxdepth,
+    Tone,
     Light,
+    Fog,
     Background,
+    Cloud,
+    Sky,
+    Ground,
     Remove,
     Report,
     Reset,
@@ -136,8 +145,6 @@ pub(crate) enum Action {
     Library,
     /// It never changes the picture, for the reason given.
     NoEffect(&'static str),
-    /// Not in this version.
-    Later,
 }
 
 /// A command.
@@ -201,7 +208,6 @@ impl CommandSpec {
                 None
             }
             Action::NoEffect(reason) => Some(reason),
-            Action::Later => Some("it is not carried out in this version"),
         }
     }
 

@@ -50,31 +50,21 @@ pub fn fov<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     Ok(Flow::Next)
 }
 
-/// `aperture radius`: 0, a pinhole, is all there is in this version.
+/// `aperture radius`
 pub fn aperture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    zero_only(run, command, "radius")
-}
-
-/// `shutter fraction`: 0, no blur, is all there is in this version.
-pub fn shutter<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    zero_only(run, command, "fraction")
-}
-
-fn zero_only<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    parameter: &'static str,
-) -> Outcome<Flow> {
-    if run.given(command)?.number(parameter) != 0.0 {
-        let name = run.scope.symbols.word(command.word);
-        run.not_carried_out(command.word_span.clone(), &format!("`{name}`"));
-    }
+    run.lens.aperture = run.given(command)?.number("radius");
     Ok(Flow::Next)
 }
 
-/// `focus distance`: with a pinhole, all there is in this version, everything is in focus.
+/// `focus distance`
 pub fn focus<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.given(command)?;
+    run.lens.focus = Some(run.given(command)?.number("distance"));
+    Ok(Flow::Next)
+}
+
+/// `shutter fraction`
+pub fn shutter<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.shutter = run.given(command)?.number("fraction");
     Ok(Flow::Next)
 }
 

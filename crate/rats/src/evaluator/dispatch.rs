@@ -2,8 +2,8 @@
 
 use super::state::{Evaluator, Flow};
 use super::{
-    camera, deform, materials, objects, options, primitives, run, scene_commands, textures, tools,
-    variables,
+    air, camera, deform, lights, materials, objects, options, primitives, run, scene_commands,
+    textures, tools, variables,
 };
 use crate::commands::Routine;
 use crate::problem::Outcome;
@@ -80,8 +80,17 @@ pub fn function(routine: Routine) -> Run {
         Routine::Fragile => options::fragile,
         Routine::Sample => options::sample,
         Routine::Mesh => options::mesh,
-        Routine::Light => scene_commands::light,
-        Routine::Background => scene_commands::background,
+        Routine::Penumbra => options::penumbra,
+        Routine::Epsilon => options::epsilon,
+        Routine::Vanish => options::vanish,
+        Routine::Maxdepth => options::maxdepth,
+        Routine::Tone => options::tone,
+        Routine::Light => lights::light,
+        Routine::Fog => air::fog,
+        Routine::Background => air::background,
+        Routine::Cloud => air::cloud,
+        Routine::Sky => air::sky,
+        Routine::Ground => air::ground,
         Routine::Remove => objects::remove,
         Routine::Report => scene_commands::report,
         Routine::Reset => scene_commands::reset,

@@ -112,7 +112,10 @@ fn tell_bulges(run: &mut Evaluator<'_>, mesh: &TriangleMesh, k: f64, span: Range
 
 /// Notes what an open mesh or one that is no manifold looks like.
 fn tell_topology(run: &mut Evaluator<'_>, asset: &Asset, span: Range<usize>) {
-    let Some(topology) = assets::topology(asset).filter(|t| !t.is_closed_manifold()) else {
+    let Some(topology) = assets::topology(asset)
+        .ok()
+        .filter(|t| !t.is_closed_manifold())
+    else {
         return;
     };
     let edges = topology.boundary_edges;

@@ -111,17 +111,6 @@ impl<'a> Evaluator<'a> {
                 });
                 Ok(Flow::Next)
             }
-            Action::Later => {
-                let given = self.given(command)?;
-                // What is switched off is as if it were not there.
-                if given.is_off() {
-                    return Ok(Flow::Next);
-                }
-                if self.is_news(Severity::Warning, &command.word_span) {
-                    self.not_carried_out(command.word_span.clone(), &format!("`{}`", spec.name));
-                }
-                Ok(Flow::Next)
-            }
         }
     }
 

@@ -10,7 +10,6 @@ use crate::reader::Name;
 use crate::syntax::Command;
 use field::Kernel;
 use scene::{Finish, Flesh, Rgb};
-use std::ops::Range;
 
 /// `surface { alias option … }`, `surface new = old`
 ///
@@ -20,13 +19,6 @@ pub fn surface<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
     let name = run.reader(command).new_name("the material's name")?;
     make(run, command).inspect_err(|_| run.palette.insert_broken(name.text))?;
     Ok(Flow::Next)
-}
-
-/// What the fields say besides the material itself.
-#[derive(Debug, Default)]
-struct Fields<'a> {
-    textures: Vec<Name<'a>>,
-    not_drawn: Vec<(&'static str, Range<usize>)>,
 }
 
 fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
@@ -52,20 +44,16 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     };
     (surface.used, surface.copied) = (false, false);
     surface.origin = (run.file, name.span.clone());
-    let mut fields = Fields::default();
+    let mut textures = Vec::new();
     for chosen in given.options {
-        field(chosen, &mut surface, &mut fields)?;
+        field(chosen, &mut surface, &mut textures)?;
     }
     settle_colours(&mut surface.finish, &surface.colours);
     surface.finish.name = name.text.to_owned();
-    if !fields.textures.is_empty() {
-        let layers = run.palette.layers(&fields.textures)?;
-        surface.flesh.profile = layers.profile;
-    }
-    for (what, span) in fields.not_drawn {
-        run.say(Severity::Warning, span, || {
-            (format!("`{what}` is not drawn yet"), None)
-        });
+    if !textures.is_empty() {
+        let texture = run.palette.layers(&textures)?;
+        surface.finish.layers = texture.layers;
+        surface.flesh.profile = texture.profile;
     }
     if let Some(earlier) = run.palette.idle(name.text).cloned() {
         run.say_made_twice(Severity::Warning, &name, earlier, || {
@@ -78,25 +66,24 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     run.palette.insert(&name, surface)
 }
 
-fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>) -> Outcome<()> {
+fn field<'a>(
+    chosen: Chosen<'a>,
+    surface: &mut Surface,
+    textures: &mut Vec<Name<'a>>,
+) -> Outcome<()> {
     let Chosen { name, span, given } = chosen;
     let flesh = &mut surface.flesh;
+    let finish = &mut surface.finish;
     match name {
         "body" => surface.colours.body = Some(given.colour("RGB")),
         "ambient" => surface.colours.ambient = Some(given.share()),
         "diffuse" => surface.colours.diffuse = Some(given.share()),
-        "specular" => surface.colours.specular = Some(given.share()),
-        "reflective" | "transparent" => {
-            if !matches!(
-                given.share(),
-                Share::Percent(0.0) | Share::Colour([0.0, 0.0, 0.0])
-            ) {
-                fields.not_drawn.push((name, span));
-            }
-        }
-        // These say how light bends that is let through: without `transparent`, which warns, none is.
-        "index" | "dispersion" => {}
-        "shine" => surface.finish.shine = given.number("p") as f32,
+        "specular" => finish.specular = of_light(given.share()),
+        "reflective" => finish.reflective = of_light(given.share()),
+        "transparent" => finish.transparent = of_light(given.share()),
+        "index" => finish.index = given.number("k") as f32,
+        "dispersion" => finish.dispersion = given.number("d") as f32,
+        "shine" => finish.shine = given.number("p") as f32,
         "radius" => {
             flesh.radius = given.number("r");
             flesh.end_radius = given.maybe_number("end");
@@ -117,8 +104,17 @@ fn field<'a>(chosen: Chosen<'a>, surface: &mut Surface, fields: &mut Fields<'a>)
         "restriction" => flesh.restriction = given.number("f"),
         "depth" => flesh.depth = given.number("d"),
         "strength" => flesh.strength = given.number("s"),
-        "skip" => fields.not_drawn.push((name, span)),
-        "texture" => fields.textures.extend(given.names("t1 +")),
+        "skip" => {
+            for (ray, _) in given.words("RAYTYPE") {
+                match ray {
+                    "pixel" => finish.skip.pixel = true,
+                    "shadow" => finish.skip.shadow = true,
+                    "reflected" => finish.skip.reflected = true,
+                    _ => finish.skip.transmitted = true,
+                }
+            }
+        }
+        "texture" => textures.extend(given.names("t1 +")),
         _ => flesh.kernel = given.word("name").and_then(Kernel::named),
     }
     Ok(())
@@ -142,11 +138,14 @@ fn settle_colours(finish: &mut Finish, colours: &Colours) {
         Some(Share::Percent(share)) => scaled(body, share),
         None => scaled(finish.diffuse, Finish::AMBIENT_SHARE),
     };
-    finish.specular = match colours.specular {
-        Some(Share::Colour(colour)) => colour,
-        Some(Share::Percent(share)) => [share; 3],
-        None => own.specular,
-    };
+}
+
+/// A colour, or a share of the light that comes.
+fn of_light(share: Share) -> Rgb {
+    match share {
+        Share::Colour(colour) => colour,
+        Share::Percent(share) => [share; 3],
+    }
 }
 
 impl Evaluator<'_> {

@@ -88,16 +88,6 @@ impl Evaluator<'_> {
         self.file = before;
     }
 
-    /// Warns that something is known but not done.
-    pub(super) fn not_carried_out(&mut self, span: Range<usize>, what: &str) {
-        self.say(Severity::Warning, span, || {
-            (
-                format!("{what} is understood but not carried out in this version"),
-                None,
-            )
-        });
-    }
-
     pub(super) fn tell_after_shot(&mut self, command: &Command) {
         use commands::Group;
         if self.shot.is_none() || self.told_after_shot {
@@ -116,6 +106,10 @@ impl Evaluator<'_> {
                     | "fragile"
                     | "sample"
                     | "mesh"
+                    | "penumbra"
+                    | "epsilon"
+                    | "vanish"
+                    | "maxdepth"
             ),
             Group::Scene => spec.name != "report",
             Group::Extensions => spec.name != "seed",

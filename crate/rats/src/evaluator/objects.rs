@@ -167,10 +167,12 @@ fn middle(shape: &Shape) -> DVec3 {
     }
 }
 
-/// `transform [object]`: transforms are always applied at once, so this checks the name only.
+/// `transform [object]`: what has been done to the object so far holds still while the shutter is open.
 pub fn transform<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
-    target(run, command, &given)?;
+    let range = target(run, command, &given)?;
+    charge(run, command, &range)?;
+    run.frozen.hold(&mut run.model, range);
     Ok(Flow::Next)
 }
 

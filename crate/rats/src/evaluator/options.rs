@@ -6,7 +6,7 @@ use crate::commands::options::{FORMATS, MESH};
 use crate::problem::Outcome;
 use crate::syntax::Command;
 use field::BlobScale;
-use scene::{Digger, Fragile};
+use scene::{Digger, Fragile, Tone};
 
 /// `echo on|off`: nothing is echoed anyway, and every published dataset says it, so nothing is said.
 pub fn silent_switch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
@@ -88,8 +88,48 @@ pub fn sample<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     let given = run.given(command)?;
     run.settings.samples = given.number("n") as u32;
     if let Some(span) = given.span("method") {
-        run.not_carried_out(span, "the sampling method");
+        run.say(Severity::Note, span, || {
+            (
+                String::from(
+                    "the method changes nothing here: there is one, which spreads rays evenly",
+                ),
+                None,
+            )
+        });
     }
+    Ok(Flow::Next)
+}
+
+/// `penumbra on|off`
+pub fn penumbra<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.settings.penumbra = run.given(command)?.switch();
+    Ok(Flow::Next)
+}
+
+/// `epsilon value`
+pub fn epsilon<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.settings.epsilon = run.given(command)?.number("value");
+    Ok(Flow::Next)
+}
+
+/// `vanish value`
+pub fn vanish<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.settings.vanish = run.given(command)?.number("value") as f32;
+    Ok(Flow::Next)
+}
+
+/// `maxdepth number`
+pub fn maxdepth<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.settings.max_depth = run.given(command)?.number("number") as u32;
+    Ok(Flow::Next)
+}
+
+/// `tone none|filmic`
+pub fn tone<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    run.settings.tone = match run.given(command)?.word("what") {
+        Some("filmic") => Tone::Filmic,
+        _ => Tone::None,
+    };
     Ok(Flow::Next)
 }
 

@@ -39,17 +39,15 @@ pub struct Colours {
     pub ambient: Option<Share>,
     /// `diffuse`
     pub diffuse: Option<Share>,
-    /// `specular`
-    pub specular: Option<Share>,
 }
 
-/// A texture, as far as this version draws it.
+/// Layers of texture, and the profile of those whose target is the strength.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Texture {
-    /// The profile, if its target is the strength.
+    /// The layers that surfaces show, the first one at the bottom.
+    pub layers: Vec<texture::Texture>,
+    /// The profile of the strength, if any.
     pub profile: Option<Profile>,
-    /// How many layers it has.
-    pub layers: usize,
 }
 
 /// All materials and textures.
@@ -161,24 +159,34 @@ impl<'a> Palette<'a> {
         })
     }
 
-    /// The layers `names` put together: the first profile counts, and every layer is counted.
+    /// The layers of all `names` upon each other; the first profile counts.
     ///
     /// # Errors
     /// If one does not exist, or there are more than [`MAX_LAYERS`].
     pub fn layers(&self, names: &[Name<'_>]) -> Outcome<Texture> {
         let mut together = Texture::default();
+        self.stack(&mut together, names)?;
+        Ok(together)
+    }
+
+    /// Puts the layers of all `names` upon a texture; its own profile counts, else the first of theirs.
+    ///
+    /// # Errors
+    /// As [`Self::layers`].
+    pub fn stack(&self, together: &mut Texture, names: &[Name<'_>]) -> Outcome<()> {
         for name in names {
             let texture = self.texture(name)?;
-            together.layers += texture.layers;
-            if together.layers > MAX_LAYERS {
+            let fits = texture::stack(&mut together.layers, &texture.layers);
+            together.profile = together.profile.or(texture.profile);
+            let count = together.layers.len() + usize::from(together.profile.is_some());
+            if fits.is_err() || count > MAX_LAYERS {
                 return Err(Problem::new(
                     name.span.clone(),
                     format!("there are more than {MAX_LAYERS} layers of textures"),
                 ));
             }
-            together.profile = together.profile.or(texture.profile);
         }
-        Ok(together)
+        Ok(())
     }
 
     /// Forgets the names of all materials; shapes keep theirs.

@@ -14,19 +14,37 @@ impl Evaluator<'_> {
     /// The scene of these shapes as all else is now, and how its elements came there.
     pub(super) fn picture(&mut self, parts: Vec<Part>) -> (Scene, Vec<Placement>) {
         let surfaces = self.palette.surfaces.iter();
-        let finishes = surfaces.clone().map(|surface| surface.finish.clone());
+        let dark = self.air.sky.is_some();
+        let finishes = surfaces.clone().map(|surface| Finish {
+            ambient: match surface.colours.ambient {
+                None if dark => [0.0; 3],
+                _ => surface.finish.ambient,
+            },
+            ..surface.finish.clone()
+        });
+        let finishes = finishes.collect();
+        let flesh = surfaces.map(|surface| surface.flesh.clone()).collect();
+        let camera = self.settled_camera();
         let mut scene = Scene {
             elements: Vec::with_capacity(parts.len()),
             bodies: [Body::default()]
                 .into_iter()
                 .chain(self.model.bodies.iter().cloned())
                 .collect(),
-            flesh: surfaces.map(|surface| surface.flesh.clone()).collect(),
-            finishes: finishes.collect(),
+            flesh,
+            finishes,
             frames: vec![Frame::WORLD],
             lights: self.lights.clone(),
-            background: self.background,
-            camera: self.settled_camera(),
+            background: self.air.background(),
+            sky: self.air.sky.map(|(sky, _)| sky),
+            ground: self.air.ground,
+            fog: self.air.fog(camera.eye.distance(camera.target)),
+            clouds: self.air.clouds.clone(),
+            up: camera.up.try_normalize().unwrap_or(DVec3::Y),
+            images: self.images.all.clone(),
+            camera,
+            lens: self.lens,
+            moments: Vec::new(),
             settings: self.settings,
         };
         let mut placements = Vec::with_capacity(parts.len());

@@ -1,107 +1,17 @@
-//! SCENE: lights, background, `reset`, `report`, `shoot`.
+//! SCENE: `report`, `reset`, `shoot`.
 
+use super::air::Air;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::limits::MAX_LIGHTS;
-use crate::problem::{Outcome, Problem};
+use crate::problem::Outcome;
 use crate::syntax::Command;
-use glam::DVec3;
-use scene::{Camera, DEFAULT_BACKGROUND, Light, LightKind, Settings};
-
-/// `light Color [option …]`
-pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let colour = given.colour("Color");
-    let mut is_distant = false;
-    let mut as_point = None;
-    for chosen in &given.options {
-        match chosen.name {
-            "point" => is_distant = false,
-            "distant" => is_distant = true,
-            "spot" | "extended" => {
-                is_distant = false;
-                as_point = Some((chosen.name, chosen.span.clone()));
-            }
-            _ => {}
-        }
-    }
-    let vector = |name| given.option(name).map(|chosen| chosen.given.vector("XYZ"));
-    let (position, direction) = (vector("position"), vector("direction"));
-    let intensity = given
-        .option("intensity")
-        .map_or(1.0, |chosen| chosen.given.number("k"));
-    let shadow = given.option("noshadow").is_none();
-    let kind = if is_distant {
-        let towards = direction
-            .map(|d| -d)
-            .or_else(|| position.and_then(DVec3::try_normalize))
-            .ok_or_else(|| {
-                Problem::new(command.span.clone(), "a distant light needs a direction")
-                    .hint("add `direction x y z`, or a `position x y z` from where it shines")
-            })?;
-        LightKind::Distant { towards }
-    } else {
-        let position = position.ok_or_else(|| {
-            Problem::new(command.span.clone(), "this light has no position")
-                .hint("add `position x y z`")
-        })?;
-        LightKind::Point { position }
-    };
-    // What says nothing about this kind of light is not passed over in silence.
-    for chosen in &given.options {
-        let counts = match chosen.name {
-            "direction" => is_distant || as_point.is_some(),
-            "position" => !is_distant || direction.is_none(),
-            "angle" => matches!(as_point, Some(("spot", _))),
-            "radius" => matches!(as_point, Some(("extended", _))),
-            _ => true,
-        };
-        if !counts {
-            let name = chosen.name;
-            run.say(Severity::Warning, chosen.span.clone(), || {
-                (
-                    format!("`{name}` says nothing about this kind of light"),
-                    None,
-                )
-            });
-        }
-    }
-    if run.lights.len() >= MAX_LIGHTS {
-        return Err(Problem::new(
-            command.span.clone(),
-            format!("there are more than {MAX_LIGHTS} lights"),
-        ));
-    }
-    if let Some((kind, span)) = as_point {
-        run.say(Severity::Warning, span, || {
-            (
-                format!("`{kind}` is not drawn yet: the light shines as a point"),
-                None,
-            )
-        });
-    }
-    run.lights.push(Light {
-        kind,
-        colour: colour.map(|c| c * intensity as f32),
-        shadow,
-    });
-    Ok(Flow::Next)
-}
-
-/// `background Color`
-pub fn background<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    run.background = given.colour("Color");
-    if let Some(span) = given.span("options") {
-        run.not_carried_out(span, "a background of more than one colour");
-    }
-    Ok(Flow::Next)
-}
+use scene::{Background, Camera, Lens, Settings};
 
 /// `report [what …]`
 pub fn report<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
     let words = given.words("what");
+    let is_named = |name: &str| words.iter().any(|(word, _)| *word == name);
     let is = |names: &[&str]| {
         words.is_empty()
             || words
@@ -129,8 +39,11 @@ pub fn report<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
         lines.push(format!("{} lights", run.lights.len()));
     }
     if is(&["background"]) {
-        let [r, g, b] = run.background;
-        lines.push(format!("the background {r} {g} {b}"));
+        lines.push(match run.air.background() {
+            Background::Colour([r, g, b]) => format!("the background {r} {g} {b}"),
+            Background::Gradient(colours) => format!("a background of {} colours", colours.len()),
+            Background::Image(_) => String::from("an image as the background"),
+        });
     }
     if is(&["cameras"]) {
         let [eye, target] = [camera.eye, camera.target].map(|p| format!("{} {} {}", p.x, p.y, p.z));
@@ -151,10 +64,14 @@ pub fn report<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     if is(&["var"]) {
         lines.push(format!("{} variables", run.scope.names().count()));
     }
-    for nothing in ["clouds", "fog"] {
-        if words.iter().any(|(word, _)| *word == nothing) {
-            lines.push(format!("no {nothing}"));
-        }
+    let count = run.air.clouds.len();
+    if count > 0 || is_named("clouds") {
+        lines.push(format!("{count} clouds"));
+    }
+    match run.air.fog(camera.eye.distance(camera.target)) {
+        Some(fog) if is(&["fog"]) => lines.push(format!("fog of the distance {}", fog.distance)),
+        None if is_named("fog") => lines.push(String::from("no fog")),
+        _ => {}
     }
     run.say(Severity::Note, command.span.clone(), || {
         (format!("there are here: {}", lines.join(", ")), None)
@@ -179,12 +96,26 @@ pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         }
         if is("lights") {
             run.lights.clear();
+            run.sized_light = None;
         }
         if is("background") {
-            run.background = DEFAULT_BACKGROUND;
+            let Air { fog, clouds, .. } = std::mem::take(&mut run.air);
+            run.air = Air {
+                fog,
+                clouds,
+                ..Air::default()
+            };
+        }
+        if is("fog") {
+            run.air.fog = None;
+        }
+        if is("clouds") {
+            run.air.clouds.clear();
         }
         if is("cameras") {
             run.camera = Camera::default();
+            run.lens = Lens::default();
+            run.shutter = 0.0;
             run.aimed_at = (run.file, command.span.clone());
             run.vertical = None;
             run.view_plane = super::view_plane::ViewPlane::default();
@@ -207,7 +138,12 @@ pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 pub fn shoot<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
     if let Some(span) = given.span("options") {
-        run.not_carried_out(span, "an option of `shoot`");
+        run.say(Severity::Note, span, || {
+            (
+                String::from("`shoot` has no options here: the picture is as the commands say"),
+                None,
+            )
+        });
     }
     if run.shot.is_none() {
         let parts = run.model.parts.clone();

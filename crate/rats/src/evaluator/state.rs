@@ -1,6 +1,9 @@
 //! The state of a running text, which every command reads and changes.
 
+use super::air::Air;
+use super::images::Images;
 use super::model::Model;
+use super::moments::Frozen;
 use super::palette::Palette;
 use super::view_plane::ViewPlane;
 use super::watched::Watch;
@@ -14,7 +17,7 @@ use crate::sources::Sources;
 use crate::symbol::Symbol;
 use crate::syntax::{Command, Define};
 use crate::{Asset, Tool};
-use scene::{Camera, Light, Origin, Scene, Settings};
+use scene::{Camera, Lens, Light, Origin, Scene, Settings};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -42,8 +45,16 @@ pub struct Evaluator<'a> {
     pub(super) model: Model<'a>,
     pub(super) palette: Palette<'a>,
     pub(super) lights: Vec<Light>,
-    pub(super) background: scene::Rgb,
+    /// The file and place of the first light's size.
+    pub(super) sized_light: Option<(usize, Range<usize>)>,
+    pub(super) air: Air,
+    pub(super) images: Images,
     pub(super) camera: Camera,
+    pub(super) lens: Lens,
+    /// The share of a frame for which the shutter is open.
+    pub(super) shutter: f64,
+    /// What `transform` has frozen, for the other moments of an open shutter.
+    pub(super) frozen: Frozen,
     /// The file and place of the last `eyep` or `vrp`.
     pub(super) aimed_at: (usize, Range<usize>),
     /// The other way to place the camera.
@@ -96,8 +107,13 @@ impl<'a> Evaluator<'a> {
             model: Model::default(),
             palette: Palette::default(),
             lights: Vec::new(),
-            background: scene::DEFAULT_BACKGROUND,
+            sized_light: None,
+            air: Air::default(),
+            images: Images::default(),
             camera: Camera::default(),
+            lens: Lens::default(),
+            shutter: 0.0,
+            frozen: Frozen::default(),
             aimed_at: (0, 0..0),
             view_plane: ViewPlane::default(),
             vertical: None,

@@ -1,37 +1,55 @@
-//! `texture`. This version draws one kind: a pair of waves whose target is the strength, which is a
-//! profile of the field ([`field::Profile`]). All others are read and checked, and a warning says that
-//! they are not drawn.
+//! `texture`: layers of patterns on a material, and profiles of a field's strength.
 
 use super::palette::Texture;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::OptionSpec;
-use crate::commands::options::{SOLIDS, TARGETS, TEXTURE, WAVES};
+use crate::commands::options::{MAPPINGS, SOLIDS, TARGETS, TEXTURE, WAVES};
 use crate::given::Chosen;
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
 use crate::suggest;
 use crate::syntax::Command;
-use field::{Profile, Wave};
+use field::Profile;
 use glam::DVec3;
 use std::ops::Range;
+use texture::{Fault, Mapping, Region, Solid, Target};
 
-/// A wave of the table.
-fn wave(word: &str) -> Option<Wave> {
-    let name = WAVES
-        .iter()
-        .find(|wave| wave.name.eq_ignore_ascii_case(word))?
-        .name;
+/// The waves of the table, for profiles and for textures.
+#[rustfmt::skip]
+const WAVE_KINDS: [(field::Wave, texture::Wave); 9] = [
+    (field::Wave::One, texture::Wave::One),
+    (field::Wave::X, texture::Wave::X),
+    (field::Wave::Saw, texture::Wave::Saw),
+    (field::Wave::Hat, texture::Wave::Hat),
+    (field::Wave::Step, texture::Wave::Step),
+    (field::Wave::Sin, texture::Wave::Sin),
+    (field::Wave::Cos, texture::Wave::Cos),
+    (field::Wave::Sin2, texture::Wave::Sin2),
+    (field::Wave::Cos2, texture::Wave::Cos2),
+];
+
+const WHAT: &str =
+    "how to texture: a solid such as `wood`, two waves such as `sin one`, a colour or an image";
+
+fn index_of(list: &[OptionSpec], word: &str) -> Option<usize> {
+    list.iter()
+        .position(|one| one.name.eq_ignore_ascii_case(word))
+}
+
+/// A target of the table; `None` is `strength`.
+fn target(name: &str) -> Option<Target> {
     Some(match name {
-        "one" => Wave::One,
-        "x" => Wave::X,
-        "saw" => Wave::Saw,
-        "hat" => Wave::Hat,
-        "step" => Wave::Step,
-        "sin" => Wave::Sin,
-        "cos" => Wave::Cos,
-        "sin^2" => Wave::Sin2,
-        _ => Wave::Cos2,
+        "diffuse" => Target::Diffuse,
+        "ambient" => Target::Ambient,
+        "specular" => Target::Specular,
+        "reflective" => Target::Reflective,
+        "transparent" => Target::Transparent,
+        "index" => Target::Index,
+        "shine" => Target::Shine,
+        "pigment" => Target::Pigment,
+        "normal" => Target::Normal,
+        _ => return None,
     })
 }
 
@@ -44,11 +62,14 @@ pub fn texture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
     Ok(Flow::Next)
 }
 
-/// The effect of a texture's own layer.
+/// Where a texture's values come from, as the text says it.
 #[derive(Debug)]
-enum Method {
-    Waves([Wave; 2]),
-    Other(&'static str),
+enum Method<'a> {
+    /// Two waves, by their indices in [`WAVE_KINDS`].
+    Waves([usize; 2]),
+    Colour(DVec3),
+    Solid(Solid),
+    Image(Name<'a>, Mapping),
 }
 
 fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
@@ -58,135 +79,172 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         let old = read.known_name("the name of the old texture")?;
         let options = read.chosen(TEXTURE)?;
         read.end()?;
-        let texture = derived(run, &old, options)?;
-        return run.palette.insert_texture(&name, texture);
+        let texture = run.palette.texture(&old)?.clone();
+        return finish(run, &name, texture, options);
     }
-    let start = read.start();
-    let Some((target, target_span)) = read.option(TARGETS)? else {
-        return Err(read.expected("what the texture changes, such as `strength`"));
+    let Some((word, _)) = read.option(TARGETS)? else {
+        return Err(read.expected("what the texture changes, such as `pigment`"));
     };
-    let mut layers = read.operands(target.parameters, TEXTURE)?.names("t1 +");
-    let method = match target.name {
+    let below = read.operands(word.parameters, TEXTURE)?.names("t1 +");
+    let start = read.start();
+    let method = match word.name {
         "texture" => None,
         _ => Some(method(&mut read)?),
     };
     let span = read.since(start);
     let options = read.chosen(TEXTURE)?;
     read.end()?;
-    let mut profile = Profile {
-        waves: [Wave::One; 2],
-        scale: [1.0; 2],
-        bounds: [0.0, 1.0],
-        times: 1.0,
-        restriction: 0.0,
+    let texture = match method {
+        None => run.palette.layers(&below)?,
+        Some(method) => own_layer(run, target(word.name), method, span)?,
     };
-    let ignored = change(
-        options,
-        method.is_some().then_some(&mut profile),
-        &mut layers,
-    );
-    let mut texture = run.palette.layers(&layers)?;
-    match method {
-        None => {
-            for (what, span) in ignored {
-                not_drawn(run, span, format!("`{what}` of layers"));
-            }
-        }
-        Some(Method::Waves(waves)) if target.name == "strength" => {
-            texture.layers += 1;
-            texture.profile = Some(Profile { waves, ..profile });
-            for (what, span) in ignored {
-                not_drawn(run, span, format!("`{what}` of a strength"));
-            }
-        }
-        Some(method) => {
-            texture.layers += 1;
-            let method = match method {
-                Method::Waves(_) => "waves",
-                Method::Other(name) => name,
-            };
-            let span = target_span.start..span.end;
-            not_drawn(
-                run,
-                span,
-                format!("a texture of {method} on `{}`", target.name),
-            );
-        }
-    }
-    run.palette.insert_texture(&name, texture)
+    finish(run, &name, texture, options)
 }
 
-/// A copy with changes. Those of what is not drawn say nothing: the original's command has said it.
-fn derived<'a>(
+/// A texture of one layer, or a profile where there is no target.
+fn own_layer<'a>(
     run: &mut Evaluator<'a>,
-    old: &Name<'a>,
-    options: Vec<Chosen<'a>>,
+    target: Option<Target>,
+    method: Method<'a>,
+    span: Range<usize>,
 ) -> Outcome<Texture> {
-    let original = run.palette.texture(old)?.clone();
-    let mut own = original.profile.filter(|_| original.layers == 1);
-    let mut layers = vec![old.clone()];
-    let ignored = change(options, own.as_mut(), &mut layers);
-    let mut texture = run.palette.layers(&layers)?;
-    texture.profile = own.or(texture.profile);
-    if original.profile.is_some() {
-        let of = if own.is_some() {
-            "a strength"
-        } else {
-            "layers"
+    let Some(target) = target else {
+        let (waves, times) = match method {
+            Method::Waves(waves) => (waves.map(|index| WAVE_KINDS[index].0), 1.0),
+            Method::Colour(colour) => ([field::Wave::One; 2], colour.x),
+            Method::Solid(_) | Method::Image(..) => {
+                return Err(Problem::new(
+                    span,
+                    "a strength varies along the bone only: it takes two waves",
+                )
+                .hint(
+                    "write two waves, such as `sin one`; `normal` with this method makes bumps",
+                ));
+            }
         };
-        for (what, span) in ignored {
-            not_drawn(run, span, format!("`{what}` of {of}"));
-        }
-    }
-    Ok(texture)
+        let profile = Profile {
+            waves,
+            scale: [1.0; 2],
+            bounds: [0.0, 1.0],
+            times,
+            restriction: 0.0,
+        };
+        return Ok(Texture {
+            profile: Some(profile),
+            ..Texture::default()
+        });
+    };
+    let method = match method {
+        Method::Waves(waves) => texture::Method::Waves(waves.map(|index| WAVE_KINDS[index].1)),
+        Method::Colour(colour) => texture::Method::Colour(colour),
+        Method::Solid(solid) => texture::Method::Solid(solid),
+        Method::Image(name, mapping) => texture::Method::Image(run.image(&name)?, mapping),
+    };
+    Ok(Texture {
+        layers: vec![texture::Texture::new(target, method)],
+        ..Texture::default()
+    })
 }
 
-/// Applies options to a texture's own profile, if it has one, and collects its other layers; gives the options
-/// that change nothing.
-fn change<'a>(
+/// Applies the options to every layer, puts the other layers that they name upon them, and keeps the result.
+fn finish<'a>(
+    run: &mut Evaluator<'a>,
+    name: &Name<'a>,
+    mut texture: Texture,
     options: Vec<Chosen<'a>>,
-    mut profile: Option<&mut Profile>,
-    layers: &mut Vec<Name<'a>>,
-) -> Vec<(&'static str, Range<usize>)> {
-    let mut ignored = Vec::new();
-    for Chosen { name, span, given } in options {
-        match (name, profile.as_deref_mut()) {
-            ("scale", Some(profile)) => {
-                profile.scale = [given.vector("XYZ").x, given.vector("XYZ").y];
+) -> Outcome<()> {
+    let mut above = Vec::new();
+    let mut mask = None;
+    for chosen in options {
+        if chosen.name == "texture" {
+            above.extend(chosen.given.names("t1 +"));
+            continue;
+        }
+        if matches!(chosen.name, "mask" | "scale") {
+            mask = Some(chosen.span.clone());
+        }
+        if let Some(message) = set(&mut texture, &chosen) {
+            run.say(Severity::Warning, chosen.span, || {
+                (message, Some(String::from("leave it out")))
+            });
+        }
+    }
+    for layer in &texture.layers {
+        layer.check().map_err(|fault| {
+            let span = mask.clone().unwrap_or(name.span.clone());
+            let problem = Problem::new(span, fault.to_string());
+            match fault {
+                Fault::Mask(..) => problem.hint(format!("it has {}", layer.mask.len())),
+                _ => problem,
             }
-            // A strength is one number: the first of the three.
-            ("times", Some(profile)) => profile.times = given.vector("RGB").x,
-            ("bounds", Some(profile)) => {
+        })?;
+    }
+    run.palette.stack(&mut texture, &above)?;
+    run.palette.insert_texture(name, texture)
+}
+
+/// Sets an option of every layer and of the profile. Returns what is to be said if it changes nothing.
+fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
+    let Chosen { name, given, .. } = chosen;
+    let layers = &mut texture.layers;
+    if let Some(profile) = &mut texture.profile {
+        // A strength is one number: the first of three.
+        match *name {
+            "scale" => profile.scale = [given.vector("XYZ").x, given.vector("XYZ").y],
+            "times" => profile.times = given.vector("RGB").x,
+            "bounds" => {
                 let bounds = given.vectors("RGB");
                 profile.bounds = [bounds[0].x, bounds[1].x];
             }
-            ("texture", _) => layers.extend(given.names("t1 +")),
-            ("translate", _) if given.vector("XYZ") == DVec3::ZERO => {}
-            _ => ignored.push((name, span)),
+            "translate" if given.vector("XYZ") == DVec3::ZERO => {}
+            _ if layers.is_empty() => {
+                return Some(format!(
+                    "`{name}` changes nothing about a strength: `scale`, `bounds` and `times` do"
+                ));
+            }
+            _ => {}
         }
     }
-    ignored
-}
-
-fn not_drawn(run: &mut Evaluator<'_>, span: Range<usize>, what: String) {
-    run.say(Severity::Warning, span, || {
-        (format!("{what} is not drawn yet"), None)
-    });
+    let is_solid = |layer: &texture::Texture| matches!(layer.method, texture::Method::Solid(_));
+    if matches!(*name, "turbulence" | "octaves")
+        && !layers.is_empty()
+        && !layers.iter().any(is_solid)
+    {
+        return Some(format!(
+            "`{name}` says nothing here: it is the noise of solids such as `wood`"
+        ));
+    }
+    for layer in layers {
+        match *name {
+            "translate" => layer.translate = given.vector("XYZ"),
+            "scale" => layer.scale = given.vector("XYZ"),
+            "times" => layer.times = given.vector("RGB"),
+            "bounds" => {
+                let bounds = given.vectors("RGB");
+                layer.bounds = [bounds[0], bounds[1]];
+            }
+            "turbulence" => layer.grain.turbulence = given.number("t"),
+            "octaves" => layer.grain.octaves = given.number("r"),
+            "mask" => {
+                let entries = given.numbers("1 0");
+                layer.mask = entries.into_iter().map(|entry| entry == 1.0).collect();
+            }
+            _ => layer.replace = true,
+        }
+    }
+    None
 }
 
 /// A solid texture, a pair of waves, an image or a colour.
-fn method(read: &mut Reader<'_, '_>) -> Outcome<Method> {
-    const WHAT: &str =
-        "how to texture: a solid such as `wood`, two waves such as `sin one`, a colour or an image";
+fn method<'a>(read: &mut Reader<'_, 'a>) -> Outcome<Method<'a>> {
     if read.peek_word().is_none() {
-        read.colour(WHAT)?;
-        return Ok(Method::Other("a colour"));
+        return Ok(Method::Colour(colour(read)?));
     }
     let back = read.at;
     let word = read.file_name(WHAT)?;
-    if let Some(u) = wave(word.text) {
+    if let Some(u) = index_of(WAVES, word.text) {
         let second = read.name("the second wave, such as `one`")?;
-        let v = wave(second.text).ok_or_else(|| {
+        let v = index_of(WAVES, second.text).ok_or_else(|| {
             let names: Vec<_> = WAVES.iter().map(|wave| wave.name).collect();
             let names = names.join(", ");
             Problem::new(second.span, format!("there is no wave `{}`", second.text))
@@ -195,26 +253,51 @@ fn method(read: &mut Reader<'_, '_>) -> Outcome<Method> {
         return Ok(Method::Waves([u, v]));
     }
     if read.keyword("plain") {
-        return Ok(Method::Other("an image"));
+        return Ok(Method::Image(word, Mapping::Plain));
     }
     if read.keyword("region") {
-        for _ in 0..6 {
-            read.vector("the region: min, max and four corners")?;
-        }
-        return Ok(Method::Other("an image"));
+        return Ok(Method::Image(word, Mapping::Region(region(read)?)));
     }
-    let is_solid = |solid: &&OptionSpec| solid.name.eq_ignore_ascii_case(word.text);
-    if let Some(solid) = SOLIDS.iter().find(is_solid) {
-        return Ok(Method::Other(solid.name));
+    if crate::reads::is_image(word.text) {
+        let names: Vec<_> = MAPPINGS.iter().map(|m| format!("`{}`", m.name)).collect();
+        return Err(read
+            .expected(&format!("how the image lies: {}", names.join(" or ")))
+            .hint(format!("write `{} plain`", word.text)));
+    }
+    if let Some(index) = index_of(SOLIDS, word.text) {
+        return Ok(Method::Solid(Solid::ALL[index]));
     }
     read.at = back;
-    read.colour(WHAT).map_err(|problem| {
+    colour(read).map(Method::Colour).map_err(|problem| {
         // Names of one letter are near to any.
         let words = SOLIDS.iter().chain(WAVES).map(|word| word.name);
         match suggest::hint(word.text, words.filter(|word| word.len() > 1)) {
             Some(hint) if problem.span == word.span => problem.hint(hint),
             _ => problem,
         }
-    })?;
-    Ok(Method::Other("a colour"))
+    })
+}
+
+fn colour(read: &mut Reader<'_, '_>) -> Outcome<DVec3> {
+    Ok(DVec3::from_array(read.colour(WHAT)?.map(f64::from)))
+}
+
+/// The box and the rectangle of an image that is thrown onto a part.
+fn region(read: &mut Reader<'_, '_>) -> Outcome<Region> {
+    let start = read.start();
+    let mut points = [DVec3::ZERO; 6];
+    for (point, parameter) in points.iter_mut().zip(MAPPINGS[1].parameters) {
+        *point = read.vector(parameter.meaning)?;
+    }
+    let [min, max, a, b, c, d] = points;
+    let region = Region {
+        min,
+        max,
+        corners: [a, b, c, d],
+    };
+    if region.is_rectangle() {
+        return Ok(region);
+    }
+    Err(Problem::new(read.since(start), Fault::Region.to_string())
+        .hint("two corners of the box, then the lower left, lower right, upper right and upper left corner of the rectangle"))
 }

@@ -2,7 +2,11 @@
 //! (tests) have stand-ins in memory.
 
 #[cfg(target_arch = "wasm32")]
+mod video;
+#[cfg(target_arch = "wasm32")]
 mod web;
+#[cfg(target_arch = "wasm32")]
+pub use video::*;
 #[cfg(target_arch = "wasm32")]
 pub use web::*;
 

@@ -1,11 +1,14 @@
 //! Stand-ins for tests: an address and a storage in memory, for each thread its own.
 
 use crate::intake::Taken;
+use crate::recording::{Encoded, Kind, VideoFormat};
 use crate::request::{Request, Requests};
 use crate::storage::Store;
+use ::picture::{Format, Picture, file};
 use egui_wgpu::wgpu;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
+use video::{Codec, Colours, Packet};
 
 thread_local! {
     static HASH: RefCell<String> = const { RefCell::new(String::new()) };
@@ -132,4 +135,79 @@ pub fn read(path: &str) -> Option<Vec<u8>> {
 /// Fetches a file of the page.
 pub fn fetch(path: &str, done: impl FnOnce(Option<Vec<u8>>) + 'static) {
     done(read(path));
+}
+
+/// The encoders of [`VideoEncoder`].
+#[must_use]
+pub fn native_formats() -> Vec<VideoFormat> {
+    let format = |kind, codec: &str| VideoFormat {
+        kind,
+        codec: codec.to_owned(),
+    };
+    vec![format(Kind::Mp4, "avc1"), format(Kind::WebM, "vp09")]
+}
+
+/// Asks for encoders.
+pub fn video_formats(done: impl FnOnce(Vec<VideoFormat>) + 'static) {
+    done(native_formats());
+}
+
+/// A stand-in for an encoder of videos: its packets are PNG files.
+pub struct VideoEncoder {
+    codec: Codec,
+    packets: Vec<Packet>,
+    is_ending: bool,
+}
+
+impl VideoEncoder {
+    /// An encoder of one of [`native_formats`].
+    ///
+    /// # Errors
+    /// For another codec.
+    pub fn new(codec: &str, _size: [u32; 2], _rate: u16) -> Result<Self, String> {
+        Ok(Self {
+            codec: match codec {
+                "avc1" => Codec::H264 {
+                    configuration: vec![1, 66, 0, 31],
+                },
+                "vp09" => Codec::Vp9,
+                other => return Err(format!("There is no codec {other}.")),
+            },
+            packets: Vec::new(),
+            is_ending: false,
+        })
+    }
+
+    /// Frames that wait to be encoded.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        0
+    }
+
+    /// Encodes a frame that is shown at a time, microseconds.
+    ///
+    /// # Errors
+    /// If it cannot be encoded.
+    pub fn encode(&mut self, picture: &Picture, time: u64, is_key: bool) -> Result<(), String> {
+        let bytes = file::encode(picture, Format::Png).map_err(|problem| problem.to_string())?;
+        self.packets.push(Packet {
+            time,
+            is_key,
+            bytes,
+        });
+        Ok(())
+    }
+
+    /// Returns everything at the second call.
+    ///
+    /// # Errors
+    /// Never.
+    pub fn finish(&mut self) -> Result<Option<Encoded>, String> {
+        let is_over = std::mem::replace(&mut self.is_ending, true);
+        Ok(is_over.then(|| Encoded {
+            codec: self.codec.clone(),
+            colours: Colours::BT709,
+            packets: std::mem::take(&mut self.packets),
+        }))
+    }
 }

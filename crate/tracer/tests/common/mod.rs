@@ -151,6 +151,7 @@ pub fn empty() -> Scene {
         },
         colour: [1.0; 3],
         shadow: true,
+        size: 0.0,
     });
     scene
 }

@@ -222,7 +222,7 @@ fn head(scene: &Value) -> Result<String> {
     let [eye, up, target] = ["eye", "up", "target"].map(|name| vector(&camera[name]));
     let (eye, up, target) = (point(eye?), point(up?), point(target?));
     let fov = number(&camera["fov"])?;
-    let background = point(vector(&scene["background"])?);
+    let background = point(vector(&scene["background"]["Colour"])?);
     let light = point(vector(&scene["lights"][0]["kind"]["Point"]["position"])?);
     Ok(format!(
         "#version 3.7;\n\
@@ -288,7 +288,7 @@ mod tests {
             "finishes": [{ "ambient": [0.1, 0.1, 0.1], "diffuse": [0.5, 0.5, 0.5] }],
             "lights": [{ "kind": { "Point": { "position": [1.0, 2.0, 3.0] } } }],
             "camera": { "eye": [0.0, 0.0, 5.0], "up": [0.0, 1.0, 0.0], "target": [0.0, 0.0, 0.0], "fov": 45.0 },
-            "background": [0.0, 0.0, 0.0],
+            "background": { "Colour": [0.0, 0.0, 0.0] },
             "settings": { "blob_scale": "Relative", "fragile": { "sphere": false } },
         })
     }

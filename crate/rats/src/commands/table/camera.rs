@@ -10,18 +10,18 @@ pub static CAMERA: &[CommandSpec] = &[
     row("aperture", "radius of the lens", run(Routine::Aperture))
         .takes(&[length("radius", "the radius of the lens").at_least(0.0)])
         .default("0")
-        .details("0 is a pinhole, which draws everything sharp.")
-        .example(clay!("aperture 0\nsphere Clay 2, 0 0 0")),
-    row("focus", "distance of the focal plane", run(Routine::Focus))
+        .details("0 is a pinhole, which draws everything sharp. A lens draws sharp what is as far away as `focus` says, measured along the direction of view; a point at another distance z becomes a disc, of the radius radius·|focus − z|/z where it is sharp. More samples (`sample`) make the blur smoother.")
+        .example(clay!("aperture 0.3\nfocus 8\nsample 3\nsphere Clay 1, -1.5 0 -3\nsphere Clay 1, 0 0 2\nsphere Clay 0.7, 1.2 0 5")),
+    row("focus", "distance that the lens draws sharp", run(Routine::Focus))
         .takes(&[length("distance", "the distance of the focal plane").at_least(1e-9)])
         .default("to vrp")
         .details("It only shows when the lens has an `aperture`.")
-        .example(clay!("focus 10\nsphere Clay 2, 0 0 0")),
+        .example(clay!("aperture 0.3\nfocus 5\nsample 3\nsphere Clay 1, -1.5 0 -3\nsphere Clay 1, 0 0 2\nsphere Clay 0.7, 1.2 0 5")),
     row("shutter", "how long the shutter is open", run(Routine::Shutter))
         .takes(&[number("fraction", "the fraction of time").from(0.0, 1.0)])
         .default("0")
-        .details("0 is no blur, 1 blurs over the whole frame of an animation.")
-        .example(clay!("shutter 0\nsphere Clay 2, 0 0 0")),
+        .details("A share of the time from one frame of an animation to the next: 0 is no blur, with 1 whatever moves is blurred along its whole way. What moves is what is made of variables that change with every frame; `transform` holds an object still meanwhile. More samples (`sample`) make the blur smoother.")
+        .example(clay!("var x = -1 += 2\nshutter 1\nsample 4\nsphere Clay 1, 0 1.5 0\nsphere Clay 1, x -1 0")),
     row("vrp", "view reference point, in the middle of the picture", run(Routine::Vrp))
         .takes(&[vector("XYZ", "the view reference point")])
         .default("0 0 0")

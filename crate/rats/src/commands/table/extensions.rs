@@ -3,7 +3,7 @@
 use crate::commands::build::{clay, flesh, library, row, run, structure};
 use crate::commands::options as o;
 use crate::commands::parameter::{
-    Arity, Kind, Names, Parameter, length, number, parameter, vector, word,
+    Arity, Kind, Names, Parameter, colour, length, number, parameter, vector, word,
 };
 use crate::commands::spec::{CommandSpec, Routine};
 
@@ -29,6 +29,23 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         .default("0.001")
         .details("Counts for the draft and for every digger but hermite: traced pictures ignore nothing that could be seen.")
         .example(flesh!("influence 1e-4\nsphere Flesh 0.6, 0 0 0")),
+    row("sky", "light from everywhere", run(Routine::Sky))
+        .takes(&[colour("Color", "the light's colour from straight above")])
+        .options(o::SKY)
+        .default("none")
+        .details("Every place gets the light of the part of the sky that it sees: hollows and what touches the ground get darker, as on a cloudy day. Materials whose `ambient` is not given have none under a sky. The sky is seen behind everything unless there is a `background`.")
+        .example(flesh!("sky White to SteelBlue, intensity 0.8\nground Gray80\neyep 0 3 9\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
+    row("ground", "a plane to stand on", run(Routine::Ground))
+        .takes(&[colour("Color", "the ground's colour")])
+        .options(o::GROUND)
+        .default("none")
+        .details("An endless plane across the direction up (`vup`) that receives light and shadows. Without a height it touches the lowest shape.")
+        .example(clay!("ground Wheat\nlight White, distant, direction -1 -2 -1\neyep 0 3 9\nsphere Clay 2, 0 0 0")),
+    row("tone", "how bright light becomes colours of the screen", run(Routine::Tone))
+        .takes(&[word("what", o::TONES, "`none` or `filmic`")])
+        .default("none")
+        .details("Filmic: light up to 0.6 stays as it is; above that 0.6 + 0.4·t/(1 + t), where t = (x − 0.6)/0.4, so that what glares keeps its form.")
+        .example(clay!("tone filmic\nlight White, position -4 8 10, intensity 1.5\nsphere Clay 2, 0 0 0")),
     row("body", "begin a body, whose shapes blend with no others", run(Routine::Body))
         .takes(&[parameter("name", Kind::New(Names::Object), "the body's name")])
         .details("Soft shapes of a body flow together; those of two bodies do not, however near they are: legs that touch stay legs. \
@@ -47,6 +64,12 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         ])
         .details("More points, three at a time, join more curves: each begins where the last one ends.")
         .example(flesh!("curve Flesh 0.6, <-3 -1 0> <-1 3 0> <1 -3 0> <3 1 0>")),
+    row("deform", "bend a mesh by control points", run(Routine::Deform))
+        .takes(&[parameter("object", Kind::Known(Names::Object), "an object's name").optional("the last one")])
+        .options(o::DEFORM)
+        .details("Control points may lie anywhere, at most 4096; each takes along what is near when it moves, and one without `move` holds it. \
+            All that is between follows smoothly (by natural neighbours), and far away nothing moves. Triangles, patches and meshes can be deformed, soft surfaces around meshes too.")
+        .example(clay!("eyep 3 4 3\nfov 30\nvup 0 0 1\nmesh Clay gem.obj\ndeform { control <0 0 1> move <0.4 0 0.6>\n  control <0 0 0>\n  control <0 0 -1> move <-0.4 0 0> }")),
     row("seed", "start the random numbers of `rand`", run(Routine::Seed))
         .takes(&[number("n", "the seed")])
         .default("0")

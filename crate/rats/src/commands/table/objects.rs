@@ -1,7 +1,6 @@
 //! OBJECTS: groups of shapes, and how they are moved.
 
 use crate::commands::build::{clay, flesh, row, run};
-use crate::commands::options as o;
 use crate::commands::parameter::{Kind, Names, Parameter, degrees, direction, parameter, vector};
 use crate::commands::spec::{CommandSpec, Routine};
 
@@ -45,14 +44,8 @@ pub static OBJECTS: &[CommandSpec] = &[
         .takes(&[parameter("x y z", Kind::Vector, "the shares"), OBJECT])
         .details("Each shape moves away from the middle of the object, by the share x, y, z of its distance along each axis: 0 leaves it, 1 doubles the distance.")
         .example(clay!("object PARTS\n  sphere Clay 0.8, -0.5 0 0\n  sphere Clay 0.8, 0.5 0 0\n  sphere Clay 0.8, 0 0.8 0\nclose\nexplode 2 2 0, PARTS")),
-    row("deform", "bend a mesh by control points (ours)", run(Routine::Deform))
+    row("transform", "hold an object still while the shutter is open", run(Routine::Transform))
         .takes(&[OBJECT])
-        .options(o::DEFORM)
-        .details("Control points may lie anywhere, at most 4096; each takes along what is near when it moves, and one without `move` holds it. \
-            All that is between follows smoothly (by natural neighbours), and far away nothing moves. Triangles, patches and meshes can be deformed, soft surfaces around meshes too.")
-        .example(clay!("eyep 3 4 3\nfov 30\nvup 0 0 1\nmesh Clay gem.obj\ndeform { control <0 0 1> move <0.4 0 0.6>\n  control <0 0 0>\n  control <0 0 -1> move <-0.4 0 0> }")),
-    row("transform", "apply transforms now", run(Routine::Transform))
-        .takes(&[OBJECT])
-        .details("They always are; RATS needed this to blur what moves.")
-        .example(clay!("sphere Clay 1, 0 0 0\ntranslate 1 0 0\ntransform")),
+        .details("Transforms are applied at once. What variables that change with every frame have done to the object so far is then the same for the whole time of the `shutter`; what comes after this is blurred.")
+        .example(clay!("var x = -1.5 += 3\nshutter 1\nsample 3\nobject STILL\n  sphere Clay 1, x 1.2 0\nclose\ntransform STILL\nobject MOVING\n  sphere Clay 1, x -1.2 0\nclose")),
 ];

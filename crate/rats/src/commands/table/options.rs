@@ -1,6 +1,6 @@
 //! OPTIONS: settings of the picture and of how it is made.
 
-use crate::commands::build::{clay, flesh, idle, later, row, run};
+use crate::commands::build::{clay, flesh, idle, row, run};
 use crate::commands::options as o;
 use crate::commands::parameter::{
     Kind, Names, ON_OFF, Parameter, SWITCH, Unit, colour, number, parameter, whole, word,
@@ -50,7 +50,9 @@ pub static OPTIONS: &[CommandSpec] = &[
         .default("off")
         .details("Black is no work, white the dearest pixel of a sample (a packet of rays in every 16×16 pixels); N above 1 lifts what is dark. Work is counted, not timed, so that a map is the same everywhere: an evaluation of one shape's field at one point counts 1, and so does each ray to the eye or to a light. Rays of a packet share the work that is done for all of them, and a pixel shows the mean of its rays.")
         .example(flesh!("map on 1.5\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0")),
-    switch("penumbra", "soft shadows", later(), "off").example("penumbra off"),
+    switch("penumbra", "soft shadows", run(Routine::Penumbra), "off")
+        .details("Shadows of lights that have a `size` get soft edges: a place gets the share of the light that it sees. More samples (`sample`) make them smoother.")
+        .example("surface Clay, diffuse SandyBrown, specular Gray50, shine 40\npenumbra on\nsample 3\nground Gray80\neyep 0 4 9\nlight White, position 5 9 4, size 1.5\nsphere Clay 1.5, 0 0 0"),
     switch("noview", "do not display the picture", idle(WINDOWS), "off").example("noview on"),
     switch("nosave", "do not save the picture", run(Routine::Nosave), "off")
         .details("The program that runs the dataset then neither traces nor writes the picture, unless it is told a name for it with `-o`. In the page, tools do not find the picture among the files; you can still save it by hand.")
@@ -76,18 +78,21 @@ pub static OPTIONS: &[CommandSpec] = &[
         .default("tif")
         .details("The program writes all of these; the page saves PNG whatever stands here.")
         .example("format png"),
-    row("epsilon", "precision of hits", idle("hits are found to a tolerance of the tracer's own"))
-        .takes(&[number("value", "the precision").from(1e-12, 1.0)])
+    row("epsilon", "how far mirrored and refracted rays start from hard surfaces", run(Routine::Epsilon))
+        .takes(&[number("value", "the precision").from(1e-12, 0.1)])
         .default("1e-4")
-        .example("epsilon 1e-4"),
-    row("vanish", "least colour that counts", idle("no light is left out"))
+        .details("A share of the scene's size. Rays from soft surfaces start as near as their own error allows.")
+        .example(clay!("epsilon 1e-4\nsurface Chrome, diffuse Gray20, reflective 70%\nsphere Chrome 1.5, -1 0 0\nsphere Clay 1, 1.5 0 1")),
+    row("vanish", "least share of light that a mirrored or refracted ray must bring", run(Routine::Vanish))
         .takes(&[number("value", "the least colour").from(0.0, 1.0)])
         .default("4e-3")
-        .example("vanish 4e-3"),
-    row("maxdepth", "depth of the shading tree", idle("rays are not mirrored in this version"))
-        .takes(&[whole("number", 1, 100, "the depth")])
+        .details("A ray that would change each of red, green and blue of its pixel by less is not sent.")
+        .example(clay!("vanish 0.01\nsurface Chrome, diffuse Gray20, reflective 70%\nsphere Chrome 1.5, -1 0 0\nsphere Clay 1, 1.5 0 1")),
+    row("maxdepth", "how many surfaces may mirror or refract a ray, one after the other", run(Routine::Maxdepth))
+        .takes(&[whole("number", 0, Settings::MAX_DEPTH, "the depth")])
         .default("5")
-        .example("maxdepth 5"),
+        .details("Light goes into a glass and out again at two surfaces, and through a hollow one at four. 0: nothing mirrors or is seen through.")
+        .example(clay!("maxdepth 2\nsurface Chrome, diffuse Gray20, reflective 70%\nsphere Chrome 1.5, -1.6 0 0\nsphere Chrome 1.5, 1.6 0 0\nsphere Clay 0.6, 0 0 2")),
     row("maxmol", "largest group of soft shapes", idle("groups can have any size"))
         .takes(&[whole("number", 1, 1_000_000_000, "the number of shapes")])
         .default("300")
@@ -122,6 +127,7 @@ pub static OPTIONS: &[CommandSpec] = &[
             parameter("method", Kind::Text, "the method").optional(""),
         ])
         .default("1")
+        .details("The first ray of each pixel makes a whole picture; more follow where neighbours differ (see `contrast`), and everywhere where a lens, the shutter, a light's size or the sky ask for many.")
         .example(clay!("sample 4\nsphere Clay 2, 0 0 0")),
     row("mesh", "triangles of a file (ours), or how polygons are checked", run(Routine::Mesh))
         .takes(&[

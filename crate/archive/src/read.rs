@@ -1,0 +1,166 @@
+//! Reading: the directory at the archive's end, then members one by one.
+
+use crate::Error;
+use crate::checksum::checksum;
+use miniz_oxide::inflate::TINFLStatus;
+use miniz_oxide::inflate::decompress_to_vec_with_limit;
+
+/// A member as the directory tells of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Its name, with folders. Letters outside of UTF-8 are replaced.
+    pub name: String,
+    /// Its size when it is unpacked, as the archive tells it, bytes.
+    pub size: usize,
+    encrypted: bool,
+    method: u16,
+    checksum: u32,
+    /// Packed size.
+    packed: usize,
+    /// Where the member's own heading starts.
+    start: usize,
+}
+
+impl Entry {
+    /// Whether it is a folder.
+    #[must_use]
+    pub fn is_folder(&self) -> bool {
+        self.name.ends_with('/')
+    }
+}
+
+/// An archive whose directory was read.
+#[derive(Clone, Debug)]
+pub struct Archive<'a> {
+    bytes: &'a [u8],
+    entries: Vec<Entry>,
+}
+
+impl<'a> Archive<'a> {
+    /// Reads the directory of an archive.
+    ///
+    /// # Errors
+    /// If there is none, or it lists more than `most` members.
+    pub fn open(bytes: &'a [u8], most: usize) -> Result<Self, Error> {
+        let mut at = directory(bytes)?;
+        let mut entries = Vec::new();
+        // The directory ends where no entry begins.
+        while let Some((entry, end)) = entry(bytes, at)? {
+            if entries.len() == most {
+                return Err(Error::Members(most));
+            }
+            entries.push(entry);
+            at = end;
+        }
+        Ok(Self { bytes, entries })
+    }
+
+    /// The members, in the directory's order.
+    #[must_use]
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// The first member of a name, whatever the case of its letters; `None` without any.
+    #[must_use]
+    pub fn entry(&self, name: &str) -> Option<&Entry> {
+        let name = name.to_lowercase();
+        self.entries
+            .iter()
+            .find(|entry| entry.name.to_lowercase() == name)
+    }
+
+    /// The content of a member.
+    ///
+    /// # Errors
+    /// If it has more than `most` bytes, is encrypted, packed by a method other than deflating, or damaged.
+    pub fn read(&self, entry: &Entry, most: usize) -> Result<Vec<u8>, Error> {
+        if entry.encrypted {
+            return Err(Error::Encrypted);
+        }
+        if entry.size > most {
+            return Err(Error::Large(most));
+        }
+        let heading = self.bytes.get(entry.start..).ok_or(Error::Broken)?;
+        if !heading.starts_with(b"PK\x03\x04") {
+            return Err(Error::Broken);
+        }
+        let length = |at| short(heading, at).map(usize::from).ok_or(Error::Broken);
+        let start = 30 + length(26)? + length(28)?;
+        let packed = heading
+            .get(start..)
+            .and_then(|rest| rest.get(..entry.packed))
+            .ok_or(Error::Broken)?;
+        let content = match entry.method {
+            0 if packed.len() > most => return Err(Error::Large(most)),
+            0 => packed.to_vec(),
+            8 => {
+                decompress_to_vec_with_limit(packed, most).map_err(|error| match error.status {
+                    TINFLStatus::HasMoreOutput => Error::Large(most),
+                    _ => Error::Damaged,
+                })?
+            }
+            other => return Err(Error::Method(other)),
+        };
+        if checksum(&content) != entry.checksum {
+            return Err(Error::Damaged);
+        }
+        Ok(content)
+    }
+}
+
+fn short(bytes: &[u8], at: usize) -> Option<u16> {
+    let word = bytes.get(at..at + 2)?;
+    Some(u16::from_le_bytes([word[0], word[1]]))
+}
+
+fn long(bytes: &[u8], at: usize) -> Option<u32> {
+    let [low, high] = [short(bytes, at)?, short(bytes, at + 2)?];
+    Some(u32::from(low) | u32::from(high) << 16)
+}
+
+/// Where the directory starts: told by the record at the end, before a comment of at most 65,535 bytes.
+fn directory(bytes: &[u8]) -> Result<usize, Error> {
+    let last = bytes.len().checked_sub(22).ok_or(Error::Broken)?;
+    let earliest = last.saturating_sub(65_535);
+    let record = (earliest..=last)
+        .rev()
+        .map(|at| &bytes[at..])
+        .find(|rest| rest.starts_with(b"PK\x05\x06"))
+        .ok_or(Error::Broken)?;
+    match long(record, 16) {
+        // The mark of an archive whose sizes do not fit into 32 bits.
+        Some(u32::MAX) => Err(Error::Huge),
+        Some(start) => Ok(start as usize),
+        None => Err(Error::Broken),
+    }
+}
+
+/// The entry at a place of the directory, and where the next one begins; `None` at the directory's end.
+fn entry(bytes: &[u8], at: usize) -> Result<Option<(Entry, usize)>, Error> {
+    let Some(head) = bytes
+        .get(at..)
+        .filter(|rest| rest.starts_with(b"PK\x01\x02"))
+    else {
+        return Ok(None);
+    };
+    let short = |at| short(head, at).ok_or(Error::Broken);
+    let long = |at| match long(head, at) {
+        Some(u32::MAX) => Err(Error::Huge),
+        Some(number) => Ok(number as usize),
+        None => Err(Error::Broken),
+    };
+    let length = usize::from(short(28)?);
+    let name = head.get(46..46 + length).ok_or(Error::Broken)?;
+    let end = at + 46 + length + usize::from(short(30)?) + usize::from(short(32)?);
+    let entry = Entry {
+        name: String::from_utf8_lossy(name).into_owned(),
+        size: long(24)?,
+        encrypted: short(8)? & 1 != 0,
+        method: short(10)?,
+        checksum: self::long(head, 16).ok_or(Error::Broken)?,
+        packed: long(20)?,
+        start: long(42)?,
+    };
+    Ok(Some((entry, end)))
+}

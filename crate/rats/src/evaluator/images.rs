@@ -1,0 +1,45 @@
+//! The images that textures and the background of a running text use.
+
+use super::state::Evaluator;
+use crate::assets;
+use crate::limits::MAX_IMAGE_PIXELS;
+use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
+use std::sync::Arc;
+use texture::Rgb8;
+
+/// Images in the order in which the text names them first, each with its name in the project.
+#[derive(Debug, Default)]
+pub struct Images {
+    /// The images.
+    pub all: Vec<Arc<Rgb8>>,
+    names: Vec<String>,
+}
+
+impl<'a> Evaluator<'a> {
+    /// The index of an image of the project.
+    ///
+    /// # Errors
+    /// If there is no such file, it is no picture, or all together are too large.
+    pub(super) fn image(&mut self, name: &Name<'a>) -> Outcome<usize> {
+        let asset = self.asset(name)?;
+        if let Some(index) = self.images.names.iter().position(|n| *n == asset.name) {
+            return Ok(index);
+        }
+        self.scope.step(assets::cost(asset), &name.span)?;
+        let image = assets::image(asset)
+            .map_err(|error| Problem::new(name.span.clone(), error.to_string()))?;
+        let pixels = |image: &Rgb8| u64::from(image.size[0]) * u64::from(image.size[1]);
+        let total: u64 = self.images.all.iter().map(|image| pixels(image)).sum();
+        if total + pixels(&image) > MAX_IMAGE_PIXELS {
+            return Err(Problem::new(
+                name.span.clone(),
+                format!("the images have more than {MAX_IMAGE_PIXELS} pixels together"),
+            )
+            .hint("make them smaller"));
+        }
+        self.images.names.push(asset.name.clone());
+        self.images.all.push(image);
+        Ok(self.images.all.len() - 1)
+    }
+}

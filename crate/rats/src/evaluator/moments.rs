@@ -1,0 +1,111 @@
+//! The scene at the moments of a shutter that stays open, and what `transform` holds still meanwhile.
+
+use super::model::{Model, Part};
+use super::state::Evaluator;
+use crate::limits::{MAX_ELEMENTS, MAX_MOMENTS, MAX_STEPS};
+use crate::project::Asset;
+use crate::scope::Scope;
+use crate::sources::Sources;
+use crate::symbol::Symbols;
+use glam::DAffine3;
+use scene::{Scene, Shape};
+use std::ops::Range;
+
+/// Fewest moments that show a movement.
+const FEWEST: usize = 4;
+
+/// Shapes as `transform` commands found them, command by command.
+#[derive(Clone, Debug, Default)]
+pub struct Frozen {
+    /// What the commands of this run have found.
+    found: Vec<Vec<Still>>,
+    /// What those of the frame's own run found, which counts here.
+    given: Option<Vec<Vec<Still>>>,
+}
+
+/// Where a shape is.
+#[derive(Clone, Debug)]
+struct Still {
+    shape: Shape,
+    moved: Option<Box<DAffine3>>,
+    growth: f64,
+}
+
+impl Still {
+    fn of(part: &Part) -> Self {
+        Self {
+            shape: part.element.shape.clone(),
+            moved: part.moved.clone(),
+            growth: part.growth,
+        }
+    }
+}
+
+impl Frozen {
+    /// Holds these shapes still: in the run of a frame it notes where they are, in that of another moment it puts them
+    /// back there.
+    pub fn hold(&mut self, model: &mut Model<'_>, range: Range<usize>) {
+        let parts = &mut model.parts[range];
+        let number = self.found.len();
+        let Some(given) = &self.given else {
+            self.found.push(parts.iter().map(Still::of).collect());
+            return;
+        };
+        self.found.push(Vec::new());
+        // Other shapes than in the frame itself: there is nothing to go back to.
+        let Some(still) = given.get(number).filter(|still| still.len() == parts.len()) else {
+            return;
+        };
+        for (part, still) in parts.iter_mut().zip(still) {
+            part.element.shape = still.shape.clone();
+            part.moved.clone_from(&still.moved);
+            part.growth = still.growth;
+        }
+    }
+}
+
+/// A frame whose shutter stays open.
+pub struct Exposure<'s, 'a> {
+    pub sources: &'s Sources<'a>,
+    pub assets: &'s [Asset],
+    pub symbols: Symbols<'a>,
+    /// When the shutter opens, in frames.
+    pub from: f64,
+    /// How long it is open, in frames.
+    pub length: f64,
+    /// What the frame's own run has frozen.
+    pub frozen: Frozen,
+    /// The steps that it took.
+    pub steps: u64,
+}
+
+impl<'s, 'a: 's> Exposure<'s, 'a> {
+    /// The scenes at the middles of equal shares of the exposure: as many as the samples of a pixel if that is not too
+    /// much work. None if nothing moves.
+    pub fn moments(self, frame: &Scene) -> Vec<Scene> {
+        let rays = (frame.settings.samples * frame.settings.samples) as usize;
+        let in_time = 4 * MAX_STEPS / self.steps.max(1);
+        let in_room = 2 * MAX_ELEMENTS / frame.elements.len().max(1);
+        let count = rays
+            .clamp(FEWEST, MAX_MOMENTS)
+            .min(in_time as usize)
+            .min(in_room);
+        if count < 2 {
+            return Vec::new();
+        }
+        let scenes: Vec<Scene> = (0..count)
+            .map(|i| self.at(self.from + self.length * (i as f64 + 0.5) / count as f64))
+            .collect();
+        if scenes.iter().all(|scene| scene == frame) {
+            return Vec::new();
+        }
+        scenes
+    }
+
+    fn at(&self, moment: f64) -> Scene {
+        let scope = Scope::new(self.symbols.clone());
+        let mut state = Evaluator::new(self.sources, self.assets, moment, scope);
+        state.frozen.given = Some(self.frozen.found.clone());
+        state.run_all().0
+    }
+}

@@ -1,0 +1,33 @@
+//! Strokes of a hand as curves of few nodes, and the text of a skeleton that is made of them.
+//!
+//! [`fit()`] smooths a stroke, [`create`] and [`extend`] write it into a text, [`remove`] and [`widen`] change
+//! single nodes.
+//!
+//! ```
+//! use glam::DVec3;
+//! use sketch::{Limb, Sample, Start, create, fit};
+//!
+//! let sample = |i: u32| Sample {
+//!     position: DVec3::new(f64::from(i), 0.0, 0.0),
+//!     radius: 0.5,
+//! };
+//! let samples: Vec<Sample> = (0..100).map(sample).collect();
+//! let nodes = fit(&samples, 0.1).unwrap();
+//! let limb = Limb { start: Start::Free, nodes };
+//! let text = create("", "clay", "animal", &[limb], 0.1).unwrap();
+//! assert_eq!(text, "\
+//! skeleton clay, animal {
+//!   node n1 <0 0 0> radius 0.5
+//!   node n2 <99 0 0> radius 0.5
+//!   curve n1 n2
+//! }
+//! ");
+//! ```
+
+mod block;
+mod edit;
+mod fit;
+
+pub use block::{Block, CurveText, NodeText};
+pub use edit::{Limb, Start, create, extend, remove, widen};
+pub use fit::{MOST_NODES, Sample, fit};

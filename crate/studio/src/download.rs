@@ -1,0 +1,74 @@
+//! The menu of everything that the page gives as a file.
+
+use crate::app::App;
+use crate::command::Command;
+use crate::recording::Kind;
+use crate::{places, theme};
+use egui::{Button, RichText, Ui};
+
+/// Lists what there is to download.
+pub fn menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    ui.set_width(270.0);
+    let size = app.renderer.image().map(|image| image.size);
+    let picture = match size {
+        Some([width, height]) => format!("PNG, {width} × {height} pixels"),
+        None => String::from("not traced yet"),
+    };
+    if row(ui, "download picture", "Picture", &picture) {
+        commands.push(Command::SavePng);
+    }
+    if row(
+        ui,
+        "download project",
+        "Project",
+        "one zip of all texts, images and meshes",
+    ) {
+        commands.push(Command::SaveProject);
+    }
+    if app.work.session.is_animated() {
+        ui.separator();
+        films(app, ui, commands);
+    }
+}
+
+/// Lists the kinds of files that a film can become.
+pub fn films(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let formats = app.videos.as_deref().unwrap_or_default();
+    let is_there =
+        |kind: Kind| !kind.is_video() || formats.iter().any(|format| format.kind == kind);
+    for kind in Kind::ALL.into_iter().filter(|kind| is_there(*kind)) {
+        let name = format!("download {}", kind.extension());
+        let title = format!("Film: {}", kind.label());
+        if row(ui, &name, &title, kind.facts()) {
+            commands.push(Command::SaveFilm(kind));
+        }
+    }
+}
+
+/// A row of the menu with an explanation below. Returns whether it was clicked.
+fn row(ui: &mut Ui, place: &str, title: &str, facts: &str) -> bool {
+    let palette = theme::palette(ui.visuals());
+    let mut text = egui::text::LayoutJob::default();
+    let body = egui::TextStyle::Button.resolve(ui.style());
+    let small = egui::FontId::proportional(12.0);
+    for (part, font, colour) in [
+        (title, body, palette.text),
+        ("\n", small.clone(), palette.weak),
+        (facts, small, palette.weak),
+    ] {
+        text.append(part, 0.0, egui::TextFormat::simple(font, colour));
+    }
+    let button = Button::new(text).min_size(egui::vec2(ui.available_width(), 0.0));
+    let button = ui.add(button);
+    places::note(ui.ctx(), place, button.rect);
+    if button.clicked() {
+        ui.close();
+    }
+    button.clicked()
+}
+
+/// A line that says what a control is for.
+pub fn label(ui: &mut Ui, text: &str) {
+    let palette = theme::palette(ui.visuals());
+    ui.label(RichText::new(text).size(12.5).color(palette.weak));
+}

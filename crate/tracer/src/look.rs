@@ -1,0 +1,62 @@
+//! The material of surface points: of which elements it is mixed, and which medium is behind.
+use crate::material::Look;
+use crate::media::Way;
+use crate::rich::Rich;
+use crate::world::{Owner, SurfacePoint, World};
+use glam::DVec3;
+
+impl World {
+    /// The material of a surface point.
+    pub fn look(&self, rich: &Rich, hit: &SurfacePoint) -> Look {
+        let materials = &rich.materials;
+        let mut shares = Vec::new();
+        let first = match self.owner_of(hit.surface) {
+            Owner::Solid(number) => {
+                let finish = self.solids.finish(number) as u32;
+                if materials.is_even(finish) {
+                    return materials.plain(finish, hit.normal);
+                }
+                shares.push((self.solids.element(number), finish, 1.0));
+                finish
+            }
+            Owner::Soft(body) => {
+                let (only, first) = rich.only[body as usize];
+                if only && materials.is_even(first) {
+                    return materials.plain(first, hit.normal);
+                }
+                self.soft.shares(body, hit.position, &mut shares);
+                first
+            }
+            Owner::Function(number) => {
+                let body = &self.functions[number];
+                let mut own = Vec::new();
+                body.function
+                    .shares(self.unit.world(hit.position), &mut own);
+                let first = body.finish.first().copied().unwrap_or(0);
+                shares.extend(own.into_iter().map(|(element, share)| {
+                    let of = body.element.get(element as usize);
+                    let finish = body.finish.get(element as usize);
+                    (
+                        of.copied().unwrap_or(u32::MAX),
+                        finish.copied().unwrap_or(first),
+                        share,
+                    )
+                }));
+                first
+            }
+        };
+        let mixed = materials.mixed(shares, hit.position, hit.normal);
+        mixed.unwrap_or_else(|| materials.plain(first, hit.normal))
+    }
+
+    /// The key of the medium behind or before a surface point, and how a ray crosses there.
+    pub fn medium(&self, rich: &Rich, hit: &SurfacePoint, direction: DVec3) -> (u32, Way) {
+        if let Owner::Solid(number) = self.owner_of(hit.surface)
+            && let Some(key) = rich.sheets[number as usize]
+        {
+            return (key, Way::Turn);
+        }
+        let enters = hit.normal.dot(direction) < 0.0;
+        (hit.surface, if enters { Way::In } else { Way::Out })
+    }
+}

@@ -1,0 +1,354 @@
+//! Materials at points of surfaces: finishes with their textures, each in the coordinates of its object, mixed by the
+//! shares of the elements.
+use glam::{DAffine3, DMat3, DVec3, Vec3};
+use scene::{Element, Finish, Scene, Shape, Skip};
+use std::sync::Arc;
+use texture::uv::{self, Sheet};
+use texture::{Image, Rgb8, Site, Surface, Target, Texture, Uv, apply, blend};
+
+/// Shares of elements below this part of all are left out.
+const NEGLIGIBLE: f64 = 1e-4;
+/// Straight pieces along which the coordinates of curves run.
+const CURVE_PIECES: u32 = 24;
+
+/// The materials of a scene.
+pub(crate) struct Materials {
+    finishes: Vec<Material>,
+    /// Index into `places` of each element whose finish has layers.
+    place_of: Vec<Option<u32>>,
+    places: Vec<Place>,
+    frames: Vec<Object>,
+    images: Vec<Arc<Rgb8>>,
+}
+
+/// A finish.
+struct Material {
+    surface: Surface,
+    dispersion: f32,
+    skip: Skip,
+    layers: Vec<Texture>,
+}
+
+/// Coordinates of an object.
+struct Object {
+    /// From the unit scene.
+    to_object: DAffine3,
+    /// Brings normals of the object to the unit scene: the transpose of `to_object`'s linear part.
+    normals: DMat3,
+    /// Brings normals of the unit scene to the object.
+    from_world: DMat3,
+}
+
+/// Where a textured element is.
+struct Place {
+    object: u32,
+    chart: Chart,
+}
+
+/// The texture coordinates of a shape, in its object's coordinates.
+enum Chart {
+    Sphere(DVec3),
+    Segment([DVec3; 2]),
+    Arc(uv::Arc),
+    Curve([DVec3; 4]),
+    Triangle([DVec3; 3]),
+    Plane([DVec3; 2]),
+    Sheet(Sheet),
+    Box(DVec3, [DVec3; 3]),
+}
+
+/// A material at a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    /// Parameters of shading; its normal has the textures' bumps.
+    pub surface: Surface,
+    /// Difference of the index between blue and red.
+    pub dispersion: f32,
+    pub skip: Skip,
+}
+
+impl Materials {
+    /// Collects a scene's materials. The scene is the unit scene.
+    pub fn new(scene: &Scene) -> Self {
+        let finishes: Vec<Material> = scene.finishes.iter().map(material).collect();
+        let mut places = Vec::new();
+        let textured = |element: &Element| {
+            let finish = finishes.get(element.finish as usize);
+            finish.is_some_and(|finish| !finish.layers.is_empty())
+        };
+        let frames: Vec<Object> = scene.frames.iter().map(|f| object(f.to_world)).collect();
+        let place_of = if scene.elements.iter().any(textured) {
+            let mut place = |element: &Element| {
+                let object = frames.get(element.frame as usize)?;
+                let chart = textured(element).then(|| chart(&element.shape, &object.to_object))?;
+                places.push(Place {
+                    object: element.frame,
+                    chart,
+                });
+                Some(places.len() as u32 - 1)
+            };
+            scene.elements.iter().map(&mut place).collect()
+        } else {
+            Vec::new()
+        };
+        Self {
+            finishes,
+            place_of,
+            places,
+            frames,
+            images: scene.images.clone(),
+        }
+    }
+
+    /// Whether surfaces with a finish look the same everywhere.
+    pub fn is_even(&self, finish: u32) -> bool {
+        self.finishes[finish as usize].layers.is_empty()
+    }
+
+    /// The material of a finish without its textures, at a point with an outward normal.
+    pub fn plain(&self, finish: u32, normal: DVec3) -> Look {
+        let material = &self.finishes[finish as usize];
+        Look {
+            surface: Surface {
+                normal,
+                ..material.surface
+            },
+            dispersion: material.dispersion,
+            skip: material.skip,
+        }
+    }
+
+    /// The material of an element at a point of the unit scene with an outward normal.
+    fn of_element(&self, finish: u32, element: u32, point: DVec3, normal: DVec3) -> Look {
+        let mut look = self.plain(finish, normal);
+        let place = self.place_of.get(element as usize).copied().flatten();
+        if let Some(place) = place {
+            let Place { object, chart } = &self.places[place as usize];
+            let object = &self.frames[*object as usize];
+            let at = object.to_object.transform_point3(point);
+            let own = (object.from_world * normal).normalize_or(normal);
+            let site = Site {
+                point: at,
+                normal: own,
+                uv: chart.uv(at),
+            };
+            let images: Vec<&dyn Image> = self.images.iter().map(|i| &**i as &dyn Image).collect();
+            let bare = Surface {
+                normal: own,
+                ..look.surface
+            };
+            let layers = &self.finishes[finish as usize].layers;
+            look.surface = apply(layers, bare, &site, &images);
+            look.surface.normal = if look.surface.normal == own {
+                normal
+            } else {
+                (object.normals * look.surface.normal).normalize_or(normal)
+            };
+        }
+        look
+    }
+
+    /// The material where some elements, each given with its finish and its share, make a surface; shares need not sum to
+    /// 1. Rays pass by as the element with the largest share says.
+    pub fn mixed(
+        &self,
+        mut shares: Vec<(u32, u32, f64)>,
+        point: DVec3,
+        normal: DVec3,
+    ) -> Option<Look> {
+        // Pieces of a limb are one element.
+        shares.sort_unstable_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+        shares.dedup_by(|next, kept| {
+            let same = (next.0, next.1) == (kept.0, kept.1);
+            if same {
+                kept.2 += next.2;
+            }
+            same
+        });
+        let most = shares.iter().map(|s| s.2).fold(0.0, f64::max);
+        let counts = |s: &&(u32, u32, f64)| s.2 > NEGLIGIBLE * most || shares.len() == 1;
+        let looks = shares
+            .iter()
+            .filter(counts)
+            .map(|&(element, finish, share)| {
+                let look = self.of_element(finish, element, point, normal);
+                (share, look)
+            });
+        let looks: Vec<(f64, Look)> = looks.collect();
+        let parts: Vec<(f64, Surface)> = looks.iter().map(|(s, l)| (*s, l.surface)).collect();
+        let total: f64 = looks.iter().map(|(s, _)| s).sum();
+        let (_, strongest) = looks.iter().reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+        let spread = |(share, look): &(f64, Look)| share / total * f64::from(look.dispersion);
+        let dispersion = looks.iter().map(spread).sum::<f64>() as f32;
+        Some(Look {
+            surface: blend(&parts)?,
+            dispersion: if dispersion.is_finite() {
+                dispersion
+            } else {
+                0.0
+            },
+            skip: strongest.skip,
+        })
+    }
+}
+
+/// Whether pictures of a finish need more than Phong's model.
+pub(crate) fn is_plain(finish: &Finish) -> bool {
+    finish.reflective == [0.0; 3]
+        && finish.transparent == [0.0; 3]
+        && finish.skip == Skip::default()
+        && finish.layers.iter().all(|t| t.target == Target::Strength)
+}
+
+/// Whether light to other surfaces may pass a surface of this finish.
+pub(crate) fn lets_light_through(finish: &Finish) -> bool {
+    let replaced = |t: &Texture| t.target == Target::Transparent;
+    finish.skip.shadow || finish.transparent != [0.0; 3] || finish.layers.iter().any(replaced)
+}
+
+/// What is no number becomes 0, as negative shares do.
+fn share(colour: scene::Rgb) -> Vec3 {
+    Vec3::from_array(colour.map(|c| if c > 0.0 && c.is_finite() { c } else { 0.0 }))
+}
+
+fn material(finish: &Finish) -> Material {
+    let positive = |x: f32, other: f32| if x > 0.0 && x.is_finite() { x } else { other };
+    let layers = finish
+        .layers
+        .iter()
+        .filter(|t| t.target != Target::Strength);
+    Material {
+        surface: Surface {
+            diffuse: Vec3::from(finish.diffuse),
+            ambient: Vec3::from(finish.ambient),
+            specular: Vec3::from(finish.specular),
+            reflective: share(finish.reflective),
+            transparent: share(finish.transparent),
+            index: positive(finish.index, 1.0),
+            shine: finish.shine.max(0.0),
+            normal: DVec3::Z,
+        },
+        dispersion: if finish.dispersion.is_finite() {
+            finish.dispersion
+        } else {
+            0.0
+        },
+        skip: finish.skip,
+        layers: layers.take(texture::MAX_LAYERS).cloned().collect(),
+    }
+}
+
+/// A frame that squeezes everything flat counts as the world's own.
+fn object(to_world: DAffine3) -> Object {
+    let inverse = to_world.inverse();
+    let to_object = if inverse.is_finite() {
+        inverse
+    } else {
+        DAffine3::IDENTITY
+    };
+    let from_world = to_object.matrix3.inverse().transpose();
+    Object {
+        to_object,
+        normals: to_object.matrix3.transpose(),
+        from_world: if from_world.is_finite() {
+            from_world
+        } else {
+            DMat3::IDENTITY
+        },
+    }
+}
+
+/// The texture coordinates of a shape of the unit scene.
+fn chart(shape: &Shape, to: &DAffine3) -> Chart {
+    let point = |p: DVec3| to.transform_point3(p);
+    let vector = |v: DVec3| to.transform_vector3(v);
+    match *shape {
+        Shape::Sphere { center, .. } => Chart::Sphere(point(center)),
+        Shape::Cylinder { base, apex, .. }
+        | Shape::Cone { base, apex, .. }
+        | Shape::Pipe { base, apex, .. } => Chart::Segment([point(base), point(apex)]),
+        Shape::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+            ..
+        } => {
+            let along = vector(u * sweep);
+            let u = along.normalize_or(u);
+            let v = vector(v);
+            Chart::Arc(uv::Arc {
+                center: point(center),
+                u,
+                v: (v - u * u.dot(v)).normalize_or(u.any_orthonormal_vector()),
+                sweep: along.length(),
+                angle,
+            })
+        }
+        Shape::Curve { control, .. } => Chart::Curve(control.map(point)),
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
+            Chart::Triangle(corners.map(point))
+        }
+        Shape::Plane {
+            point: foot,
+            normal,
+            ..
+        } => {
+            let normal = to.matrix3.inverse().transpose() * normal;
+            Chart::Plane([point(foot), normal.normalize_or(DVec3::Y)])
+        }
+        Shape::Polygon { ref rings, .. } => {
+            let corners: Vec<DVec3> = rings.iter().flatten().map(|&p| point(p)).collect();
+            let first = corners.first().copied().unwrap_or_default();
+            let turn = |w: &[DVec3]| (w[0] - first).cross(w[1] - first);
+            let outer = rings.first().map_or(0, Vec::len);
+            let normal = corners[..outer].windows(2).map(turn).sum::<DVec3>();
+            let normal = normal.normalize_or(DVec3::Y);
+            match Sheet::around(&corners, normal) {
+                Some(sheet) => Chart::Sheet(sheet),
+                None => Chart::Plane([first, normal]),
+            }
+        }
+        Shape::Function(ref function) => Chart::Sphere(point(function.middle())),
+        Shape::Box { center, axes } => Chart::Box(point(center), axes.map(vector)),
+        Shape::Quadric(ref quadric) => Chart::Box(point(quadric.center), quadric.axes.map(vector)),
+    }
+}
+
+impl Chart {
+    fn uv(&self, point: DVec3) -> Uv {
+        match self {
+            Self::Sphere(center) => uv::sphere(*center, point),
+            Self::Segment([base, apex]) => uv::segment(*base, *apex, point),
+            Self::Arc(arc) => uv::arc(arc, point),
+            Self::Curve(control) => along_curve(control, point),
+            Self::Triangle(corners) => uv::triangle(*corners, point),
+            Self::Plane([origin, normal]) => uv::plane(*origin, *normal, point),
+            Self::Sheet(sheet) => sheet.uv(point),
+            Self::Box(center, axes) => uv::cuboid(*center, *axes, point),
+        }
+    }
+}
+
+/// Coordinates along and around a Bézier curve: those of the nearest of straight pieces between evenly spaced parameters.
+fn along_curve([a, b, c, d]: &[DVec3; 4], point: DVec3) -> Uv {
+    let parameter = |i: u32| f64::from(i) / f64::from(CURVE_PIECES);
+    let at = |i: u32| {
+        let t = parameter(i);
+        let s = 1.0 - t;
+        *a * (s * s * s) + *b * (3.0 * s * s * t) + *c * (3.0 * s * t * t) + *d * (t * t * t)
+    };
+    let mut nearest = (f64::INFINITY, 0);
+    for i in 0..CURVE_PIECES {
+        let (base, apex) = (at(i), at(i + 1));
+        let axis = apex - base;
+        let along = ((point - base).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
+        let apart = point.distance_squared(base + along * axis);
+        if apart < nearest.0 {
+            nearest = (apart, i);
+        }
+    }
+    let piece = nearest.1;
+    uv::segment(at(piece), at(piece + 1), point).of_piece(parameter(piece), parameter(piece + 1))
+}

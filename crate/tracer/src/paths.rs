@@ -1,0 +1,368 @@
+//! Shading where rays are reflected, refracted, textured, fogged: waves of paths.
+//!
+//! A path is a ray with the share of its light that reaches the eye. [`World::illuminate`] follows the paths of some packets in
+//! waves: each surface point adds its own light to its sample, and asks for further rays, which make the next wave. What a point adds
+//! depends on nothing but the path and the point.
+use crate::air::GroundPoint;
+use crate::free::FreeRay;
+use crate::lamps::{Draw, Receiver};
+use crate::material::Look;
+use crate::media::Media;
+use crate::meet::Seen;
+use crate::ray::Ray;
+use crate::rich::Rich;
+use crate::sample::Sample;
+use crate::shade::{Finish, clamped};
+use crate::stats::Stats;
+use crate::workspace::Workspace;
+use crate::world::{SurfacePoint, World};
+use glam::Vec3;
+use scene::Skip;
+use texture::refraction::{reflect, refract};
+
+/// Most surfaces that a ray passes as if they were not there.
+const MOST_SKIPPED: u32 = 64;
+/// Most rays of a wave for each ray from the eye; what would be more is not sent.
+const MOST_RAYS: usize = 512;
+
+/// Key of samples that see the ground.
+const GROUND: u32 = 1 << 31;
+
+/// Kind of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Pixel,
+    Reflected,
+    Transmitted,
+}
+
+impl Kind {
+    fn passes(self, skip: Skip) -> bool {
+        match self {
+            Self::Pixel => skip.pixel,
+            Self::Reflected => skip.reflected,
+            Self::Transmitted => skip.transmitted,
+        }
+    }
+}
+
+/// A ray whose light is wanted.
+#[derive(Clone, Copy, Debug)]
+struct Path {
+    ray: Ray,
+    /// Share of its light that reaches the eye.
+    weight: Vec3,
+    /// The sample it is for: packet and lane.
+    owner: (usize, usize),
+    draw: Draw,
+    kind: Kind,
+    /// Surfaces that have reflected or refracted it.
+    depth: u32,
+    /// Surfaces passed since.
+    skipped: u32,
+    /// Number that tells the paths of a sample apart.
+    branch: u32,
+    media: Media,
+}
+
+/// A receiver with the path that has come to it.
+struct Stop {
+    path: Path,
+    /// The ground's colour times the share of the path's light.
+    ground: Option<Vec3>,
+}
+
+impl World {
+    /// What the rays of some packets see, with everything that a rich scene has. The samples are left in the working space.
+    pub fn illuminate(
+        &self,
+        rich: &Rich,
+        seen: &[Seen],
+        draw: &dyn Fn(usize, usize) -> Draw,
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) {
+        let mut samples = core::mem::take(&mut work.samples);
+        samples.clear();
+        let mut wave = Vec::new();
+        for (k, seen) in seen.iter().enumerate() {
+            samples.push(core::array::from_fn(|i| Sample {
+                cost: seen.costs[i],
+                ..Sample::BLANK
+            }));
+            for (i, (ray, hit)) in seen.rays.iter().zip(&seen.hits).enumerate() {
+                let path = Path {
+                    ray: *ray,
+                    weight: Vec3::ONE,
+                    owner: (k, i),
+                    draw: draw(k, i),
+                    kind: Kind::Pixel,
+                    depth: 0,
+                    skipped: 0,
+                    branch: 1,
+                    media: Media::default(),
+                };
+                wave.push((path, *hit));
+            }
+        }
+        let most = MOST_RAYS * wave.len();
+        while !wave.is_empty() {
+            let [mirrored, passed] = self.shade(rich, &wave, &mut samples, work, stats);
+            wave.clear();
+            // Neighbours that are mirrored run together, and so do those that pass.
+            for mut paths in [mirrored, passed] {
+                paths.truncate(most);
+                stats.secondary_rays += paths.len() as u64;
+                let free = |path: &Path| FreeRay {
+                    ray: path.ray,
+                    front_only: self.one_sided && path.media.is_air(),
+                };
+                let rays: Vec<FreeRay> = paths.iter().map(free).collect();
+                let hits = self.meet_free(&rays, work, stats);
+                wave.extend(paths.into_iter().zip(hits));
+            }
+        }
+        for sample in samples.iter_mut().flatten() {
+            sample.colour = clamped(rich.toned(sample.colour));
+        }
+        work.samples = samples;
+    }
+
+    /// Adds to the samples what the paths of a wave see where they end; returns the reflected paths and those that go on.
+    fn shade(
+        &self,
+        rich: &Rich,
+        wave: &[(Path, Option<SurfacePoint>)],
+        samples: &mut [[Sample; crate::layout::PACKET]],
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) -> [Vec<Path>; 2] {
+        let [mut mirrored, mut passed] = [Vec::new(), Vec::new()];
+        let (mut stops, mut receivers) = (Vec::new(), Vec::new());
+        for (path, hit) in wave {
+            let mut path = *path;
+            let (k, i) = path.owner;
+            let sample = &mut samples[k][i];
+            let (ground, clear) = self.through_air(rich, &mut path, hit.as_ref(), sample);
+            if let Some(ground) = ground {
+                receivers.push(self.on_ground(&path, &ground));
+                stops.push(Stop {
+                    ground: Some(path.weight * ground.cover * ground.colour),
+                    path,
+                });
+                if path.kind == Kind::Pixel {
+                    (sample.key, sample.depth) =
+                        (GROUND, (ground.t / self.unit.length(1.0)) as f32);
+                }
+            } else if let Some(hit) = hit {
+                let look = self.look(rich, hit);
+                if path.kind.passes(look.skip) {
+                    if path.skipped < MOST_SKIPPED {
+                        passed.push(self.beyond(&path, hit));
+                    }
+                    continue;
+                }
+                if path.kind == Kind::Pixel {
+                    (sample.key, sample.depth) = (hit.surface << 8, hit.t as f32);
+                }
+                path.weight *= clear;
+                sample.colour += path.weight * look.surface.ambient;
+                let receiver = self.on_surface(&path, hit, &look);
+                self.scatter(
+                    rich,
+                    &path,
+                    hit,
+                    (&look, &receiver),
+                    &mut mirrored,
+                    &mut passed,
+                );
+                receivers.push(receiver);
+                stops.push(Stop { path, ground: None });
+            }
+        }
+        let received = self.receive(rich, &receivers, work, stats);
+        for (stop, received) in stops.iter().zip(&received) {
+            let (k, i) = stop.path.owner;
+            let sample = &mut samples[k][i];
+            sample.colour += match stop.ground {
+                None => stop.path.weight * received.light,
+                Some(colour) => {
+                    let share = received.light / received.free.max(Vec3::splat(1e-6));
+                    let lit = received.free.cmpgt(Vec3::ZERO);
+                    colour * Vec3::select(lit, share, Vec3::ONE)
+                }
+            };
+            if stop.path.kind == Kind::Pixel {
+                sample.key ^= received.lit;
+            }
+        }
+        [mirrored, passed]
+    }
+
+    /// Adds what a path sees on its way, and behind it if it meets nothing. Returns the ground where that is nearer than its hit, and
+    /// the share of the hit's light that is left.
+    fn through_air(
+        &self,
+        rich: &Rich,
+        path: &mut Path,
+        hit: Option<&SurfacePoint>,
+        sample: &mut Sample,
+    ) -> (Option<GroundPoint>, f32) {
+        let air = &rich.air;
+        let (origin, direction) = (self.unit.world(path.ray.origin), path.ray.direction);
+        let limit = hit.map_or(f64::INFINITY, |hit| self.unit.length(hit.t));
+        let ground = if path.media.is_air() {
+            air.ground(origin, direction, limit)
+        } else {
+            None
+        };
+        let length = ground.map_or(limit, |ground| ground.t);
+        // There is no fog inside of bodies.
+        let (clear, glow) = if path.media.is_air() {
+            air.passes(origin, direction, length)
+        } else {
+            (1.0, Vec3::ZERO)
+        };
+        sample.colour += path.weight * glow;
+        if let Some(ground) = &ground {
+            path.weight *= clear;
+            sample.colour += path.weight * (1.0 - ground.cover) * air.background(direction);
+        } else if hit.is_none() {
+            sample.colour += path.weight * clear * air.background(direction);
+        }
+        (ground, clear)
+    }
+
+    /// A path that passes a surface as if it were not there.
+    fn beyond(&self, path: &Path, hit: &SurfacePoint) -> Path {
+        Path {
+            ray: Ray {
+                origin: hit.position - hit.facing(path.ray.direction) * hit.lift,
+                direction: path.ray.direction,
+            },
+            skipped: path.skipped + 1,
+            ..*path
+        }
+    }
+
+    fn on_ground(&self, path: &Path, ground: &GroundPoint) -> Receiver {
+        let position = self.unit.map(ground.position);
+        Receiver {
+            position,
+            flat: ground.normal,
+            normal: ground.normal,
+            lift: self.hard_lift * (1.0 + position.length()),
+            view: path.ray.direction,
+            draw: path.draw,
+            branch: path.branch,
+            inside: false,
+            finish: Finish::dull(Vec3::ONE),
+        }
+    }
+
+    fn on_surface(&self, path: &Path, hit: &SurfacePoint, look: &Look) -> Receiver {
+        let direction = path.ray.direction;
+        let flat = hit.facing(direction);
+        let bumped = if flat == hit.normal {
+            look.surface.normal
+        } else {
+            -look.surface.normal
+        };
+        Receiver {
+            position: hit.position,
+            flat,
+            // A bump that is turned away from the eye would be lit from behind.
+            normal: if bumped.dot(direction) < 0.0 {
+                bumped
+            } else {
+                flat
+            },
+            lift: hit.lift,
+            view: direction,
+            draw: path.draw,
+            branch: path.branch,
+            inside: flat != hit.normal,
+            finish: Finish::of_surface(&look.surface),
+        }
+    }
+
+    /// Adds the paths that a surface mirrors and lets pass.
+    fn scatter(
+        &self,
+        rich: &Rich,
+        path: &Path,
+        hit: &SurfacePoint,
+        (look, receiver): (&Look, &Receiver),
+        mirrored: &mut Vec<Path>,
+        passed: &mut Vec<Path>,
+    ) {
+        let (surface, direction) = (&look.surface, path.ray.direction);
+        let mut mirror = path.weight * surface.reflective;
+        let pass = path.weight * surface.transparent;
+        if path.depth >= rich.max_depth || mirror == Vec3::ZERO && pass == Vec3::ZERO {
+            return;
+        }
+        let counts = |weight: Vec3| weight.max_element() >= rich.vanish && weight != Vec3::ZERO;
+        let further = |kind, weight, direction, above: f64, branch, media| Path {
+            ray: Ray {
+                origin: hit.position + receiver.flat * (above * hit.lift),
+                direction,
+            },
+            weight,
+            kind,
+            depth: path.depth + 1,
+            skipped: 0,
+            branch: path.branch.wrapping_mul(5).wrapping_add(branch),
+            media,
+            ..*path
+        };
+        if counts(pass) {
+            let (key, way) = self.medium(rich, hit, direction);
+            let sides = path.media.cross(key, way, surface.index, look.dispersion);
+            // Colours that are bent alike go together.
+            for first in 0..3 {
+                let ratio = sides.ratio[first];
+                if sides.ratio[..first].contains(&ratio) {
+                    continue;
+                }
+                let own = [0, 1, 2].map(|i| {
+                    if sides.ratio[i] == ratio {
+                        pass[i]
+                    } else {
+                        0.0
+                    }
+                });
+                let own = Vec3::from_array(own);
+                if !counts(own) {
+                    continue;
+                }
+                let bent = match refract(direction, receiver.normal, ratio) {
+                    _ if ratio == 1.0 => Some(direction),
+                    // A bump must not send a ray back to where it came from.
+                    Some(bent) if bent.dot(receiver.flat) >= 0.0 => {
+                        refract(direction, receiver.flat, ratio)
+                    }
+                    bent => bent,
+                };
+                match bent {
+                    Some(bent) => passed.push(further(
+                        Kind::Transmitted,
+                        own,
+                        bent,
+                        -1.0,
+                        first as u32 + 1,
+                        sides.beyond,
+                    )),
+                    None => mirror += own,
+                }
+            }
+        }
+        if counts(mirror) {
+            let mut bent = reflect(direction, receiver.normal);
+            if bent.dot(receiver.flat) <= 0.0 {
+                bent = reflect(direction, receiver.flat);
+            }
+            mirrored.push(further(Kind::Reflected, mirror, bent, 1.0, 0, path.media));
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! What pictures need beyond Phong's model on a background of one colour; scenes that do without are drawn without.
+use crate::air::Air;
+use crate::material::{Materials, is_plain, lets_light_through};
+use crate::soft::Soft;
+use crate::solids::Solids;
+use crate::unit::{Unit, lowest};
+use glam::{DVec3, Vec3};
+use scene::{Background, Scene, Settings, Shape, Tone};
+use std::collections::BTreeMap;
+
+/// Keys of sheets, beyond the numbers of all surfaces.
+const SHEETS: u32 = 1 << 31;
+
+/// Materials, air and settings of a scene that needs them.
+pub(crate) struct Rich {
+    pub materials: Materials,
+    pub air: Air,
+    /// Whether light may pass some surface.
+    pub see_through: bool,
+    /// Most reflections and refractions of a ray.
+    pub max_depth: u32,
+    /// Shares of light below which rays are not sent.
+    pub vanish: f32,
+    /// Whether lights have a size.
+    pub penumbra: bool,
+    tone: Tone,
+    /// For each soft body the only finish of its elements, if they have one, and the first.
+    pub only: Vec<(bool, u32)>,
+    /// For each solid that encloses no space, its medium's key: the same for all with one finish in one object.
+    pub sheets: Vec<Option<u32>>,
+}
+
+/// Whether a scene needs nothing beyond Phong's model.
+fn does_without(scene: &Scene) -> bool {
+    let settings = &scene.settings;
+    let sized = settings.penumbra && scene.lights.iter().any(|light| light.size > 0.0);
+    scene.finishes.iter().all(is_plain)
+        && matches!(scene.background, Background::Colour(_))
+        && (scene.sky, scene.ground, scene.fog) == (None, None, None)
+        && scene.clouds.is_empty()
+        && settings.tone == Tone::None
+        && !sized
+}
+
+impl Rich {
+    /// Prepares a scene, given as it is and in units of its size; `None` if it does without.
+    pub fn new(world: &Scene, unit: Unit, scene: &Scene, solids: &Solids) -> Option<Self> {
+        if does_without(world) {
+            return None;
+        }
+        let settings = &world.settings;
+        let middle = unit.world(DVec3::ZERO);
+        let used = |finish: usize| scene.elements.iter().any(|e| e.finish as usize == finish);
+        let passed = |(i, finish)| lets_light_through(finish) && used(i);
+        Some(Self {
+            materials: Materials::new(scene),
+            air: Air::new(world, lowest(world), middle, unit.length(1.0)),
+            see_through: scene.finishes.iter().enumerate().any(passed),
+            max_depth: settings.max_depth.min(Settings::MAX_DEPTH),
+            vanish: if settings.vanish >= 0.0 {
+                settings.vanish
+            } else {
+                0.0
+            },
+            penumbra: settings.penumbra,
+            tone: settings.tone,
+            only: Vec::new(),
+            sheets: sheets(scene, solids),
+        })
+    }
+
+    /// Completes it by what is known of the convolution surfaces.
+    pub fn with(mut self, soft: &Soft) -> Self {
+        self.only = soft.only_finishes();
+        self
+    }
+
+    /// The colour on the screen of light.
+    pub fn toned(&self, light: Vec3) -> Vec3 {
+        match self.tone {
+            Tone::None => light,
+            Tone::Filmic => texture::tone::filmic(light),
+        }
+    }
+}
+
+/// The keys of those hard elements that enclose no space.
+fn sheets(scene: &Scene, solids: &Solids) -> Vec<Option<u32>> {
+    let mut keys = BTreeMap::new();
+    let mut key = |solid: u32| {
+        let element = &scene.elements[solids.element(solid) as usize];
+        let is_sheet = match element.shape {
+            Shape::Triangle { .. } | Shape::Polygon { .. } | Shape::Patch { .. } => {
+                scene.radius(element) == 0.0
+            }
+            _ => false,
+        };
+        let next = SHEETS + keys.len() as u32;
+        let own = (element.finish, element.body, element.frame);
+        is_sheet.then(|| *keys.entry(own).or_insert(next))
+    };
+    (0..solids.len()).map(&mut key).collect()
+}
