@@ -4,7 +4,7 @@
 use crate::limits::MAX_IMAGE_PIXELS;
 use crate::project::Asset;
 use glam::DVec3;
-use mesh::{Error, TriangleMesh};
+use mesh::{Error, Topology, TriangleMesh};
 use picture::Format;
 use scene::Shape;
 use std::cell::RefCell;
@@ -68,6 +68,7 @@ impl<T: Clone> Cache<T> {
 
 thread_local! {
     static MESHES: RefCell<Cache<Rc<TriangleMesh>>> = const { RefCell::new(Cache(Vec::new())) };
+    static TOPOLOGIES: RefCell<Cache<Rc<Topology>>> = const { RefCell::new(Cache(Vec::new())) };
     static IMAGES: RefCell<Cache<Arc<Rgb8>>> = const { RefCell::new(Cache(Vec::new())) };
 }
 
@@ -79,6 +80,19 @@ pub fn mesh(asset: &Asset) -> Made<Rc<TriangleMesh>> {
     MESHES.with_borrow_mut(|cache| {
         cache.get(asset, (asset.name.clone(), None), |bytes| {
             mesh::read(&asset.name, bytes).map(Rc::new)
+        })
+    })
+}
+
+/// The topology of a mesh that [`mesh`] gives.
+///
+/// # Errors
+/// If there is none, or it cannot be told.
+pub fn topology(asset: &Asset) -> Made<Rc<Topology>> {
+    let mesh = mesh(asset)?;
+    TOPOLOGIES.with_borrow_mut(|cache| {
+        cache.get(asset, (asset.name.clone(), None), |_| {
+            Topology::of(&mesh).map(Rc::new)
         })
     })
 }

@@ -76,7 +76,7 @@ mod tests {
             light fog background cloud remove report reset preview shoot \
             animate play split collage fli convert resize diff and xor show kill refresh tile colors \
             rats table shell horn \
-            material blobscale sky ground tone body curve seed for if else define influence \
+            material blobscale sky ground tone body curve deform seed for if else define influence \
             skeleton contact tree spikes sphereflake spiral";
         for name in names.split_whitespace() {
             assert!(find(name).is_some(), "{name}");

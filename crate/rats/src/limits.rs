@@ -25,6 +25,10 @@ pub const STEPS_PER_ERROR: u64 = 4200;
 pub const OPERANDS_PER_STEP: usize = 20;
 /// Steps that reading a command's operands costs, besides one for each: lists are made of them.
 pub const STEPS_PER_OPERANDS: u64 = 5;
+/// Words, numbers and signs of a `deform`: enough for all control points that are taken.
+pub const MAX_CONTROL_OPERANDS: usize = 65_536;
+/// Steps that the coordinates of a vertex cost that is deformed.
+pub const STEPS_PER_VERTEX: u64 = 12;
 /// Files read from files.
 pub const MAX_NESTED_FILES: usize = 128;
 /// Calls of defined commands inside each other.

@@ -1,7 +1,7 @@
 //! Tokens to a tree of commands. Whatever is wrong, the rest of the text is still read: a mistake costs
 //! one command or one block, with a message.
 
-use crate::commands;
+use crate::commands::{self, CommandSpec};
 use crate::lexer::{Token, TokenKind, lex};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
@@ -448,22 +448,20 @@ impl<'a> Parser<'a, '_, '_> {
         let first = self.items.len();
         let end = self.operands(ends).unwrap_or(token.end);
         let items = first..self.items.len();
-        if items.len() > limits::MAX_OPERANDS {
+        let spec = commands::find(word);
+        let most = spec.map_or(limits::MAX_OPERANDS, CommandSpec::most_operands);
+        if items.len() > most {
             self.items.truncate(first);
             return Err(Problem::new(
                 token.range(),
-                format!(
-                    "`{word}` has {} operands; {} is the limit",
-                    items.len(),
-                    limits::MAX_OPERANDS
-                ),
+                format!("`{word}` has {} operands; {most} is the limit", items.len()),
             )
             .hint("split it into several commands"));
         }
         Ok(Command {
             word: self.symbols.intern(word),
             word_span: token.range(),
-            spec: commands::find(word),
+            spec,
             items,
             span: token.start..end,
         })

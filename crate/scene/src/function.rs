@@ -1,6 +1,6 @@
 //! Soft shapes whose field is no convolution of a skeleton.
 
-use crate::{Curves, Shape};
+use crate::{Curves, ImplicitMesh, Shape};
 use field::{Exponentials, Implicit, Placed};
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -27,6 +27,8 @@ pub enum Form {
     },
     /// Curves convolved with the kernel of their flesh. They are primitives, so that they have no function of their own.
     Skeleton(Arc<Curves>),
+    /// The implicit surface of a mesh.
+    Mesh(Arc<ImplicitMesh>),
 }
 
 impl Function {
@@ -38,8 +40,19 @@ impl Function {
                 Arc::new(Exponentials::new(*hardness, balls.to_vec())?)
             }
             Form::Skeleton(_) => return None,
+            Form::Mesh(mesh) => mesh.function().ok()?,
         };
         Some(Arc::new(Placed::new(own, self.to_world)?))
+    }
+
+    /// As how many shapes it counts where their number is limited.
+    #[must_use]
+    pub fn weight(&self) -> usize {
+        match &self.form {
+            Form::Metaballs { balls, .. } => balls.len(),
+            Form::Skeleton(curves) => curves.pieces().count(),
+            Form::Mesh(mesh) => mesh.triangles.len(),
+        }
     }
 
     /// The function after a map of the world.
@@ -92,6 +105,16 @@ impl Function {
                 balls.iter().map(ball).collect()
             }
             Form::Skeleton(curves) => curves.draft(&self.to_world, growth),
+            Form::Mesh(mesh) => {
+                let place = |i: u32| mesh.positions.get(i as usize).copied();
+                let corners = |[a, b, c]: &[u32; 3]| Some([place(*a)?, place(*b)?, place(*c)?]);
+                let triangles = mesh.triangles.iter().filter_map(corners);
+                let triangle = |corners: [DVec3; 3]| Shape::Triangle {
+                    corners: corners.map(|p| self.to_world.transform_point3(p)),
+                    radius: 0.0,
+                };
+                triangles.map(triangle).collect()
+            }
         }
     }
 
@@ -107,6 +130,7 @@ impl Function {
         let (low, high) = match &self.form {
             Form::Metaballs { balls, .. } => around(&mut balls.iter().copied()),
             Form::Skeleton(curves) => around(&mut curves.points()),
+            Form::Mesh(mesh) => mesh.corners(),
         };
         let middle = self.to_world.transform_point3(0.5 * (low + high));
         let half = 0.5 * (high - low);

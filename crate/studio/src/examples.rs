@@ -64,7 +64,7 @@ const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 27] = [
+pub const ALL: [Example; 28] = [
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -84,6 +84,7 @@ pub const ALL: [Example; 27] = [
     example!(CURVES, "Finger and thumb", "they squeeze a ball, which gives way", "squeeze"),
     example!(CURVES, "Two drops", "they touch and do not melt", "drops"),
     example!(CURVES, "Three bulges", "limbs that press each other flat", "touching"),
+    example!(GROWN, "Three heads", "a coarse mesh, as balls and as shells", "heads", "head.obj"),
     example!(FIRST, "T-shape", "two bars that melt together", "tshape"),
     example!(FIRST, "Icicle", "a first little dataset", "icicle"),
     example!(STARFISH, "Starfish A", "seven arcs, the bare skeleton", "starfish-a"),

@@ -52,4 +52,13 @@ pub const TESTED_AS_WASM: [&str; 6] = ["field", "rats", "sculpt", "texture", "tr
 pub const TESTED_IN_BROWSER: &str = "field";
 
 /// The packages that pictures depend on: a change in one of them may change the pins.
-pub const PICTURES: [&str; 6] = ["field", "scene", "mesh", "rats", "tracer", "worker"];
+pub const PICTURES: [&str; 8] = [
+    "field",
+    "fit",
+    "mesh",
+    "metaballs",
+    "rats",
+    "scene",
+    "tracer",
+    "worker",
+];

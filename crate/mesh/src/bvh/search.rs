@@ -186,6 +186,19 @@ impl Bvh {
         best
     }
 
+    /// Visits nodes from the root down, the first child before the second. `visit` gets a node's number, its box, and its
+    /// primitives if it is a leaf, and says whether the nodes below it are to be visited.
+    pub fn descend(&self, mut visit: impl FnMut(u32, &Aabb, &[u32]) -> bool) {
+        let mut stack = Stack::new(self);
+        while let Some(number) = stack.pop() {
+            let node = &self.nodes[number as usize];
+            if visit(number, &node.bounds, self.primitives(node)) && node.count == 0 {
+                stack.push(node.first + 1);
+                stack.push(node.first);
+            }
+        }
+    }
+
     /// Calls `visit` once with each pair of primitives (lower number first) whose boxes have a point in
     /// common, until it breaks. Pairs come in no particular but always the same order.
     pub fn pairs(&self, mut visit: impl FnMut(u32, u32) -> ControlFlow<()>) {

@@ -105,6 +105,16 @@ impl Bvh {
         self.boxes[primitive as usize]
     }
 
+    /// Number of primitives below each node, by the numbers that [`Bvh::descend`] tells.
+    #[must_use]
+    pub fn counts(&self) -> Vec<u32> {
+        let mut counts: Vec<u32> = self.nodes.iter().map(|node| node.count).collect();
+        for node in (1..self.nodes.len()).rev() {
+            counts[self.parents[node] as usize] += counts[node];
+        }
+        counts
+    }
+
     /// Gives a primitive a new box, and updates the nodes above it. Costs the depth of the tree. The
     /// tree's shape stays, so that after large motions [`Bvh::new`] gives a faster one.
     ///

@@ -12,3 +12,4 @@ mod xml;
 
 pub use any::read;
 pub use mtl::read_mtl;
+pub use ply::read_points;

@@ -7,7 +7,7 @@
 use super::cursor::Cursor;
 use crate::color::decode;
 use crate::error::{Error, fail};
-use crate::limits::{MAX_TRIANGLES, MAX_VERTICES};
+use crate::limits::{MAX_BYTES, MAX_TRIANGLES, MAX_VERTICES};
 use crate::triangle_mesh::TriangleMesh;
 use glam::DVec3;
 
@@ -78,6 +78,17 @@ impl Source<'_> {
             Kind::F64 => f64::from_le_bytes(at.take()?),
         })
     }
+}
+
+/// Reads the vertices of a PLY file, which needs no faces.
+///
+/// # Errors
+/// As [`crate::read`], but a file without triangles is none.
+pub fn read_points(bytes: &[u8]) -> Result<Vec<DVec3>, Error> {
+    if bytes.len() > MAX_BYTES {
+        return fail("this file is too large");
+    }
+    Ok(read(bytes)?.positions)
 }
 
 pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {

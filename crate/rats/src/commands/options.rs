@@ -530,6 +530,45 @@ pub static MESH: &[OptionSpec] = &[
     plain("fast", "faces are taken as they are"),
 ];
 
+/// `mesh` as an implicit surface.
+pub static METABALLS: &[OptionSpec] = &[
+    plain(
+        "metaballs",
+        "a soft surface around the mesh, of one metaball a facet: `spherical` or `triangular` (ours)",
+    ),
+    option(
+        "spherical",
+        &[number("k", "how sharply the field falls")],
+        "",
+        "of balls around the circumcircles of the facets",
+    ),
+    option(
+        "triangular",
+        &[
+            length("d0", "the thickness").at_least(0.0),
+            number("k", "how sharply the field falls"),
+        ],
+        "",
+        "of shells of this thickness around the facets",
+    ),
+];
+
+/// `deform`.
+pub static DEFORM: &[OptionSpec] = &[
+    option(
+        "control",
+        &[vector("XYZ", "the control point")],
+        "",
+        "a control point",
+    ),
+    option(
+        "move",
+        &[vector("XYZ", "the way")],
+        "0 0 0",
+        "by how much it moves what is near",
+    ),
+];
+
 /// `test`.
 pub static TEST: &[OptionSpec] = &[plain("print", "only show the text")];
 

@@ -2,7 +2,7 @@
 //! evaluator's `dispatch` maps each name to its function.
 
 use super::parameter::{OptionSpec, Parameter, join};
-use crate::library;
+use crate::{library, limits};
 
 /// The groups of appendix C of the thesis, and ours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -78,6 +78,7 @@ pub(crate) enum Routine {
     Scale,
     Explode,
     Transform,
+    Deform,
     SilentSwitch,
     Warning,
     Verbose,
@@ -219,6 +220,14 @@ impl CommandSpec {
     #[must_use]
     pub fn yields(&self) -> bool {
         self.is_newer || self.is_library()
+    }
+
+    /// Words, numbers and signs that may stand behind it at most.
+    pub(crate) fn most_operands(&self) -> usize {
+        match self.action {
+            Action::Run(Routine::Deform) => limits::MAX_CONTROL_OPERANDS,
+            _ => limits::MAX_OPERANDS,
+        }
     }
 
     /// Whether a file of the library defines it.

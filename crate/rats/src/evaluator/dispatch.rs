@@ -2,8 +2,8 @@
 
 use super::state::{Evaluator, Flow};
 use super::{
-    air, camera, contact, lights, materials, objects, options, primitives, run, scene_commands,
-    skeleton, textures, tools, variables,
+    air, camera, contact, deform, lights, materials, objects, options, primitives, run,
+    scene_commands, skeleton, textures, tools, variables,
 };
 use crate::commands::Routine;
 use crate::problem::Outcome;
@@ -63,6 +63,7 @@ pub fn function(routine: Routine) -> Run {
         Routine::Scale => objects::scale,
         Routine::Explode => objects::explode,
         Routine::Transform => objects::transform,
+        Routine::Deform => deform::deform,
         Routine::SilentSwitch => options::silent_switch,
         Routine::Warning => options::warning,
         Routine::Verbose => options::verbose,

@@ -39,10 +39,13 @@ impl Part {
         match &self.element.shape {
             Shape::Polygon { rings, .. } => rings.iter().map(Vec::len).sum(),
             Shape::Curve { .. } => CURVE_WEIGHT,
-            Shape::Function(function) => function.curves().map_or(1, |curves| {
-                let each = if curves.tapers() { CURVE_WEIGHT } else { 1 };
-                curves.pieces().count() * each
-            }),
+            Shape::Function(function) => function.curves().map_or_else(
+                || function.weight(),
+                |curves| {
+                    let each = if curves.tapers() { CURVE_WEIGHT } else { 1 };
+                    curves.pieces().count() * each
+                },
+            ),
             _ if self.tapers => CURVE_WEIGHT,
             _ => 1,
         }

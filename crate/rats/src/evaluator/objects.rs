@@ -208,7 +208,7 @@ fn transform_by<'a>(
 }
 
 /// The shapes that a transform is for: the object it names, else the last one.
-fn target<'a>(
+pub(super) fn target<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
     given: &Given<'a>,

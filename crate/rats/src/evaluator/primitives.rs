@@ -1,5 +1,6 @@
 //! PRIMITIVES: shapes made of a material.
 
+use super::implicit_mesh;
 use super::model::Part;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
@@ -35,7 +36,7 @@ impl<'a> Evaluator<'a> {
         self.add_of(command, material, shape, Kernel::Cauchy)
     }
 
-    fn add_of(
+    pub(super) fn add_of(
         &mut self,
         command: &'a Command,
         material: usize,
@@ -422,13 +423,16 @@ pub fn terra<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
     add_mesh(run, command, &name, &mesh, Some(&move_there))
 }
 
-/// `mesh sn fn`
+/// `mesh sn fn`, `mesh sn fn metaballs spherical k`, `mesh sn fn metaballs triangular d0 k`
 pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let (name, given) = operands(run, command)?;
     let asset = run.asset(given.name("fn"))?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
     let mesh = assets::mesh(asset)
         .map_err(|error| Problem::new(given.name("fn").span.clone(), error.to_string()))?;
+    if let Some(metaballs) = implicit_mesh::metaballs(&given)? {
+        return implicit_mesh::add(run, command, &name, asset, &mesh, metaballs);
+    }
     add_mesh(run, command, &name, &mesh, None)
 }
 

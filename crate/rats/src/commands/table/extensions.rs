@@ -89,6 +89,13 @@ pub static EXTENSIONS: &[CommandSpec] = &[
             varies smoothly from node to node. The flesh is soft whatever the material's blobbiness; its kernel is `cubed` unless the \
             material names another. A skeleton is an object: it is moved, turned and copied by its name.")
         .example(flesh!("skeleton Flesh, HAND {\n  node WRIST <-3 -1 0> radius 0.5\n  node PALM <-0.5 0 0> radius 0.9\n  node TIP <3 1.2 0> radius 0.3\n  node THUMB <0.5 2.4 0> radius 0.3\n  curve WRIST PALM TIP\n  curve PALM THUMB\n}")),
+    row("deform", "bend a mesh by control points", run(Routine::Deform))
+            .newer()
+        .takes(&[parameter("object", Kind::Known(Names::Object), "an object's name").optional("the last one")])
+        .options(o::DEFORM)
+        .details("Control points may lie anywhere, at most 4096; each takes along what is near when it moves, and one without `move` holds it. \
+            All that is between follows smoothly (by natural neighbours), and far away nothing moves. Triangles, patches and meshes can be deformed, soft surfaces around meshes too.")
+        .example(clay!("eyep 3 4 3\nfov 30\nvup 0 0 1\nmesh Clay gem.obj\ndeform { control <0 0 1> move <0.4 0 0.6>\n  control <0 0 0>\n  control <0 0 -1> move <-0.4 0 0> }")),
     row("seed", "start the random numbers of `rand`", run(Routine::Seed))
         .takes(&[number("n", "the seed")])
         .default("0")

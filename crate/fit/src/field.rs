@@ -1,0 +1,234 @@
+//! The distance of points from a mesh as a fit sees it, with derivatives by the mesh's vertices.
+
+use crate::error::Error;
+use field::Real;
+use glam::{DMat3, DVec3};
+use mesh::{Aabb, Bvh};
+use metaballs::{Metaballs, circumscribed, nearest, profile};
+
+/// How a mesh is seen by a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// By its nearest facet.
+    Explicit,
+    /// As the implicit surface of balls around its facets.
+    Spherical,
+    /// As the implicit surface of shells of a thickness around its facets.
+    Triangular {
+        /// The thickness, ≥ 0.
+        thickness: f64,
+    },
+}
+
+/// A mesh at one moment of a fit.
+#[derive(Debug)]
+pub(crate) struct Field<'a> {
+    pub positions: &'a [DVec3],
+    pub triangles: &'a [[u32; 3]],
+    form: Form,
+}
+
+#[derive(Debug)]
+enum Form {
+    Explicit(Bvh),
+    Implicit(Box<Metaballs>),
+}
+
+/// The derivative of a distance: vertices and how it grows when they move.
+pub(crate) type Gradient = Vec<(u32, DVec3)>;
+
+impl<'a> Field<'a> {
+    /// Prepares a mesh; k is the sharpness of implicit surfaces.
+    pub fn new(
+        positions: &'a [DVec3],
+        triangles: &'a [[u32; 3]],
+        kind: Kind,
+        k: f64,
+    ) -> Result<Self, Error> {
+        let implicit = |kind| {
+            Metaballs::new(positions, triangles, kind, k)
+                .map(|made| Form::Implicit(Box::new(made)))
+                .map_err(|error| Error(error.to_string()))
+        };
+        let form = match kind {
+            Kind::Explicit => {
+                let corners = |t: &[u32; 3]| t.map(|i| positions[i as usize]);
+                let boxes: Vec<Aabb> = triangles
+                    .iter()
+                    .map(|t| Aabb::of_points(corners(t)))
+                    .collect();
+                Form::Explicit(Bvh::new(&boxes))
+            }
+            Kind::Spherical => implicit(metaballs::Kind::Spherical)?,
+            Kind::Triangular { thickness } => implicit(metaballs::Kind::Triangular { thickness })?,
+        };
+        Ok(Self {
+            positions,
+            triangles,
+            form,
+        })
+    }
+
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.triangles[triangle as usize].map(|i| self.positions[i as usize])
+    }
+
+    /// Returns the distance of a point from the surface and sets its derivative: of an explicit mesh the distance from the
+    /// nearest facet, of an implicit one `−ln F/k`, which is d − ρ where a single facet counts. Infinite, without a
+    /// derivative, where no facet acts.
+    pub fn distance(&self, point: DVec3, gradient: &mut Gradient) -> f64 {
+        gradient.clear();
+        match &self.form {
+            Form::Explicit(bvh) => {
+                let square = |i| {
+                    nearest(&self.corners(i), point)
+                        .point
+                        .distance_squared(point)
+                };
+                let Some((facet, square)) = bvh.nearest(point, f64::INFINITY, square) else {
+                    return f64::INFINITY;
+                };
+                self.pull(facet, point, 1.0, gradient);
+                square.sqrt()
+            }
+            Form::Implicit(balls) => self.soft_distance(balls, point, gradient),
+        }
+    }
+
+    fn soft_distance(&self, balls: &Metaballs, point: DVec3, gradient: &mut Gradient) -> f64 {
+        let k = balls.sharpness();
+        let mut sum = 0.0;
+        for facet in balls.near(point) {
+            match balls.kind() {
+                metaballs::Kind::Triangular { thickness } => {
+                    let found = nearest(&self.corners(facet), point);
+                    let distance = found.point.distance(point);
+                    let (value, slope) = profile(k * (distance - thickness));
+                    sum += value;
+                    self.pull(facet, point, slope, gradient);
+                }
+                metaballs::Kind::Spherical => {
+                    let corners = self.corners(facet);
+                    let (center, radius) = circumscribed(&corners);
+                    let (value, slope) = profile(k * (point.distance(center) - radius));
+                    sum += value;
+                    let ways = by_circle(&corners, center, radius, point);
+                    for (vertex, way) in self.triangles[facet as usize].into_iter().zip(ways) {
+                        gradient.push((vertex, way * slope));
+                    }
+                }
+            }
+        }
+        if sum <= 0.0 {
+            gradient.clear();
+            return f64::INFINITY;
+        }
+        // d(−ln F/k) = −dF/(k·F), and each term's dF is k·φ′ times the change of its distance.
+        for (_, way) in gradient {
+            *way /= -sum;
+        }
+        -Real::ln(sum) / k
+    }
+
+    /// Appends the derivative of the distance from a facet, times a factor.
+    fn pull(&self, facet: u32, point: DVec3, factor: f64, gradient: &mut Gradient) {
+        let found = nearest(&self.corners(facet), point);
+        let away = (point - found.point).normalize_or_zero() * -factor;
+        let corners = self.triangles[facet as usize]
+            .into_iter()
+            .zip(found.weights);
+        gradient.extend(
+            corners
+                .filter(|(_, weight)| *weight > 0.0)
+                .map(|(vertex, weight)| (vertex, away * weight)),
+        );
+    }
+}
+
+/// The derivatives of `|p − c| − ρ` by the corners of a triangle with the circumcentre c and circumradius ρ.
+///
+/// With y = c − a the centre solves `y·B = B²/2`, `y·C = C²/2`, `y·(B×C) = 0` for the sides B = b − a and C = c − a.
+/// Where the circle is not the circumcircle (an angle above 150°) its direction from the longest side is taken as fixed.
+fn by_circle(corners: &[DVec3; 3], center: DVec3, radius: f64, point: DVec3) -> [DVec3; 3] {
+    let [a, b, c] = *corners;
+    let away = (point - center).normalize_or_zero();
+    let lengths = [a.distance(b), b.distance(c), c.distance(a)];
+    let longest = (0..3).fold(
+        0,
+        |best, i| if lengths[i] > lengths[best] { i } else { best },
+    );
+    if radius >= lengths[longest] * (1.0 - 1e-9) {
+        // c = (s + t)/2 + e·√¾·L and ρ = L for the longest side from s to t.
+        let (start, end) = (longest, (longest + 1) % 3);
+        let along = (corners[end] - corners[start]).normalize_or_zero();
+        let rise = (center - 0.5 * (corners[start] + corners[end])) / lengths[longest].max(1e-300);
+        let by_length = -away.dot(rise) - 1.0;
+        let mut ways = [DVec3::ZERO; 3];
+        ways[start] = -0.5 * away - along * by_length;
+        ways[end] = -0.5 * away + along * by_length;
+        return ways;
+    }
+    let (side_b, side_c, y) = (b - a, c - a, center - a);
+    let normal = side_b.cross(side_c);
+    let solve = DMat3::from_cols(side_b, side_c, normal).inverse();
+    // The wanted change is w·dy − u·da.
+    let w = -(away + y / radius);
+    let [by_b, by_c, by_normal] = (solve * w).to_array();
+    let way_b = by_b * (side_b - y) - by_normal * side_c.cross(y);
+    let way_c = by_c * (side_c - y) - by_normal * y.cross(side_b);
+    [-away - way_b - way_c, way_b, way_c]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [DVec3; 4] = [
+        DVec3::new(0.0, 0.1, 0.0),
+        DVec3::new(1.0, 0.0, 0.2),
+        DVec3::new(0.3, 0.9, -0.1),
+        DVec3::new(1.1, 1.0, 0.3),
+    ];
+
+    #[test]
+    fn derivatives_agree_with_differences() {
+        let h = 1e-6;
+        let triangles = [[0, 1, 2], [2, 1, 3]];
+        let kinds = [
+            Kind::Explicit,
+            Kind::Spherical,
+            Kind::Triangular { thickness: 0.1 },
+        ];
+        for kind in kinds {
+            for i in 0..60 {
+                let t = f64::from(i);
+                let point = DVec3::new(
+                    0.5 + libm::sin(1.7 * t),
+                    0.5 + libm::cos(2.3 * t),
+                    libm::sin(0.9 * t + 1.0),
+                );
+                let distance = |positions: &[DVec3], gradient: &mut Gradient| {
+                    let field = Field::new(positions, &triangles, kind, 8.0).unwrap();
+                    field.distance(point, gradient)
+                };
+                let (mut gradient, mut other) = (Vec::new(), Vec::new());
+                if !distance(&CORNERS, &mut gradient).is_finite() {
+                    continue;
+                }
+                for vertex in 0..4 {
+                    for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                        let mut moved = |by: f64| {
+                            let mut positions = CORNERS;
+                            positions[vertex] += axis * by;
+                            distance(&positions, &mut other)
+                        };
+                        let difference = (moved(h) - moved(-h)) / (2.0 * h);
+                        let own = gradient.iter().filter(|(v, _)| *v as usize == vertex);
+                        let exact: f64 = own.map(|(_, way)| way.dot(axis)).sum();
+                        assert!((difference - exact).abs() < 1e-5, "{kind:?} {point}");
+                    }
+                }
+            }
+        }
+    }
+}

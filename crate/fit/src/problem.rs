@@ -1,0 +1,170 @@
+//! What is fitted: a mesh, its control mesh, the observations.
+
+use crate::deformation::Deformation;
+use crate::error::{Error, fail};
+use crate::field::Kind;
+use crate::sight::Sight;
+use glam::DVec3;
+use mesh::TriangleMesh;
+
+/// Most control points of a fit: its equations take time in proportion to their cube.
+pub const MAX_FITTED_CONTROLS: usize = 500;
+/// Most points, and most lines of sight.
+pub const MAX_OBSERVATIONS: usize = 200_000;
+
+/// Measured places of a surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Observations {
+    /// Points on the surface.
+    pub points: Vec<DVec3>,
+    /// Lines that graze the surface.
+    pub sights: Vec<Sight>,
+}
+
+/// How to fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// How the mesh is seen.
+    pub kind: Kind,
+    /// k of the implicit surface at the end of the fit; `None` for 20 over the mean edge.
+    pub slope: Option<f64>,
+    /// Weight of the smoothness of the moves, ≥ 0; at 1 it counts as much as the observations do together.
+    pub smooth: f64,
+    /// Weight of the outlines beside the points, ≥ 0; at 1 they count alike.
+    pub outlines: f64,
+    /// Whether the mesh is first turned and moved as a whole.
+    pub align: bool,
+    /// Most iterations in all.
+    pub iterations: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            kind: Kind::Triangular { thickness: 0.0 },
+            slope: None,
+            smooth: 0.02,
+            outlines: 1.0,
+            align: false,
+            iterations: 60,
+        }
+    }
+}
+
+/// A mesh to fit with its control points.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    pub(crate) positions: Vec<DVec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) controls: Vec<DVec3>,
+    pub(crate) cage: Vec<[u32; 3]>,
+    pub(crate) deformation: Deformation,
+    pub(crate) observations: Observations,
+    pub(crate) options: Options,
+}
+
+impl Problem {
+    /// Prepares a fit. The vertices of `cage` are the control points, its triangles say which are neighbours.
+    ///
+    /// # Errors
+    /// Says which input cannot be used: a mesh without triangles, too many controls, no or too few observations, numbers out
+    /// of range.
+    pub fn new(
+        mesh: &TriangleMesh,
+        cage: &TriangleMesh,
+        observations: Observations,
+        options: Options,
+    ) -> Result<Self, Error> {
+        check(mesh, cage, &observations, &options)?;
+        let problem = Self {
+            positions: mesh.positions.clone(),
+            triangles: mesh.triangles.clone(),
+            controls: cage.positions.clone(),
+            cage: cage.triangles.clone(),
+            deformation: Deformation::new(&mesh.positions, &cage.positions)?,
+            observations,
+            options,
+        };
+        if problem.mean_edge() <= 0.0 {
+            return fail("the mesh has no extent");
+        }
+        Ok(problem)
+    }
+
+    /// The mean length of the edges of all triangles.
+    #[must_use]
+    pub fn mean_edge(&self) -> f64 {
+        mean_edge(&self.positions, &self.triangles)
+    }
+}
+
+/// The mean length of the edges of triangles; 0 without any.
+#[must_use]
+pub fn mean_edge(positions: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+    let place = |i: u32| positions[i as usize];
+    let around = |[a, b, c]: &[u32; 3]| {
+        let [a, b, c] = [*a, *b, *c].map(place);
+        a.distance(b) + b.distance(c) + c.distance(a)
+    };
+    let sum: f64 = triangles.iter().map(around).sum();
+    sum / (3 * triangles.len()).max(1) as f64
+}
+
+fn check(
+    mesh: &TriangleMesh,
+    cage: &TriangleMesh,
+    observations: &Observations,
+    options: &Options,
+) -> Result<(), Error> {
+    if mesh.triangles.is_empty() {
+        return fail("the mesh has no triangles");
+    }
+    if cage.positions.len() > MAX_FITTED_CONTROLS {
+        return fail(format!(
+            "the control mesh has {} vertices, more than the {MAX_FITTED_CONTROLS} that a fit takes",
+            cage.positions.len()
+        ));
+    }
+    let Observations { points, sights } = observations;
+    if points.is_empty() && sights.is_empty() {
+        return fail("there are no points and no outlines to fit to");
+    }
+    for (count, what) in [(points.len(), "points"), (sights.len(), "lines of sight")] {
+        if count > MAX_OBSERVATIONS {
+            return fail(format!(
+                "there are {count} {what}, more than the {MAX_OBSERVATIONS} that a fit takes"
+            ));
+        }
+    }
+    if sights.is_empty() && points.len() < 4 {
+        return fail(format!(
+            "a cloud of {} point{} says too little; four are the least",
+            points.len(),
+            if points.len() == 1 { "" } else { "s" }
+        ));
+    }
+    if let Some(bad) = points.iter().position(|p| !p.is_finite()) {
+        return fail(format!("point {} of the cloud is no finite point", bad + 1));
+    }
+    if sights
+        .iter()
+        .any(|s| !(s.origin.is_finite() && s.direction.is_normalized()))
+    {
+        return fail("a line of sight has no direction");
+    }
+    let in_range = |value: f64| value.is_finite() && value >= 0.0;
+    if !in_range(options.smooth) || !in_range(options.outlines) {
+        return fail("weights must be numbers from 0 on");
+    }
+    if let Some(k) = options.slope
+        && !(k.is_finite() && k > 0.0)
+    {
+        return fail("the slope must be a number above 0");
+    }
+    if let Kind::Triangular { thickness } = options.kind
+        && !in_range(thickness)
+    {
+        return fail("the thickness must be a number from 0 on");
+    }
+    Ok(())
+}

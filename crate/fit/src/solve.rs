@@ -1,0 +1,388 @@
+//! Levenberg and Marquardt's method on the control points' moves.
+//!
+//! The residual of an observation is `w·s·tanh(h/s)` with the distance h of [`Field::distance`]: a length that does not
+//! grow beyond s, so that outliers pull little. s falls in steps from the mesh's distance at the start to three times the
+//! spread of the observations, and the implicit surface's k rises with it to its last value: coarse to fine.
+
+use crate::align::{Rigid, align};
+use crate::error::Error;
+use crate::field::{Field, Gradient, Kind};
+use crate::normal::Normal;
+use crate::problem::{Options, Problem};
+use crate::stiffness::{energy, stiffness};
+use glam::DVec3;
+use mesh::{Aabb, Bvh};
+
+/// Iterations of one step at most.
+const PER_LEVEL: usize = 12;
+/// Steps at most.
+const MOST_LEVELS: usize = 12;
+/// Relative decrease of the sum below which a step is done.
+const SETTLED: f64 = 1e-4;
+/// The distance that the implicit surface's field reaches, in s.
+const REACH: f64 = 8.0;
+
+/// A moment of a fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// Iterations done.
+    pub iteration: usize,
+    /// Root of the mean square of the distances of the points that are no outliers; of outlines where there are no points.
+    pub residual: f64,
+    /// The share of observations further than three times that.
+    pub outliers: f64,
+    /// s, beyond which distances count no more.
+    pub scale: f64,
+    /// The control points' moves.
+    pub moves: Vec<DVec3>,
+}
+
+/// The result of a fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    /// How the mesh and its controls were turned and moved first.
+    pub rigid: Rigid,
+    /// The control points' moves after that, in the directions of the data.
+    pub moves: Vec<DVec3>,
+    /// The mesh's vertices.
+    pub positions: Vec<DVec3>,
+    /// The last moment.
+    pub last: Progress,
+    /// Whether it was stopped before it had settled.
+    pub stopped: bool,
+}
+
+/// Fits a mesh. `tell` is called after each iteration, and says whether to go on.
+///
+/// # Errors
+/// If the implicit surface cannot be made.
+pub fn fit(problem: &Problem, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<Fitted, Error> {
+    let mut problem = problem.clone();
+    let rigid = if problem.options.align {
+        align(
+            &problem.positions,
+            &problem.triangles,
+            &problem.observations.points,
+        )
+    } else {
+        Rigid::IDENTITY
+    };
+    for place in problem.positions.iter_mut().chain(&mut problem.controls) {
+        *place = rigid.apply(*place);
+    }
+    let mut run = Run::new(&problem);
+    let stopped = !run.all(tell)?;
+    Ok(Fitted {
+        rigid,
+        positions: run.positions.clone(),
+        last: run.progress()?,
+        moves: run.moves,
+        stopped,
+    })
+}
+
+/// An observation for one iteration: a place, and its class.
+type Place = (DVec3, usize);
+
+struct Run<'a> {
+    problem: &'a Problem,
+    options: Options,
+    stiffness: Vec<(u32, u32, f64)>,
+    moves: Vec<DVec3>,
+    positions: Vec<DVec3>,
+    /// k at the end.
+    slope: f64,
+    scale: f64,
+    damping: f64,
+    iteration: usize,
+    /// Weights of points and outlines.
+    weights: [f64; 2],
+    /// Weight of the smoothness.
+    smooth: f64,
+}
+
+impl<'a> Run<'a> {
+    fn new(problem: &'a Problem) -> Self {
+        let options = problem.options;
+        Self {
+            problem,
+            options,
+            stiffness: stiffness(&problem.controls, &problem.cage),
+            moves: vec![DVec3::ZERO; problem.controls.len()],
+            positions: problem.positions.clone(),
+            slope: options.slope.unwrap_or(20.0 / problem.mean_edge()),
+            scale: f64::INFINITY,
+            damping: 1e-3,
+            iteration: 0,
+            weights: [1.0; 2],
+            smooth: 0.0,
+        }
+    }
+
+    /// k at the present scale.
+    fn sharpness(&self) -> f64 {
+        self.slope.min(REACH / self.scale)
+    }
+
+    fn field<'b>(&self, positions: &'b [DVec3]) -> Result<Field<'b>, Error>
+    where
+        'a: 'b,
+    {
+        Field::new(
+            positions,
+            &self.problem.triangles,
+            self.options.kind,
+            self.sharpness(),
+        )
+    }
+
+    /// All steps, coarse to fine. Returns whether it went to the end.
+    fn all(&mut self, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<bool, Error> {
+        let apart = self.distances(Kind::Explicit)?;
+        let size = Aabb::of_points(self.positions.iter().copied())
+            .size()
+            .length();
+        // Nine of ten are within it.
+        self.scale = quantile(&apart, 0.9).clamp(1e-9 * size, size);
+        for _ in 0..MOST_LEVELS {
+            if !self.level(tell)? {
+                return Ok(false);
+            }
+            let spread = 1.4826 * quantile(&self.distances(Kind::Explicit)?, 0.5);
+            let least = (3.0 * spread).max(1e-9 * size);
+            if self.scale <= least * 1.01 {
+                break;
+            }
+            self.scale = (0.5 * self.scale).max(least);
+        }
+        Ok(true)
+    }
+
+    /// The places of the observations: where lines of sight should touch the surface is found anew.
+    fn places(&self, field: &Field<'_>) -> Vec<Place> {
+        let observations = &self.problem.observations;
+        let mut places: Vec<Place> = observations.points.iter().map(|p| (*p, 0)).collect();
+        if self.options.outlines > 0.0 && !observations.sights.is_empty() {
+            let corners = (0..self.problem.triangles.len() as u32).map(|i| field.corners(i));
+            let boxes: Vec<Aabb> = corners.map(Aabb::of_points).collect();
+            let bvh = Bvh::new(&boxes);
+            let touches = observations
+                .sights
+                .iter()
+                .filter_map(|s| s.touch(field, &bvh));
+            places.extend(touches.map(|place| (place, 1)));
+        }
+        places
+    }
+
+    /// Distances of all observations from the present surface.
+    fn distances(&self, kind: Kind) -> Result<Vec<f64>, Error> {
+        let field = Field::new(&self.positions, &self.problem.triangles, kind, self.slope)?;
+        let mut gradient = Gradient::new();
+        let mut distances: Vec<f64> = self
+            .places(&field)
+            .iter()
+            .map(|(place, _)| field.distance(*place, &mut gradient).abs())
+            .collect();
+        distances.sort_by(f64::total_cmp);
+        Ok(distances)
+    }
+
+    fn progress(&self) -> Result<Progress, Error> {
+        let distances = self.distances(Kind::Explicit)?;
+        let spread = 1.4826 * quantile(&distances, 0.5);
+        let near = distances.partition_point(|d| *d <= 3.0 * spread);
+        let squares: f64 = distances[..near].iter().map(|d| d * d).sum();
+        let residual = (squares / near.max(1) as f64).sqrt();
+        let far = distances.len() - distances.partition_point(|d| *d <= 3.0 * residual);
+        Ok(Progress {
+            iteration: self.iteration,
+            residual,
+            outliers: far as f64 / distances.len().max(1) as f64,
+            scale: self.scale,
+            moves: self.moves.clone(),
+        })
+    }
+
+    /// Iterations with one scale. Returns whether to go on.
+    fn level(&mut self, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<bool, Error> {
+        self.damping = 1e-3;
+        for turn in 0..PER_LEVEL {
+            if self.iteration >= self.options.iterations {
+                return Ok(true);
+            }
+            let field = self.field(&self.positions)?;
+            let places = self.places(&field);
+            if turn == 0 {
+                (self.weights, self.smooth) = self.balance(&field, &places);
+            }
+            let (normal, before) = self.equations(&field, &places);
+            let settled = self.step(&normal, before, &places)?;
+            self.iteration += 1;
+            if !tell(&self.progress()?) {
+                return Ok(false);
+            }
+            if settled {
+                break;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Weights that make the classes, and the smoothness, count as the options say: by the sums of the squares of their
+    /// derivatives.
+    fn balance(&self, field: &Field<'_>, places: &[Place]) -> ([f64; 2], f64) {
+        let mut sums = [0.0; 2];
+        let mut row = Row::new(self.moves.len());
+        for (place, class) in places {
+            if let Some((_, factor)) = self.residual(field, *place, &mut row) {
+                let square: f64 = row
+                    .entries
+                    .iter()
+                    .map(|(_, way)| way.length_squared())
+                    .sum();
+                sums[*class] += factor * factor * square;
+            }
+        }
+        let [points, outlines] = sums;
+        let weights = if points > 0.0 && outlines > 0.0 {
+            [1.0, self.options.outlines * points / outlines]
+        } else {
+            [1.0; 2]
+        };
+        let all = weights[0] * points + weights[1] * outlines;
+        let diagonal = self.stiffness.iter().filter(|(i, j, _)| i == j);
+        let stiff: f64 = 3.0 * diagonal.map(|(.., value)| value).sum::<f64>();
+        let smooth = if stiff > 0.0 {
+            self.options.smooth * all / stiff
+        } else {
+            0.0
+        };
+        (weights, smooth)
+    }
+
+    /// Sets the derivative of an observation's distance by the moves. Returns its residual and the factor between the
+    /// residual's derivative and the distance's; `None` if nothing acts there.
+    fn residual(&self, field: &Field<'_>, place: DVec3, row: &mut Row) -> Option<(f64, f64)> {
+        let distance = field.distance(place, &mut row.gradient);
+        if !distance.is_finite() {
+            return None;
+        }
+        row.chain(self.problem);
+        let share = libm::tanh(distance / self.scale);
+        Some((self.scale * share, 1.0 - share * share))
+    }
+
+    /// The equations at the present moves, and the sum that is to fall.
+    fn equations(&self, field: &Field<'_>, places: &[Place]) -> (Normal, f64) {
+        let mut normal = Normal::new(3 * self.moves.len());
+        let mut row = Row::new(self.moves.len());
+        let mut sum = 0.0;
+        for (place, class) in places {
+            let weight = self.weights[*class];
+            let Some((residual, factor)) = self.residual(field, *place, &mut row) else {
+                sum += 0.5 * weight * self.scale * self.scale;
+                continue;
+            };
+            sum += 0.5 * weight * residual * residual;
+            row.entries.iter_mut().for_each(|(_, way)| *way *= factor);
+            normal.add(residual, &row.entries, weight);
+        }
+        for (i, j, value) in &self.stiffness {
+            let value = value * self.smooth;
+            normal.add_alike(*i, *j, value);
+            for (to, from) in [(*i, *j), (*j, *i)].iter().take(if i == j { 1 } else { 2 }) {
+                for axis in 0..3 {
+                    normal.gradient[3 * *to as usize + axis] +=
+                        value * self.moves[*from as usize][axis];
+                }
+            }
+        }
+        (
+            normal,
+            sum + self.smooth * energy(&self.stiffness, &self.moves),
+        )
+    }
+
+    /// The sum at some moves.
+    fn sum(&self, moves: &[DVec3], positions: &[DVec3], places: &[Place]) -> Result<f64, Error> {
+        let field = self.field(positions)?;
+        let mut gradient = Gradient::new();
+        let term = |(place, class): &Place| {
+            let share = libm::tanh(field.distance(*place, &mut gradient) / self.scale);
+            0.5 * self.weights[*class] * (self.scale * share).powi(2)
+        };
+        let sum: f64 = places.iter().map(term).sum();
+        Ok(sum + self.smooth * energy(&self.stiffness, moves))
+    }
+
+    /// Moves the controls to where the sum is less. Returns whether it has settled.
+    fn step(&mut self, normal: &Normal, before: f64, places: &[Place]) -> Result<bool, Error> {
+        for _ in 0..8 {
+            let Some(way) = normal.solve(self.damping) else {
+                self.damping = (self.damping * 10.0).max(1e-6);
+                continue;
+            };
+            let moved = self.moves.iter().zip(way.chunks_exact(3));
+            let moves: Vec<DVec3> = moved.map(|(m, way)| *m + DVec3::from_slice(way)).collect();
+            let positions = self
+                .problem
+                .deformation
+                .apply(&self.problem.positions, &moves);
+            let after = self.sum(&moves, &positions, places)?;
+            if after < before {
+                (self.moves, self.positions) = (moves, positions);
+                self.damping = (self.damping * 0.2).max(1e-9);
+                return Ok(before - after <= SETTLED * before);
+            }
+            self.damping *= 5.0;
+        }
+        Ok(true)
+    }
+}
+
+/// A row of derivatives by the control points.
+struct Row {
+    gradient: Gradient,
+    entries: Vec<(u32, DVec3)>,
+    /// For each control the place of its entry and one more; 0 for none.
+    places: Vec<u32>,
+}
+
+impl Row {
+    fn new(controls: usize) -> Self {
+        Self {
+            gradient: Vec::new(),
+            entries: Vec::new(),
+            places: vec![0; controls],
+        }
+    }
+
+    /// From derivatives by vertices to those by control points.
+    fn chain(&mut self, problem: &Problem) {
+        self.entries.clear();
+        for (vertex, way) in &self.gradient {
+            for (control, weight) in problem.deformation.weights(*vertex as usize) {
+                let place = &mut self.places[*control as usize];
+                if *place == 0 {
+                    self.entries.push((*control, DVec3::ZERO));
+                    *place = self.entries.len() as u32;
+                }
+                self.entries[*place as usize - 1].1 += *way * *weight;
+            }
+        }
+        for (control, _) in &self.entries {
+            self.places[*control as usize] = 0;
+        }
+        self.entries.sort_unstable_by_key(|(control, _)| *control);
+    }
+}
+
+/// A quantile of sorted numbers; 0 without any.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let last = sorted.len().saturating_sub(1);
+    sorted
+        .get((share * last as f64) as usize)
+        .copied()
+        .unwrap_or(0.0)
+}

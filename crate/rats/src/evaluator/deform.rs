@@ -1,0 +1,227 @@
+//! `deform`: objects that follow control points.
+
+use super::model::{Model, Part};
+use super::objects::target;
+use super::state::{Evaluator, Flow};
+use crate::given::Chosen;
+use crate::limits::STEPS_PER_VERTEX;
+use crate::problem::{Outcome, Problem};
+use crate::syntax::Command;
+use fit::Deformation;
+use glam::DVec3;
+use scene::{Form, ImplicitMesh, Shape};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::ops::Range;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Deformations that are kept: a text is compiled at every keystroke, and while a control point is dragged only its move
+/// changes.
+const KEPT: usize = 4;
+
+/// Coordinates of vertices with respect to controls.
+struct Kept {
+    vertices: Vec<DVec3>,
+    controls: Vec<DVec3>,
+    made: Result<Rc<Deformation>, fit::Error>,
+}
+
+thread_local! {
+    static CACHE: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
+}
+
+/// The deformation of these vertices, computed or kept.
+fn deformation(vertices: &[DVec3], controls: &[DVec3]) -> Result<Rc<Deformation>, fit::Error> {
+    CACHE.with_borrow_mut(|cache| {
+        let is_it = |kept: &Kept| kept.controls == controls && kept.vertices == vertices;
+        if let Some(index) = cache.iter().position(is_it) {
+            cache[index..].rotate_left(1);
+        } else {
+            if cache.len() >= KEPT {
+                cache.remove(0);
+            }
+            cache.push(Kept {
+                vertices: vertices.to_vec(),
+                controls: controls.to_vec(),
+                made: Deformation::new(vertices, controls).map(Rc::new),
+            });
+        }
+        cache[cache.len() - 1].made.clone()
+    })
+}
+
+/// `deform [object] { control XYZ [move XYZ] … }`
+pub fn deform<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let given = run.given(command)?;
+    let range = target(run, command, &given)?;
+    let (controls, moves) = controls(&given.options)?;
+    if controls.is_empty() {
+        return Err(Problem::new(
+            command.span.clone(),
+            "there are no control points to deform with",
+        )
+        .hint("write them as `deform { control <0 0 0> move <0 0 1> }`"));
+    }
+    let vertices = Vertices::of(&run.model, range.clone(), &command.word_span)?;
+    let work = vertices.places.len() as u64 * STEPS_PER_VERTEX + range.len() as u64;
+    run.scope.step(work, &command.word_span)?;
+    let deformation = deformation(&vertices.places, &controls)
+        .map_err(|error| Problem::new(command.span.clone(), error.to_string()))?;
+    let moved = deformation.apply(&vertices.places, &moves);
+    vertices.put(&mut run.model.parts[range], &moved);
+    Ok(Flow::Next)
+}
+
+/// The control points, and the moves of each; those without one stay.
+fn controls(options: &[Chosen<'_>]) -> Outcome<(Vec<DVec3>, Vec<DVec3>)> {
+    let (mut controls, mut moves) = (Vec::new(), Vec::new());
+    let mut movable = false;
+    for chosen in options {
+        let vector = chosen.given.vector("XYZ");
+        if chosen.name == "control" {
+            controls.push(vector);
+            moves.push(DVec3::ZERO);
+            movable = true;
+        } else if let (true, Some(last)) = (movable, moves.last_mut()) {
+            *last = vector;
+            movable = false;
+        } else {
+            return Err(Problem::new(
+                chosen.span.clone(),
+                "there is no control point before this `move`",
+            )
+            .hint("each move stands behind its point: `control <0 0 0> move <0 0 1>`"));
+        }
+    }
+    Ok((controls, moves))
+}
+
+/// The vertices of some shapes, each once.
+struct Vertices {
+    places: Vec<DVec3>,
+    /// For each shape in turn, the numbers of its corners.
+    numbers: Vec<u32>,
+}
+
+impl Vertices {
+    fn of(model: &Model<'_>, range: Range<usize>, span: &Range<usize>) -> Outcome<Self> {
+        let (mut places, mut numbers) = (Vec::new(), Vec::new());
+        let mut known = HashMap::new();
+        for part in &model.parts[range] {
+            let corners = corners(&part.element.shape).ok_or_else(|| {
+                Problem::new(
+                    span.clone(),
+                    "only triangles, patches and meshes can be deformed, and this object has other shapes",
+                )
+                .hint("put the mesh into an object of its own")
+            })?;
+            for corner in corners {
+                let bits = corner.to_array().map(f64::to_bits);
+                let number = *known.entry(bits).or_insert_with(|| {
+                    places.push(corner);
+                    places.len() as u32 - 1
+                });
+                numbers.push(number);
+            }
+        }
+        Ok(Self { places, numbers })
+    }
+
+    /// Gives the shapes their vertices back, moved.
+    fn put(&self, parts: &mut [Part], moved: &[DVec3]) {
+        let mut numbers = self.numbers.iter().copied();
+        let mut normals = Normals::default();
+        for part in &mut *parts {
+            let mut next = || numbers.next().map_or(DVec3::ZERO, |n| moved[n as usize]);
+            match &mut part.element.shape {
+                Shape::Triangle { corners, .. } => *corners = [next(), next(), next()],
+                Shape::Patch {
+                    corners,
+                    normals: own,
+                } => {
+                    let before = *corners;
+                    *corners = [next(), next(), next()];
+                    normals.turn(&before, corners, own);
+                }
+                Shape::Function(function) => {
+                    if let Form::Mesh(mesh) = &mut function.form {
+                        let to_own = function.to_world.inverse();
+                        let count = mesh.positions.len();
+                        let positions = (0..count).map(|_| to_own.transform_point3(next()));
+                        *mesh = Arc::new(ImplicitMesh::new(
+                            positions.collect(),
+                            mesh.triangles.clone(),
+                            mesh.kind,
+                            mesh.sharpness,
+                        ));
+                    }
+                }
+                _ => {}
+            }
+        }
+        for part in parts {
+            if let Shape::Patch {
+                corners,
+                normals: own,
+            } = &mut part.element.shape
+            {
+                normals.mean(corners, own);
+            }
+        }
+    }
+}
+
+/// The corners of a shape that can be deformed.
+fn corners(shape: &Shape) -> Option<Vec<DVec3>> {
+    match shape {
+        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => Some(corners.to_vec()),
+        Shape::Function(function) => match &function.form {
+            Form::Mesh(mesh) => {
+                let places = mesh.positions.iter();
+                Some(
+                    places
+                        .map(|p| function.to_world.transform_point3(*p))
+                        .collect(),
+                )
+            }
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Normals of patches: each patch turns them as its plane turns; patches that shared a normal at a corner share the mean.
+#[derive(Default)]
+struct Normals {
+    sums: HashMap<[u64; 6], DVec3>,
+}
+
+impl Normals {
+    fn key(corner: DVec3, normal: DVec3) -> [u64; 6] {
+        let [a, b, c] = corner.to_array().map(f64::to_bits);
+        let [x, y, z] = normal.to_array().map(f64::to_bits);
+        [a, b, c, x, y, z]
+    }
+
+    fn turn(&mut self, before: &[DVec3; 3], after: &[DVec3; 3], normals: &[DVec3; 3]) {
+        let plane = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).try_normalize();
+        // The shortest turn from one plane's normal to the other's, made of two reflections.
+        let mirrors = match (plane(before), plane(after)) {
+            (Some(from), Some(to)) => (from + to).try_normalize().map(|half| [from, half]),
+            _ => None,
+        };
+        for (corner, normal) in after.iter().zip(normals) {
+            let mirror = |n: DVec3, mirror: &DVec3| n - *mirror * (2.0 * mirror.dot(n));
+            let turned = mirrors.iter().flatten().fold(*normal, mirror);
+            *self.sums.entry(Self::key(*corner, *normal)).or_default() += turned;
+        }
+    }
+
+    fn mean(&self, corners: &[DVec3; 3], normals: &mut [DVec3; 3]) {
+        for (corner, normal) in corners.iter().zip(normals) {
+            let mean = self.sums.get(&Self::key(*corner, *normal)).copied();
+            *normal = mean.and_then(DVec3::try_normalize).unwrap_or(*normal);
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! `mesh … metaballs`: meshes as soft shapes.
+
+use super::state::{Evaluator, Flow};
+use crate::given::Given;
+use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
+use crate::syntax::Command;
+use crate::{Asset, Severity, assets};
+use field::Kernel;
+use glam::DAffine3;
+use mesh::TriangleMesh;
+use metaballs::Kind;
+use scene::{Form, Function, ImplicitMesh, Shape};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The least product of k and the mean edge: below it the balls of many facets add up, and the surface bulges.
+const LEAST: f64 = 10.0;
+
+/// What surrounds the facets, and k, with the place of the numbers in the text; `None` if the mesh is to be drawn as it is.
+///
+/// # Errors
+/// If `metaballs` has no kind, or two, or a kind stands alone.
+pub fn metaballs(given: &Given<'_>) -> Outcome<Option<(Kind, f64, Range<usize>)>> {
+    let [word, spherical, triangular] =
+        ["metaballs", "spherical", "triangular"].map(|name| given.option(name));
+    let kinds = [spherical, triangular];
+    let Some(word) = word else {
+        return match kinds.into_iter().flatten().next() {
+            None => Ok(None),
+            Some(kind) => Err(Problem::new(
+                kind.span.clone(),
+                format!("`{}` is a kind of `metaballs`, which is missing", kind.name),
+            )
+            .hint(format!("write `metaballs {}`", kind.name))),
+        };
+    };
+    match kinds {
+        [Some(chosen), None] => {
+            let k = chosen.given.number("k");
+            Ok(Some((Kind::Spherical, k, chosen.span.clone())))
+        }
+        [None, Some(chosen)] => {
+            let thickness = chosen.given.number("d0");
+            let k = chosen.given.number("k");
+            Ok(Some((
+                Kind::Triangular { thickness },
+                k,
+                chosen.span.clone(),
+            )))
+        }
+        [None, None] => Err(Problem::new(
+            word.span.clone(),
+            "expected the kind of metaballs behind this",
+        )
+        .hint("write `metaballs triangular d0 k` or `metaballs spherical k`")),
+        [Some(_), Some(second)] => Err(Problem::new(
+            second.span.clone(),
+            "metaballs are spherical or triangular, not both",
+        )),
+    }
+}
+
+/// Adds the implicit surface of a mesh as one soft shape.
+pub fn add<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    name: &Name<'a>,
+    asset: &Asset,
+    mesh: &TriangleMesh,
+    (kind, k, span): (Kind, f64, Range<usize>),
+) -> Outcome<Flow> {
+    let material = run.material(name)?;
+    run.scope
+        .step(mesh.triangles.len() as u64, &command.word_span)?;
+    if k <= 0.0 {
+        return Err(Problem::new(
+            span,
+            format!("k must be a number above 0, not {k}"),
+        ));
+    }
+    let own = ImplicitMesh::new(mesh.positions.clone(), mesh.triangles.clone(), kind, k);
+    let function = Function {
+        form: Form::Mesh(Arc::new(own)),
+        to_world: DAffine3::IDENTITY,
+    };
+    tell_bulges(run, mesh, k, span);
+    tell_topology(run, asset, command.span.clone());
+    run.add_of(
+        command,
+        material,
+        Shape::Function(Box::new(function)),
+        Kernel::Cauchy,
+    )
+}
+
+/// Warns where k is small for the mesh.
+fn tell_bulges(run: &mut Evaluator<'_>, mesh: &TriangleMesh, k: f64, span: Range<usize>) {
+    let edge = fit::mean_edge(&mesh.positions, &mesh.triangles);
+    let product = k * edge;
+    if product < LEAST && edge > 0.0 {
+        run.say(Severity::Warning, span, || {
+            (
+                format!(
+                    "k times the mean edge is {product:.2}: below {LEAST} the surface bulges where facets are small"
+                ),
+                Some(format!("a k of {} would do", rounded_up(LEAST / edge))),
+            )
+        });
+    }
+}
+
+/// Notes what an open mesh or one that is no manifold looks like.
+fn tell_topology(run: &mut Evaluator<'_>, asset: &Asset, span: Range<usize>) {
+    let Some(topology) = assets::topology(asset)
+        .ok()
+        .filter(|t| !t.is_closed_manifold())
+    else {
+        return;
+    };
+    let edges = topology.boundary_edges;
+    run.say(Severity::Note, span, || {
+        let text = if edges > 0 {
+            format!("this mesh is open ({edges} edges have one facet only), so its soft surface is a shell with a rim, not a solid")
+        } else {
+            String::from("this mesh is no manifold; its soft surface is around all of its facets all the same")
+        };
+        (text, None)
+    });
+}
+
+/// A number rounded up to two digits.
+fn rounded_up(value: f64) -> f64 {
+    let mut unit = 1.0;
+    while unit * 10.0 <= value {
+        unit *= 10.0;
+    }
+    while unit > value {
+        unit /= 10.0;
+    }
+    let digits = (value * 10.0 / unit - 1e-9).ceil();
+    // Divided by a whole number where that is exact.
+    if unit >= 10.0 {
+        digits * (unit / 10.0)
+    } else {
+        digits / (10.0 / unit).round()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded_up;
+
+    #[test]
+    fn numbers_are_rounded_up_to_two_digits() {
+        for (value, up) in [
+            (12.01, 13.0),
+            (123.4, 130.0),
+            (0.0511, 0.052),
+            (9.99, 10.0),
+            (20.0, 20.0),
+        ] {
+            assert_eq!(rounded_up(value), up);
+        }
+    }
+}
