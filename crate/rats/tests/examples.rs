@@ -195,12 +195,19 @@ fn the_thesis_s_models_have_its_numbers_of_elements() {
 }
 
 const EXAMPLES: &[&str] = &[
+    "agate-shell",
     "coral-crab",
     "coral-tree",
     "cowrie",
+    "diamond",
+    "fireflies",
+    "fog-stones",
     "generators",
+    "glass-drops",
     "hermite-crab",
     "icicle",
+    "pebbles",
+    "planets",
     "sea-urchin",
     "seahorse",
     "seaweed",
@@ -216,5 +223,7 @@ const EXAMPLES: &[&str] = &[
     "starfish-d",
     "starfish-e",
     "starfish-f",
+    "still-life",
     "tshape",
+    "urchin-patterns",
 ];

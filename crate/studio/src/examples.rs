@@ -60,11 +60,12 @@ const SEA: &str = "From the sea";
 const GROWN: &str = "Grown by commands";
 const CURVES: &str = "Curves with flesh";
 const FIRST: &str = "First steps";
+const MATTER: &str = "Light and matter";
 const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 28] = [
+pub const ALL: [Example; 37] = [
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -79,6 +80,15 @@ pub const ALL: [Example; 28] = [
     example!(GROWN, "Spinal Starecase", "36 legs, wound like a stair", "spinal-starecase"),
     example!(GROWN, "Sphereflake", "balls on balls, by recursion", "sphereflake"),
     example!(GROWN, "Generators", "six commands, a line each", "generators"),
+    example!(MATTER, "Glass drops", "water, a mirror ball and a board", "glass-drops"),
+    example!(MATTER, "Diamond", "a gem that takes light apart", "diamond"),
+    example!(MATTER, "Still life", "wood, marble and an onion under a sky", "still-life"),
+    example!(MATTER, "Patterned urchins", "stripes that dissolve into rings", "urchin-patterns"),
+    example!(MATTER, "Agate ammonite", "carved from stone, in the light of a spot", "agate-shell"),
+    example!(MATTER, "Standing stones", "low fog in the morning", "fog-stones"),
+    example!(MATTER, "Fireflies", "clouds of light between leaves", "fireflies"),
+    example!(MATTER, "Three worlds", "craters, bands and squares", "planets"),
+    example!(MATTER, "Pebbles", "bumps that are not there", "pebbles"),
     example!(CURVES, "Octopus", "one skeleton with eight arms", "octopus"),
     example!(CURVES, "Snail", "two skeletons of curves", "snail"),
     example!(CURVES, "Finger and thumb", "they squeeze a ball, which gives way", "squeeze"),

@@ -21,10 +21,12 @@ macro_rules! examples {
 }
 
 /// Names and texts of the examples.
-pub const EXAMPLES: [(&str, &str); 22] = examples![
-    "coral-crab" "coral-tree" "cowrie" "generators" "hermite-crab" "icicle" "sea-urchin" "seahorse"
-    "seaweed" "shell-1" "shell-2" "shell-3" "sphereflake" "spinal-starecase" "starfish" "starfish-a"
-    "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "tshape"
+pub const EXAMPLES: [(&str, &str); 31] = examples![
+    "agate-shell" "coral-crab" "coral-tree" "cowrie" "diamond" "fireflies" "fog-stones" "generators"
+    "glass-drops" "hermite-crab" "icicle" "pebbles" "planets" "sea-urchin" "seahorse" "seaweed"
+    "shell-1" "shell-2" "shell-3" "sphereflake" "spinal-starecase" "starfish" "starfish-a"
+    "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "still-life" "tshape"
+    "urchin-patterns"
 ];
 
 macro_rules! bench {
