@@ -324,6 +324,7 @@ impl Offers {
             Names::Object => SymbolKind::Object,
             Names::Variable => SymbolKind::Variable,
             Names::Command => SymbolKind::Command,
+            Names::Node => SymbolKind::Node,
         };
         for (name, value, kind) in &here.variables {
             if *value == Type::Name {

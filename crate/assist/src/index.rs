@@ -29,6 +29,8 @@ pub enum SymbolKind {
     Command,
     /// A file of the project.
     File,
+    /// A node of a skeleton.
+    Node,
 }
 
 impl SymbolKind {
@@ -44,6 +46,7 @@ impl SymbolKind {
             Self::Object => "object",
             Self::Command => "command",
             Self::File => "file",
+            Self::Node => "node",
         }
     }
 

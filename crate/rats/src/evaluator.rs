@@ -8,6 +8,7 @@
 mod air;
 mod call;
 mod camera;
+mod contact;
 mod dispatch;
 mod extent;
 mod images;
@@ -27,6 +28,7 @@ mod picture;
 mod primitives;
 mod run;
 mod scene_commands;
+mod skeleton;
 mod state;
 mod textures;
 mod tools;

@@ -45,6 +45,8 @@ pub const MAX_CORNERS: usize = 800;
 pub const CURVE_WEIGHT: usize = 64;
 /// Objects and chains in a scene.
 pub const MAX_OBJECTS: usize = 100_000;
+/// Contacts of bodies.
+pub const MAX_CONTACTS: usize = 1000;
 /// Objects inside each other.
 pub const MAX_NESTED_OBJECTS: usize = 16;
 /// Materials in a scene.

@@ -256,8 +256,8 @@ impl<'a> Parser<'a, '_, '_> {
             return Err(Problem::new(head.span.clone(), "`define` needs a name").hint(HINT));
         };
         let word = self.symbols.word(*name);
-        // A text's own command hides one of the library, so that texts from before it still run.
-        if commands::find(word).is_some_and(|spec| !spec.is_library()) {
+        // A text's own command hides one of the library and a newer one, so that texts from before them still run.
+        if commands::find(word).is_some_and(|spec| !spec.yields()) {
             return Err(Problem::new(
                 items[0].span(),
                 format!("`{word}` is already a command of the language"),

@@ -348,6 +348,15 @@ impl<'e, 'a> Reader<'e, 'a> {
             .any(|option| option.begins(word) && !(is_variable && word.len() < option.name.len()))
     }
 
+    /// Whether the next word is one of these, in full.
+    pub(crate) fn is_whole_option_next(&mut self, options: &[OptionSpec]) -> bool {
+        self.peek_word().is_some_and(|(_, word)| {
+            options
+                .iter()
+                .any(|option| option.name.eq_ignore_ascii_case(word))
+        })
+    }
+
     /// The end of the command.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 //!
 //! All coordinates are world coordinates: objects and their transforms are already applied.
 
-use crate::{Function, Quadric};
+use crate::{Curves, Function, Quadric};
 use field::Kernel;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -182,6 +182,15 @@ impl Shape {
                 ..
             } => base_radius.max(apex_radius),
             Self::Box { .. } | Self::Patch { .. } | Self::Quadric(_) | Self::Function(_) => 0.0,
+        }
+    }
+
+    /// The shape's curves, if it is a skeleton of such.
+    #[must_use]
+    pub fn curves(&self) -> Option<&Curves> {
+        match self {
+            Self::Function(function) => function.curves(),
+            _ => None,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Soft shapes whose field is no convolution of a skeleton.
 
-use crate::Shape;
+use crate::{Curves, Shape};
 use field::{Exponentials, Implicit, Placed};
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -25,16 +25,19 @@ pub enum Form {
         /// Centres and radii.
         balls: Arc<Vec<(DVec3, f64)>>,
     },
+    /// Curves convolved with the kernel of their flesh. They are primitives, so that they have no function of their own.
+    Skeleton(Arc<Curves>),
 }
 
 impl Function {
-    /// The function in the world's coordinates; `None` if its numbers are not usable.
+    /// The function in the world's coordinates; `None` if its numbers are not usable, or if it is a sum of primitives.
     #[must_use]
     pub fn implicit(&self) -> Option<Arc<dyn Implicit>> {
         let own: Arc<dyn Implicit> = match &self.form {
             Form::Metaballs { hardness, balls } => {
                 Arc::new(Exponentials::new(*hardness, balls.to_vec())?)
             }
+            Form::Skeleton(_) => return None,
         };
         Some(Arc::new(Placed::new(own, self.to_world)?))
     }
@@ -48,10 +51,38 @@ impl Function {
         }
     }
 
+    /// The curves, if it is a skeleton.
+    #[must_use]
+    pub fn curves(&self) -> Option<&Curves> {
+        match &self.form {
+            Form::Skeleton(curves) => Some(curves),
+            Form::Metaballs { .. } => None,
+        }
+    }
+
+    /// The factor from its own lengths to the world's; where directions are stretched differently, their geometric mean.
+    #[must_use]
+    pub fn growth(&self) -> f64 {
+        libm::cbrt(self.to_world.matrix3.determinant().abs())
+    }
+
+    /// Points on its skeleton, where it is strongest, in the world's coordinates: as many as suit a quick look.
+    #[must_use]
+    pub fn axis(&self) -> Vec<DVec3> {
+        const MOST: usize = 16;
+        let points: Vec<DVec3> = match &self.form {
+            Form::Metaballs { balls, .. } => balls.iter().map(|ball| ball.0).collect(),
+            Form::Skeleton(curves) => curves.points().map(|(point, _)| point).collect(),
+        };
+        let step = points.len().div_ceil(MOST).max(1);
+        let some = points.into_iter().step_by(step);
+        some.map(|p| self.to_world.transform_point3(p)).collect()
+    }
+
     /// The shapes that stand for it where it is not drawn soft, and in drafts.
     #[must_use]
     pub fn draft(&self) -> Vec<Shape> {
-        let growth = libm::cbrt(self.to_world.matrix3.determinant().abs());
+        let growth = self.growth();
         match &self.form {
             Form::Metaballs { balls, .. } => {
                 let ball = |&(center, radius): &(DVec3, f64)| Shape::Sphere {
@@ -60,19 +91,22 @@ impl Function {
                 };
                 balls.iter().map(ball).collect()
             }
+            Form::Skeleton(curves) => curves.draft(&self.to_world, growth),
         }
     }
 
     /// Two corners of a box that holds what [`Function::draft`] shows.
     #[must_use]
     pub fn corners(&self) -> (DVec3, DVec3) {
+        let around = |balls: &mut dyn Iterator<Item = (DVec3, f64)>| {
+            let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+            balls.fold(start, |(low, high), (center, radius)| {
+                (low.min(center - radius), high.max(center + radius))
+            })
+        };
         let (low, high) = match &self.form {
-            Form::Metaballs { balls, .. } => {
-                let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-                balls.iter().fold(start, |(low, high), (center, radius)| {
-                    (low.min(center - radius), high.max(center + radius))
-                })
-            }
+            Form::Metaballs { balls, .. } => around(&mut balls.iter().copied()),
+            Form::Skeleton(curves) => around(&mut curves.points()),
         };
         let middle = self.to_world.transform_point3(0.5 * (low + high));
         let half = 0.5 * (high - low);

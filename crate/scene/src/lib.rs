@@ -23,6 +23,8 @@
 
 pub mod body;
 pub mod camera;
+pub mod contact;
+pub mod curves;
 pub mod element;
 pub mod finish;
 pub mod flesh;
@@ -39,6 +41,8 @@ pub mod surroundings;
 
 pub use body::{Body, Frame};
 pub use camera::{Camera, Projection};
+pub use contact::Contact;
+pub use curves::Curves;
 pub use element::{Element, Origin, Shape};
 pub use finish::{Finish, Skip};
 pub use flesh::Flesh;
@@ -65,6 +69,8 @@ pub struct Scene {
     pub elements: Vec<Element>,
     /// Bodies; [`Element::body`] indexes this list. The first is the body without a name.
     pub bodies: Vec<Body>,
+    /// Which bodies touch, in the order of the text; of two for the same bodies the last counts.
+    pub contacts: Vec<Contact>,
     /// Softness; [`Element::flesh`] indexes this list.
     pub flesh: Vec<Flesh>,
     /// Looks; [`Element::finish`] indexes this list.
@@ -110,6 +116,7 @@ impl Default for Scene {
         Self {
             elements: Vec::new(),
             bodies: vec![Body::default()],
+            contacts: Vec::new(),
             flesh: Vec::new(),
             finishes: vec![Finish::default()],
             frames: vec![Frame::WORLD],

@@ -1,7 +1,7 @@
 //! The convolution surfaces of a scene: which elements are soft, and the field that those of each body make together.
 
-use crate::limbs;
-use crate::{Element, Flesh, Fragile, Frame, Scene, Shape};
+use crate::{Curves, Element, Flesh, Fragile, Frame, Function, Scene, Shape};
+use crate::{curves, limbs};
 use field::shaping::SLIMMEST;
 use field::{Primitive, Skeleton, Sum};
 
@@ -25,11 +25,21 @@ impl Scene {
         self.settings.soft && (is_function || self.flesh_of(element).is_some())
     }
 
-    /// The flesh of an element that has a skeleton and a finish, whether or not soft elements are drawn soft.
+    /// Whether an element adds primitives to the soft surface of its body.
+    fn is_convolved(&self, element: &Element) -> bool {
+        self.settings.soft && self.flesh_of(element).is_some()
+    }
+
+    /// The flesh of an element that has a skeleton and a finish, whether or not soft elements are drawn soft. Skeletons of curves
+    /// are soft with any flesh.
     fn flesh_of(&self, element: &Element) -> Option<&Flesh> {
         let flesh = self.flesh.get(element.flesh? as usize)?;
-        let drawn = element.shape.has_skeleton() && (element.finish as usize) < self.finishes.len();
-        (drawn && flesh.is_soft()).then_some(flesh)
+        let is_soft = match element.shape.curves() {
+            Some(_) => true,
+            None => element.shape.has_skeleton() && flesh.is_soft(),
+        };
+        let drawn = (element.finish as usize) < self.finishes.len();
+        (drawn && is_soft).then_some(flesh)
     }
 
     /// The same in lengths of the world.
@@ -103,6 +113,13 @@ impl Scene {
         let Some(flesh) = self.flesh_in_world(element) else {
             return false;
         };
+        if let Shape::Function(function) = &element.shape {
+            let mut limbs = self.segments_of(element, function, &flesh);
+            return limbs.any(|(skeleton, shaping)| {
+                let widths = shaping.widths_along(skeleton.measure());
+                shaping.taper.is_some() && widths > field::primitive::LONGEST
+            });
+        }
         let shaping = self.shaping(element, &flesh, self.radius(element));
         let tapers = shaping.taper.is_some();
         // From above: an arc's circle, a curve's control polygon.
@@ -119,6 +136,39 @@ impl Scene {
             _ => return false,
         };
         shaping.widths_along(length) > field::primitive::LONGEST
+    }
+
+    /// The segments of a skeleton of curves, with their shapings in lengths of the world.
+    fn segments_of<'a>(
+        &'a self,
+        element: &'a Element,
+        function: &'a Function,
+        flesh: &'a Flesh,
+    ) -> impl Iterator<Item = (Skeleton, field::Shaping)> + 'a {
+        let blobbiness = if flesh.is_soft() {
+            flesh.blobbiness
+        } else {
+            curves::BLOBBINESS
+        };
+        let growth = function.growth();
+        let pieces = function.curves().into_iter().flat_map(Curves::pieces);
+        pieces.map(move |[(base, start), (apex, end)]| {
+            let [base, apex] = [base, apex].map(|p| function.to_world.transform_point3(p));
+            let [start, end] = [start, end].map(|radius| radius * growth);
+            let shaping = field::Shaping {
+                kernel: flesh.kernel.unwrap_or(element.kernel),
+                radius: start.max(SLIMMEST * end),
+                blobbiness,
+                blob_scale: self.settings.blob_scale,
+                strength: flesh.strength,
+                influence: self.settings.influence,
+                taper: (start != end).then_some(field::Taper {
+                    radius: end,
+                    blobbiness,
+                }),
+            };
+            (Skeleton::Segment { base, apex }, shaping)
+        })
     }
 
     /// The kernel's parameters for an element with this radius and this flesh, in lengths of the world.
@@ -159,8 +209,7 @@ impl Scene {
         let mut of_body = vec![None; self.bodies.len()];
         // As many primitives as there are elements, unless limbs are cut: growing lists would take up to twice the room.
         let mut counts = vec![0; self.bodies.len()];
-        let is_convolved = |e: &Element| self.is_soft(e) && e.shape.has_skeleton();
-        for element in self.elements.iter().filter(|e| is_convolved(e)) {
+        for element in self.elements.iter().filter(|e| self.is_convolved(e)) {
             if let Some(count) = counts.get_mut(element.body as usize) {
                 *count += 1;
             }
@@ -175,7 +224,7 @@ impl Scene {
         }
         for (index, element) in self.elements.iter().enumerate() {
             let surface = of_body.get(element.body as usize).copied().flatten();
-            if let (Some(surface), true) = (surface, is_convolved(element)) {
+            if let (Some(surface), true) = (surface, self.is_convolved(element)) {
                 let SoftSurface {
                     sum, element: of, ..
                 } = &mut surfaces[surface];
@@ -194,6 +243,14 @@ impl Scene {
         let Some(flesh) = self.flesh_in_world(element) else {
             return;
         };
+        if let Shape::Function(function) = &element.shape {
+            let limbs = self.segments_of(element, function, &flesh);
+            let pieces = limbs.flat_map(|(skeleton, shaping)| limbs::cut(skeleton, shaping));
+            pieces
+                .filter_map(|(skeleton, shaping)| Primitive::new(skeleton, &shaping, None))
+                .for_each(f);
+            return;
+        }
         let Some(skeleton) = skeleton(&element.shape) else {
             return;
         };

@@ -44,6 +44,19 @@ impl Surface {
         }
     }
 
+    /// The surface with its function as one of any kind.
+    #[must_use]
+    pub fn composed(self) -> ComposedSurface {
+        match self {
+            Self::Sum(surface) => ComposedSurface {
+                body: surface.body,
+                function: Arc::new(surface.sum),
+                element: surface.element,
+            },
+            Self::Composed(surface) => surface,
+        }
+    }
+
     /// For each element of the function, the index of an element in [`Scene::elements`].
     #[must_use]
     pub fn element(&self) -> &[u32] {
@@ -69,9 +82,15 @@ pub fn strongest(function: &dyn Implicit, element: &[u32], point: glam::DVec3) -
 }
 
 impl Scene {
-    /// The functions of all bodies that have soft elements, in the order of [`Scene::bodies`].
+    /// The functions of all bodies that have soft elements, in the order of [`Scene::bodies`], as their contacts deform them.
     #[must_use]
     pub fn surfaces(&self) -> Vec<Surface> {
+        self.in_contact(self.surfaces_apart())
+    }
+
+    /// The same without contacts.
+    #[must_use]
+    pub fn surfaces_apart(&self) -> Vec<Surface> {
         let mut functions: BTreeMap<u32, Vec<_>> = BTreeMap::new();
         for (index, element) in (0..).zip(&self.elements) {
             if let Shape::Function(function) = &element.shape

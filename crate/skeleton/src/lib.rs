@@ -40,6 +40,7 @@ pub use polyline::{Polyline, Segment, Vertex};
 pub use scheme::Scheme;
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// The most nodes of a skeleton.
 pub const MOST_NODES: usize = 10_000;
@@ -53,7 +54,7 @@ pub const MOST_LEVELS: u32 = 6;
 pub const LARGEST: f64 = 1e100;
 
 /// A node of a skeleton.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Node {
     /// Its place.
     pub position: DVec3,
@@ -62,7 +63,7 @@ pub struct Node {
 }
 
 /// Nodes, and curves through them.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Skeleton {
     /// The nodes.
     pub nodes: Vec<Node>,

@@ -5,9 +5,10 @@
 //! levels are polygons of the same curve.
 use crate::Node;
 use glam::DVec4;
+use serde::{Deserialize, Serialize};
 
 /// A rule of subdivision.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Scheme {
     /// The uniform cubic B-spline, C². It has no curvature at its ends.
     #[default]

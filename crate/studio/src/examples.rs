@@ -58,12 +58,13 @@ macro_rules! example {
 
 const SEA: &str = "From the sea";
 const GROWN: &str = "Grown by commands";
+const CURVES: &str = "Curves with flesh";
 const FIRST: &str = "First steps";
 const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 22] = [
+pub const ALL: [Example; 27] = [
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -78,6 +79,11 @@ pub const ALL: [Example; 22] = [
     example!(GROWN, "Spinal Starecase", "36 legs, wound like a stair", "spinal-starecase"),
     example!(GROWN, "Sphereflake", "balls on balls, by recursion", "sphereflake"),
     example!(GROWN, "Generators", "six commands, a line each", "generators"),
+    example!(CURVES, "Octopus", "one skeleton with eight arms", "octopus"),
+    example!(CURVES, "Snail", "two skeletons of curves", "snail"),
+    example!(CURVES, "Finger and thumb", "they squeeze a ball, which gives way", "squeeze"),
+    example!(CURVES, "Two drops", "they touch and do not melt", "drops"),
+    example!(CURVES, "Three bulges", "limbs that press each other flat", "touching"),
     example!(FIRST, "T-shape", "two bars that melt together", "tshape"),
     example!(FIRST, "Icicle", "a first little dataset", "icicle"),
     example!(STARFISH, "Starfish A", "seven arcs, the bare skeleton", "starfish-a"),

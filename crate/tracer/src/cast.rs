@@ -8,6 +8,9 @@ use crate::walk::Quest;
 use crate::world::{Owner, World};
 use glam::DVec3;
 
+/// Crossings this near to each other, in units of the scene's size, are at one place.
+const SAME: f64 = 1e-10;
+
 /// A crossing in units of the scene's size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cast {
@@ -113,6 +116,14 @@ impl World {
             });
         }
         found.sort_by(|a, b| a.t.total_cmp(&b.t));
+        // Where two bodies touch a ray leaves the one before it enters the other.
+        for i in 1..found.len() {
+            let [a, b] = [found[i - 1], found[i]];
+            let enters = |cast: &Cast| cast.normal.dot(ray.direction) < 0.0;
+            if b.t - a.t <= SAME * (1.0 + b.t) && enters(&a) && !enters(&b) {
+                found.swap(i - 1, i);
+            }
+        }
         found
     }
 

@@ -432,3 +432,73 @@ fn functions_have_a_hard_form() {
     let hits = picture.hits(center + 10.0 * DVec3::Z, DVec3::NEG_Z);
     assert!(hits.iter().any(|hit| (hit.t - 10.0 + radius).abs() < 1e-9));
 }
+
+/// Bodies of primitives and functions of which some touch, each pair with a bulge of its own.
+fn in_contact(seed: u64) -> Scene {
+    let mut scene = with_functions(seed);
+    let bulges = [
+        contact::Bulge::default(),
+        contact::Bulge::Height {
+            c: 0.2,
+            m: 0.65,
+            h: 0.25,
+        },
+        contact::Bulge::Ripple {
+            c: 0.2,
+            h: 0.25,
+            n: 2,
+        },
+    ];
+    let bulge = bulges[seed as usize % 3];
+    for bodies in [[0, 1], [1, 2], [0, 2]] {
+        scene.contacts.push(scene::Contact { bodies, bulge });
+    }
+    scene
+}
+
+/// The crossings of all rays with bodies in contact are those that dense sampling finds: none is missed and none invented.
+/// `CONTACT_RAYS` sets how many rays there are.
+#[test]
+fn bodies_in_contact_are_seen_where_they_are() {
+    let asked = std::env::var("CONTACT_RAYS").ok();
+    let asked: usize = asked.and_then(|count| count.parse().ok()).unwrap_or(1);
+    let (mut crossings, mut shared) = (0, 0);
+    for seed in 0..6 * asked as u64 {
+        let scene = in_contact(seed);
+        let surfaces = scene.surfaces();
+        assert!(
+            surfaces
+                .iter()
+                .all(|surface| matches!(surface, scene::Surface::Composed(_)))
+        );
+        let picture = Picture::new(&scene, [256; 2]);
+        for ray in rays(&mut Numbers(seed * 2 + 19), 3) {
+            let hits = picture.hits(ray.0, ray.1);
+            for surface in &surfaces {
+                let found = hits.iter().filter(|hit| hit.body == Some(surface.body()));
+                let found: Vec<f64> = found.map(|hit| hit.t).collect();
+                let want = marched(surface.function(), ray);
+                for t in &want {
+                    let near = found.iter().any(|f| (f - t).abs() < 1e-8);
+                    assert!(near, "{seed}: missed {t}: {found:?}");
+                }
+                crossings += want.len();
+            }
+            for hit in &hits {
+                let body = hit.body.expect("nothing is hard");
+                let own = surfaces.iter().find(|surface| surface.body() == body);
+                let value = own.map(|own| own.function().jet(hit.position).value);
+                assert!((value.expect("it has a surface") - THRESHOLD).abs() < 1e-6);
+            }
+            for pair in hits.windows(2) {
+                if pair[1].t - pair[0].t < 1e-9 && pair[0].body != pair[1].body {
+                    // One body is left before the other is entered.
+                    assert!(pair[0].normal.dot(ray.1) >= 0.0, "{seed}");
+                    assert!(pair[1].normal.dot(ray.1) <= 0.0, "{seed}");
+                    shared += 1;
+                }
+            }
+        }
+    }
+    assert!(crossings > 150 && shared > 10, "{crossings} {shared}");
+}

@@ -283,6 +283,7 @@ impl Writer {
             Names::Texture => self.choose(u, &["t0", "t0", "t1", "t2"]),
             Names::Object => self.choose(u, &["o0", "o0", "o1", "o2"]),
             Names::Variable => self.choose(u, &["v0", "V1", "c2", "i", "j", "a"]),
+            Names::Node => self.choose(u, &["A", "A", "B", "n"]),
             Names::Command => {
                 let all: Vec<&CommandSpec> = commands::all().collect();
                 let name = u.choose(&all)?.name;

@@ -34,6 +34,10 @@ impl Maker<'_> {
                 Takes::Vector if matches!(self.element.shape, Shape::Quadric(_)) => {}
                 Takes::Vector => handles.push(self.point(operand, label)),
                 Takes::Direction => handles.extend(self.direction(operand, label)),
+                Takes::Number { .. } if self.seen.spec.name == "skeleton" => {
+                    let node = self.seen.operands[..index].last();
+                    handles.extend(node.and_then(|node| self.node_radius(node, operand, label)));
+                }
                 Takes::Number { .. } => handles.extend(self.number(operand, label)),
                 _ => {}
             }
@@ -72,6 +76,20 @@ impl Maker<'_> {
     fn point(&self, operand: &Operand, label: String) -> Handle {
         let moves = Moves::Freely(self.placement.to_world);
         handle(Kind::Point, label, operand.numbers.clone(), moves)
+    }
+
+    /// The knob of the radius at a skeleton's node, across the view.
+    fn node_radius(&self, node: &Operand, operand: &Operand, label: String) -> Option<Handle> {
+        let [x, y, z] = node.numbers.get(..3)? else {
+            return None;
+        };
+        let place = DVec3::new(x.value, y.value, z.value);
+        let moves = Moves::Along {
+            anchor: self.placement.to_world.transform_point3(place),
+            along: self.view.x_axis,
+            growth: self.placement.growth,
+        };
+        Some(handle(Kind::Length, label, operand.numbers.clone(), moves))
     }
 
     fn direction(&self, operand: &Operand, label: String) -> Option<Handle> {

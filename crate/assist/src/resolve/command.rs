@@ -55,7 +55,7 @@ impl<'p, 's> Resolver<'p, 's> {
     ) -> Rc<Grammar<'p>> {
         let word = self.symbols.word(command.word);
         let own = match command.spec {
-            Some(spec) if !spec.is_library() => None,
+            Some(spec) if !spec.yields() => None,
             _ => self.own(word).cloned(),
         };
         if command.spec.is_none() || own.is_some() {
@@ -286,5 +286,6 @@ fn kind_of(names: Names) -> SymbolKind {
         Names::Object => SymbolKind::Object,
         Names::Variable => SymbolKind::Variable,
         Names::Command => SymbolKind::Command,
+        Names::Node => SymbolKind::Node,
     }
 }

@@ -46,7 +46,7 @@ impl<'p, 's> Resolver<'p, 's> {
             .collect();
         let word = self.symbols.word(command.word);
         let own = match command.spec {
-            Some(spec) if !spec.is_library() => None,
+            Some(spec) if !spec.yields() => None,
             _ => self.own(word).map(|own| own.place.clone()),
         };
         self.here = Some(Here {

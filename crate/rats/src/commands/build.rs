@@ -32,6 +32,7 @@ pub(super) const fn row(name: &'static str, meaning: &'static str, action: Actio
         default: "",
         options: &[],
         example: "",
+        is_newer: false,
         action,
     }
 }
@@ -72,6 +73,12 @@ impl CommandSpec {
 
     pub(super) const fn details(mut self, details: &'static str) -> Self {
         self.details = details;
+        self
+    }
+
+    /// Newer than the first published texts: one's own command of this name hides it.
+    pub(super) const fn newer(mut self) -> Self {
+        self.is_newer = true;
         self
     }
 

@@ -663,3 +663,94 @@ pub static POLYGON: &[OptionSpec] = &[option(
     "",
     "a hole in it (ours)",
 )];
+
+/// `skeleton`.
+pub static SKELETON: &[OptionSpec] = &[
+    option(
+        "node",
+        &[
+            parameter("A", Kind::New(Names::Node), "the node's name"),
+            vector("P", "the node's place"),
+        ],
+        "",
+        "a node, with a name that curves call it by",
+    ),
+    option(
+        "radius",
+        &[length("r", "the radius at the node").at_least(0.0)],
+        "the material's",
+        "radius of the flesh at the node that stands before it",
+    ),
+    option(
+        "curve",
+        &[parameter("A B", Kind::Known(Names::Node), "the name of a node").many()],
+        "",
+        "a curve along nodes, two at least: from the first to the last, drawn towards those between",
+    ),
+    option(
+        "subdivide",
+        &[super::parameter::whole(
+            "n",
+            0,
+            skeleton::MOST_LEVELS,
+            "how often curves are refined",
+        )],
+        "3",
+        "how often curves are refined: each time doubles their segments",
+    ),
+    option(
+        "scheme",
+        &[word("name", SCHEMES, "the scheme's name")],
+        "cubic",
+        "how curves are refined",
+    ),
+];
+
+/// Schemes of subdivision.
+pub static SCHEMES: &[OptionSpec] = &[
+    plain("cubic", "the smoothest: cubic B-splines"),
+    plain(
+        "chaikin",
+        "nearer to the nodes: corners are cut, quadratic B-splines",
+    ),
+    plain("fourpoint", "through every node"),
+];
+
+const BULGE_START: Parameter =
+    number("c", "the other's field where the bulge begins").from(0.001, 0.999);
+const BULGE_HEIGHT: Parameter = number("h", "the height of the bulge").from(0.0, 0.999);
+
+/// `contact`.
+pub static CONTACT: &[OptionSpec] = &[
+    option(
+        "fast",
+        &[BULGE_START],
+        "0.2",
+        "a plain bulge, which begins where the other's field is c",
+    ),
+    option(
+        "height",
+        &[
+            BULGE_START,
+            number("m", "the other's field where the bulge is highest").from(0.001, 0.999),
+            BULGE_HEIGHT,
+        ],
+        "",
+        "a bulge from c on that is highest, h, where the other's field is m",
+    ),
+    option(
+        "ripple",
+        &[
+            BULGE_START,
+            BULGE_HEIGHT,
+            super::parameter::whole(
+                "n",
+                0,
+                contact::Bulge::MOST_RIPPLES,
+                "the number of ripples",
+            ),
+        ],
+        "",
+        "a bulge of height h with n ripples outside it, from c on",
+    ),
+];

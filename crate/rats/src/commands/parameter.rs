@@ -69,6 +69,8 @@ pub enum Names {
     Variable,
     /// A command.
     Command,
+    /// A node of a skeleton.
+    Node,
 }
 
 impl Names {
@@ -81,6 +83,7 @@ impl Names {
             Self::Object => "object",
             Self::Variable => "variable",
             Self::Command => "command",
+            Self::Node => "node",
         }
     }
 }

@@ -124,6 +124,8 @@ pub(crate) enum Routine {
     Rats,
     Table,
     Blobscale,
+    Skeleton,
+    Contact,
     Influence,
     Curve,
     Seed,
@@ -163,6 +165,8 @@ pub struct CommandSpec {
     pub default: &'static str,
     /// A small text that uses it, complete and without mistakes.
     pub example: &'static str,
+    /// Whether it is newer than the first published texts.
+    pub(crate) is_newer: bool,
     /// How it is carried out.
     pub(crate) action: Action,
 }
@@ -208,6 +212,13 @@ impl CommandSpec {
             }
             Action::NoEffect(reason) => Some(reason),
         }
+    }
+
+    /// Whether a command of the same name that a text defines hides it, so that texts from before it still run: those of the
+    /// library, and those that are newer than the first published texts.
+    #[must_use]
+    pub fn yields(&self) -> bool {
+        self.is_newer || self.is_library()
     }
 
     /// Whether a file of the library defines it.

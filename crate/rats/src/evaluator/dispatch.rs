@@ -2,8 +2,8 @@
 
 use super::state::{Evaluator, Flow};
 use super::{
-    air, camera, lights, materials, objects, options, primitives, run, scene_commands, textures,
-    tools, variables,
+    air, camera, contact, lights, materials, objects, options, primitives, run, scene_commands,
+    skeleton, textures, tools, variables,
 };
 use crate::commands::Routine;
 use crate::problem::Outcome;
@@ -111,6 +111,8 @@ pub fn function(routine: Routine) -> Run {
         Routine::Blobscale => options::blobscale,
         Routine::Influence => options::influence,
         Routine::Curve => primitives::curve,
+        Routine::Skeleton => skeleton::skeleton,
+        Routine::Contact => contact::contact,
         Routine::Seed => variables::seed,
     }
 }

@@ -93,6 +93,9 @@ impl<'a> Evaluator<'a> {
         let Some(spec) = command.spec else {
             return self.call(command, command.word);
         };
+        if spec.yields() && self.definitions.contains_key(&command.word) {
+            return self.call(command, command.word);
+        }
         self.tell_after_shot(command);
         match spec.action {
             Action::Run(routine) => dispatch::function(routine)(self, command),
@@ -177,12 +180,8 @@ impl<'a> Evaluator<'a> {
         Ok(flow)
     }
 
-    /// Runs a command of the library, which is read when it is used for the first time. A command of the
-    /// same name that the text defines hides it.
+    /// Runs a command of the library, which is read when it is used for the first time.
     fn call_library(&mut self, command: &'a Command, name: &'static str) -> Outcome<Flow> {
-        if self.definitions.contains_key(&command.word) {
-            return self.call(command, command.word);
-        }
         let symbol = self.scope.symbols.find(name);
         let is_known = |run: &Self| symbol.is_some_and(|s| run.definitions.contains_key(&s));
         if !is_known(self)

@@ -13,6 +13,8 @@ use scene::{Element, Scene, Shape, SoftSurface, Surface};
 /// Weight of the scene up to which the field is evaluated (see [`crate::limits::CURVE_WEIGHT`]): limbs
 /// that taper take a millisecond each to prepare.
 const MOST_WEIGHT: usize = 1000;
+/// Contacts up to which bulges are looked at.
+const MOST_CONTACTS: usize = 50;
 /// Evaluations of one element's field that the lints may cost.
 const MOST_EVALUATIONS: usize = 40_000;
 
@@ -25,6 +27,46 @@ impl Evaluator<'_> {
         self.lint_view(scene);
         if self.model.weight() <= MOST_WEIGHT && scene.settings.soft {
             self.lint_field(scene);
+            self.lint_contacts(scene);
+        }
+    }
+
+    /// Warns of bulges that wrap the body that raises them.
+    fn lint_contacts(&mut self, scene: &Scene) {
+        if scene.contacts.len() > MOST_CONTACTS || scene.contacts.is_empty() {
+            return;
+        }
+        let surfaces = scene.surfaces_apart();
+        let of = |body: u32| surfaces.iter().find(|surface| surface.body() == body);
+        let contacts = scene.contacts.iter().zip(self.model.contact_places.clone());
+        for (contact, (file, span)) in contacts {
+            let [a, b] = contact.bodies;
+            let [Some(own), Some(other)] = [of(a), of(b)] else {
+                self.say_at(file, Severity::Warning, span, || {
+                    let hint = "only soft shapes touch: give a material a `blobbiness`";
+                    (
+                        String::from("one of these bodies has no soft shapes"),
+                        Some(hint.to_owned()),
+                    )
+                });
+                continue;
+            };
+            let coated = [(own, other, b), (other, own, a)]
+                .into_iter()
+                .find(|(own, other, _)| {
+                    contact::coats(own.function(), other.function(), &contact.bulge)
+                });
+            if let Some((_, _, body)) = coated {
+                let name = scene.bodies[body as usize].name.clone();
+                self.say_at(file, Severity::Warning, span, || {
+                    (
+                        format!("the bulge of this contact coats `{name}`"),
+                        Some(String::from(
+                            "let it begin nearer, with a larger c, or make it lower",
+                        )),
+                    )
+                });
+            }
         }
     }
 
@@ -163,7 +205,7 @@ fn bone(shape: &Shape) -> Vec<DVec3> {
             .collect(),
         Shape::Box { center, .. } => vec![*center],
         Shape::Quadric(quadric) => vec![quadric.center],
-        Shape::Function(function) => vec![function.middle()],
+        Shape::Function(function) => function.axis(),
         Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
             let [a, b, c] = *corners;
             let middle = (a + b + c) / 3.0;

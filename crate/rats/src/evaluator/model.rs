@@ -10,7 +10,7 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
 use glam::DAffine3;
-use scene::{Body, Element, Shape};
+use scene::{Body, Contact, Element, Shape};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
@@ -39,6 +39,10 @@ impl Part {
         match &self.element.shape {
             Shape::Polygon { rings, .. } => rings.iter().map(Vec::len).sum(),
             Shape::Curve { .. } => CURVE_WEIGHT,
+            Shape::Function(function) => function.curves().map_or(1, |curves| {
+                let each = if curves.tapers() { CURVE_WEIGHT } else { 1 };
+                curves.pieces().count() * each
+            }),
             _ if self.tapers => CURVE_WEIGHT,
             _ => 1,
         }
@@ -97,6 +101,10 @@ pub struct Model<'a> {
     pub bodies: Vec<Body>,
     /// The body that is open; 0 for none.
     open_body: u32,
+    /// Which bodies touch.
+    pub contacts: Vec<Contact>,
+    /// The file and place of each contact's command.
+    pub contact_places: Vec<(usize, Range<usize>)>,
 }
 
 impl<'a> Model<'a> {
@@ -264,6 +272,38 @@ impl<'a> Model<'a> {
         .maybe_hint(suggestion))
     }
 
+    /// The number of the last body of a name.
+    ///
+    /// # Errors
+    /// If there is none, or it is still open.
+    pub fn find_body(&self, name: &Name<'_>) -> Outcome<u32> {
+        let is_open = |object: &&Object<'_>| object.name == name.text;
+        if self.open.iter().any(|object| is_open(&object)) {
+            self.find(name)?;
+        }
+        if let Some(index) = self.bodies.iter().rposition(|body| body.name == name.text) {
+            if let Some(closed) = self.closed.get(name.text) {
+                closed.named.set(true);
+            }
+            return Ok(index as u32 + 1);
+        }
+        let problem = if self.closed.contains_key(name.text) {
+            Problem::new(
+                name.span.clone(),
+                format!("`{}` is an object, not a body", name.text),
+            )
+            .hint(format!("begin it with `body {}`", name.text))
+        } else {
+            let names = self.bodies.iter().map(|body| body.name.as_str());
+            Problem::new(
+                name.span.clone(),
+                format!("there is no body `{}`", name.text),
+            )
+            .maybe_hint(suggest::hint(name.text, names))
+        };
+        Err(problem)
+    }
+
     /// The last shape or closed object.
     ///
     /// # Errors
@@ -355,21 +395,24 @@ impl<'a> Model<'a> {
     #[must_use]
     pub fn has_round(&self, range: Range<usize>) -> bool {
         self.parts[range].iter().any(|part| {
-            matches!(
-                part.element.shape,
-                Shape::Sphere { .. }
-                    | Shape::Arc { .. }
-                    | Shape::Cylinder { .. }
-                    | Shape::Pipe { .. }
-                    | Shape::Cone { .. }
-                    | Shape::Curve { .. }
-            )
+            part.element.shape.curves().is_some()
+                || matches!(
+                    part.element.shape,
+                    Shape::Sphere { .. }
+                        | Shape::Arc { .. }
+                        | Shape::Cylinder { .. }
+                        | Shape::Pipe { .. }
+                        | Shape::Cone { .. }
+                        | Shape::Curve { .. }
+                )
         })
     }
 
     /// Forgets all shapes and objects; objects that are open stay open. Bodies stay: what is open belongs to one.
     pub fn clear(&mut self) {
         self.parts.clear();
+        self.contacts.clear();
+        self.contact_places.clear();
         self.weight = 0;
         self.closed.clear();
         self.last = None;

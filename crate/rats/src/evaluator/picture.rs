@@ -48,6 +48,7 @@ impl Evaluator<'_> {
                 .into_iter()
                 .chain(self.model.bodies.iter().cloned())
                 .collect(),
+            contacts: self.model.contacts.clone(),
             flesh,
             finishes,
             frames: vec![Frame::WORLD],
@@ -145,7 +146,9 @@ fn frame_of(
 
 /// Whether an element's flesh has a profile that its shape has no parameters for.
 fn ignores_profile(scene: &Scene, element: &Element) -> bool {
-    matches!(element.shape, Shape::Polygon { .. } | Shape::Curve { .. })
+    let has_no_parameters = matches!(element.shape, Shape::Polygon { .. } | Shape::Curve { .. })
+        || element.shape.curves().is_some();
+    has_no_parameters
         && scene.is_soft(element)
         && element
             .flesh
@@ -204,9 +207,11 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
         } => a == b && b == c && c == d,
         Shape::Box { axes, .. } => scene::quadric::inverse(axes).is_none(),
         Shape::Quadric(ref quadric) => !quadric.is_surface(),
-        Shape::Function(ref function) => function.implicit().is_none(),
+        Shape::Function(ref function) => {
+            function.curves().is_none() && function.implicit().is_none()
+        }
     };
-    if is_soft && scene.is_too_long(element) {
+    if (is_soft || element.shape.curves().is_some()) && scene.is_too_long(element) {
         return Some((
             || {
                 String::from(

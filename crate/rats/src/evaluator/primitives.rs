@@ -16,7 +16,10 @@ use mesh::TriangleMesh;
 use scene::{Element, Quadric, Shape};
 
 /// The operands, and the material's name: the chain's inside a chain, where shapes leave it out.
-fn operands<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<(Name<'a>, Given<'a>)> {
+pub(super) fn operands<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+) -> Outcome<(Name<'a>, Given<'a>)> {
     let given = run.given(command)?;
     let name = match run.model.chain.clone() {
         Some(name) => name,

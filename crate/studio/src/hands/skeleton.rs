@@ -55,7 +55,16 @@ pub fn lines(shape: &Shape, size: f64) -> Vec<Vec<DVec3>> {
         }
         Shape::Box { center, axes } => edges(*center, *axes),
         Shape::Quadric(quadric) => cross(quadric.center, 0.15 * size),
-        Shape::Function(function) => cross(function.middle(), 0.15 * size),
+        Shape::Function(function) => match function.curves() {
+            None => cross(function.middle(), 0.15 * size),
+            Some(curves) => {
+                let place = |(p, _)| function.to_world.transform_point3(p);
+                curves
+                    .pieces()
+                    .map(|ends| ends.map(place).to_vec())
+                    .collect()
+            }
+        },
     }
 }
 

@@ -1,0 +1,178 @@
+//! A function deformed by those that its surface touches.
+use crate::Bulge;
+use field::{Ball, Enclosure, Implicit, Jet, Real, THRESHOLD};
+use glam::DVec3;
+use std::sync::Arc;
+use wide::f32x8;
+
+/// The function `f + g(maxⱼ fⱼ)` of a body's own function f and those fⱼ of the bodies that it touches, see [`Bulge::jet`] for g.
+/// The bulge is that of the largest fⱼ; where two are equally large, there is a crease.
+///
+/// Its elements are those of f.
+#[derive(Clone, Debug)]
+pub struct Squashed {
+    own: Arc<dyn Implicit>,
+    partners: Vec<Partner>,
+    /// The greatest height of a bulge.
+    height: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Partner {
+    function: Arc<dyn Implicit>,
+    bulge: Bulge,
+    /// A ball outside which the partner changes nothing.
+    reach: Option<Ball>,
+}
+
+impl Squashed {
+    /// A function and those that it touches, with the bulges that these raise. The functions are those without any contact.
+    #[must_use]
+    pub fn new(own: Arc<dyn Implicit>, partners: Vec<(Arc<dyn Implicit>, Bulge)>) -> Self {
+        // Where none is above the least start, all change nothing.
+        let starts = partners.iter().map(|(_, bulge)| bulge.start());
+        let start = starts.fold(THRESHOLD, f64::min);
+        let partners = partners.into_iter().map(|(function, bulge)| Partner {
+            reach: function.support_at(start),
+            function,
+            bulge,
+        });
+        let partners: Vec<Partner> = partners.collect();
+        let heights = partners.iter().map(|partner| partner.bulge.height());
+        Self {
+            height: heights.fold(0.0, f64::max),
+            own,
+            partners,
+        }
+    }
+
+    /// Value and gradient, given those of a function in the same precision.
+    fn combined<R: Real>(&self, jet: impl Fn(&dyn Implicit) -> Jet<R>) -> Jet<R> {
+        let own = jet(&*self.own);
+        let Some((first, others)) = self.partners.split_first() else {
+            return own;
+        };
+        let deformed = |partner: &Partner| {
+            let field = jet(&*partner.function);
+            let (value, slope) = partner.bulge.jet(field.value);
+            (field.value, value, field.gradient.map(|g| slope * g))
+        };
+        let mut largest = deformed(first);
+        for partner in others {
+            let other = deformed(partner);
+            let more = largest.0.lt(other.0);
+            let pick = |a: R, b: R| R::select(more, a, b);
+            largest = (
+                pick(other.0, largest.0),
+                pick(other.1, largest.1),
+                core::array::from_fn(|i| pick(other.2[i], largest.2[i])),
+            );
+        }
+        own.plus(Jet {
+            value: largest.1,
+            gradient: largest.2,
+        })
+    }
+
+    /// Bounds on the deformation in a ball; `None` if there is none.
+    fn deformation(&self, ball: Ball) -> Option<Enclosure> {
+        let apart = |reach: &Option<Ball>| {
+            reach.is_some_and(|reach| {
+                reach.center.distance(ball.center) > reach.radius + ball.radius
+            })
+        };
+        let near = self.partners.iter().filter(|p| !apart(&p.reach));
+        let near: Vec<_> = near.map(|p| (p, p.function.enclose(ball))).collect();
+        let floor = near.iter().map(|(_, e)| e.value[0]);
+        let floor = floor.fold(f64::NEG_INFINITY, f64::max);
+        // Those that may be the largest somewhere in the ball.
+        let largest = near.iter().filter(|(_, e)| e.value[1] >= floor);
+        let mut all: Option<Enclosure> = None;
+        let (mut candidates, mut active) = (0, 0);
+        let (mut first, mut same) = (None, true);
+        for (partner, own) in largest {
+            let [low, high] = own.value;
+            let spread = partner.bulge.spread([low.max(floor), high]);
+            let deformed = Enclosure {
+                value: spread.value,
+                slope: bounded(spread.slope, own.slope),
+                curvature: bounded(spread.curvature, own.slope * own.slope)
+                    + bounded(spread.slope, own.curvature),
+            };
+            same &= *first.get_or_insert(partner.bulge) == partner.bulge;
+            candidates += 1;
+            active += usize::from(spread.value != [0.0; 2] || spread.slope > 0.0);
+            all = Some(all.map_or(deformed, |all| Enclosure {
+                value: [
+                    all.value[0].min(deformed.value[0]),
+                    all.value[1].max(deformed.value[1]),
+                ],
+                slope: all.slope.max(deformed.slope),
+                curvature: all.curvature.max(deformed.curvature),
+            }));
+        }
+        let mut all = all?;
+        // Where two partners tie the gradient jumps, and the value, too, if their bulges differ.
+        let jumps = !same && candidates > 1 && active > 0;
+        if jumps || active > 1 {
+            all.curvature = f64::INFINITY;
+        }
+        if jumps {
+            all.slope = f64::INFINITY;
+        }
+        Some(all)
+    }
+}
+
+/// The product of two bounds, of which 0 stays 0 whatever the other is.
+fn bounded(factor: f64, bound: f64) -> f64 {
+    if factor == 0.0 { 0.0 } else { factor * bound }
+}
+
+impl Implicit for Squashed {
+    fn jet(&self, point: DVec3) -> Jet<f64> {
+        self.combined(|function| function.jet(point))
+    }
+
+    fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
+        self.combined(|function| function.jet32(point))
+    }
+
+    fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8> {
+        self.combined(|function| function.jet8(points))
+    }
+
+    fn enclose(&self, ball: Ball) -> Enclosure {
+        let own = self.own.enclose(ball);
+        // Where no bulge could lift the function to the threshold, partners are not asked.
+        if own.value[1] + self.height < THRESHOLD {
+            return Enclosure {
+                value: [f64::NEG_INFINITY, own.value[1] + self.height],
+                slope: f64::INFINITY,
+                curvature: f64::INFINITY,
+            };
+        }
+        match self.deformation(ball) {
+            None => own,
+            Some(deformation) => own
+                .plus(deformation)
+                .about(&self.jet(ball.center), ball.radius),
+        }
+    }
+
+    fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
+        self.own.shares(point, out);
+    }
+
+    fn support(&self) -> Option<Ball> {
+        self.support_at(THRESHOLD)
+    }
+
+    fn support_at(&self, level: f64) -> Option<Ball> {
+        let below = level - self.height;
+        if below <= 0.0 {
+            return None;
+        }
+        self.own.support_at(below)
+    }
+}

@@ -1,0 +1,104 @@
+//! Skeletons of subdivision curves, as soft elements.
+
+use crate::Shape;
+use glam::{DAffine3, DVec3};
+use serde::{Deserialize, Serialize};
+use skeleton::{Polyline, Scheme, Skeleton};
+use std::sync::OnceLock;
+
+/// The blobbiness of curves whose material has none.
+pub const BLOBBINESS: f64 = -2.0;
+
+/// Curves on a graph of nodes, refined to a level. Their polyline's segments are convolved, each with radii that vary evenly along
+/// it.
+///
+/// Positions and radii are in coordinates of the element's own ([`Function::to_world`](crate::Function)).
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Curves {
+    /// Nodes and control polygons.
+    pub skeleton: Skeleton,
+    /// The names of the nodes, in their order.
+    pub names: Vec<String>,
+    /// How the curves are refined.
+    pub scheme: Scheme,
+    /// How often.
+    pub levels: u32,
+    /// The refined curves, made at first use.
+    #[serde(skip)]
+    polyline: OnceLock<Option<Polyline>>,
+}
+
+impl PartialEq for Curves {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.skeleton, &self.names) == (&other.skeleton, &other.names)
+            && (self.scheme, self.levels) == (other.scheme, other.levels)
+    }
+}
+
+impl Curves {
+    /// Curves whose nodes have these names.
+    ///
+    /// # Errors
+    /// If the skeleton has no polyline.
+    pub fn new(
+        skeleton: Skeleton,
+        names: Vec<String>,
+        scheme: Scheme,
+        levels: u32,
+    ) -> Result<Self, skeleton::Error> {
+        let polyline = skeleton.polyline(scheme, levels)?;
+        Ok(Self {
+            skeleton,
+            names,
+            scheme,
+            levels,
+            polyline: OnceLock::from(Some(polyline)),
+        })
+    }
+
+    /// The refined curves; `None` if data from elsewhere are not usable.
+    #[must_use]
+    pub fn polyline(&self) -> Option<&Polyline> {
+        let refine = || self.skeleton.polyline(self.scheme, self.levels).ok();
+        self.polyline.get_or_init(refine).as_ref()
+    }
+
+    /// Whether the radius varies anywhere.
+    #[must_use]
+    pub fn tapers(&self) -> bool {
+        let mut pieces = self.pieces();
+        pieces.any(|[(_, start), (_, end)]| start != end)
+    }
+
+    /// The points of the refined curves, each with its radius.
+    pub fn points(&self) -> impl Iterator<Item = (DVec3, f64)> + '_ {
+        let vertices = self.polyline().map_or(&[][..], |p| &p.vertices);
+        vertices.iter().map(|v| (v.position, v.radius))
+    }
+
+    /// The segments of the refined curves that have a length, as two points with their radii.
+    pub fn pieces(&self) -> impl Iterator<Item = [(DVec3, f64); 2]> + '_ {
+        let polyline = self.polyline().into_iter();
+        let segments = polyline.flat_map(|p| p.segments.iter().map(move |s| (p, s)));
+        segments.filter(|(_, s)| s.length > 0.0).map(|(p, s)| {
+            s.ends
+                .map(|end| (p.vertices[end].position, p.vertices[end].radius))
+        })
+    }
+
+    /// The shapes that stand for the curves in drafts: cones, and balls between them.
+    pub(crate) fn draft(&self, to_world: &DAffine3, growth: f64) -> Vec<Shape> {
+        let ball = |(center, radius): (DVec3, f64)| Shape::Sphere {
+            center: to_world.transform_point3(center),
+            radius: radius * growth,
+        };
+        let cone = |[(base, start), (apex, end)]: [(DVec3, f64); 2]| Shape::Cone {
+            base: to_world.transform_point3(base),
+            base_radius: start * growth,
+            apex: to_world.transform_point3(apex),
+            apex_radius: end * growth,
+        };
+        let balls = self.points().filter(|(_, radius)| *radius > 0.0).map(ball);
+        balls.chain(self.pieces().map(cone)).collect()
+    }
+}
