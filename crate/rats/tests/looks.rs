@@ -294,6 +294,27 @@ fn lens_and_rays() {
     assert!(found.settings.penumbra && found.settings.epsilon == 1e-6);
 }
 
+#[test]
+fn means_are_of_many_samples() {
+    let samples = |text: &str| scene(text).settings.samples;
+    for text in [
+        "aperture 0.2",
+        "penumbra on\nlight White position 0 9 0 size 1",
+        "sky White",
+        "var x = 0 += 1\nshutter 1",
+    ] {
+        assert_eq!(samples(text), 4, "{text}");
+        assert_eq!(samples(&format!("sample 1\n{text}")), 1, "{text}");
+    }
+    for text in [
+        "penumbra on",
+        "shutter 1",
+        "light White position 0 9 0 size 1",
+    ] {
+        assert_eq!(samples(text), 1, "{text}");
+    }
+}
+
 fn places(scene: &Scene) -> Vec<f64> {
     let x = |shape: &Shape| match shape {
         Shape::Sphere { center, .. } => center.x,
@@ -326,7 +347,7 @@ fn moments_of_an_open_shutter() {
 
 #[test]
 fn transform_holds_still() {
-    let text = "var x = 0 += 4\nshutter 1\nsurface s diff Red\n\
+    let text = "var x = 0 += 4\nshutter 1\nsample 2\nsurface s diff Red\n\
         object A\nsphere s 1 0 0 0\nclose\ntranslate x 0 0 A\ntransform A\ntranslate 0.5*x 0 0 A\n\
         object B\nsphere s 1 x 0 0\nclose\n";
     let scene = run(text, &[], 2.0).scene;

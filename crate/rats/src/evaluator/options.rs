@@ -87,6 +87,7 @@ pub fn nosave<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 pub fn sample<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
     run.settings.samples = given.number("n") as u32;
+    run.sampled = true;
     if let Some(span) = given.span("method") {
         run.say(Severity::Note, span, || {
             (

@@ -7,10 +7,27 @@ use crate::Severity;
 use crate::compiled::Placement;
 use crate::limits::MAX_MAGNITUDE;
 use glam::DVec3;
-use scene::{Body, Element, Finish, Frame, Scene, Shape};
+use scene::{Body, Element, Finish, Frame, Scene, Settings, Shape};
 use std::collections::HashMap;
 
+/// What `sample` is by itself where colours are means over a lens, the shutter, a light or the sky.
+const MEAN_SAMPLES: u32 = 4;
+
 impl Evaluator<'_> {
+    /// The settings, with as many samples as a picture of this kind needs if the text does not say how many.
+    fn sampled_settings(&self) -> Settings {
+        let sized = || self.lights.iter().any(|light| light.size > 0.0);
+        let has_means = self.lens.aperture > 0.0
+            || self.animated && self.shutter > 0.0
+            || self.settings.penumbra && sized()
+            || self.air.sky.is_some();
+        let mut settings = self.settings;
+        if has_means && !self.sampled {
+            settings.samples = MEAN_SAMPLES;
+        }
+        settings
+    }
+
     /// The scene of these shapes as all else is now, and how its elements came there.
     pub(super) fn picture(&mut self, parts: Vec<Part>) -> (Scene, Vec<Placement>) {
         let surfaces = self.palette.surfaces.iter();
@@ -46,7 +63,7 @@ impl Evaluator<'_> {
             camera,
             lens: self.lens,
             moments: Vec::new(),
-            settings: self.settings,
+            settings: self.sampled_settings(),
         };
         let mut placements = Vec::with_capacity(parts.len());
         if scene.finishes.is_empty() {

@@ -122,6 +122,7 @@ pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         }
         if is("options") {
             run.settings = Settings::default();
+            run.sampled = false;
             run.report.no_warnings = false;
             run.report.no_notes = false;
             run.output = crate::compiled::Output::default();

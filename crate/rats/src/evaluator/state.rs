@@ -62,6 +62,8 @@ pub struct Evaluator<'a> {
     /// A vertical angle of view that differs from the horizontal one, and where it was given.
     pub(super) vertical: Option<(f64, usize, Range<usize>)>,
     pub(super) settings: Settings,
+    /// Whether `sample` has been given.
+    pub(super) sampled: bool,
     pub(super) definitions: HashMap<Symbol, (usize, &'a Define)>,
     pub(super) hot: Vec<HotVariable>,
     pub(super) tools: Vec<Tool>,
@@ -118,6 +120,7 @@ impl<'a> Evaluator<'a> {
             view_plane: ViewPlane::default(),
             vertical: None,
             settings: Settings::default(),
+            sampled: false,
             definitions: HashMap::new(),
             hot: Vec::new(),
             tools: Vec::new(),

@@ -1,4 +1,5 @@
 //! Scenes and pictures for the tests of shading.
+#![allow(dead_code)]
 
 use glam::DVec3;
 use scene::{Background, Camera, Element, Finish, Flesh, Scene, Shape};

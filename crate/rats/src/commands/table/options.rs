@@ -127,7 +127,7 @@ pub static OPTIONS: &[CommandSpec] = &[
             parameter("method", Kind::Text, "the method").optional(""),
         ])
         .default("1")
-        .details("The first ray of each pixel makes a whole picture; more follow where neighbours differ (see `contrast`), and everywhere where a lens, the shutter, a light's size or the sky ask for many.")
+        .details("The first ray of each pixel makes a whole picture; more follow where neighbours differ (see `contrast`), and everywhere where a lens, the shutter, a light's size or the sky ask for many; if they do, n is 4 unless it is given.")
         .example(clay!("sample 4\nsphere Clay 2, 0 0 0")),
     row("mesh", "triangles of a file (ours), or how polygons are checked", run(Routine::Mesh))
         .takes(&[
