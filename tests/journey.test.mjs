@@ -86,8 +86,12 @@ for (const kind of Object.keys(KINDS)) {
       assert.equal(mistake.column, 1);
       assert.match(JSON.stringify(mistake), /sphere/, 'it says what was meant');
       await sinew.place('problems');
-      await sinew.page.waitForTimeout(500);
-      const nowRed = countNear(await sinew.screen('editor'), ERROR_RED, 40);
+      // The underline comes with one of the next frames.
+      let nowRed = red;
+      for (let attempt = 0; attempt < 40 && nowRed <= red + 5; attempt++) {
+        await sinew.page.waitForTimeout(250);
+        nowRed = countNear(await sinew.screen('editor'), ERROR_RED, 40);
+      }
       await sinew.keep('mistake');
       assert.ok(nowRed > red + 5, `the underline: ${red} red pixels before, ${nowRed} after`);
       assert.equal(shareThatDiffers(await sinew.image(), picture, 0), 0, 'the old picture stays');

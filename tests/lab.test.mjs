@@ -35,6 +35,15 @@ async function follow(sinew, lesson) {
   return until(sinew, (state) => state?.lesson === lesson);
 }
 
+/** Waits until a widget no longer moves. */
+async function still(sinew, name) {
+  let last;
+  for (let now = await sinew.place(name); now.y !== last?.y; now = await sinew.place(name)) {
+    last = now;
+    await sinew.page.waitForTimeout(400);
+  }
+}
+
 /** Drags from the middle of a widget by so many pixels. */
 async function drag(sinew, name, [dx, dy]) {
   const { x, y, w, h } = await sinew.place(name);
@@ -91,11 +100,10 @@ for (const [size, options] of Object.entries(SIZES)) {
             // Below the fold of a phone.
             await sinew.page.mouse.move(180, 300);
             await sinew.page.mouse.wheel(0, place.y - 400);
-            await sinew.page.waitForTimeout(800);
+            await still(sinew, widget);
           }
           await drag(sinew, widget, by);
-          const after = await lab(sinew);
-          assert.notEqual(after.readings[reading], state.readings[reading], `${widget} moves ${reading}`);
+          await until(sinew, (after) => after.readings[reading] !== state.readings[reading]);
         }
         const { overflow, places } = await sinew.page.evaluate(() => ({
           overflow: document.documentElement.scrollWidth - innerWidth,

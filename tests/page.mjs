@@ -153,7 +153,7 @@ export class Sinew {
 
   /** Where a widget is, in CSS pixels. */
   async place(name) {
-    await this.page.waitForFunction((name) => sinew.debug.rects()[name], name, { timeout: 20_000 });
+    await this.page.waitForFunction((name) => sinew.debug.rects()[name], name, { timeout: 60_000 });
     return this.page.evaluate((name) => sinew.debug.rects()[name], name);
   }
 

@@ -12,6 +12,7 @@ mod fmt;
 mod probe;
 mod render;
 mod report;
+mod sculpt;
 mod share;
 mod time;
 mod tools;
@@ -43,6 +44,8 @@ enum Command {
     Animate(animate::Animate),
     /// Evaluate the field at points, or intersect rays with the surface
     Probe(probe::Probe),
+    /// Carry out the strokes of a sculpture and write its mesh
+    Sculpt(sculpt::Sculpt),
     /// Lay datasets out: indentation and spaces, nothing that they mean
     Fmt(fmt::Fmt),
     /// Print the evaluated scene as JSON
@@ -89,6 +92,7 @@ fn run() -> Outcome {
         Command::Check(command) => command.run(),
         Command::Render(command) => command.run(),
         Command::Animate(command) => command.run(),
+        Command::Sculpt(command) => command.run(),
         Command::Fmt(command) => command.run(),
         Command::Probe(command) => command.run(),
         Command::Scene(command) => command.run(),

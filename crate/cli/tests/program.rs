@@ -426,3 +426,64 @@ fn fmt_lays_out_and_checks() {
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(read(), assist::format(untidy));
 }
+
+#[test]
+fn sculpt_replays_strokes_to_meshes_stage_by_stage() {
+    let folder = Folder::new("sculpt");
+    let text = "strokes 1\nstart sphere 4\nstage egg\npull sphere 0.5 0.5 0.5 bell 1 : 0 0 1, 0 0 2\nstage nose\n\
+        paint 1 0 0 sphere 1 1 1 : 0 0 2\nloop\n";
+    let strokes = folder.write("nose.strokes", text);
+    for ending in ["ply", "obj", "stl", "glb", "3mf"] {
+        let out = folder.path(&format!("nose.{ending}"));
+        let output = sinew(&["sculpt", &strokes, "-o", &out], "");
+        assert_eq!(output.status.code(), Some(0));
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            said.contains("1. egg: 66 vertices, 128 faces, 192 edges, closed"),
+            "{said}"
+        );
+        assert!(said.contains("the mesh: 258 vertices, 512 faces"), "{said}");
+        let mesh = mesh::read(&out, &std::fs::read(&out).expect("written")).expect("a mesh");
+        assert_eq!(mesh.triangles.len(), 512);
+    }
+    let out = folder.path("nose.ply");
+    assert_eq!(
+        sinew(
+            &[
+                "sculpt", &strokes, "-o", &out, "--stages", "--until", "nose"
+            ],
+            ""
+        )
+        .status
+        .code(),
+        Some(0)
+    );
+    for (name, triangles) in [("nose.ply", 128), ("nose-1.ply", 128), ("nose-2.ply", 128)] {
+        let bytes = std::fs::read(folder.path(name)).expect("written");
+        assert_eq!(
+            mesh::read(name, &bytes).expect("a mesh").triangles.len(),
+            triangles
+        );
+    }
+    assert_eq!(
+        sinew(&["sculpt", &strokes, "--until", "ear"], "")
+            .status
+            .code(),
+        Some(2)
+    );
+    assert_eq!(
+        sinew(&["sculpt", &strokes, "-o", "nose.png"], "")
+            .status
+            .code(),
+        Some(2)
+    );
+
+    let bad = folder.write("bad.strokes", "strokes 1\nstart file ../x.obj\nfill\n");
+    let output = sinew(&["sculpt", &bad], "");
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("bad.strokes:2:1") && said.contains("not in the folder"),
+        "{said}"
+    );
+}

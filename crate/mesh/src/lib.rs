@@ -40,15 +40,15 @@ pub use bvh::{Bvh, Ray};
 pub use color::{linear_from_srgb, phong_from_roughness, roughness_from_phong, srgb_from_linear};
 pub use error::Error;
 pub use half_edge::{
-    Built, EditError, FaceId, HalfEdgeId, HalfEdgeMesh, PolygonSoup, Repairs, Shell, VertexCopy,
-    VertexId, Violation,
+    Built, EditError, FaceId, HalfEdgeId, HalfEdgeMesh, ListPatch, MeshPatch, PolygonSoup, Repairs,
+    Shell, VertexCopy, VertexId, Violation,
 };
 pub use heights::{Heights, heights};
 pub use intersect::{Intersections, self_intersections};
 pub use measure::{closest_point, smallest_angle};
 pub use read::{read, read_mtl};
 pub use report::Topology;
-pub use simplify::{Level, levels_of_detail, simplify};
+pub use simplify::{Level, levels_of_detail, simplify, simplify_part};
 pub use terra::terra;
 pub use triangle_mesh::{Group, Material, TriangleMesh};
 pub use write::{Export, ExportedFile, Format, Part};

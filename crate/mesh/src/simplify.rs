@@ -71,10 +71,24 @@ pub fn levels_of_detail(mesh: &TriangleMesh, least: usize) -> Result<Vec<Level>,
 /// Collapses edges of a triangle mesh, the cheapest first, until `target` faces or fewer are left, or no
 /// edge can be collapsed: the topology stays, and no triangle turns by more than 78° at once.
 pub fn simplify(mesh: &mut HalfEdgeMesh, target: usize) {
+    simplify_part(mesh, target, |_| true, |_, _| ());
+}
+
+/// Like [`simplify`], but only edges are collapsed both of whose ends are free. `merged` is told of each collapse:
+/// the vertex that is removed, then the one that stays.
+pub fn simplify_part(
+    mesh: &mut HalfEdgeMesh,
+    target: usize,
+    is_free: impl Fn(VertexId) -> bool,
+    mut merged: impl FnMut(VertexId, VertexId),
+) {
+    let is_free_edge =
+        |mesh: &HalfEdgeMesh, h: HalfEdgeId| is_free(mesh.origin(h)) && is_free(mesh.target(h));
     let mut quadrics = vertex_quadrics(mesh);
     let mut ages = vec![0_u32; mesh.vertex_slots()];
     let mut queue: BinaryHeap<Candidate> = mesh
         .edges()
+        .filter(|h| is_free_edge(mesh, *h))
         .map(|h| Candidate::of(mesh, h, &quadrics, &ages))
         .collect();
     while mesh.face_count() > target {
@@ -95,10 +109,14 @@ pub fn simplify(mesh: &mut HalfEdgeMesh, target: usize) {
         {
             continue;
         }
+        merged(u, v);
         quadrics[v.index()] = quadrics[u.index()].plus(&quadrics[v.index()]);
         ages[u.index()] += 1;
         ages[v.index()] += 1;
-        let around: Vec<HalfEdgeId> = mesh.vertex_half_edges(v).collect();
+        let around: Vec<HalfEdgeId> = mesh
+            .vertex_half_edges(v)
+            .filter(|h| is_free_edge(mesh, *h))
+            .collect();
         queue.extend(
             around
                 .into_iter()

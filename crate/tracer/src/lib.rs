@@ -92,6 +92,7 @@ mod clusters;
 mod coloured;
 mod digger;
 mod dug;
+mod exposure;
 mod flesh;
 mod free;
 mod function;

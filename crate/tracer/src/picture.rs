@@ -1,6 +1,7 @@
 //! A scene made ready for tracing: passes and tiles.
 use crate::area::{Area, Samples};
 use crate::cast::Cast;
+use crate::exposure::Exposure;
 use crate::layout::{BLOCK, SQUARE};
 use crate::map::Map;
 use crate::ray::Ray;
@@ -71,15 +72,12 @@ impl Picture {
         let size = size.map(|n| n.max(1));
         let settings = scene.settings;
         let world = World::new(scene);
-        let mut camera = scene.camera;
-        camera.eye = world.unit.map(camera.eye);
-        camera.target = world.unit.map(camera.target);
-        let view = View {
-            size,
-            projection: camera.projection(size[0], size[1]),
-        };
+        let view = View::of(scene, &world.unit, size);
+        let rich = world.rich.as_ref();
         let mut sampler = Sampler {
             view,
+            exposure: Exposure::of(scene, &world.unit, size),
+            soft_light: rich.is_some_and(|rich| rich.has_soft_light(&world.lights)),
             world,
             samples: settings.samples.clamp(1, Settings::MAX_SAMPLES),
             contrast: Vec3::from(settings.contrast),

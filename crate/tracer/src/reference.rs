@@ -10,6 +10,7 @@
 //!
 //! Intervals with |F−T| within the rounding of F, or with two crossings closer together than the
 //! resolution, are reported as undecided.
+mod function;
 mod pieces;
 mod shell;
 #[cfg(test)]
@@ -18,18 +19,16 @@ mod waves;
 
 use crate::ray::Ray;
 use field::{Kink, Primitive, THRESHOLD};
+use function::{Function, Sample, Terms, ULP};
 use glam::DVec3;
-use pieces::Pieces;
-use waves::Factor;
 
-/// The field of some primitives, prepared for searches.
+/// The field of some primitives, or the smooth maximum of two fields, prepared for searches.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    primitives: Vec<Primitive>,
-    pieces: Pieces,
-    /// Kinks of the field.
+    function: Function,
+    /// Kinks of the function.
     kinks: Vec<Kink>,
-    /// Evaluations of the whole field so far.
+    /// Evaluations of the whole function so far.
     pub evaluations: u64,
     /// Most intervals for one ray before the search is given up. Most rays need a hundred.
     pub patience: u32,
@@ -102,30 +101,24 @@ pub struct Verdict {
 const PATIENCE: u32 = 40_000;
 /// Most cells in a search around one point.
 const MOST_CELLS: u32 = 4_000;
-/// Relative error of the terms of the field, and of coordinates.
-const FIELD_ERROR: f64 = 1e-10;
-const ULP: f64 = 4e-16;
-
-/// The field less T at a point, its gradient, and how far rounding may have moved them.
-#[derive(Clone, Copy, Debug)]
-struct Sample {
-    excess: f64,
-    gradient: DVec3,
-    noise: f64,
-    slope_noise: f64,
-}
 
 impl Reference {
     /// Prepares the field of these primitives.
     #[must_use]
     pub fn new(primitives: Vec<Primitive>) -> Self {
+        Self::of(Function::Sum(Terms::new(primitives)))
+    }
+
+    /// Prepares the smooth maximum `(a + b + √((a−b)² + k²))/2` of the fields of two sets of primitives; k > 0.
+    #[must_use]
+    pub fn smooth_maximum(parts: [Vec<Primitive>; 2], k: f64) -> Self {
+        Self::of(Function::SmoothMaximum(Box::new(parts.map(Terms::new)), k))
+    }
+
+    fn of(function: Function) -> Self {
         Self {
-            pieces: Pieces::new(&primitives),
-            kinks: primitives
-                .iter()
-                .flat_map(|p| Factor::of(p).kinks)
-                .collect(),
-            primitives,
+            kinks: function.kinks(),
+            function,
             evaluations: 0,
             patience: PATIENCE,
         }
@@ -139,22 +132,7 @@ impl Reference {
 
     fn sample(&mut self, point: DVec3) -> Sample {
         self.evaluations += 1;
-        let (mut excess, mut size) = (-THRESHOLD, THRESHOLD);
-        let (mut gradient, mut steep) = (DVec3::ZERO, 0.0);
-        for primitive in &self.primitives {
-            let jet = primitive.jet(point.to_array());
-            let slope = DVec3::from_array(jet.gradient);
-            excess += jet.value;
-            size += jet.value.abs();
-            gradient += slope;
-            steep += slope.length();
-        }
-        Sample {
-            excess,
-            gradient,
-            noise: FIELD_ERROR * size + ULP * point.abs().max_element() * steep,
-            slope_noise: 10.0 * FIELD_ERROR * steep,
-        }
+        self.function.sample(point)
     }
 
     /// All crossings of `origin + t·direction` (a unit vector), 0 < t < `to`. Two that are closer
@@ -231,9 +209,7 @@ impl Reference {
             let point = ray.at(middle);
             let rounding = ULP * (point.abs().max_element() + middle);
             let around = half + rounding;
-            let extent = self
-                .pieces
-                .extent(&self.primitives, point, around, Some(ray.direction));
+            let extent = self.function.extent(point, around, Some(ray.direction));
             if extent.above < THRESHOLD {
                 continue;
             }
@@ -348,7 +324,7 @@ impl Reference {
             if here.excess * start.excess <= 0.0 && away <= reach {
                 return Near::Within(away);
             }
-            let extent = self.pieces.extent(&self.primitives, center, radius, None);
+            let extent = self.function.extent(center, radius, None);
             // Bounds are weaker in balls with kinks.
             let (mut kinked, mut jumps) = (false, false);
             for kink in &self.kinks {

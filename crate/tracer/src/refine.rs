@@ -2,7 +2,8 @@
 //!
 //! Every pixel has had one ray. A pixel that differs from a neighbour is sampled again on a regular
 //! grid of n×n, whose mean replaces the single sample. Which pixels those are depends on the first
-//! samples only, so it does not matter in which order, or in which tile, pixels are treated.
+//! samples only, so it does not matter in which order, or in which tile, pixels are treated. Where lights have a size, or there
+//! is a sky, all pixels that see a surface get them; behind a lens or an open shutter all do (`exposure`).
 use crate::area::{Area, Samples};
 use crate::lamps::Draw;
 use crate::layout::{PACKET, PACKET_SIZE, SQUARE};
@@ -25,8 +26,8 @@ const PACKETS: [u32; 2] = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
 struct Closer {
     /// The first of these are in use: as many as there are owners.
     seen: Vec<Seen>,
-    /// The number of each one's pixel, and how many of the rays count.
-    owners: Vec<(usize, usize)>,
+    /// The number of each one's pixel, the first ray's number in it, and how many of the rays count.
+    owners: Vec<(usize, u32, usize)>,
 }
 
 impl Sampler {
@@ -48,6 +49,13 @@ impl Sampler {
             }
             let mut square = None;
             for packet in block.meet(area).blocks(PACKET_SIZE) {
+                if let Some(exposure) = &self.exposure {
+                    if stop() {
+                        return None;
+                    }
+                    means.extend(self.expose(exposure, packet, work, stats));
+                    continue;
+                }
                 let wanted = packet
                     .pixels()
                     .filter(|&(x, y)| self.needs_more(samples, x, y));
@@ -69,12 +77,16 @@ impl Sampler {
                 let seen = &seen[..owners.len()];
                 match &self.world.rich {
                     Some(rich) => {
-                        let draw = |_, _| Draw::Middle;
+                        let draw = |packet: usize, lane: usize| {
+                            let (owner, first, _) = owners[packet];
+                            let (x, y, ..) = means[owner];
+                            self.draw([x, y], first + lane as u32)
+                        };
                         self.world.illuminate(rich, seen, &draw, work, stats);
                     }
                     None => self.world.shine(seen, across, work, stats),
                 }
-                for (found, &(owner, count)) in work.samples.iter().zip(&*owners) {
+                for (found, &(owner, _, count)) in work.samples.iter().zip(&*owners) {
                     let (_, _, sum, cost) = &mut means[owner];
                     *sum += found[..count].iter().map(|s| s.colour).sum::<Vec3>();
                     *cost += found[..count].iter().map(|s| s.cost).sum::<f32>();
@@ -152,7 +164,7 @@ impl Sampler {
             if rich || seen.something() {
                 // The last ones are repeated.
                 seen.hits[count..].fill(None);
-                owners.push((owner, count));
+                owners.push((owner, first, count));
             } else {
                 sum.0 += self.nothing().colour * count as f32;
                 sum.1 += seen.costs[..count].iter().sum::<f32>();
@@ -166,6 +178,9 @@ impl Sampler {
             return false;
         }
         let here = samples.get(x, y);
+        if self.is_spread(here) {
+            return true;
+        }
         let slope = self.slope();
         for (dx, dy) in [
             (-1, -1),
@@ -191,6 +206,20 @@ impl Sampler {
         false
     }
 
+    /// Whether a pixel of this first sample is a mean of many whatever its neighbours are.
+    fn is_spread(&self, sample: &Sample) -> bool {
+        self.exposure.is_some() || self.soft_light && sample.key != 0
+    }
+
+    /// Where rays from what a ray of a pixel sees end on lights.
+    fn draw(&self, pixel: [u32; 2], number: u32) -> Draw {
+        if self.soft_light {
+            Draw::Sample { pixel, number }
+        } else {
+            Draw::Middle
+        }
+    }
+
     /// How many pixels of an area differ from the next one on the right or below: about half of those that
     /// [`Sampler::refine`] will take more rays for, at a quarter of the cost of asking for each.
     pub fn edges(&self, samples: &Samples) -> u64 {
@@ -203,7 +232,7 @@ impl Sampler {
             for (x, here) in row.iter().enumerate() {
                 let others = [row.get(x + 1).unwrap_or(here), &below[x]];
                 let differ = |other: &Sample| self.differ(here, other, slope);
-                count += u64::from(others.into_iter().any(differ));
+                count += u64::from(self.is_spread(here) || others.into_iter().any(differ));
             }
         }
         count

@@ -5,7 +5,7 @@ use crate::soft::Soft;
 use crate::solids::Solids;
 use crate::unit::{Unit, lowest};
 use glam::{DVec3, Vec3};
-use scene::{Background, Scene, Settings, Shape, Tone};
+use scene::{Background, Light, Scene, Settings, Shape, Tone};
 use std::collections::BTreeMap;
 
 /// Keys of sheets, beyond the numbers of all surfaces.
@@ -40,19 +40,23 @@ fn does_without(scene: &Scene) -> bool {
         && scene.clouds.is_empty()
         && settings.tone == Tone::None
         && !sized
+        && scene.lens.aperture <= 0.0
+        && scene.moments.is_empty()
 }
 
 impl Rich {
-    /// Prepares a scene, given as it is and in units of its size; `None` if it does without.
-    pub fn new(world: &Scene, unit: Unit, scene: &Scene, solids: &Solids) -> Option<Self> {
-        if does_without(world) {
-            return None;
-        }
+    /// Whether a scene needs it.
+    pub fn is_needed(scene: &Scene) -> bool {
+        !does_without(scene)
+    }
+
+    /// Prepares a scene, given as it is and in units of its size.
+    pub fn new(world: &Scene, unit: Unit, scene: &Scene, solids: &Solids) -> Self {
         let settings = &world.settings;
         let middle = unit.world(DVec3::ZERO);
         let used = |finish: usize| scene.elements.iter().any(|e| e.finish as usize == finish);
         let passed = |(i, finish)| lets_light_through(finish) && used(i);
-        Some(Self {
+        Self {
             materials: Materials::new(scene),
             air: Air::new(world, lowest(world), middle, unit.length(1.0)),
             see_through: scene.finishes.iter().enumerate().any(passed),
@@ -66,13 +70,18 @@ impl Rich {
             tone: settings.tone,
             only: Vec::new(),
             sheets: sheets(scene, solids),
-        })
+        }
     }
 
     /// Completes it by what is known of the convolution surfaces.
     pub fn with(mut self, soft: &Soft) -> Self {
         self.only = soft.only_finishes();
         self
+    }
+
+    /// Whether what a surface point gets from lights and sky is a mean over many directions.
+    pub fn has_soft_light(&self, lights: &[Light]) -> bool {
+        self.air.sky.is_some() || self.penumbra && lights.iter().any(|light| light.size > 0.0)
     }
 
     /// The colour on the screen of light.

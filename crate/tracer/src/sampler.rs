@@ -1,5 +1,6 @@
 //! Samples of a picture: one ray for each cell of an area.
 use crate::area::{Area, Samples};
+use crate::exposure::Exposure;
 use crate::lamps::Draw;
 use crate::layout::{PACKET, PACKET_SIZE, SQUARE};
 use crate::lens::Lens;
@@ -26,6 +27,10 @@ const SPARSE: f64 = 0.25;
 pub(crate) struct Sampler {
     pub view: View,
     pub world: World,
+    /// Lens and shutter, if rays depend on them.
+    pub exposure: Option<Exposure>,
+    /// Whether lights have a size or there is a sky: all pixels that see a surface need many samples.
+    pub soft_light: bool,
     /// Samples of a pixel where there is contrast: this many across and down.
     pub samples: u32,
     /// The contrast, a channel each, from which a pixel gets them.

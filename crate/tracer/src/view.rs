@@ -3,7 +3,8 @@ use crate::area::Area;
 use crate::beam::Beam;
 use crate::layout::halves_across;
 use crate::ray::Ray;
-use scene::Projection;
+use crate::unit::Unit;
+use scene::{Projection, Scene};
 
 /// The camera of a picture of a given size.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,17 @@ pub(crate) struct View {
 }
 
 impl View {
+    /// The view of a scene's camera, in units of the scene's size.
+    pub fn of(scene: &Scene, unit: &Unit, size: [u32; 2]) -> Self {
+        let mut camera = scene.camera;
+        camera.eye = unit.map(camera.eye);
+        camera.target = unit.map(camera.target);
+        Self {
+            size,
+            projection: camera.projection(size[0], size[1]),
+        }
+    }
+
     /// The ray through a point of the picture, in pixels.
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         Ray {

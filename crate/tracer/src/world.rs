@@ -81,9 +81,14 @@ impl SurfacePoint {
 impl World {
     /// Prepares a scene.
     pub fn new(world: &Scene) -> Self {
+        Self::lit(world, Rich::is_needed(world))
+    }
+
+    /// Prepares a scene, with or without what only some scenes need.
+    pub fn lit(world: &Scene, rich: bool) -> Self {
         let (unit, scene) = Unit::fit(world);
         let solids = Solids::new(&scene);
-        let rich = Rich::new(world, unit, &scene, &solids);
+        let rich = rich.then(|| Rich::new(world, unit, &scene, &solids));
         let settings = scene.settings;
         let (finishes, lights) = (
             scene.finishes.iter().map(Finish::of).collect(),

@@ -46,7 +46,7 @@ pub const MODULES: [Module; 3] = [
 ];
 
 /// The packages with tests that run as wasm, too, as their results must be the same in the page as on this machine.
-pub const TESTED_AS_WASM: [&str; 5] = ["field", "rats", "texture", "tracer", "worker"];
+pub const TESTED_AS_WASM: [&str; 6] = ["field", "rats", "sculpt", "texture", "tracer", "worker"];
 
 /// The package of which the tests that run as wasm are run in a browser, too.
 pub const TESTED_IN_BROWSER: &str = "field";

@@ -6,6 +6,8 @@ use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
+use std::sync::Mutex;
+use std::time::Instant;
 
 /// The root of the repository.
 pub fn root() -> PathBuf {
@@ -153,6 +155,48 @@ pub fn run(command: &mut Command) -> Result<()> {
 pub fn run_and_read(command: &mut Command) -> Result<String> {
     say(command);
     pass_on(command, true)
+}
+
+/// Runs a command, writes what it has written when it has ended, in one piece, as others run at the same time, and gives its
+/// standard output.
+pub fn run_apart(command: &mut Command) -> Result<String> {
+    let begun = Instant::now();
+    let program = command.get_program().to_string_lossy().into_owned();
+    let done = command
+        .stdin(Stdio::null())
+        .output()
+        .with_context(|| format!("{program} could not be run"))?;
+    let [output, errors] = [&done.stdout, &done.stderr].map(|text| String::from_utf8_lossy(text));
+    say(command);
+    tell(&format!(
+        "{output}{errors}({} s)",
+        begun.elapsed().as_secs()
+    ));
+    succeeded(command, Ok(done.status))?;
+    Ok(output.into_owned())
+}
+
+/// Does several things, as many at a time as there are cores, in their order, and gives what comes of them in that order.
+pub fn at_once<T: Send>(work: Vec<impl FnOnce() -> T + Send>) -> Vec<T> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let results: Mutex<Vec<Option<T>>> = Mutex::new(work.iter().map(|_| None).collect());
+    let next = Mutex::new(work.into_iter().enumerate());
+    let take = || next.lock().ok()?.next();
+    let some = || {
+        while let Some((i, work)) = take() {
+            let result = work();
+            if let Ok(mut results) = results.lock() {
+                results[i] = Some(result);
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..cores {
+            scope.spawn(in_this_lane(some));
+        }
+    });
+    let results = results.into_inner().unwrap_or_else(|e| e.into_inner());
+    results.into_iter().flatten().collect()
 }
 
 fn succeeded(command: &Command, status: std::io::Result<ExitStatus>) -> Result<()> {

@@ -129,12 +129,10 @@ fn slopes_change_no_faster_than_the_bound() {
             for _ in 0..40 {
                 let center = n.vector() * 1.5;
                 let radius = libm::exp(n.between(-9.0, 0.0));
-                let primitives = reference.primitives.clone();
                 for _ in 0..4 {
                     let [a, b] = [0, 1].map(|_| center + n.vector() * (radius * 0.57));
                     let way = (b - a).normalize();
-                    let pieces = &mut reference.pieces;
-                    let extent = pieces.extent(&primitives, center, radius, Some(way));
+                    let extent = reference.function.extent(center, radius, Some(way));
                     let [p, q] = [a, b].map(|x| reference.sample(x));
                     // Kinks of waves, where they are cut off at the ends of bones, are no faults.
                     if reference

@@ -7,11 +7,18 @@ use crate::{dist, tools};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
+/// Files of tests that measure how the page behaves in time: each has the machine to itself.
+const ALONE: [&str; 2] = ["rest.test.mjs", "speed.test.mjs"];
+
+/// What is tested, and with what.
+pub struct Built {
+    page: PathBuf,
+    program: PathBuf,
+    chromium: PathBuf,
+}
+
 /// Runs this part.
-pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
-    let (page, program) = built(watch, chosen)?;
-    tools::node_packages()?;
-    let chromium = tools::chromium()?;
+pub fn check(watch: &mut Watch, chosen: &Chosen, built: Built) -> Result<String> {
     let screenshots = target().join("screenshots");
     std::fs::create_dir_all(&screenshots)?;
 
@@ -24,48 +31,62 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
     if tests.is_empty() {
         bail!("tests/ holds no tests");
     }
-    // One after the other: each has the machine to itself.
-    let mut options = vec!["--test", "--test-concurrency=1", "--test-reporter=spec"];
+    let mut pattern = None;
     if let Some(filter) = chosen.test() {
-        let named: Vec<String> = tests
-            .iter()
-            .filter(|name| name.contains(filter))
-            .cloned()
-            .collect();
-        if named.is_empty() {
-            options.extend(["--test-name-pattern", filter]);
+        if tests.iter().any(|name| name.contains(filter)) {
+            tests.retain(|name| name.contains(filter));
         } else {
-            tests = named;
+            pattern = Some(filter);
         }
     }
-    watch.step("tests", || {
-        run(command("node", &options)
-            .args(&tests)
-            .current_dir(&folder)
-            .env("CHROMIUM", chromium)
-            .env("SINEW_PAGE", page)
-            .env("SINEW_PROGRAM", program)
-            .env("SINEW_SCREENSHOTS", &screenshots))
-    })?;
     let count = tests.len();
+    let (alone, together) = tests
+        .into_iter()
+        .partition(|name: &String| ALONE.contains(&name.as_str()));
+    let run = |tests: Vec<String>, at_once: &str| {
+        if tests.is_empty() {
+            return Ok(());
+        }
+        let mut node = command("node", &["--test", "--test-reporter=spec", at_once]);
+        if let Some(pattern) = pattern {
+            node.args(["--test-name-pattern", pattern]);
+        }
+        run(node
+            .args(tests)
+            .current_dir(&folder)
+            .env("CHROMIUM", &built.chromium)
+            .env("SINEW_PAGE", &built.page)
+            .env("SINEW_PROGRAM", &built.program)
+            .env("SINEW_SCREENSHOTS", &screenshots))
+    };
+    watch.step("tests", || run(together, "--test-concurrency=2"))?;
+    watch.step("alone", || run(alone, "--test-concurrency=1"))?;
     Ok(format!(
         "{count} files of tests passed, screenshots in {}",
         screenshots.display()
     ))
 }
 
-/// The page and the program: those that are shipped, and whose sizes are held to limits, where everything is tested; else what is
-/// built soonest.
-fn built(watch: &mut Watch, chosen: &Chosen) -> Result<(PathBuf, PathBuf)> {
-    if *chosen == Chosen::All {
+/// Builds the page and the program: those that are shipped, and whose sizes are held to limits, where everything is tested; else
+/// what is built soonest. Installs what drives the page.
+pub fn build(watch: &mut Watch, chosen: &Chosen) -> Result<Built> {
+    let (page, program) = if *chosen == Chosen::All {
         let page = watch.step("page", dist::dist)?;
         let program = watch.step("program", portable::build)?.program;
-        return Ok((page, program));
-    }
-    let folder = page::served();
-    watch.step("page", || page::build(Build::Development, &folder))?;
-    let build = ["build", "--package", "cli"];
-    let message = ["--message-format", "json-render-diagnostics"];
-    let made = watch.step("program", || artifacts(cargo(&build).args(message)))?;
-    Ok((folder, executable(&made, "sinew")?))
+        (page, program)
+    } else {
+        let page = page::served();
+        watch.step("page", || page::build(Build::Development, &page))?;
+        let build = ["build", "--package", "cli"];
+        let message = ["--message-format", "json-render-diagnostics"];
+        let made = watch.step("program", || artifacts(cargo(&build).args(message)))?;
+        (page, executable(&made, "sinew")?)
+    };
+    tools::node_packages()?;
+    let chromium = tools::chromium()?;
+    Ok(Built {
+        page,
+        program,
+        chromium,
+    })
 }

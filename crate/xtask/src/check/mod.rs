@@ -45,8 +45,9 @@ impl Watch {
         done
     }
 
-    /// `(lint 12, build 34)`, in seconds.
+    /// `, 46 s (lint 12, build 34)`.
     fn told(&self) -> String {
+        let all: u64 = self.steps.iter().map(|(_, seconds)| seconds).sum();
         let steps: Vec<String> = self
             .steps
             .iter()
@@ -55,7 +56,7 @@ impl Watch {
         if steps.is_empty() {
             String::new()
         } else {
-            format!(" ({})", steps.join(", "))
+            format!(", {all} s ({})", steps.join(", "))
         }
     }
 }
@@ -86,34 +87,30 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
     Ok(())
 }
 
-/// All parts, in two lanes one after the other: the code's, then the page's, as tests in a browser want the machine for themselves.
+/// All parts, in two lanes: the code's, and beside it the page is built. Its tests come last, as they want the machine for
+/// themselves.
 fn all() -> Vec<Done> {
-    let lane = |name, parts: &'static [Part]| {
-        move || {
-            in_lane(name, true, || {
-                parts
-                    .iter()
-                    .map(|part| run(*part, &Chosen::All))
-                    .collect::<Vec<Done>>()
-            })
-        }
-    };
-    let lanes = [
-        (
-            Part::Native,
-            lane("code", &[Part::Lint, Part::Native, Part::Wasm]),
-        ),
-        (Part::E2e, lane("page", &[Part::E2e])),
-    ];
-    let done = lanes.into_iter().map(|(part, lane)| {
-        // A thread of its own, so that a panic in one does not keep the other from being run.
-        std::thread::spawn(lane).join().unwrap_or_else(|_| {
-            let said = format!("the lane of {} panicked", name(part));
-            let failed = true;
-            vec![Done { part, said, failed }]
-        })
+    let mut watch = Watch::default();
+    let (mut done, built) = std::thread::scope(|scope| {
+        let page = scope.spawn(|| in_lane("page", true, || e2e::build(&mut watch, &Chosen::All)));
+        let code = scope.spawn(|| {
+            let parts = [Part::Lint, Part::Native, Part::Wasm];
+            in_lane("code", true, || parts.map(|part| run(part, &Chosen::All)))
+        });
+        let done = code
+            .join()
+            .map_or_else(|_| vec![panicked(Part::Native)], Vec::from);
+        (done, page.join())
     });
-    done.flatten().collect()
+    done.push(built.map_or_else(
+        |_| panicked(Part::E2e),
+        |built| {
+            attempt(Part::E2e, watch, |watch| {
+                e2e::check(watch, &Chosen::All, built?)
+            })
+        },
+    ));
+    done
 }
 
 /// What a part has come to.
@@ -123,25 +120,33 @@ struct Done {
     failed: bool,
 }
 
+/// What a part has come to whose lane panicked.
+fn panicked(part: Part) -> Done {
+    let said = format!("the lane of {} panicked", name(part));
+    let failed = true;
+    Done { part, said, failed }
+}
+
 fn run(part: Part, chosen: &Chosen) -> Done {
-    let begun = Instant::now();
-    let mut watch = Watch::default();
+    attempt(part, Watch::default(), |watch| match part {
+        Part::Quick => quick::check(watch, chosen),
+        Part::Lint => lint::check(watch, chosen),
+        Part::Native => native::check(watch, chosen),
+        Part::Wasm => wasm::check(watch, chosen),
+        Part::E2e => {
+            let built = e2e::build(watch, chosen)?;
+            e2e::check(watch, chosen, built)
+        }
+    })
+}
+
+/// Does the work of a part, or what is left of it, and tells what has come of it.
+fn attempt(part: Part, mut watch: Watch, work: impl FnOnce(&mut Watch) -> Result<String>) -> Done {
     tell(&format!("\n== {} ==", name(part)));
-    let result = match part {
-        Part::Quick => quick::check(&mut watch, chosen),
-        Part::Lint => lint::check(&mut watch, chosen),
-        Part::Native => native::check(&mut watch, chosen),
-        Part::Wasm => wasm::check(&mut watch, chosen),
-        Part::E2e => e2e::check(&mut watch, chosen),
-    };
+    let result = work(&mut watch);
     let failed = result.is_err();
     let said = result.unwrap_or_else(|error| format!("FAILED: {error:#}"));
-    let said = format!(
-        "{}: {said}, {} s{}",
-        name(part),
-        begun.elapsed().as_secs(),
-        watch.told()
-    );
+    let said = format!("{}: {said}{}", name(part), watch.told());
     tell(&said);
     Done { part, said, failed }
 }
@@ -176,6 +181,6 @@ mod tests {
         assert_eq!(watch.step("build", || Ok(3)).ok(), Some(3));
         let failed: anyhow::Result<()> = watch.step("run", || anyhow::bail!("no"));
         assert!(failed.is_err());
-        assert_eq!(watch.told(), " (build 0, run 0)");
+        assert_eq!(watch.told(), ", 0 s (build 0, run 0)");
     }
 }

@@ -5,6 +5,9 @@ use crate::shell::{PORTABLE, artifacts, cargo, executable};
 use anyhow::Result;
 use std::path::PathBuf;
 
+/// The test of `worker` whose pictures are compared between builds.
+pub const SAME: &str = "same";
+
 /// Result of the build.
 pub struct Portable {
     /// The program `sinew`.
@@ -24,7 +27,7 @@ pub fn build() -> Result<Portable> {
         "--bin",
         "sinew",
         "--test",
-        "same",
+        SAME,
         "--message-format",
         "json-render-diagnostics",
     ]);
@@ -35,6 +38,6 @@ pub fn build() -> Result<Portable> {
     let made = artifacts(&mut cargo)?;
     Ok(Portable {
         program: executable(&made, "sinew")?,
-        same: executable(&made, "same")?,
+        same: executable(&made, SAME)?,
     })
 }

@@ -3,16 +3,18 @@
 use super::{Chosen, Watch, passed, portable};
 use crate::packages::{TESTED_AS_WASM, TESTED_IN_BROWSER};
 use crate::page::NO_LINES;
-use crate::shell::{artifacts, cargo, command, find, in_this_lane, root, run_and_read, tell};
+use crate::shell::{artifacts, at_once, cargo, command, find, root, run_and_read, run_apart};
 use crate::tools;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 /// A file of tests that run as wasm has one of these: the attribute, or the macro that adds it.
 const MARKS: [&str; 2] = ["wasm_bindgen_test", "tests! {"];
+/// Files of tests that take longest: begun first, so that no core is idle at the end.
+const LONGEST: [&str; 1] = ["pins"];
+
 /// A file of tests that is compiled to wasm.
 struct Binary {
     package: &'static str,
@@ -128,6 +130,8 @@ fn build(packages: &[&'static str]) -> Result<Vec<Binary>> {
             binaries.len()
         );
     }
+    let rank = |binary: &Binary| LONGEST.iter().position(|name| *name == binary.name);
+    binaries.sort_by_key(|binary| rank(binary).unwrap_or(LONGEST.len()));
     Ok(binaries)
 }
 
@@ -146,28 +150,12 @@ fn mentions(path: &Path) -> Result<bool> {
     Ok(false)
 }
 
-/// Runs them in node, two at a time, as node uses one core, and gives what they write.
+/// Runs them in node, as many at a time as there are cores, and gives what they write.
 fn run(runner: &Path, binaries: &[Binary], filter: Option<&str>) -> Result<Vec<String>> {
-    let outputs: Mutex<Vec<Result<String>>> =
-        Mutex::new(binaries.iter().map(|_| Err(anyhow!("not run"))).collect());
-    let next = Mutex::new(0..binaries.len());
-    let take = || next.lock().ok()?.next();
-    let work = || {
-        while let Some(i) = take() {
-            let binary = &binaries[i];
-            let output = run_one(runner, binary, filter, &[]);
-            if let Ok(mut outputs) = outputs.lock() {
-                outputs[i] = output;
-            }
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(in_this_lane(work));
-        }
-    });
-    let outputs = outputs.into_inner().unwrap_or_else(|e| e.into_inner());
-    outputs.into_iter().collect()
+    let work = |binary| move || run_one(runner, binary, filter, &[]);
+    at_once(binaries.iter().map(work).collect())
+        .into_iter()
+        .collect()
 }
 
 fn run_one(
@@ -176,8 +164,7 @@ fn run_one(
     filter: Option<&str>,
     settings: &[(&str, &str)],
 ) -> Result<String> {
-    tell(&format!("{} of {} as wasm", binary.name, binary.package));
-    run_and_read(
+    run_apart(
         tools::in_node(runner, &binary.wasm)
             .arg("--nocapture")
             .args(filter)
@@ -212,7 +199,14 @@ fn in_browser(runner: &Path, binaries: &[Binary], filter: Option<&str>) -> Resul
 /// any of its kind, and gives how many there are.
 fn same(wasm: &[String]) -> Result<usize> {
     // The whole workspace, as then nothing is built anew that the tests on this machine have built.
-    let options = ["test", "--workspace", "--test", "same", "--", "--nocapture"];
+    let options = [
+        "test",
+        "--workspace",
+        "--test",
+        portable::SAME,
+        "--",
+        "--nocapture",
+    ];
     let native = pictures(&run_and_read(&mut cargo(&options))?);
     let count = compare(wasm, &native)?;
     let portable = portable::build()?.same;

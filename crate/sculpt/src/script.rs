@@ -1,0 +1,146 @@
+//! Texts of strokes.
+
+use crate::error::Error;
+use crate::parse;
+use crate::stroke::{Beginning, Stroke};
+use crate::write;
+use core::fmt;
+use core::ops::Range;
+use core::str::FromStr;
+
+/// A sculpture as text: what it starts from, and strokes. Parsing what is displayed gives the same.
+///
+/// ```
+/// use sculpt::Script;
+///
+/// let text = "strokes 1\nstart box 4 # a cube\npull sphere 0.3 0.3 0.3 bell 0.8 : 0 0 1, 0 0 1.5 0.5\nloop\n";
+/// let script: Script = text.parse()?;
+/// assert_eq!(script.strokes.len(), 2);
+/// assert_eq!(script.to_string().parse::<Script>()?.strokes, script.strokes);
+///
+/// let error = "strokes 1\nstart box 4\npull globe 1 1 1 : 0 0 0\n".parse::<Script>().unwrap_err();
+/// assert_eq!(error.to_string(), "line 3, column 6: a tool is expected: box, cylinder or sphere");
+/// # Ok::<(), sculpt::Diagnostic>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Script {
+    /// What the sculpture starts from.
+    pub start: Beginning,
+    /// The strokes, in order.
+    pub strokes: Vec<Stroke>,
+    /// Where the start and each stroke stand.
+    pub(crate) places: Vec<Place>,
+}
+
+/// A place of a text.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub line: usize,
+    pub column: usize,
+    pub span: Range<usize>,
+}
+
+/// A problem of a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Bytes of the text that it is about.
+    pub span: Range<usize>,
+    /// A sentence without its full stop.
+    pub message: String,
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "line {}, column {}: {}",
+            self.line, self.column, self.message
+        )
+    }
+}
+
+impl core::error::Error for Diagnostic {}
+
+impl Script {
+    /// A text with strokes that were not written yet.
+    #[must_use]
+    pub fn new(start: Beginning, strokes: Vec<Stroke>) -> Self {
+        let places = vec![Place::default(); strokes.len() + 1];
+        Self {
+            start,
+            strokes,
+            places,
+        }
+    }
+
+    /// Parses a text. Returns all problems if there are any, at most twenty.
+    ///
+    /// # Errors
+    /// The problems.
+    pub fn parse(text: &str) -> Result<Self, Vec<Diagnostic>> {
+        parse::script(text)
+    }
+
+    /// The line on which a stroke stands, from 1; 0 if it was not parsed.
+    #[must_use]
+    pub fn line(&self, stroke: usize) -> usize {
+        self.places.get(stroke + 1).map_or(0, |place| place.line)
+    }
+
+    pub(crate) fn at_start(&self, error: &Error) -> Diagnostic {
+        self.places
+            .first()
+            .cloned()
+            .unwrap_or_default()
+            .problem(error.0.clone())
+    }
+
+    pub(crate) fn at(&self, stroke: usize, error: &Error) -> Diagnostic {
+        let place = self.places.get(stroke + 1).cloned().unwrap_or_default();
+        place.problem(error.0.clone())
+    }
+}
+
+impl Place {
+    pub fn problem(self, message: String) -> Diagnostic {
+        Diagnostic {
+            line: self.line,
+            column: self.column,
+            span: self.span,
+            message,
+        }
+    }
+}
+
+impl FromStr for Script {
+    type Err = Diagnostic;
+
+    fn from_str(text: &str) -> Result<Self, Diagnostic> {
+        Self::parse(text).map_err(|mut problems| problems.swap_remove(0))
+    }
+}
+
+impl fmt::Display for Script {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "strokes 1\n{}", self.start)?;
+        self.strokes
+            .iter()
+            .try_for_each(|stroke| writeln!(f, "{stroke}"))
+    }
+}
+
+impl fmt::Display for Beginning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write::beginning(f, self)
+    }
+}
+
+impl fmt::Display for Stroke {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write::stroke(f, self)
+    }
+}

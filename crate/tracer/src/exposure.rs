@@ -1,0 +1,211 @@
+//! Pixels behind a lens and an open shutter: rays that differ in more than their place in the pixel.
+//!
+//! Each of a pixel's n×n rays has its own cell of the pixel, point of the lens and moment. The points are well spread
+//! ([`texture::sequence`]), and each moment gets as many of the rays as any other, or one more.
+use crate::area::Area;
+use crate::free::FreeRay;
+use crate::lamps::Draw;
+use crate::layout::PACKET;
+use crate::meet::Seen;
+use crate::ray::Ray;
+use crate::sampler::Sampler;
+use crate::stats::Stats;
+use crate::unit::Unit;
+use crate::view::View;
+use crate::workspace::Workspace;
+use crate::world::World;
+use glam::Vec3;
+use scene::Scene;
+use texture::disc;
+use texture::sequence::{Purpose, sample};
+
+/// The mean of a pixel's samples, times their number: the pixel, the colour and the cost.
+pub(crate) type Sum = (u32, u32, Vec3, f32);
+
+/// Lens and shutter of a scene's camera.
+pub(crate) struct Exposure {
+    lens: ThinLens,
+    /// The scene at the moments of the shutter; none if nothing moves.
+    moments: Vec<Moment>,
+}
+
+/// A scene at a moment.
+struct Moment {
+    view: View,
+    lens: ThinLens,
+    world: World,
+}
+
+/// A lens that is a disc around the eye, in units of the scene's size.
+#[derive(Clone, Copy)]
+struct ThinLens {
+    /// Its radius; 0 is a pinhole.
+    aperture: f64,
+    /// Distance of what is sharp.
+    focus: f64,
+}
+
+/// A ray and whose it is.
+struct Shot {
+    ray: Ray,
+    /// Number of its pixel.
+    owner: usize,
+    draw: Draw,
+}
+
+impl Exposure {
+    /// Prepares a scene's; `None` if it has a pinhole and nothing moves. `unit` is that of the scene.
+    pub fn of(scene: &Scene, unit: &Unit, size: [u32; 2]) -> Option<Self> {
+        let lens = ThinLens::of(scene, unit);
+        if lens.aperture == 0.0 && scene.moments.is_empty() {
+            return None;
+        }
+        let moment = |scene: &Scene| {
+            let mut world = World::lit(scene, true);
+            let view = View::of(scene, &world.unit, size);
+            world.soft.pixel = view.pixel();
+            Moment {
+                view,
+                lens: ThinLens::of(scene, &world.unit),
+                world,
+            }
+        };
+        let moments = scene.moments.iter().take(Scene::MAX_MOMENTS);
+        Some(Self {
+            lens,
+            moments: moments.map(moment).collect(),
+        })
+    }
+}
+
+impl ThinLens {
+    fn of(scene: &Scene, unit: &Unit) -> Self {
+        let camera = &scene.camera;
+        let focus = scene.lens.focus;
+        let focus = focus.unwrap_or_else(|| camera.eye.distance(camera.target));
+        let scale = 1.0 / unit.length(1.0);
+        let aperture = scene.lens.aperture * scale;
+        Self {
+            aperture: if aperture.is_finite() {
+                aperture.max(0.0)
+            } else {
+                0.0
+            },
+            focus: focus * scale,
+        }
+    }
+
+    /// The ray of a view through a place in pixels and a point of the lens.
+    fn ray(&self, view: &View, [x, y]: [f64; 2], point: [f64; 2]) -> Ray {
+        let through = view.ray(x, y);
+        let axes = view.projection.world_from_view;
+        let axes = [axes.x_axis, axes.y_axis, -axes.z_axis];
+        let (eye, direction) = (through.origin, through.direction);
+        let (origin, direction) =
+            disc::lens(eye, direction, axes, self.aperture, self.focus, point);
+        Ray { origin, direction }
+    }
+}
+
+impl Sampler {
+    /// Sends all rays of the pixels of a packet that lie in the picture.
+    pub fn expose(
+        &self,
+        exposure: &Exposure,
+        packet: Area,
+        work: &mut Workspace,
+        stats: &mut Stats,
+    ) -> Vec<Sum> {
+        let [width, height] = self.view.size;
+        let pixels = packet.pixels().filter(|&(x, y)| x < width && y < height);
+        let mut sums: Vec<Sum> = pixels.map(|(x, y)| (x, y, Vec3::ZERO, 0.0)).collect();
+        let count = exposure.moments.len().max(1);
+        let turns: Vec<Vec<usize>> = sums.iter().map(|s| self.turns([s.0, s.1], count)).collect();
+        for turn in 0..count {
+            let (view, lens, world) = match exposure.moments.get(turn) {
+                Some(moment) => (&moment.view, &moment.lens, &moment.world),
+                None => (&self.view, &exposure.lens, &self.world),
+            };
+            let mut shots = Vec::new();
+            for (owner, (&(x, y, ..), turns)) in sums.iter().zip(&turns).enumerate() {
+                for number in (0..turns.len()).filter(|&i| turns[i] == turn) {
+                    shots.push(self.shot(view, lens, (owner, [x, y]), number as u32));
+                }
+            }
+            follow(world, &shots, &mut sums, work, stats);
+        }
+        sums
+    }
+
+    /// Which of so many moments each of a pixel's rays is at: all equally often, in an order of the pixel's own.
+    fn turns(&self, pixel: [u32; 2], count: usize) -> Vec<usize> {
+        let all = (self.samples * self.samples) as usize;
+        let times: Vec<f64> = (0..all)
+            .map(|i| sample(pixel, i as u32, Purpose::Time)[0])
+            .collect();
+        let mut order: Vec<usize> = (0..all).collect();
+        order.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
+        let mut turns = vec![0; all];
+        for (rank, number) in order.into_iter().enumerate() {
+            turns[number] = (2 * rank + 1) * count / (2 * all);
+        }
+        turns
+    }
+
+    fn shot(
+        &self,
+        view: &View,
+        lens: &ThinLens,
+        (owner, pixel): (usize, [u32; 2]),
+        number: u32,
+    ) -> Shot {
+        let n = self.samples;
+        let part = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
+        let place = [
+            f64::from(pixel[0]) + part(number % n),
+            f64::from(pixel[1]) + part(number / n),
+        ];
+        Shot {
+            ray: lens.ray(view, place, sample(pixel, number, Purpose::Lens)),
+            owner,
+            draw: Draw::Sample { pixel, number },
+        }
+    }
+}
+
+/// Adds what some rays see at a moment to their pixels.
+fn follow(
+    world: &World,
+    shots: &[Shot],
+    sums: &mut [Sum],
+    work: &mut Workspace,
+    stats: &mut Stats,
+) {
+    let Some(rich) = &world.rich else { return };
+    let free = |shot: &Shot| FreeRay {
+        ray: shot.ray,
+        front_only: world.one_sided,
+    };
+    let rays: Vec<FreeRay> = shots.iter().map(free).collect();
+    stats.primary_rays += rays.len() as u64;
+    let hits = world.meet_free(&rays, work, stats);
+    let mut seen = Vec::new();
+    for (shots, hits) in shots.chunks(PACKET).zip(hits.chunks(PACKET)) {
+        // Lanes not in use repeat the last ray, and meet nothing.
+        let mut packet = Seen::default();
+        packet.rays = core::array::from_fn(|i| shots[i.min(shots.len() - 1)].ray);
+        packet.hits[..hits.len()].copy_from_slice(hits);
+        packet.costs = [1.0; PACKET];
+        seen.push(packet);
+    }
+    let draw = |packet: usize, lane: usize| {
+        let number = (packet * PACKET + lane).min(shots.len() - 1);
+        shots[number].draw
+    };
+    world.illuminate(rich, &seen, &draw, work, stats);
+    for (shot, sample) in shots.iter().zip(work.samples.iter().flatten()) {
+        let (_, _, colour, cost) = &mut sums[shot.owner];
+        *colour += sample.colour;
+        *cost += sample.cost;
+    }
+}
