@@ -17,8 +17,6 @@ pub const BLOBBINESS: f64 = -2.0;
 pub struct Curves {
     /// Nodes and control polygons.
     pub skeleton: Skeleton,
-    /// The names of the nodes, in their order.
-    pub names: Vec<String>,
     /// How the curves are refined.
     pub scheme: Scheme,
     /// How often.
@@ -30,26 +28,20 @@ pub struct Curves {
 
 impl PartialEq for Curves {
     fn eq(&self, other: &Self) -> bool {
-        (&self.skeleton, &self.names) == (&other.skeleton, &other.names)
+        self.skeleton == other.skeleton
             && (self.scheme, self.levels) == (other.scheme, other.levels)
     }
 }
 
 impl Curves {
-    /// Curves whose nodes have these names.
+    /// The curves of a skeleton, refined some times.
     ///
     /// # Errors
     /// If the skeleton has no polyline.
-    pub fn new(
-        skeleton: Skeleton,
-        names: Vec<String>,
-        scheme: Scheme,
-        levels: u32,
-    ) -> Result<Self, skeleton::Error> {
+    pub fn new(skeleton: Skeleton, scheme: Scheme, levels: u32) -> Result<Self, skeleton::Error> {
         let polyline = skeleton.polyline(scheme, levels)?;
         Ok(Self {
             skeleton,
-            names,
             scheme,
             levels,
             polyline: OnceLock::from(Some(polyline)),

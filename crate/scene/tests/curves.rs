@@ -14,12 +14,11 @@ fn node(x: f64, y: f64, z: f64, radius: f64) -> Node {
 }
 
 fn scene(nodes: Vec<Node>, curves: &[&[usize]], levels: u32, to_world: DAffine3) -> Scene {
-    let names = (0..nodes.len()).map(|i| i.to_string()).collect();
     let skeleton = Skeleton {
         nodes,
         curves: curves.iter().map(|c| c.to_vec()).collect(),
     };
-    let curves = Curves::new(skeleton, names, Scheme::Cubic, levels).expect("a polyline");
+    let curves = Curves::new(skeleton, Scheme::Cubic, levels).expect("a polyline");
     let shape = Shape::Function(Box::new(Function {
         form: Form::Skeleton(Arc::new(curves)),
         to_world,

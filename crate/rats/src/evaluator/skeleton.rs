@@ -194,9 +194,8 @@ impl<'a> Read<'a> {
             _ => Scheme::Cubic,
         };
         let (places, curves): (Vec<_>, Vec<_>) = self.curves.into_iter().unzip();
-        let (names, nodes): (Vec<_>, Vec<_>) = self.nodes.into_iter().unzip();
-        let names = names.iter().map(|name| name.text.to_owned()).collect();
-        let curves = Curves::new(Skeleton { nodes, curves }, names, scheme, levels)
+        let nodes = self.nodes.into_iter().map(|(_, node)| node).collect();
+        let curves = Curves::new(Skeleton { nodes, curves }, scheme, levels)
             .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
         // A curve all of whose nodes are at one place has no flesh.
         let lengths = curves.polyline().map_or(&[][..], |p| &p.lengths);
