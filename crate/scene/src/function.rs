@@ -69,7 +69,7 @@ impl Function {
     pub fn curves(&self) -> Option<&Curves> {
         match &self.form {
             Form::Skeleton(curves) => Some(curves),
-            Form::Metaballs { .. } => None,
+            Form::Metaballs { .. } | Form::Mesh(_) => None,
         }
     }
 
@@ -86,6 +86,11 @@ impl Function {
         let points: Vec<DVec3> = match &self.form {
             Form::Metaballs { balls, .. } => balls.iter().map(|ball| ball.0).collect(),
             Form::Skeleton(curves) => curves.points().map(|(point, _)| point).collect(),
+            // Evenly over the list: a mesh may have a hundred thousand vertices.
+            Form::Mesh(mesh) => {
+                let step = mesh.positions.len().div_ceil(MOST).max(1);
+                mesh.positions.iter().copied().step_by(step).collect()
+            }
         };
         let step = points.len().div_ceil(MOST).max(1);
         let some = points.into_iter().step_by(step);
