@@ -88,7 +88,7 @@ pub static EXTENSIONS: &[CommandSpec] = &[
             with other curves, which branch there, and is drawn towards all others. A curve that ends where it begins is closed. The radius \
             varies smoothly from node to node. The flesh is soft whatever the material's blobbiness; its kernel is `cubed` unless the \
             material names another. A skeleton is an object: it is moved, turned and copied by its name.")
-        .example(flesh!("skeleton Flesh, HAND {\n  node WRIST <-3 -1 0> radius 0.5\n  node PALM <-0.5 0 0> radius 0.9\n  node TIP <3 1.2 0> radius 0.3\n  node THUMB <0.5 2.4 0> radius 0.3\n  curve WRIST PALM TIP\n  curve PALM THUMB\n}")),
+        .example("light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular Gray50, shine 40, radius 0.6, blobbiness -2\nskeleton Flesh, HAND {\n  node WRIST <-3 -1 0> radius 0.5\n  node PALM <-0.5 0 0> radius 0.9\n  node TIP <3 1.2 0> radius 0.3\n  node THUMB <0.5 2.4 0> radius 0.3\n  curve WRIST PALM TIP\n  curve PALM THUMB\n}"),
     row("deform", "bend a mesh by control points", run(Routine::Deform))
             .newer()
         .takes(&[parameter("object", Kind::Known(Names::Object), "an object's name").optional("the last one")])
