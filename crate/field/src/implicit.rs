@@ -65,6 +65,17 @@ impl Enclosure {
     }
 }
 
+/// The terms of a function that matter in a ball, and bounds on all others there; made by [`Implicit::narrow`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// The ball.
+    pub ball: Ball,
+    /// Numbers of the terms, in ascending order.
+    pub terms: Vec<u32>,
+    /// Bounds on the sum of the others in the ball.
+    pub rest: Enclosure,
+}
+
 /// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
 /// outward normal is `−∇f/|∇f|`.
 ///
@@ -90,4 +101,21 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
 
     /// A ball outside of which the function is below the threshold; `None` if there is none or none is known.
     fn support(&self) -> Option<Ball>;
+
+    /// The terms that matter in a ball, chosen among those of a part whose ball contains it, or of all. What is left out is below
+    /// `slack` in all, and so are its slope and curvature times the ball's radius and its square. `None` if the function has no
+    /// such terms, or hardly any can be left out.
+    fn narrow(&self, _ball: Ball, _among: Option<&Part>, _slack: f64) -> Option<Part> {
+        None
+    }
+
+    /// Value and gradient of the terms of a part, at a point of its ball.
+    fn jet_of(&self, _part: &Part, point: DVec3) -> Jet<f64> {
+        self.jet(point)
+    }
+
+    /// Bounds on the whole function in a ball within that of a part, of which only the terms of the part are looked at.
+    fn enclose_of(&self, _part: &Part, ball: Ball) -> Enclosure {
+        self.enclose(ball)
+    }
 }

@@ -91,7 +91,7 @@ pub use blob::{Blob, BlobOnRay, Ceiling, Limits};
 pub use blob_chain::ChainBlob;
 pub use bound::Bound;
 pub use cut::Cut;
-pub use implicit::{Ball, Enclosure, Implicit};
+pub use implicit::{Ball, Enclosure, Implicit, Part};
 pub use kernel::{Derivatives, Kernel};
 pub use kinks::Kink;
 pub use primitive::{Jet, Primitive};

@@ -1,5 +1,6 @@
 //! The sum of primitives: the field of a convolution surface.
 use crate::kinks::{self, Kink};
+use crate::implicit::Part;
 use crate::{Ball, Bound, Enclosure, Implicit, Jet, Primitive, Real, THRESHOLD};
 use glam::DVec3;
 use std::sync::OnceLock;
@@ -39,6 +40,28 @@ pub struct Sum {
 struct Known {
     bound: Bound,
     kinks: Vec<Kink>,
+}
+
+impl Known {
+    /// Bounds in a ball.
+    fn enclose(&self, Ball { center, radius }: Ball) -> Enclosure {
+        let Self { bound, kinks } = self;
+        let near = bound.nearness(center, radius);
+        let magnitude = bound.magnitude(near);
+        let cut = kinks.iter().filter(|kink| kink.cuts(center, radius));
+        let [kinked, jumps] = cut.fold([false, false], |[_, jumps], kink| {
+            [true, jumps | kink.jumps]
+        });
+        let unless = |broken: bool, bound: f64| if broken { f64::INFINITY } else { bound };
+        Enclosure {
+            value: [
+                if bound.carves() { -magnitude } else { 0.0 },
+                if bound.adds() { magnitude } else { 0.0 },
+            ],
+            slope: unless(jumps, bound.slope(near)),
+            curvature: unless(kinked, bound.curvature(near)),
+        }
+    }
 }
 
 impl Sum {
@@ -117,26 +140,59 @@ impl Implicit for Sum {
         self.sum(points)
     }
 
-    fn enclose(&self, Ball { center, radius }: Ball) -> Enclosure {
-        let mut all = Enclosure::ZERO;
-        for Known { bound, kinks } in self.known() {
-            let near = bound.nearness(center, radius);
-            let magnitude = bound.magnitude(near);
-            let cut = kinks.iter().filter(|kink| kink.cuts(center, radius));
-            let [kinked, jumps] = cut.fold([false, false], |[_, jumps], kink| {
-                [true, jumps | kink.jumps]
-            });
-            let unless = |broken: bool, bound: f64| if broken { f64::INFINITY } else { bound };
-            all = all.plus(Enclosure {
-                value: [
-                    if bound.carves() { -magnitude } else { 0.0 },
-                    if bound.adds() { magnitude } else { 0.0 },
-                ],
-                slope: unless(jumps, bound.slope(near)),
-                curvature: unless(kinked, bound.curvature(near)),
-            });
-        }
-        all.about(&self.jet(center), radius)
+    fn enclose(&self, ball: Ball) -> Enclosure {
+        let known = self.known().iter();
+        let all = known.fold(Enclosure::ZERO, |all, known| all.plus(known.enclose(ball)));
+        all.about(&self.jet(ball.center), ball.radius)
+    }
+
+    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: f64) -> Option<Part> {
+        let known = self.known();
+        let each = slack / known.len() as f64;
+        let mut part = Part {
+            ball,
+            terms: Vec::new(),
+            rest: among.map_or(Enclosure::ZERO, |among| among.rest),
+        };
+        let mut choose = |i: u32| {
+            let bounds = known[i as usize].enclose(ball);
+            let size = bounds.value[1].max(-bounds.value[0]);
+            let changes = [
+                size,
+                bounds.slope * ball.radius,
+                bounds.curvature * ball.radius * ball.radius,
+            ];
+            // Not so for NaN.
+            if changes.iter().all(|change| *change <= each) {
+                part.rest = part.rest.plus(bounds);
+            } else {
+                part.terms.push(i);
+            }
+        };
+        let before = match among {
+            Some(among) => {
+                among.terms.iter().copied().for_each(&mut choose);
+                among.terms.len()
+            }
+            None => {
+                (0..known.len() as u32).for_each(&mut choose);
+                known.len()
+            }
+        };
+        (4 * part.terms.len() <= 3 * before).then_some(part)
+    }
+
+    fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {
+        let terms = part.terms.iter().map(|i| &self.primitives[*i as usize]);
+        sum(terms, point.to_array())
+    }
+
+    fn enclose_of(&self, part: &Part, ball: Ball) -> Enclosure {
+        let known = self.known();
+        let terms = part.terms.iter().map(|i| known[*i as usize].enclose(ball));
+        let all = terms.fold(Enclosure::ZERO, Enclosure::plus);
+        let near = all.about(&self.jet_of(part, ball.center), ball.radius);
+        near.plus(part.rest)
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
