@@ -9,6 +9,7 @@ mod check;
 mod classic;
 mod files;
 mod fmt;
+mod meshes;
 mod probe;
 mod render;
 mod report;
@@ -41,6 +42,8 @@ enum Command {
     Render(render::Render),
     /// Trace a dataset whose variables change with the frames to an animation
     Animate(animate::Animate),
+    /// Mesh a dataset's surfaces, for printers and other programs
+    Mesh(meshes::Mesh),
     /// Evaluate the field at points, or intersect rays with the surface
     Probe(probe::Probe),
     /// Lay datasets out: indentation and spaces, nothing that they mean
@@ -90,6 +93,7 @@ fn run() -> Outcome {
         Command::Render(command) => command.run(),
         Command::Animate(command) => command.run(),
         Command::Fmt(command) => command.run(),
+        Command::Mesh(command) => command.run(),
         Command::Probe(command) => command.run(),
         Command::Scene(command) => command.run(),
         Command::Share(command) => command.run(),

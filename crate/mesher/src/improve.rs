@@ -81,6 +81,7 @@ impl<'a> Improver<'a> {
             positions,
             triangles,
             origins,
+            ..
         } = raw;
         let mut is_fixed = vec![false; positions.len()];
         for (triangle, origin) in triangles.iter().zip(&origins) {

@@ -4,12 +4,18 @@ mod certify;
 mod forest;
 mod improve;
 mod lattice;
+mod level;
 mod march;
+mod model;
 mod options;
+mod paint;
 mod parallel;
 mod refine;
+mod solids;
 mod space;
 mod surface;
+mod unite;
 
+pub use model::{Model, ModelPart, Tolerance, Wishes, mesh_scene};
 pub use options::{MeshError, Options, Progress};
 pub use surface::{Surface, box_of, extent, polygonize};

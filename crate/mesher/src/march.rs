@@ -17,6 +17,8 @@ pub struct Origin {
     pub error: f32,
     /// Whether it is to stay as it is: on the boundary of the box, or where the topology is not sure.
     pub is_fixed: bool,
+    /// Whether it is on the boundary of the box.
+    pub is_lid: bool,
 }
 
 /// The mesh before it is improved.
@@ -28,6 +30,8 @@ pub struct Raw {
     pub triangles: Vec<[u32; 3]>,
     /// What is known of each.
     pub origins: Vec<Origin>,
+    /// Whether there are lids.
+    pub is_cut: bool,
 }
 
 /// Even permutations that bring one corner to the front.
@@ -107,6 +111,7 @@ fn in_cell(forest: &Forest, lattice: &Lattice, node: u32) -> Vec<([Place; 3], Or
         let origin = Origin {
             error: error as f32,
             is_fixed,
+            is_lid: false,
         };
         in_tetrahedron(corners, inside, |places| triangles.push((places, origin)));
     });
@@ -126,6 +131,7 @@ fn lids(
     let origin = Origin {
         error: 0.0,
         is_fixed: true,
+        is_lid: true,
     };
     let mut triangles = Vec::new();
     for side in 0..6 {
@@ -201,6 +207,7 @@ pub fn march(forest: &Forest, lattice: &Lattice, threads: usize) -> Raw {
         Ok(i) | Err(i) => i as u32,
     };
     Raw {
+        is_cut: triangles.iter().any(|(_, origin)| origin.is_lid),
         positions: positions.collect(),
         triangles: triangles.iter().map(|(p, _)| p.each_ref().map(index)).collect(),
         origins: triangles.iter().map(|(_, origin)| *origin).collect(),

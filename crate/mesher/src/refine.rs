@@ -16,7 +16,7 @@ use glam::DVec3;
 use mesh::Aabb;
 
 /// Cells are split until the gradient is so many times its possible change: then nearly all tetrahedra pass.
-const STEADY: f64 = 1.4;
+const STEADY: f64 = 1.2;
 
 /// |F − L| ≤ C·R²/2 on a tetrahedron in a ball of radius R (Waldron 1998), and those of a cell of size s have R² ≤ 5/16·s².
 const INTERPOLATION: f64 = 5.0 / 32.0;
@@ -33,13 +33,13 @@ struct Look {
     part: Option<Part>,
 }
 
-/// Looks at a cell, with so much room around it that a path of the length of the tolerance does not leave the ball.
-fn look(space: &Space<'_>, cell: &Cell, tolerance: f64) -> Look {
+/// Looks at a cell, with so much room around it that a path of the length of the finer tolerance does not leave the ball.
+fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     let forest = &space.forest;
     let size = forest.size(cell.level);
     let center = forest.center(cell);
     let radius = 0.5 * size.length() * (1.0 + 1e-9);
-    let around = radius + tolerance.min(radius);
+    let around = radius + fine.min(radius);
     let ball = Ball {
         center,
         radius: around,
@@ -56,15 +56,16 @@ fn look(space: &Space<'_>, cell: &Cell, tolerance: f64) -> Look {
     };
     let gradient = DVec3::from_array(jet.gradient);
     let steep = gradient.length();
-    let spread = all.curvature * around + SLACK / radius;
+    let spread = all.curvature * radius + SLACK / radius;
+    let beyond = all.curvature * around + SLACK / radius;
     let longest = size.max_element();
     let off = all.curvature * INTERPOLATION * longest * longest
-        + NUDGE * tolerance * (steep + spread)
+        + NUDGE * tolerance * (steep + beyond)
         + SLACK;
     // Not so for NaN.
     let is_steady = steep > STEADY * spread;
-    let error = if steep > spread {
-        off / (steep - spread)
+    let error = if steep > beyond {
+        off / (steep - beyond)
     } else {
         f64::INFINITY
     };
@@ -100,7 +101,7 @@ pub fn extent(
         progress.at(0.5)?;
         let cells: Vec<Cell> = open.iter().map(|i| space.forest.cells[*i as usize]).collect();
         // No cell is good enough for a tolerance of 0.
-        let looks = map(threads, &cells, |cell| look(&space, cell, 0.0));
+        let looks = map(threads, &cells, |cell| look(&space, cell, [0.0; 2]));
         let mut hull = Aabb::EMPTY;
         let mut crossing = Vec::new();
         for (node, Look { side, part, .. }) in open.iter().zip(looks) {
@@ -143,13 +144,14 @@ pub fn extent(
 /// Cells with which the search for the extent ends in any case.
 const MANY_CELLS: usize = 100_000;
 
-/// Refines the cells, and returns the lattice with values at its vertices.
+/// Refines the cells until their interpolants are within the first tolerance, the second being that of the final mesh, and
+/// returns the lattice with values at its vertices.
 ///
 /// # Errors
 /// If there are too many cells, or if the caller cancels.
 pub fn refine(
     space: &mut Space<'_>,
-    tolerance: f64,
+    tolerances: [f64; 2],
     max_cells: usize,
     threads: usize,
     progress: &mut Progress<'_>,
@@ -158,10 +160,10 @@ pub fn refine(
     let mut fraction = 0.0;
     let mut fresh = 0;
     loop {
-        look_at_all(space, &mut fresh, tolerance, max_cells, threads, progress, &mut fraction)?;
-        look_beside(space, tolerance, threads);
+        look_at_all(space, &mut fresh, tolerances, max_cells, threads, progress, &mut fraction)?;
+        look_beside(space, tolerances, threads);
         let crossing = crossing(&space.forest);
-        lattice.extend(space, &crossing, tolerance, threads);
+        lattice.extend(space, &crossing, tolerances[0], threads);
         let failing = map(threads, &crossing, |node| failing(space, &lattice, *node));
         let mut failing: Vec<u32> = failing.into_iter().flatten().collect();
         failing.sort_unstable();
@@ -190,7 +192,7 @@ pub fn refine(
 fn look_at_all(
     space: &mut Space<'_>,
     fresh: &mut usize,
-    tolerance: f64,
+    tolerances: [f64; 2],
     max_cells: usize,
     threads: usize,
     progress: &mut Progress<'_>,
@@ -211,7 +213,7 @@ fn look_at_all(
         for batch in open.chunks(BATCH) {
             progress.at(*fraction)?;
             let leaves: Vec<Cell> = batch.iter().map(|i| space.forest.cells[*i as usize]).collect();
-            let looks = map(threads, &leaves, |cell| look(space, cell, tolerance));
+            let looks = map(threads, &leaves, |cell| look(space, cell, tolerances));
             for (node, look) in batch.iter().zip(looks) {
                 let cell = &mut space.forest.cells[*node as usize];
                 cell.side = look.side;
@@ -227,6 +229,7 @@ fn look_at_all(
                 }
             }
             if space.forest.cells.len() > max_cells {
+                debug(space);
                 return Err(MeshError::TooMany {
                     limit: 0,
                     fitting: fitting(&space.forest),
@@ -252,7 +255,7 @@ fn fitting(forest: &Forest) -> Option<f64> {
 }
 
 /// Computes bounds for leaves without the surface that share a face with one that has it.
-fn look_beside(space: &mut Space<'_>, tolerance: f64, threads: usize) {
+fn look_beside(space: &mut Space<'_>, tolerances: [f64; 2], threads: usize) {
     let forest = &space.forest;
     let mut open = Vec::new();
     for node in crossing(forest) {
@@ -276,7 +279,7 @@ fn look_beside(space: &mut Space<'_>, tolerance: f64, threads: usize) {
     open.sort_unstable();
     open.dedup();
     let cells: Vec<Cell> = open.iter().map(|i| forest.cells[*i as usize]).collect();
-    let looks = map(threads, &cells, |cell| look(space, cell, tolerance));
+    let looks = map(threads, &cells, |cell| look(space, cell, tolerances));
     for (node, look) in open.into_iter().zip(looks) {
         let cell = &mut space.forest.cells[node as usize];
         cell.bounds = look.bounds;
@@ -319,4 +322,24 @@ fn gradient(corners: &[DVec3; 4], values: &[f64; 4]) -> DVec3 {
     let [a, b, c] = [1, 2, 3].map(|i| corners[i] - corners[0]);
     let [u, v, w] = [1, 2, 3].map(|i| values[i] - values[0]);
     (u * b.cross(c) + v * c.cross(a) + w * a.cross(b)) / a.dot(b.cross(c))
+}
+
+fn debug(space: &Space<'_>) {
+    let forest = &space.forest;
+    for level in 0..=forest.deepest {
+        let mut n = [0; 4];
+        let mut ratio = Vec::new();
+        let mut terms = 0;
+        for cell in forest.cells.iter().filter(|c| c.level == level && c.child == NONE) {
+            n[cell.side as usize] += 1;
+            if cell.side == Side::Crossing {
+                let s = forest.size(level).length() * 0.5;
+                ratio.push((cell.bounds.spread / s / cell.bounds.gradient.length(), cell.bounds.gradient.length(), cell.at));
+                terms += space.terms(cell.part);
+            }
+        }
+        ratio.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let q = |x: f64| ratio.get((x * ratio.len() as f64) as usize);
+        eprintln!("{level} {:.5} {n:?} terms {:.1} C/g {:?} {:?} {:?}", forest.size(level).x, terms as f64 / ratio.len() as f64, q(0.1), q(0.5), q(0.9));
+    }
 }

@@ -63,6 +63,7 @@ impl<'a> Space<'a> {
         }
     }
 
+    pub fn terms(&self, part: u32) -> usize { self.part(part).map_or(0, |p| p.terms.len()) }
     /// Number of evaluations of values and bounds.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.load(Ordering::Relaxed)

@@ -26,6 +26,8 @@ pub struct Surface {
     pub cells: usize,
     /// Triangles before they were made fewer.
     pub raw_triangles: usize,
+    /// Whether the domain cut something off, which was closed by flat lids.
+    pub is_cut: bool,
     /// Evaluations of the function and of its bounds.
     pub evaluations: u64,
 }
@@ -95,7 +97,7 @@ pub fn polygonize(
     let coarse = COARSE * tolerance;
     let lattice = refine::refine(
         &mut space,
-        coarse,
+        [coarse, tolerance],
         max_raw,
         threads,
         &mut progress.part(0.02, 0.4),
@@ -121,6 +123,7 @@ pub fn polygonize(
     let finest = forest.size(forest.deepest).max_element();
     let cells = refine::crossing(forest).len();
     let raw_triangles = raw.triangles.len();
+    let is_cut = raw.is_cut;
     let improver = Improver::new(&space, raw, [tolerance, coarse], threads)?;
     let improved = improver.run(&mut progress.part(0.4, 1.0))?;
     if improved.mesh.triangles.len() > max_triangles {
@@ -139,6 +142,7 @@ pub fn polygonize(
         finest,
         cells,
         raw_triangles,
+        is_cut,
         evaluations: space.evaluations(),
     })
 }
