@@ -11,7 +11,7 @@ const SIZE = [200, 160];
 const UNSEEN = 0.1;
 /** What a screenshot may differ from the picture it shows: it is scaled to the window. */
 const SEEN_ON_SCREEN = 6;
-/** Red of the underlines of errors (crate/studio/src/theme.rs). */
+/** Red of the underlines of errors (crate/widgets/src/theme.rs). */
 const ERROR_RED = [0xff, 0x6b, 0x6b];
 
 /** A small model with a slider. */

@@ -3,9 +3,9 @@
 use crate::files::Loaded;
 use crate::{Outcome, files, report};
 use clap::{Args, ValueEnum};
-use field::{Jet, Sum};
+use field::{Implicit, Jet};
 use glam::DVec3;
-use scene::{Scene, SoftSurface};
+use scene::{Scene, Surface};
 use serde_json::{Map, Value, json};
 use std::io::{BufRead, Write};
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ impl Probe {
         let loaded = files::load(&self.file)?;
         let mut good = report::to_stderr(&loaded);
         if let Some(source) = &self.points {
-            let surfaces = loaded.compiled.scene.soft_surfaces();
+            let surfaces = loaded.compiled.scene.surfaces();
             good &= each_line(source, |[x, y, z]: [f64; 3]| {
                 Ok(self.point(&loaded, &surfaces, DVec3::new(x, y, z)))
             })?;
@@ -62,17 +62,17 @@ impl Probe {
     }
 
     /// The field of every body at a point; the keys beside `bodies` tell of the body with the largest.
-    fn point(&self, loaded: &Loaded, surfaces: &[SoftSurface], point: DVec3) -> Value {
+    fn point(&self, loaded: &Loaded, surfaces: &[Surface], point: DVec3) -> Value {
         let scene = &loaded.compiled.scene;
         let jets: Vec<Jet<f64>> = surfaces
             .iter()
-            .map(|surface| jet(&surface.sum, point, self.precision))
+            .map(|surface| jet(surface.function(), point, self.precision))
             .collect();
         let bodies: Vec<Value> = surfaces
             .iter()
             .zip(&jets)
             .map(|(surface, Jet { value, gradient })| {
-                let name = &scene.bodies[surface.body as usize].name;
+                let name = &scene.bodies[surface.body() as usize].name;
                 json!({ "name": name, "field": value, "gradient": gradient })
             })
             .collect();
@@ -93,11 +93,11 @@ impl Probe {
     }
 }
 
-fn jet(field: &Sum, point: DVec3, precision: Precision) -> Jet<f64> {
+fn jet(field: &dyn Implicit, point: DVec3, precision: Precision) -> Jet<f64> {
     match precision {
         Precision::F64 => field.jet(point),
         Precision::F32 => {
-            let jet = field.sum(point.as_vec3().to_array());
+            let jet = field.jet32(point.as_vec3().to_array());
             Jet {
                 value: f64::from(jet.value),
                 gradient: jet.gradient.map(f64::from),
@@ -106,15 +106,17 @@ fn jet(field: &Sum, point: DVec3, precision: Precision) -> Jet<f64> {
     }
 }
 
-/// The share of each material in the flesh at a point: its primitives' fields over the sum of all,
+/// The share of each material in the flesh at a point: its elements' shares of the function over the sum of all,
 /// as colours are blended (thesis, chapter 4). Carving primitives have no share.
-fn weights(loaded: &Loaded, surface: &SoftSurface, point: DVec3) -> Map<String, Value> {
+fn weights(loaded: &Loaded, surface: &Surface, point: DVec3) -> Map<String, Value> {
     let scene = &loaded.compiled.scene;
-    let fields = surface.sum.weights(point);
-    let total: f64 = fields.iter().filter(|value| **value > 0.0).sum();
+    let mut fields = Vec::new();
+    surface.function().shares(point, &mut fields);
+    let total: f64 = fields.iter().map(|(_, value)| value).sum();
     let mut shares = vec![0.0; scene.finishes.len()];
-    for (value, &element) in fields.iter().zip(&surface.element) {
-        if *value > 0.0 && total > 0.0 {
+    for (number, value) in fields {
+        if total > 0.0 {
+            let element = surface.element()[number as usize];
             shares[scene.elements[element as usize].finish as usize] += value / total;
         }
     }

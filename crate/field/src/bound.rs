@@ -358,6 +358,30 @@ impl Bound {
         self.derivative(near, 2) + wave
     }
 
+    /// Returns a bound on the third derivative of f along any line in the ball, where the profile, if any, is smooth; infinite if
+    /// the second derivative may jump there.
+    #[must_use]
+    pub fn third(&self, near: Nearness) -> f64 {
+        let is_outside = self.kernel.is_compact() && near.distance * self.width >= 1.0;
+        let own = if is_outside {
+            return 0.0;
+        } else if self.kernel.smoothness() >= 2 {
+            self.derivative(near, 3)
+        } else if near.within {
+            let scale = self.finest * self.finest * self.finest;
+            self.whole * envelope::inside(self.kernel)[0] * scale
+        } else {
+            f64::INFINITY
+        };
+        let Some(ripple) = &self.ripple else {
+            return own;
+        };
+        let [first, second, third, _] = ripple.derivatives(near.axis_distance);
+        own + 3.0 * self.derivative(near, 2) * first
+            + 3.0 * self.derivative(near, 1) * second
+            + self.magnitude(near) * third
+    }
+
     /// Returns bounds on the first to fourth derivative of the profile's factor, over its size; 0 without a profile.
     fn factor(&self, near: Nearness) -> [f64; 4] {
         let of = |ripple: &Ripple| ripple.derivatives(near.axis_distance);

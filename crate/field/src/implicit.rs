@@ -12,6 +12,26 @@ pub struct Ball {
     pub radius: f64,
 }
 
+impl Ball {
+    /// A ball that holds both, the smallest up to rounding.
+    #[must_use]
+    pub fn around(&self, other: &Self) -> Self {
+        let apart = self.center.distance(other.center);
+        if apart + other.radius <= self.radius {
+            return *self;
+        }
+        if apart + self.radius <= other.radius {
+            return *other;
+        }
+        let radius = 0.5 * (apart + self.radius + other.radius);
+        let towards = (other.center - self.center) / apart;
+        Self {
+            center: self.center + towards * (radius - self.radius),
+            radius: radius * (1.0 + 1e-12),
+        }
+    }
+}
+
 /// Proven bounds on a function in a ball.
 ///
 /// Where the function is not smooth in the ball the bounds that do not exist are infinite: `curvature` where its
@@ -76,6 +96,17 @@ pub struct Part {
     pub rest: Enclosure,
 }
 
+/// Proven bounds on a function in a ball, up to the third derivative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variation {
+    /// Bounds up to the second derivative. Its values need not be narrowed by [`Enclosure::about`].
+    pub range: Enclosure,
+    /// The largest size of the third derivative along any line, of the terms whose second derivative is continuous in the ball.
+    pub third: f64,
+    /// The largest size of the second derivative along any line, of all other terms.
+    pub rough: f64,
+}
+
 /// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
 /// outward normal is `−∇f/|∇f|`.
 ///
@@ -102,6 +133,15 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// A ball outside of which the function is below the threshold; `None` if there is none or none is known.
     fn support(&self) -> Option<Ball>;
 
+    /// A ball outside of which the function is at most `level` > 0; `None` if there is none or none is known. Sums of functions ask
+    /// for levels below the threshold.
+    fn support_at(&self, level: f64) -> Option<Ball> {
+        if level < crate::THRESHOLD {
+            return None;
+        }
+        self.support()
+    }
+
     /// The terms that matter in a ball, chosen among those of a part whose ball contains it, or of all. What is left out is below
     /// `slack` in all, and so are its slope and curvature times the ball's radius and its square. `None` if the function has no
     /// such terms, or hardly any can be left out.
@@ -114,8 +154,14 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
         self.jet(point)
     }
 
-    /// Bounds on the whole function in a ball within that of a part, of which only the terms of the part are looked at.
-    fn enclose_of(&self, _part: &Part, ball: Ball) -> Enclosure {
-        self.enclose(ball)
+    /// Bounds on the whole function in a ball, which must be within that of the part, if there is one: then only the terms of
+    /// the part are looked at.
+    fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
+        let range = self.enclose(ball);
+        Variation {
+            range,
+            third: 0.0,
+            rough: range.curvature,
+        }
     }
 }

@@ -31,7 +31,8 @@
 //!   formula serves which kernel on which bone; they are tested against [`quadrature`];
 //! - [`Shaping`] turns a radius, a blobbiness and a strength into a kernel's width and height;
 //! - [`Implicit`] is any function with a surface, with value, gradient and proven bounds; [`Sum`] is the convolution
-//!   surface's;
+//!   surface's, [`Exponentials`] that of metaballs that fall with distance; [`Blend`] adds functions, [`Placed`] moves and
+//!   stretches one;
 //! - [`Primitive`] is a term of the field: value, gradient, depth of influence, and the ray interval within it;
 //!   [`Bound`] gives upper bounds on its size, its derivatives and the error of a cubic Hermite span;
 //! - [`Blob`] is a primitive whose largest value on any interval of a ray has a closed form;
@@ -46,6 +47,7 @@
 //! The slope of a Cauchy triangle across its plane is lost more than 100 widths away.
 
 mod angle;
+mod blend;
 pub mod blob;
 pub mod blob_chain;
 mod bone;
@@ -59,6 +61,7 @@ mod cut;
 pub mod endless;
 mod envelope;
 mod error_function;
+mod exponentials;
 mod far;
 mod form;
 mod gauss;
@@ -69,6 +72,7 @@ pub mod kernel;
 pub mod kinks;
 mod legendre;
 mod metaballs;
+mod placed;
 mod plane;
 mod point;
 mod polynomial;
@@ -87,13 +91,16 @@ mod sum;
 mod term;
 mod waves;
 
+pub use blend::Blend;
 pub use blob::{Blob, BlobOnRay, Ceiling, Limits};
 pub use blob_chain::ChainBlob;
 pub use bound::Bound;
 pub use cut::Cut;
-pub use implicit::{Ball, Enclosure, Implicit, Part};
+pub use exponentials::Exponentials;
+pub use implicit::{Ball, Enclosure, Implicit, Part, Variation};
 pub use kernel::{Derivatives, Kernel};
 pub use kinks::Kink;
+pub use placed::Placed;
 pub use primitive::{Jet, Primitive};
 pub use profile::{Profile, Wave};
 pub use ramp::Ramp;

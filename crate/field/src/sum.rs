@@ -1,6 +1,6 @@
 //! The sum of primitives: the field of a convolution surface.
 use crate::kinks::{self, Kink};
-use crate::implicit::Part;
+use crate::implicit::{Part, Variation};
 use crate::{Ball, Bound, Enclosure, Implicit, Jet, Primitive, Real, THRESHOLD};
 use glam::DVec3;
 use std::sync::OnceLock;
@@ -187,12 +187,29 @@ impl Implicit for Sum {
         sum(terms, point.to_array())
     }
 
-    fn enclose_of(&self, part: &Part, ball: Ball) -> Enclosure {
+    fn variation(&self, part: Option<&Part>, ball: Ball) -> Variation {
         let known = self.known();
-        let terms = part.terms.iter().map(|i| known[*i as usize].enclose(ball));
-        let all = terms.fold(Enclosure::ZERO, Enclosure::plus);
-        let near = all.about(&self.jet_of(part, ball.center), ball.radius);
-        near.plus(part.rest)
+        let mut all = Variation {
+            range: part.map_or(Enclosure::ZERO, |part| part.rest),
+            third: 0.0,
+            rough: part.map_or(0.0, |part| part.rest.curvature),
+        };
+        let mut add = |known: &Known| {
+            let range = known.enclose(ball);
+            let near = known.bound.nearness(ball.center, ball.radius);
+            let third = known.bound.third(near);
+            all.range = all.range.plus(range);
+            if range.curvature.is_finite() && third.is_finite() {
+                all.third += third;
+            } else {
+                all.rough += range.curvature;
+            }
+        };
+        match part {
+            Some(part) => part.terms.iter().for_each(|i| add(&known[*i as usize])),
+            None => known.iter().for_each(add),
+        }
+        all
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
@@ -206,7 +223,11 @@ impl Implicit for Sum {
     }
 
     fn support(&self) -> Option<Ball> {
-        let share = THRESHOLD / self.primitives.len().max(1) as f64;
+        self.support_at(THRESHOLD)
+    }
+
+    fn support_at(&self, level: f64) -> Option<Ball> {
+        let share = level / self.primitives.len().max(1) as f64;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for (p, Known { bound, .. }) in self.primitives.iter().zip(self.known()) {
             if !bound.adds() {

@@ -1,17 +1,20 @@
 //! Proof that a triangle is near the surface, and looks the same way.
 //!
-//! Let a triangle have the unit normal n, let its grid of m² equal triangles have circles of radius ρ around them, and let C bound the
-//! curvature of F within ε of the triangle. Then |F − T| on it is at most its largest value at the vertices of the grid plus
-//! C·ρ²/2, and −∇F·n within ε of it is at least its least value at those vertices less C·(ρ + ε). If that is a positive number s,
-//! the line of steepest ascent or descent from any point of the triangle meets the surface after |F − T|/s, if that is not
-//! above ε.
+//! Let a triangle have the unit normal n and be divided into a grid of equal triangles in balls of radius ρ, and let D bound the third
+//! derivative of F nearby. The gradients at the corners of a triangle of the grid, interpolated linearly, are the
+//! gradient in it up to e = D·ρ²/2 (terms whose second derivative jumps add their curvature times ρ). So
+//! −∇F·n is at least its least value s at those corners less e, and F − T is within e·ρ of a polynomial of the second degree, whose
+//! size is at most that of its Bézier coefficients: the values at corners, and values plus half the slope along edges. With that
+//! bound m on |F − T| and a bound C on the curvature within d of the triangle, the line of steepest ascent or descent
+//! from any point of the triangle meets the surface within d, if d·(s − e − C·d) ≥ m.
 //!
 //! A closed mesh of such triangles that was made from an isotopic one by changes of such triangles covers each point of the
 //! surface exactly once: along those lines it is mapped to the surface with positive orientation and degree 1. So it is
-//! isotopic to the surface, does not cut itself, and no point of the surface is farther from it than ε.
+//! isotopic to the surface, does not cut itself, and no point of the surface is farther from it than from the mesh the
+//! points of which are mapped there.
 
 use crate::space::{SLACK, Space};
-use field::{Ball, Jet, THRESHOLD};
+use field::{Ball, Jet, THRESHOLD, Variation};
 use glam::DVec3;
 
 /// A vertex of the mesh: position, and the function there.
@@ -67,8 +70,8 @@ fn ball([a, b, c]: &[DVec3; 3]) -> Ball {
     }
 }
 
-/// Edges of the grid's triangles are this share of the triangle's.
-const GRID: usize = 3;
+/// Divisions of an edge that are tried.
+const GRIDS: [usize; 2] = [2, 3];
 
 /// The largest distance of a triangle from the surface, as proved; `None` if it is not proved to be at most the tolerance.
 pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Option<f64> {
@@ -76,8 +79,8 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
     let [a, b, c] = positions;
     let normal = (b - a).cross(c - a).try_normalize()?;
     let steepness = |gradient: DVec3| -gradient.dot(normal);
-    let mut highest = corners.iter().map(|v| v.value.abs()).fold(0.0, f64::max);
-    let mut steep = corners.iter().map(|v| steepness(v.gradient)).fold(f64::INFINITY, f64::min);
+    let highest = corners.iter().map(|v| v.value.abs()).fold(0.0, f64::max);
+    let steep = corners.iter().map(|v| steepness(v.gradient)).fold(f64::INFINITY, f64::min);
     if !(steep > 0.0 && highest <= tolerance * steep) {
         return None;
     }
@@ -87,36 +90,74 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
         radius: radius + tolerance,
     };
     let part = space.part_for(reach);
-    let curvature = space.enclose(part, reach).curvature;
-    if !curvature.is_finite() {
-        return None;
-    }
-    let bound = |highest: f64, steep: f64, share: f64| {
-        let radius = radius * share;
-        let steep = steep - curvature * (radius + tolerance) - SLACK;
-        let off = highest + 0.5 * curvature * radius * radius + SLACK;
-        (steep > 0.0 && off <= tolerance * steep).then(|| off / steep)
+    let Variation {
+        range,
+        third,
+        rough,
+    } = space.variation(part, reach);
+    let curvature = range.curvature;
+    // What is proved with the least steepness and the highest value at the corners of a grid.
+    let proved = |grid: usize, steep: f64, highest: f64| {
+        let radius = radius / grid as f64;
+        let rest = 0.5 * third * radius * radius + rough * radius + SLACK;
+        let (steep, off) = (steep - rest, highest + rest * radius + SLACK);
+        let square = steep * steep - 4.0 * curvature * off;
+        // Not so for NaN.
+        if !(steep > 0.0 && square >= 0.0) {
+            return None;
+        }
+        let distance = 2.0 * off / (steep + square.sqrt());
+        (distance <= tolerance).then_some(distance)
     };
-    if let Some(distance) = bound(highest, steep, 1.0) {
+    let edges = [(0, 1), (1, 2), (2, 0)];
+    let controls = |vertices: &[Vertex], i: usize, j: usize| {
+        let (one, other) = (&vertices[i], &vertices[j]);
+        let along = 0.5 * (other.position - one.position);
+        let [p, q] = [one.value + one.gradient.dot(along), other.value - other.gradient.dot(along)];
+        p.abs().max(q.abs())
+    };
+    let whole = corners.map(|v| *v);
+    let bezier = edges.iter().map(|(i, j)| controls(&whole, *i, *j)).fold(highest, f64::max);
+    if let Some(distance) = proved(1, steep, bezier) {
         return Some(distance);
     }
-    // Without hope even if all went well at the vertices of the grid.
-    let share = 1.0 / GRID as f64;
-    bound(highest, steep, share)?;
-    for i in 0..=GRID {
-        for j in 0..=GRID - i {
-            let k = GRID - i - j;
-            if [i, j, k].contains(&GRID) {
-                continue;
+    for grid in GRIDS {
+        // Without hope even if all went well within.
+        if proved(grid, steep, highest).is_none() {
+            continue;
+        }
+        let share = 1.0 / grid as f64;
+        let mut vertices = Vec::with_capacity(10);
+        for i in 0..=grid {
+            for j in 0..=grid - i {
+                let k = grid - i - j;
+                vertices.push(match [i, j, k].iter().position(|n| *n == grid) {
+                    Some(corner) => whole[corner],
+                    None => {
+                        let [u, v, w] = [i, j, k].map(|n| n as f64 * share);
+                        let point = a * u + b * v + c * w;
+                        Vertex::new(point, &space.jet(part, point))
+                    }
+                });
             }
-            let [u, v, w] = [i, j, k].map(|n| n as f64 * share);
-            let vertex = Vertex::new(a * u + b * v + c * w, &space.jet(part, a * u + b * v + c * w));
-            highest = highest.max(vertex.value.abs());
-            steep = steep.min(steepness(vertex.gradient));
-            bound(highest, steep, share)?;
+        }
+        let steep = vertices.iter().map(|v| steepness(v.gradient)).fold(f64::INFINITY, f64::min);
+        let mut highest = vertices.iter().map(|v| v.value.abs()).fold(0.0, f64::max);
+        // Row i starts after those before it, which have grid + 1, grid, … vertices.
+        let at = |i: usize, j: usize| i * (2 * grid + 3 - i) / 2 + j;
+        for i in 0..grid {
+            for j in 0..grid - i {
+                let [p, q, r] = [at(i, j), at(i, j + 1), at(i + 1, j)];
+                for (one, other) in [(p, q), (q, r), (r, p)] {
+                    highest = highest.max(controls(&vertices, one, other));
+                }
+            }
+        }
+        if let Some(distance) = proved(grid, steep, highest) {
+            return Some(distance);
         }
     }
-    bound(highest, steep, share)
+    None
 }
 
 /// The point of the surface that is reached from a position along gradients, by a few steps of Newton's; not farther than

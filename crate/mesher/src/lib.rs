@@ -18,4 +18,4 @@ mod unite;
 
 pub use model::{Model, ModelPart, Tolerance, Wishes, mesh_scene};
 pub use options::{MeshError, Options, Progress};
-pub use surface::{Surface, box_of, extent, polygonize};
+pub use surface::{SurfaceMesh, box_of, extent, polygonize};

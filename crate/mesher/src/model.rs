@@ -4,12 +4,12 @@ use crate::level::QuadricFunction;
 use crate::options::{MeshError, Options, Progress};
 use crate::paint::Paint;
 use crate::solids::{Solid, tessellate};
-use crate::surface::{Surface, box_of, extent, polygonize};
+use crate::surface::{SurfaceMesh as Mesh, box_of, extent, polygonize};
 use crate::unite;
-use field::{Implicit, Skeleton};
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Topology, TriangleMesh};
-use scene::{Element, Scene, Shape, SoftSurface};
+use scene::surface::Surface;
+use scene::{Element, Scene, Shape};
 
 /// How far the mesh may be from the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,7 +160,7 @@ pub fn mesh_scene(
 
 /// What is to be meshed.
 struct Plan<'a> {
-    soft: Vec<(SoftSurface, Aabb)>,
+    soft: Vec<(Surface, Aabb)>,
     hard: Vec<&'a Element>,
     /// Where infinite elements end.
     limits: Aabb,
@@ -181,8 +181,8 @@ impl<'a> Plan<'a> {
             let name = wishes.body.clone().unwrap_or_default();
             return Err(MeshError::Failed(format!("there is no body {name}")));
         }
-        let soft = scene.soft_surfaces().into_iter().filter(|s| is_wanted(s.body));
-        let soft: Vec<SoftSurface> = soft.collect();
+        let soft = scene.surfaces().into_iter().filter(|s| is_wanted(s.body()));
+        let soft: Vec<Surface> = soft.collect();
         let is_hard = |e: &&Element| {
             !scene.is_soft(e) && is_wanted(e.body) && (e.finish as usize) < scene.finishes.len()
         };
@@ -191,11 +191,11 @@ impl<'a> Plan<'a> {
         let mut finite = Aabb::EMPTY;
         let mut domains = Vec::new();
         for surface in &soft {
-            let domain = match surface.sum.support() {
+            let domain = match surface.function().support() {
                 Some(ball) => {
                     let domain = box_of(ball);
                     let hull = if ball.radius > 0.0 {
-                        extent(&surface.sum, &domain, wishes.threads, progress)?
+                        extent(surface.function(), &domain, wishes.threads, progress)?
                     } else {
                         None
                     };
@@ -239,7 +239,7 @@ impl<'a> Plan<'a> {
         if !is_sound {
             return Err(MeshError::NotFinite("the tolerance".into()));
         }
-        let with_domain = |(surface, domain): (SoftSurface, Option<Aabb>)| {
+        let with_domain = |(surface, domain): (Surface, Option<Aabb>)| {
             let domain = domain?;
             Some((surface, if domain.is_empty() { limits } else { domain }))
         };
@@ -253,15 +253,13 @@ impl<'a> Plan<'a> {
 }
 
 /// A box around the finite skeletons of a body with their radii.
-fn skeletons(scene: &Scene, surface: &SoftSurface) -> Aabb {
+fn skeletons(scene: &Scene, surface: &Surface) -> Aabb {
     let mut all = Aabb::EMPTY;
-    for (primitive, element) in surface.sum.primitives.iter().zip(&surface.element) {
-        let radius = scene.radius(&scene.elements[*element as usize]);
-        let is_plane = matches!(primitive.skeleton, Skeleton::Plane { .. });
-        if let (Some((center, around)), false) = (primitive.skeleton.bounding_sphere(), is_plane) {
-            let reach = around + radius;
-            all = all.union(&Aabb::of_points([center - reach, center + reach]));
-        }
+    let mut elements = surface.element().to_vec();
+    elements.dedup();
+    for element in elements {
+        let element = &scene.elements[element as usize];
+        all = all.union(&bounds_of(&element.shape, scene.radius(element)));
     }
     all
 }
@@ -288,6 +286,10 @@ fn bounds_of(shape: &Shape, radius: f64) -> Aabb {
         Shape::Plane { .. } => Aabb::EMPTY,
         Shape::Box { center, axes } => cuboid(center, axes),
         Shape::Quadric(ref quadric) => cuboid(quadric.center, quadric.axes),
+        Shape::Function(ref function) => {
+            let (low, high) = function.corners();
+            Aabb::of_points([low, high])
+        }
     }
 }
 
@@ -310,7 +312,7 @@ fn soft_part(
     scene: &Scene,
     wishes: &Wishes,
     plan: &Plan<'_>,
-    surface: &SoftSurface,
+    surface: &Surface,
     domain: &Aabb,
     model: &mut Model,
     progress: &mut Progress<'_>,
@@ -320,8 +322,8 @@ fn soft_part(
         max_triangles: wishes.max_triangles,
         threads: wishes.threads,
     };
-    let name = name_of(scene, surface.body, "");
-    let Surface {
+    let name = name_of(scene, surface.body(), "");
+    let Mesh {
         mut mesh,
         error,
         undecided,
@@ -329,7 +331,7 @@ fn soft_part(
         evaluations,
         is_cut,
         ..
-    } = match polygonize(&surface.sum, domain, &options, progress) {
+    } = match polygonize(surface.function(), domain, &options, progress) {
         Ok(surface) => surface,
         Err(MeshError::Nothing) => return Ok(()),
         Err(other) => return Err(other),

@@ -1,10 +1,10 @@
 //! Colours and materials of meshes.
 
 use crate::parallel::map;
-use field::Implicit;
 use glam::DVec3;
 use mesh::{Group, Material, TriangleMesh, roughness_from_phong};
-use scene::{Finish, Scene, SoftSurface};
+use scene::surface::Surface;
+use scene::{Finish, Scene};
 use std::collections::BTreeMap;
 
 /// The material of a finish.
@@ -18,7 +18,7 @@ fn material(finish: &Finish) -> Material {
 
 /// The colours of a soft surface: those of its elements, mixed by their shares.
 pub struct Paint<'a> {
-    surface: &'a SoftSurface,
+    surface: &'a Surface,
     /// The material of each primitive.
     of: Vec<u32>,
     materials: Vec<Material>,
@@ -26,10 +26,10 @@ pub struct Paint<'a> {
 
 impl<'a> Paint<'a> {
     /// The colours of a surface.
-    pub fn new(scene: &Scene, surface: &'a SoftSurface) -> Self {
+    pub fn new(scene: &Scene, surface: &'a Surface) -> Self {
         let mut numbers = BTreeMap::new();
         let mut materials = Vec::new();
-        let of = surface.element.iter().map(|element| {
+        let of = surface.element().iter().map(|element| {
             let finish = scene.elements[*element as usize].finish;
             *numbers.entry(finish).or_insert_with(|| {
                 materials.push(material(&scene.finishes[finish as usize]));
@@ -61,7 +61,7 @@ impl<'a> Paint<'a> {
 
     fn color(&self, point: DVec3) -> [f32; 3] {
         let mut shares = Vec::new();
-        self.surface.sum.shares(point, &mut shares);
+        self.surface.function().shares(point, &mut shares);
         let total: f64 = shares.iter().map(|(_, share)| share).sum();
         let mut color = [0.0; 3];
         for (i, share) in shares {

@@ -11,7 +11,7 @@ use crate::lattice::Lattice;
 use crate::options::{MeshError, Progress};
 use crate::parallel::map;
 use crate::space::{SLACK, Space};
-use field::{Ball, Part, THRESHOLD};
+use field::{Ball, Part, THRESHOLD, Variation};
 use glam::DVec3;
 use mesh::Aabb;
 
@@ -44,40 +44,61 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
         center,
         radius: around,
     };
-    let all = space.enclose(cell.part, ball);
+    let Variation {
+        range,
+        third,
+        rough,
+    } = space.variation(cell.part, ball);
     let jet = space.jet(cell.part, center);
-    let [low, high] = all.about(&jet, radius).value;
-    let side = if low - SLACK > THRESHOLD {
-        Side::Inside
-    } else if high + SLACK < THRESHOLD {
-        Side::Outside
-    } else {
-        Side::Crossing
+    let side_of = |[low, high]: [f64; 2]| {
+        if low - SLACK > THRESHOLD {
+            Side::Inside
+        } else if high + SLACK < THRESHOLD {
+            Side::Outside
+        } else {
+            Side::Crossing
+        }
     };
     let gradient = DVec3::from_array(jet.gradient);
-    let steep = gradient.length();
-    let spread = all.curvature * radius + SLACK / radius;
-    let beyond = all.curvature * around + SLACK / radius;
-    let longest = size.max_element();
-    let off = all.curvature * INTERPOLATION * longest * longest
-        + NUDGE * tolerance * (steep + beyond)
-        + SLACK;
-    // Not so for NaN.
-    let is_steady = steep > STEADY * spread;
-    let error = if steep > beyond {
-        off / (steep - beyond)
-    } else {
-        f64::INFINITY
+    let mut side = side_of(range.about(&jet, radius).value);
+    let mut bounds = Bounds {
+        gradient,
+        spread: range.curvature * radius + SLACK / radius,
+        ..Bounds::NONE
     };
-    let wanted = side == Side::Crossing && !(is_steady && error <= tolerance);
+    // Differences say nothing of terms whose second derivative jumps; it is at most √3 of their bound.
+    let is_smooth = third.is_finite() && rough.is_finite();
+    let mut bend = range.curvature;
+    if side == Side::Crossing && is_smooth {
+        let step = 1e-3 * radius;
+        let hessian = space.hessian(cell.part, center, step);
+        let rest = |r: f64| 0.5 * third * r * r + 3.0 * rough * r + third * step * r + SLACK / r;
+        let norm = hessian.to_cols_array().map(|x| x * x).into_iter().sum::<f64>().sqrt();
+        // The cell is a box.
+        let linear = (gradient.abs() * size * 0.5).element_sum();
+        let change = linear + 0.5 * norm * radius * radius + radius * rest(radius) + 1e-12;
+        side = side_of([jet.value - change, jet.value + change]);
+        bounds.hessian = hessian;
+        bounds.rest = rest(radius);
+        bounds.spread = bounds.spread.min(norm * radius + rest(radius));
+        bend = bend.min(norm + third * around + 3.0 * rough);
+    }
+    let steep = gradient.length();
+    let longest = size.max_element();
+    let beyond = bounds.spread + bend * (around - radius);
+    let off =
+        bend * INTERPOLATION * longest * longest + NUDGE * tolerance * (steep + beyond) + SLACK;
+    // Not so for NaN.
+    let is_steady = steep > STEADY * bounds.spread.min(0.6 * bounds.spread + bounds.rest);
+    let least = steep - beyond.min(0.6 * beyond + bounds.rest);
+    if least > 0.0 {
+        bounds.error = off / least;
+    }
+    let wanted = side == Side::Crossing && !(is_steady && bounds.error <= tolerance);
     let split = wanted && cell.level < forest.deepest;
     Look {
         side,
-        bounds: Bounds {
-            gradient,
-            spread: if spread.is_nan() { f64::INFINITY } else { spread },
-            error,
-        },
+        bounds,
         split,
         part: if split { space.narrow(cell) } else { None },
     }
@@ -229,7 +250,6 @@ fn look_at_all(
                 }
             }
             if space.forest.cells.len() > max_cells {
-                debug(space);
                 return Err(MeshError::TooMany {
                     limit: 0,
                     fitting: fitting(&space.forest),
@@ -304,11 +324,14 @@ fn failing(space: &Space<'_>, lattice: &Lattice, node: u32) -> Vec<u32> {
         let corners = keys.map(|key| space.forest.position(crate::lattice::unpack(key)));
         let values = keys.map(|key| lattice.value(key));
         let slope = gradient(&corners, &values);
-        let length = slope.length();
-        for owner in owners {
-            let Bounds { gradient, spread, .. } = cells[owner as usize].bounds;
-            // Not so for NaN.
-            let proves = gradient.dot(slope) > spread * length;
+        for (k, owner) in owners.into_iter().enumerate() {
+            let center = space.forest.center(&cells[owner as usize]);
+            let mut within = corners.map(|p| p - center);
+            if owners[0] != owners[1] {
+                // The half in this cell ends where the line of the centres crosses the face.
+                within[1 - k] = 0.5 * (corners[0] + corners[1]) - center;
+            }
+            let proves = cells[owner as usize].bounds.rises(slope, &within);
             if !proves && !failing.contains(&owner) {
                 failing.push(owner);
             }
@@ -322,24 +345,4 @@ fn gradient(corners: &[DVec3; 4], values: &[f64; 4]) -> DVec3 {
     let [a, b, c] = [1, 2, 3].map(|i| corners[i] - corners[0]);
     let [u, v, w] = [1, 2, 3].map(|i| values[i] - values[0]);
     (u * b.cross(c) + v * c.cross(a) + w * a.cross(b)) / a.dot(b.cross(c))
-}
-
-fn debug(space: &Space<'_>) {
-    let forest = &space.forest;
-    for level in 0..=forest.deepest {
-        let mut n = [0; 4];
-        let mut ratio = Vec::new();
-        let mut terms = 0;
-        for cell in forest.cells.iter().filter(|c| c.level == level && c.child == NONE) {
-            n[cell.side as usize] += 1;
-            if cell.side == Side::Crossing {
-                let s = forest.size(level).length() * 0.5;
-                ratio.push((cell.bounds.spread / s / cell.bounds.gradient.length(), cell.bounds.gradient.length(), cell.at));
-                terms += space.terms(cell.part);
-            }
-        }
-        ratio.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let q = |x: f64| ratio.get((x * ratio.len() as f64) as usize);
-        eprintln!("{level} {:.5} {n:?} terms {:.1} C/g {:?} {:?} {:?}", forest.size(level).x, terms as f64 / ratio.len() as f64, q(0.1), q(0.5), q(0.9));
-    }
 }

@@ -68,6 +68,14 @@ pub fn tessellate(shape: &Shape, radius: f64, tolerance: f64, limits: &Aabb) -> 
             mesh.normals = Some(normals.to_vec());
             Solid::open(mesh)
         }
+        Shape::Function(ref function) => {
+            let parts = function.draft();
+            let solids = parts.iter().map(|part| tessellate(part, part.radius(), tolerance, limits));
+            Solid {
+                shells: solids.flat_map(|solid| solid.shells).collect(),
+                sheets: Vec::new(),
+            }
+        }
         Shape::Quadric(_) => Solid::default(),
     }
 }

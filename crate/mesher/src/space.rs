@@ -1,8 +1,8 @@
 //! A function with its terms sorted by place, so that evaluations cost what is nearby.
 
-use field::{Ball, Enclosure, Implicit, Jet, Part};
+use field::{Ball, Implicit, Jet, Part, Variation};
 use core::sync::atomic::{AtomicU64, Ordering};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::forest::{Cell, Forest, NONE};
 
@@ -55,15 +55,23 @@ impl<'a> Space<'a> {
     }
 
     /// Bounds in a ball within that of a part.
-    pub fn enclose(&self, part: u32, ball: Ball) -> Enclosure {
+    pub fn variation(&self, part: u32, ball: Ball) -> Variation {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
-        match self.part(part) {
-            Some(part) => self.function.enclose_of(part, ball),
-            None => self.function.enclose(ball),
-        }
+        self.function.variation(self.part(part), ball)
     }
 
-    pub fn terms(&self, part: u32) -> usize { self.part(part).map_or(0, |p| p.terms.len()) }
+    /// The second derivative at a point, from differences over a step; the error is that of the third derivative times the
+    /// step.
+    pub fn hessian(&self, part: u32, point: DVec3, step: f64) -> DMat3 {
+        let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
+            let [one, other] = [step, -step]
+                .map(|step| DVec3::from_array(self.jet(part, point + axis * step).gradient));
+            (one - other) / (2.0 * step)
+        });
+        let columns = DMat3::from_cols(columns[0], columns[1], columns[2]);
+        0.5 * (columns + columns.transpose())
+    }
+
     /// Number of evaluations of values and bounds.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.load(Ordering::Relaxed)

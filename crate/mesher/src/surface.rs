@@ -12,7 +12,7 @@ use mesh::{Aabb, TriangleMesh};
 
 /// The mesh of an implicit surface, with what was proved of it.
 #[derive(Clone, Debug)]
-pub struct Surface {
+pub struct SurfaceMesh {
     /// A closed manifold with normals, oriented outward.
     pub mesh: TriangleMesh,
     /// No point of the mesh is farther from the surface than this, and no point of the surface farther from the mesh, but for
@@ -61,7 +61,7 @@ pub fn polygonize(
     domain: &Aabb,
     options: &Options,
     progress: &mut Progress<'_>,
-) -> Result<Surface, MeshError> {
+) -> Result<SurfaceMesh, MeshError> {
     let Options {
         tolerance,
         max_triangles,
@@ -135,7 +135,7 @@ pub fn polygonize(
             ),
         });
     }
-    Ok(Surface {
+    Ok(SurfaceMesh {
         mesh: improved.mesh,
         error: improved.error,
         undecided,

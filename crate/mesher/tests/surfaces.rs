@@ -3,7 +3,7 @@
 use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use mesh::{Topology, self_intersections};
-use mesher::{MeshError, Options, Progress, Surface, box_of, polygonize};
+use mesher::{MeshError, Options, Progress, SurfaceMesh, box_of, polygonize};
 use std::ops::ControlFlow;
 
 fn shaping(kernel: Kernel, radius: f64) -> Shaping {
@@ -18,7 +18,7 @@ fn shaping(kernel: Kernel, radius: f64) -> Shaping {
     }
 }
 
-fn mesh(sum: &Sum, tolerance: f64, threads: usize) -> Result<Surface, MeshError> {
+fn mesh(sum: &Sum, tolerance: f64, threads: usize) -> Result<SurfaceMesh, MeshError> {
     let domain = box_of(sum.support().expect("no plane"));
     let options = Options {
         threads,
@@ -28,7 +28,7 @@ fn mesh(sum: &Sum, tolerance: f64, threads: usize) -> Result<Surface, MeshError>
     polygonize(sum, &domain, &options, &mut Progress::new(&mut report))
 }
 
-fn check(name: &str, sum: &Sum, tolerance: f64) -> Surface {
+fn check(name: &str, sum: &Sum, tolerance: f64) -> SurfaceMesh {
     let start = std::time::Instant::now();
     let surface = mesh(sum, tolerance, 1).unwrap();
     let time = start.elapsed();

@@ -29,7 +29,9 @@
 //! Decisions, and what happens when a worker dies or hangs, are in [`scheduler`], a state machine
 //! that is tested without workers; `web_workers` and `threads` carry them out. [`Tools`] runs jobs that
 //! draw nothing, such as reading a mesh, in a worker of its own, which [`supervisor`] replaces likewise.
+//! [`Assembly`] puts the tiles of a picture together as they come.
 
+pub mod assembly;
 mod assign;
 mod core;
 pub mod job;
@@ -55,6 +57,7 @@ mod web_tools;
 #[cfg(target_arch = "wasm32")]
 mod web_workers;
 
+pub use assembly::{Assembly, Change, Image};
 pub use job::{Job, TileDone};
 pub use progress::Progress;
 pub use tool_jobs::ToolEvent;

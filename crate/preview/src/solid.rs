@@ -56,7 +56,9 @@ impl Solid {
         let flesh = element
             .flesh
             .and_then(|flesh| scene.flesh.get(flesh as usize));
-        if scene.is_soft(element) && flesh.is_none_or(|flesh| flesh.strength <= 0.0) {
+        let is_function = matches!(element.shape, Shape::Function(_));
+        let is_flesh = scene.is_soft(element) && !is_function;
+        if is_flesh && flesh.is_none_or(|flesh| flesh.strength <= 0.0) {
             return Vec::new();
         }
         let radius = scene.radius(element);
@@ -65,8 +67,11 @@ impl Solid {
             Shape::Quadric(ref quadric) => facets::quadric(quadric, detail),
             ref other => other.parts(radius),
         };
-        let solids = parts.iter().filter_map(|part| Self::new(part, radius));
-        solids.collect()
+        let solid = |part: &Shape| {
+            let radius = if is_function { part.radius() } else { radius };
+            Self::new(part, radius)
+        };
+        parts.iter().filter_map(solid).collect()
     }
 
     /// The offset surface of a shape at the given radius.
@@ -96,9 +101,11 @@ impl Solid {
             Shape::Patch { corners, normals } => Self::patch(corners, normals),
             Shape::Plane { point, normal, .. } => Self::plane(point, normal, radius),
             // Made of several solids.
-            Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Box { .. } | Shape::Quadric(_) => {
-                None
-            }
+            Shape::Polygon { .. }
+            | Shape::Curve { .. }
+            | Shape::Box { .. }
+            | Shape::Quadric(_)
+            | Shape::Function(_) => None,
         }?;
         let numbers = solid.a.iter().chain(&solid.b);
         (solid.origin.is_finite()

@@ -343,6 +343,9 @@ impl Transform {
                 axes: quadric.axes.map(|axis| self.linear * axis),
                 ..**quadric
             })),
+            Shape::Function(ref function) => {
+                Shape::Function(Box::new(function.moved(&self.affine())))
+            }
         }
     }
 }

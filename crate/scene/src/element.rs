@@ -2,7 +2,7 @@
 //!
 //! All coordinates are world coordinates: objects and their transforms are already applied.
 
-use crate::Quadric;
+use crate::{Function, Quadric};
 use field::Kernel;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -158,6 +158,8 @@ pub enum Shape {
     },
     /// A piece of a surface of the second degree. It has no skeleton and stays hard.
     Quadric(Box<Quadric>),
+    /// A function of space, soft without any flesh. It has no skeleton.
+    Function(Box<Function>),
 }
 
 impl Shape {
@@ -179,14 +181,16 @@ impl Shape {
                 apex_radius,
                 ..
             } => base_radius.max(apex_radius),
-            Self::Box { .. } | Self::Patch { .. } | Self::Quadric(_) => 0.0,
+            Self::Box { .. } | Self::Patch { .. } | Self::Quadric(_) | Self::Function(_) => 0.0,
         }
     }
 
-    /// Whether the shape can be part of a convolution surface. Shapes without a skeleton stay hard with any
-    /// material.
+    /// Whether the shape can be convolved. Shapes without a skeleton stay as they are with any material.
     #[must_use]
     pub fn has_skeleton(&self) -> bool {
-        !matches!(self, Self::Box { .. } | Self::Quadric(_))
+        !matches!(
+            self,
+            Self::Box { .. } | Self::Quadric(_) | Self::Function(_)
+        )
     }
 }

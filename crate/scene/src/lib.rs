@@ -4,7 +4,7 @@
 //! (its colours) and, if it is soft, a [`Flesh`] (its kernel). Soft elements blend within their [`Body`] and never
 //! across bodies. The language (`rats`) writes scenes; the tracer and the draft read them. This room
 //! does not depend on text, pixels or GPUs. Two things are computed here because all readers must agree
-//! on them: the projection ([`Camera`]), and the field of each body ([`soft`]).
+//! on them: the projection ([`Camera`]), and the function of each body ([`surface`]).
 //!
 //! ```
 //! use glam::DVec3;
@@ -17,8 +17,8 @@
 //!     flesh: Some(0),
 //!     ..Element::new(Shape::Sphere { center, radius: 1.0 })
 //! });
-//! let surfaces = scene.soft_surfaces();
-//! assert!(surfaces[0].sum.jet(center).value > field::THRESHOLD);
+//! let surfaces = scene.surfaces();
+//! assert!(surfaces[0].function().jet(center).value > field::THRESHOLD);
 //! ```
 
 pub mod body;
@@ -26,22 +26,26 @@ pub mod camera;
 pub mod element;
 pub mod finish;
 pub mod flesh;
+pub mod function;
 pub mod light;
 pub mod limbs;
 pub mod parts;
 pub mod quadric;
 pub mod settings;
 pub mod soft;
+pub mod surface;
 
 pub use body::{Body, Frame};
 pub use camera::{Camera, Projection};
 pub use element::{Element, Origin, Shape};
 pub use finish::Finish;
 pub use flesh::Flesh;
+pub use function::{Form, Function};
 pub use light::{Light, LightKind};
 pub use quadric::Quadric;
 pub use settings::{Digger, Fragile, Settings};
 pub use soft::SoftSurface;
+pub use surface::{ComposedSurface, Surface};
 
 use serde::{Deserialize, Serialize};
 

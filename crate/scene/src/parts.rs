@@ -1,5 +1,6 @@
 //! Parts of a shape's offset surface, for renderers that draw balls, cylinders, arcs, triangles
-//! and the like only: a polygon is cut into triangles, a curve into short cylinders with balls between.
+//! and the like only: a polygon is cut into triangles, a curve into short cylinders with balls between,
+//! a function into balls with radii of their own.
 
 use crate::Shape;
 use glam::DVec3;
@@ -38,6 +39,7 @@ impl Shape {
                 corners: *corners,
                 radius,
             }],
+            Self::Function(function) => function.draft(),
             simple => vec![simple.clone()],
         }
     }

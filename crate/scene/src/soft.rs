@@ -17,10 +17,12 @@ pub struct SoftSurface {
 }
 
 impl Scene {
-    /// Whether an element belongs to the convolution surface under the present settings.
+    /// Whether an element belongs to the soft surface of its body under the present settings.
     #[must_use]
     pub fn is_soft(&self, element: &Element) -> bool {
-        self.settings.soft && self.flesh_of(element).is_some()
+        let drawn = (element.finish as usize) < self.finishes.len();
+        let is_function = drawn && matches!(element.shape, Shape::Function(_));
+        self.settings.soft && (is_function || self.flesh_of(element).is_some())
     }
 
     /// The flesh of an element that has a skeleton and a finish, whether or not soft elements are drawn soft.
@@ -74,7 +76,9 @@ impl Scene {
             | Shape::Patch { .. }
             | Shape::Polygon { .. }
             | Shape::Plane { .. } => true,
-            Shape::Cone { .. } | Shape::Box { .. } | Shape::Quadric(_) => return None,
+            Shape::Cone { .. } | Shape::Box { .. } | Shape::Quadric(_) | Shape::Function(_) => {
+                return None;
+            }
         };
         // Some commands write shapes without a radius (`dot`, `line`).
         if !overruled && own != 0.0 {
@@ -147,14 +151,16 @@ impl Scene {
         }
     }
 
-    /// The convolution surfaces of all bodies that have soft elements, in the order of [`Scene::bodies`].
+    /// The primitives of all bodies that have some, in the order of [`Scene::bodies`]. A body may have functions beside them: its
+    /// whole function is that of [`Scene::surfaces`].
     #[must_use]
     pub fn soft_surfaces(&self) -> Vec<SoftSurface> {
         let mut surfaces: Vec<SoftSurface> = Vec::new();
         let mut of_body = vec![None; self.bodies.len()];
         // As many primitives as there are elements, unless limbs are cut: growing lists would take up to twice the room.
         let mut counts = vec![0; self.bodies.len()];
-        for element in self.elements.iter().filter(|e| self.is_soft(e)) {
+        let is_convolved = |e: &Element| self.is_soft(e) && e.shape.has_skeleton();
+        for element in self.elements.iter().filter(|e| is_convolved(e)) {
             if let Some(count) = counts.get_mut(element.body as usize) {
                 *count += 1;
             }
@@ -169,7 +175,7 @@ impl Scene {
         }
         for (index, element) in self.elements.iter().enumerate() {
             let surface = of_body.get(element.body as usize).copied().flatten();
-            if let (Some(surface), true) = (surface, self.is_soft(element)) {
+            if let (Some(surface), true) = (surface, is_convolved(element)) {
                 let SoftSurface {
                     sum, element: of, ..
                 } = &mut surfaces[surface];
@@ -239,6 +245,6 @@ fn skeleton(shape: &Shape) -> Option<Skeleton> {
         Shape::Polygon { rings, .. } => Skeleton::Polygon { rings },
         Shape::Curve { control, .. } => Skeleton::Curve { control },
         Shape::Plane { point, normal, .. } => Skeleton::Plane { point, normal },
-        Shape::Box { .. } | Shape::Quadric(_) => return None,
+        Shape::Box { .. } | Shape::Quadric(_) | Shape::Function(_) => return None,
     })
 }

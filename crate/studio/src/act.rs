@@ -3,11 +3,11 @@
 use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::intake::Taken;
-use crate::lesson::Lesson;
 use crate::notice::Notice;
 use crate::tray::item::Item;
 use crate::{examples, picture, platform, share, work};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
+use lab::Lesson;
 use std::ops::Range;
 
 impl App {

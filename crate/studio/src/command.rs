@@ -2,9 +2,9 @@
 //! carries them out after the frame, in one place ([`crate::app`]).
 
 use crate::asset::Asset;
-use crate::lesson::Lesson;
 use crate::settings::Show;
-use crate::{size, theme};
+use crate::{examples, size, theme};
+use lab::Lesson;
 use scene::Camera;
 use std::ops::Range;
 
@@ -149,4 +149,34 @@ pub enum Command {
     ShowManual(String),
     /// Close the gallery, the help, or the notice.
     Close,
+}
+
+impl Command {
+    /// The command that carries out a wish of the lab; `None` if it is to open an example that there is not.
+    #[must_use]
+    pub fn of_lab(wish: lab::Command) -> Option<Self> {
+        Some(match wish {
+            lab::Command::Open(lesson) => Self::OpenLab(lesson),
+            lab::Command::Close => Self::CloseLab,
+            lab::Command::Share => Self::ShareLab,
+            lab::Command::SetTheme(choice) => Self::SetTheme(choice),
+            lab::Command::OpenText { name, text } => Self::OpenText { name, text },
+            lab::Command::OpenExample { file } => {
+                let mut all = examples::ALL.iter();
+                Self::OpenExample(all.position(|example| example.name == file)?)
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_that_the_lab_offers_is_there() {
+        let wish = |file| Command::of_lab(lab::Command::OpenExample { file });
+        assert!(matches!(wish("tshape.rat"), Some(Command::OpenExample(_))));
+        assert_eq!(wish("nothing.rat"), None);
+    }
 }

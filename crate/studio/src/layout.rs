@@ -10,7 +10,7 @@ use crate::settings::Show;
 use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery};
 use crate::{
-    bar, files, intake, lab, notice, places, platform, problems, screen, size, sliders, status,
+    bar, files, intake, notice, places, platform, problems, screen, size, sliders, status,
     timeline, tray,
 };
 use egui::{
@@ -24,11 +24,14 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     if app.lab.is_open() {
         let busy = app.renderer.phase() == Phase::Tracing;
         let frame = lab::Frame {
-            session: &app.work.session,
+            dataset: app.work.session.dataset(),
             tracing: busy.then(|| app.renderer.progress().fraction),
             theme: app.settings.theme,
+            now: platform::now(ui.ctx()),
         };
-        lab::show(&mut app.lab, &frame, ui, commands);
+        let mut wishes = Vec::new();
+        lab::show(&mut app.lab, &frame, ui, &mut wishes);
+        commands.extend(wishes.into_iter().filter_map(Command::of_lab));
         return;
     }
     let narrow = screen::is_narrow(ui.ctx());

@@ -1,13 +1,13 @@
 //! Between the app and what is outside its window: serving requests, and telling how things are.
 
 use crate::app::App;
-use crate::lesson::Lesson;
 use crate::notice::Notice;
 use crate::render::pass_label;
 use crate::report;
 use crate::request::Request;
 use crate::{places, platform};
 use egui::Context;
+use lab::Lesson;
 use std::rc::Rc;
 
 impl App {

@@ -4,9 +4,9 @@
 //! so that typing does not have a large scene prepared at every key. The running picture is given up at
 //! the change itself, which frees the workers for the next one.
 
-use crate::picture::{self, Assembly, Change, Image};
+use crate::picture;
 use egui::{ColorImage, TextureHandle, TextureOptions};
-use pool::{Job, Pool, Progress};
+use pool::{Assembly, Change, Image, Job, Pool, Progress};
 use scene::Scene;
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -100,7 +100,7 @@ pub struct Outbox {
     /// The camera in use.
     pub camera: Camera,
     /// The open lesson of the lab.
-    pub lab: Option<crate::lab::Report>,
+    pub lab: Option<lab::Report>,
     /// Places of the widgets, in points.
     pub places: crate::places::Places,
 }

@@ -446,6 +446,16 @@ impl Session {
         Some(scene)
     }
 
+    /// The dataset as the lab sees it. Its scene has the text's camera.
+    #[must_use]
+    pub fn dataset(&self) -> lab::Dataset<'_> {
+        lab::Dataset {
+            generation: self.generation,
+            scene: self.good.as_ref(),
+            camera: self.camera(),
+        }
+    }
+
     /// The frame of the scene to draw, pixels.
     #[must_use]
     pub fn frame(&self) -> [u32; 2] {

@@ -6,11 +6,11 @@
 
 use crate::asset::Asset;
 use crate::examples;
-use crate::lesson::Lesson;
 use crate::platform;
 use crate::session::{Kept, Session, check_size};
 use crate::share;
 use crate::storage::{DELAY, Shelf};
+use lab::Lesson;
 use rats::{File, Project};
 use scene::Camera;
 use std::cell::RefCell;

@@ -31,7 +31,14 @@ fn characters(folder: &Path, kinds: &[&str], found: &mut BTreeSet<char>) {
 fn every_sign_that_the_page_writes_can_be_drawn() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut signs = BTreeSet::new();
-    for folder in ["src", "../rats/src", "../scene/src", "../../www"] {
+    for folder in [
+        "src",
+        "../lab/src",
+        "../widgets/src",
+        "../rats/src",
+        "../scene/src",
+        "../../www",
+    ] {
         characters(&root.join(folder), &["rs", "rat"], &mut signs);
     }
     assert!(signs.contains(&'…') && signs.contains(&'ρ'), "{signs:?}");

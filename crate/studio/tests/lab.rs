@@ -3,10 +3,10 @@
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use lab::{Lesson, Report};
 use rats::{File, Project};
 use studio::Backend;
 use studio::app::{App, Parts};
-use studio::lab::{Lesson, Report};
 use studio::request::Request;
 use studio::{places, platform};
 

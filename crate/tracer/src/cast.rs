@@ -87,7 +87,7 @@ impl World {
                     let limit = found.map_or(f64::INFINITY, |cast: Cast| cast.t);
                     let (nearer, _) = self.function_crossing(body, ray, limit, Quest::First);
                     if let Some(t) = nearer {
-                        let normal = body.normal(self.unit.world(ray.at(t)));
+                        let normal = body.normal(ray.at(t));
                         *found = Some(Cast {
                             t,
                             normal: normal.unwrap_or(-ray.direction),
@@ -118,7 +118,7 @@ impl World {
         }
         for (number, body) in self.functions.iter().enumerate() {
             self.function_crossings(body, ray, f64::INFINITY, |t, _| {
-                let normal = body.normal(self.unit.world(ray.at(t)));
+                let normal = body.normal(ray.at(t));
                 found.push(Cast {
                     t,
                     normal: normal.unwrap_or(-ray.direction),
@@ -169,7 +169,12 @@ impl World {
     pub fn owner(&self, cast: &Cast, ray: &Ray) -> (Option<u32>, Option<u32>) {
         match cast.owner {
             Owner::Solid(number) => (None, Some(self.solids.element(number))),
-            Owner::Function(number) => (Some(self.functions[number].number), None),
+            Owner::Function(number) => {
+                let body = &self.functions[number];
+                let point = body.unit.world(ray.at(cast.t));
+                let element = scene::surface::strongest(&*body.function, &body.element, point);
+                (Some(body.number), element)
+            }
             Owner::Soft(body) => {
                 let point = ray.at(cast.t).to_array();
                 // Pieces of a limb are one element.

@@ -6,8 +6,10 @@
 //! `|f′(m)| > C·h`, which the signs at its ends then tell. Any other piece is halved, down to a resolution.
 use crate::ray::Ray;
 use crate::roots::bracketed;
+use crate::unit::Unit;
 use field::{Ball, Implicit, THRESHOLD};
 use glam::DVec3;
+use scene::{ComposedSurface, Scene};
 use std::sync::Arc;
 
 /// Most halvings of pieces of one ray; on the rest the signs at the ends decide.
@@ -20,12 +22,16 @@ const VALUE_ERROR: f64 = 1e-12;
 pub(crate) struct FunctionBody {
     /// The body's number in the scene.
     pub number: u32,
-    /// The function, in coordinates of the world.
+    /// The function, in coordinates of its own.
     pub function: Arc<dyn Implicit>,
     /// Finish of each of the function's elements.
     pub finish: Vec<u32>,
-    /// Ball outside which there is no surface, in coordinates of the world.
+    /// The scene's element that each of the function's elements came from; empty for a function that was added.
+    pub element: Vec<u32>,
+    /// Ball outside which there is no surface, in the function's coordinates.
     pub support: Option<Ball>,
+    /// From the function's coordinates to those of the unit scene.
+    pub unit: Unit,
 }
 
 /// A query for the crossings along one ray.
@@ -39,9 +45,23 @@ pub(crate) struct Along {
 }
 
 impl FunctionBody {
-    /// Returns the outward normal at a point of the surface; `None` where the gradient vanishes.
+    /// The function of a body of the unit scene.
+    pub fn of(surface: ComposedSurface, scene: &Scene) -> Self {
+        let finish = |&e: &u32| scene.elements[e as usize].finish;
+        Self {
+            number: surface.body,
+            support: surface.function.support(),
+            finish: surface.element.iter().map(finish).collect(),
+            function: surface.function,
+            element: surface.element,
+            unit: Unit::IDENTITY,
+        }
+    }
+
+    /// Returns the outward normal at a point of the surface in the unit scene; `None` where the gradient vanishes.
     pub fn normal(&self, point: DVec3) -> Option<DVec3> {
-        let gradient = DVec3::from_array(self.function.jet(point).gradient);
+        let jet = self.function.jet(self.unit.world(point));
+        let gradient = DVec3::from_array(jet.gradient);
         (-gradient).try_normalize()
     }
 }

@@ -352,12 +352,11 @@ impl World {
                 scratch.alone[lane] += cost;
                 let Some(t) = found else { continue };
                 let position = ray.at(t);
-                let point = self.unit.world(position);
-                let Some(normal) = body.normal(point) else {
+                let Some(normal) = body.normal(position) else {
                     continue;
                 };
                 let mut shares = Vec::new();
-                body.function.shares(point, &mut shares);
+                body.function.shares(body.unit.world(position), &mut shares);
                 let finish = |&(element, share): &(u32, f64)| {
                     let finish = body.finish.get(element as usize).or(body.finish.first());
                     Some((*finish?, share))
@@ -393,7 +392,7 @@ impl World {
     }
 
     /// Calls `tell` with each crossing of a ray with the surface of a function, and whether it enters, until it says `false`; gives
-    /// the cost. Functions are written in the world's coordinates, rays in those of the unit scene.
+    /// the cost.
     pub fn function_crossings(
         &self,
         body: &FunctionBody,
@@ -401,9 +400,9 @@ impl World {
         limit: f64,
         mut tell: impl FnMut(f64, bool) -> bool,
     ) -> u64 {
-        let scale = self.unit.length(1.0);
+        let scale = body.unit.length(1.0);
         let ray = Ray {
-            origin: self.unit.world(ray.origin),
+            origin: body.unit.world(ray.origin),
             direction: ray.direction,
         };
         let Some(range) = range(body.support, &ray, limit * scale, FURTHEST * scale) else {

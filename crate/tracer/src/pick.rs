@@ -4,10 +4,9 @@ use crate::picture::Hit;
 use crate::ray::Ray;
 use crate::solids::Solids;
 use crate::unit::Unit;
-use field::{Ball, Implicit};
+use field::Ball;
 use glam::DVec3;
-use scene::{Scene, SoftSurface};
-use std::collections::BTreeMap;
+use scene::{Scene, Surface, surface};
 
 /// A scene made ready for single rays.
 ///
@@ -27,8 +26,8 @@ use std::collections::BTreeMap;
 pub struct Picker {
     unit: Unit,
     solids: Solids,
-    /// The convolution surfaces, each with a ball outside of which it is not.
-    soft: Vec<(SoftSurface, Option<Ball>)>,
+    /// The soft surfaces, each with a ball outside of which it is not.
+    soft: Vec<(Surface, Option<Ball>)>,
 }
 
 /// Length, relative to the scene, below which intervals of rays are not subdivided.
@@ -41,18 +40,14 @@ impl Picker {
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let (unit, scene) = Unit::fit(scene);
-        let with_support = |surface: SoftSurface| {
-            let support = surface.sum.support();
+        let with_support = |surface: Surface| {
+            let support = surface.function().support();
             (surface, support)
         };
         Self {
             unit,
             solids: Solids::new(&scene),
-            soft: scene
-                .soft_surfaces()
-                .into_iter()
-                .map(with_support)
-                .collect(),
+            soft: scene.surfaces().into_iter().map(with_support).collect(),
         }
     }
 
@@ -84,16 +79,18 @@ impl Picker {
                 resolution: PICK_RESOLUTION,
             };
             let mut found = None;
-            crossings(&surface.sum, &along, |t, _| {
+            crossings(surface.function(), &along, |t, _| {
                 found = Some(t);
                 false
             });
             if let Some(t) = found {
                 limit = t;
                 let point = ray.at(t);
-                let gradient = DVec3::from_array(surface.sum.jet(point).gradient);
+                let function = surface.function();
+                let gradient = DVec3::from_array(function.jet(point).gradient);
                 let normal = (-gradient).try_normalize().unwrap_or(-ray.direction);
-                nearest = Some((t, normal, Some(surface.body), strongest(surface, point)));
+                let element = surface::strongest(function, surface.element(), point);
+                nearest = Some((t, normal, Some(surface.body()), element.unwrap_or(0)));
             }
         }
         let (t, normal, body, element) = nearest?;
@@ -106,14 +103,4 @@ impl Picker {
             element: Some(element),
         })
     }
-}
-
-/// The element that adds most to a field at a point. The pieces of a limb are one element.
-fn strongest(surface: &SoftSurface, point: DVec3) -> u32 {
-    let mut shares = BTreeMap::new();
-    for (value, &element) in surface.sum.weights(point).iter().zip(&surface.element) {
-        *shares.entry(element).or_insert(0.0) += value;
-    }
-    let most = shares.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    most.map_or(0, |(element, _)| element)
 }

@@ -29,7 +29,7 @@ pub struct Hit {
     pub normal: DVec3,
     /// The scene's body whose surface it is; `None` for a hard element.
     pub body: Option<u32>,
-    /// The scene's element whose surface it is; on a convolution surface the one that adds most to the field there. `None` on the
+    /// The scene's element whose surface it is; on a soft surface the one that adds most to the field there. `None` on the
     /// surface of an added function.
     pub element: Option<u32>,
 }

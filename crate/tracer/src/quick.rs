@@ -635,7 +635,8 @@ mod tests {
             kernel: Kernel::Gauss,
             ..element(Shape::Sphere { center, radius }, 0)
         }];
-        Soft::new(scene)
+        let surfaces = scene.soft_surfaces();
+        Soft::new(scene, surfaces)
     }
 
     /// Rays along z at growing distances from the ball's middle, of which the first four meet it.

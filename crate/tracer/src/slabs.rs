@@ -1201,7 +1201,8 @@ mod tests {
             let shape = Shape::Sphere { center, radius };
             scene.elements.push(element(shape, u32::from(carves)));
         }
-        Soft::new(scene)
+        let surfaces = scene.soft_surfaces();
+        Soft::new(scene, surfaces)
     }
 
     /// The bound on rounding holds for terms that add up to T, whatever the sum of the negative ones.

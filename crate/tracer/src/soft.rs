@@ -14,7 +14,7 @@ use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::walk::{Bundle, Found, Memories, Quest, Walk};
 use field::{Bound, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
-use scene::Scene;
+use scene::{Scene, SoftSurface};
 use std::ops::Range;
 use std::sync::OnceLock;
 use wide::f32x8;
@@ -86,10 +86,10 @@ const MOST_STRIDES: usize = 32;
 const CLOSE_BEAM: f64 = 0.05;
 
 impl Soft {
-    /// Collects a scene's soft elements. The scene is dropped before their bounds are made, which saves memory.
+    /// Collects the primitives of a scene's convolution surfaces. The scene is dropped before their bounds are made, which saves
+    /// memory.
     #[must_use]
-    pub fn new(scene: Scene) -> Self {
-        let surfaces = scene.soft_surfaces();
+    pub fn new(scene: Scene, surfaces: Vec<SoftSurface>) -> Self {
         let count: usize = surfaces.iter().map(|s| s.element.len()).sum();
         let finishes = surfaces.iter().flat_map(|s| &s.element);
         let finish: Vec<u32> = finishes

@@ -3,7 +3,7 @@ use crate::beam::Beam;
 use crate::hard::{Crossing, Solid};
 use crate::hierarchy::Hierarchy;
 use crate::ray::Ray;
-use scene::Scene;
+use scene::{Scene, Shape};
 
 /// The hard elements, in a hierarchy.
 pub struct Solids {
@@ -27,6 +27,10 @@ impl Solids {
             }
             let radius = scene.radius(element);
             for part in element.shape.parts(radius) {
+                let radius = match element.shape {
+                    Shape::Function(_) => part.radius(),
+                    _ => radius,
+                };
                 if let Some(solid) = Solid::new(&part, radius) {
                     solids.push(solid);
                     of.push([element.finish, number]);

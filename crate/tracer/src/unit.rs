@@ -33,6 +33,12 @@ pub struct Unit {
 }
 
 impl Unit {
+    /// The map that changes nothing.
+    pub const IDENTITY: Self = Self {
+        center: DVec3::ZERO,
+        scale: 1.0,
+    };
+
     /// The map that fits a scene, and the scene mapped. Elements with coordinates that are not
     /// finite, which no ray can meet, are made hard balls of radius 0, which have no surface: so all keep their numbers.
     #[must_use]
@@ -62,10 +68,7 @@ impl Unit {
             };
             Self { center, scale }
         } else {
-            Self {
-                center: DVec3::ZERO,
-                scale: 1.0,
-            }
+            Self::IDENTITY
         };
         unit.apply(&mut mapped);
         (unit, mapped)
@@ -132,16 +135,12 @@ impl Unit {
                     quadric.center = self.map(quadric.center);
                     quadric.axes = quadric.axes.map(|axis| axis * k);
                 }
+                Shape::Function(function) => **function = function.moved(&self.to_unit()),
             }
         }
         for frame in &mut scene.frames {
             frame.growth *= k;
-            let to_unit = DAffine3::from_scale_rotation_translation(
-                DVec3::splat(k),
-                DQuat::IDENTITY,
-                -k * self.center,
-            );
-            frame.to_world = to_unit * frame.to_world;
+            frame.to_world = self.to_unit() * frame.to_world;
         }
         for light in &mut scene.lights {
             if let LightKind::Point { position } = &mut light.kind {
@@ -150,6 +149,15 @@ impl Unit {
         }
         scene.camera.eye = self.map(scene.camera.eye);
         scene.camera.target = self.map(scene.camera.target);
+    }
+
+    /// From the world to the unit scene.
+    fn to_unit(self) -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(
+            DVec3::splat(self.scale),
+            DQuat::IDENTITY,
+            -self.scale * self.center,
+        )
     }
 
     /// A point of the world in the unit scene.
@@ -203,6 +211,7 @@ fn corners(shape: &Shape) -> (DVec3, DVec3) {
         Shape::Plane { point, .. } => (point, point),
         Shape::Box { center, axes } => boxed(center, axes),
         Shape::Quadric(ref quadric) => boxed(quadric.center, quadric.axes),
+        Shape::Function(ref function) => function.corners(),
     }
 }
 

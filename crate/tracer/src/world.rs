@@ -7,7 +7,7 @@ use crate::solids::Solids;
 use crate::unit::Unit;
 use field::Implicit;
 use glam::{DVec3, Vec3};
-use scene::{Light, Scene};
+use scene::{Light, Scene, Surface};
 use std::sync::Arc;
 
 /// A scene's surfaces and lights, in units of the scene's size.
@@ -68,11 +68,18 @@ impl World {
             scene.lights.clone(),
         );
         let (background, bodies) = (Vec3::from(scene.background), scene.bodies.len() as u32);
-        let soft = Soft::new(scene);
+        let (mut sums, mut functions) = (Vec::new(), Vec::new());
+        for surface in scene.surfaces() {
+            match surface {
+                Surface::Sum(sum) => sums.push(sum),
+                Surface::Composed(composed) => functions.push(FunctionBody::of(composed, &scene)),
+            }
+        }
+        let soft = Soft::new(scene, sums);
         Self {
             unit,
             soft,
-            functions: Vec::new(),
+            functions,
             solids,
             finishes,
             lights,
@@ -95,6 +102,8 @@ impl World {
             support: function.support(),
             function,
             finish,
+            element: Vec::new(),
+            unit: self.unit,
         });
         number
     }

@@ -6,8 +6,8 @@ mod trials;
 
 use common::{Numbers, blend};
 use field::{Ball, Enclosure, Implicit, Jet, Kernel, Sum, THRESHOLD};
-use glam::DVec3;
-use scene::{Body, Scene};
+use glam::{DAffine3, DMat3, DVec3};
+use scene::{Body, Element, Form, Function, Scene, Shape};
 use std::sync::Arc;
 use tracer::{Hit, Pass, Picture, Stats, Tile};
 use trials::{Kind, Row, check};
@@ -300,4 +300,135 @@ fn a_smooth_maximum_is_seen_where_it_is() {
         }
     }
     assert!(crossings > 60 && shown > 30, "{crossings} {shown}");
+}
+
+/// Metaballs in some bodies, stretched and far from the origin, beside soft elements.
+fn with_functions(seed: u64) -> Scene {
+    let mut scene = in_bodies(seed, 5, 1);
+    let mut numbers = Numbers(2 * seed + 77);
+    for body in [0, 0, 2] {
+        let balls = (0..3).map(|_| (0.6 * numbers.vector(), 0.3)).collect();
+        let map = DMat3::from_cols(
+            DVec3::X + 0.3 * numbers.vector(),
+            1.5 * DVec3::Y,
+            DVec3::Z + 0.3 * numbers.vector(),
+        );
+        let shape = Shape::Function(Box::new(Function {
+            form: Form::Metaballs {
+                hardness: 5.0,
+                balls: Arc::new(balls),
+            },
+            to_world: DAffine3::from_mat3_translation(map, 0.8 * numbers.vector()),
+        }));
+        scene.elements.push(Element {
+            body,
+            ..Element::new(shape)
+        });
+    }
+    scene.bodies.push(Body::default());
+    scene
+}
+
+/// The scene made larger and moved, as it would be written so.
+fn moved(scene: &Scene, scale: f64, shift: DVec3) -> Scene {
+    let map = DAffine3::from_scale_rotation_translation(
+        DVec3::splat(scale),
+        glam::DQuat::IDENTITY,
+        shift,
+    );
+    let mut scene = scene.clone();
+    for element in &mut scene.elements {
+        match &mut element.shape {
+            Shape::Function(function) => **function = function.moved(&map),
+            // Only functions are compared.
+            _ => element.finish = u32::MAX,
+        }
+    }
+    scene.camera.eye = map.transform_point3(scene.camera.eye);
+    scene.camera.target = map.transform_point3(scene.camera.target);
+    scene
+}
+
+#[test]
+fn bodies_with_functions_are_seen_where_they_are() {
+    let (mut crossings, mut of_functions) = (0, 0);
+    for seed in 0..6 {
+        let scene = with_functions(seed);
+        let surfaces = scene.surfaces();
+        let picture = Picture::new(&scene, [256; 2]);
+        let picker = tracer::Picker::new(&scene);
+        let rays = rays(&mut Numbers(seed * 2 + 9), 3);
+        for (ray, hit) in rays.iter().zip(picture.cast(&rays)) {
+            let hits = picture.hits(ray.0, ray.1);
+            for surface in &surfaces {
+                let found = hits.iter().filter(|hit| hit.body == Some(surface.body()));
+                let found: Vec<f64> = found.map(|hit| hit.t).collect();
+                let near = |t: f64| found.iter().any(|f| (f - t).abs() < 1e-8);
+                let want = marched(surface.function(), *ray);
+                assert!(want.iter().all(|t| near(*t)), "{want:?} {found:?}");
+                crossings += want.len();
+            }
+            for hit in &hits {
+                let body = hit.body.expect("nothing is hard");
+                let element = hit.element.expect("they are all of the scene") as usize;
+                assert_eq!(scene.elements[element].body, body);
+                let is_function = matches!(scene.elements[element].shape, Shape::Function(_));
+                of_functions += u32::from(is_function);
+                let own = surfaces.iter().find(|surface| surface.body() == body);
+                let value = own.map(|own| own.function().jet(hit.position).value);
+                assert!((value.expect("it has a surface") - THRESHOLD).abs() < 1e-6);
+            }
+            let firsts = [hit, picker.pick(ray.0, ray.1)].map(|hit| hit.map(|hit| hit.t));
+            for first in firsts {
+                match (first, hits.first()) {
+                    (Some(t), Some(hit)) => assert!((t - hit.t).abs() < 1e-3),
+                    // A ray that grazes may be seen to meet or not.
+                    (first, exact) => assert!(first.is_none() && exact.is_none(), "{seed}"),
+                }
+            }
+        }
+    }
+    assert!(
+        crossings > 200 && of_functions > 60,
+        "{crossings} {of_functions}"
+    );
+}
+
+#[test]
+fn functions_are_the_same_at_any_size_and_place() {
+    let mut crossings = 0;
+    for seed in 0..4 {
+        let plain = moved(&with_functions(seed), 1.0, DVec3::ZERO);
+        let (scale, shift) = (1000.0, DVec3::new(3e4, -5.0, 7e3));
+        let large = moved(&plain, scale, shift);
+        let [plain, large] = [&plain, &large].map(|scene| Picture::new(scene, [64; 2]));
+        for ray in rays(&mut Numbers(seed * 2 + 5), 4) {
+            let here = plain.hits(ray.0, ray.1);
+            let there = large.hits(ray.0 * scale + shift, ray.1);
+            assert_eq!(here.len(), there.len());
+            for (a, b) in here.iter().zip(&there) {
+                assert!((a.t - b.t / scale).abs() < 1e-8);
+                assert_eq!((a.body, a.element), (b.body, b.element));
+            }
+            crossings += here.len();
+        }
+    }
+    assert!(crossings > 60, "{crossings}");
+}
+
+/// Where functions are not drawn soft, their draft is.
+#[test]
+fn functions_have_a_hard_form() {
+    let mut scene = with_functions(1);
+    scene.settings.soft = false;
+    let picture = Picture::new(&scene, [64; 2]);
+    let Shape::Function(function) = &scene.elements[5].shape else {
+        panic!("no function");
+    };
+    let ball = function.draft().remove(0);
+    let Shape::Sphere { center, radius } = ball else {
+        panic!("no ball");
+    };
+    let hits = picture.hits(center + 10.0 * DVec3::Z, DVec3::NEG_Z);
+    assert!(hits.iter().any(|hit| (hit.t - 10.0 + radius).abs() < 1e-9));
 }

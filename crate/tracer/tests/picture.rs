@@ -542,6 +542,7 @@ fn strange_scenes_end() {
                     }
                 }
                 Shape::Quadric(quadric) => quadric.constant = bad,
+                Shape::Function(function) => function.to_world.translation.x = bad,
                 Shape::Sphere { radius, .. } => *radius = bad,
             }
         }

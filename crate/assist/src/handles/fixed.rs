@@ -40,6 +40,7 @@ pub fn plain(shape: &Shape, why: &str) -> Vec<Handle> {
         Shape::Curve { control, .. } => control.map(|c| (c, "a control point")).to_vec(),
         Shape::Plane { point, .. } => vec![(*point, "a point of the plane")],
         Shape::Quadric(quadric) => vec![(quadric.center, "the centre")],
+        Shape::Function(function) => vec![(function.middle(), "the middle")],
     };
     let handle = |(place, label): (DVec3, &str)| Handle {
         kind: Kind::Point,

@@ -226,6 +226,7 @@ impl Maker<'_> {
             Shape::Plane { point, normal, .. } => (*point, *normal),
             Shape::Box { center, .. } => (*center, right),
             Shape::Quadric(quadric) => (quadric.center, right),
+            Shape::Function(function) => (function.middle(), right),
         };
         Moves::Along {
             anchor,

@@ -155,7 +155,9 @@ fn ball_around(shape: &Shape, radius: f64) -> (DVec3, f64) {
         Shape::Box { center, axes } => (center, axes.iter().map(|a| a.length()).sum()),
         Shape::Quadric(ref q) => (q.center, q.axes.iter().map(|a| a.length()).sum()),
         Shape::Plane { .. } | Shape::Patch { .. } => unreachable!("solved directly"),
-        Shape::Polygon { .. } | Shape::Curve { .. } => unreachable!("drawn as their parts"),
+        Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Function(_) => {
+            unreachable!("drawn as their parts")
+        }
     }
 }
 
@@ -242,7 +244,9 @@ fn inside(shape: &Shape, radius: f64, p: DVec3) -> bool {
         Shape::Box { center, axes } => along(axes, p - center).abs().max_element() <= 1.0,
         Shape::Quadric(ref quadric) => quadric.value(in_quadric(quadric, p)).0 <= 0.0,
         Shape::Plane { .. } | Shape::Patch { .. } => unreachable!("solved directly"),
-        Shape::Polygon { .. } | Shape::Curve { .. } => unreachable!("drawn as their parts"),
+        Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Function(_) => {
+            unreachable!("drawn as their parts")
+        }
     }
 }
 
@@ -252,7 +256,9 @@ fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
     match *shape {
         Shape::Sphere { center, .. } => return (p - center).normalize(),
         Shape::Plane { normal, .. } => return normal,
-        Shape::Polygon { .. } | Shape::Curve { .. } => unreachable!("drawn as their parts"),
+        Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Function(_) => {
+            unreachable!("drawn as their parts")
+        }
         Shape::Patch { corners, normals } => {
             let [a, b, c] = corners;
             let n = (b - a).cross(c - a);

@@ -8,7 +8,7 @@ use super::state::Evaluator;
 use crate::Severity;
 use field::{Primitive, THRESHOLD};
 use glam::DVec3;
-use scene::{Element, Scene, Shape, SoftSurface};
+use scene::{Element, Scene, Shape, SoftSurface, Surface};
 
 /// Weight of the scene up to which the field is evaluated (see [`crate::limits::CURVE_WEIGHT`]): limbs
 /// that taper take a millisecond each to prepare.
@@ -66,10 +66,10 @@ impl Evaluator<'_> {
 
     /// Warns of an eye inside the surface and of flesh that never reaches the threshold.
     fn lint_field(&mut self, scene: &Scene) {
-        let surfaces = scene.soft_surfaces();
+        let surfaces = scene.surfaces();
         if surfaces
             .iter()
-            .any(|s| s.sum.jet(scene.camera.eye).value >= THRESHOLD)
+            .any(|s| s.function().jet(scene.camera.eye).value >= THRESHOLD)
         {
             let (file, span) = self.aimed_at.clone();
             self.say_at(file, Severity::Warning, span, || {
@@ -81,7 +81,10 @@ impl Evaluator<'_> {
         }
         let mut left = MOST_EVALUATIONS;
         for surface in &surfaces {
-            if !self.lint_body(scene, surface, &mut left) {
+            // Functions that are no sums make flesh visible, or hide it, in ways of their own.
+            if let Surface::Sum(surface) = surface
+                && !self.lint_body(scene, surface, &mut left)
+            {
                 return;
             }
         }
@@ -160,6 +163,7 @@ fn bone(shape: &Shape) -> Vec<DVec3> {
             .collect(),
         Shape::Box { center, .. } => vec![*center],
         Shape::Quadric(quadric) => vec![quadric.center],
+        Shape::Function(function) => vec![function.middle()],
         Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
             let [a, b, c] = *corners;
             let middle = (a + b + c) / 3.0;
@@ -207,6 +211,7 @@ fn ball(scene: &Scene, element: &Element) -> Option<(DVec3, f64)> {
             let reach = quadric.axes.iter().map(|axis| axis.length()).sum();
             (quadric.center, reach)
         }
+        Shape::Function(function) => around(&<[DVec3; 2]>::from(function.corners())),
         shape => around(&bone(shape)),
     };
     let flesh = scene.radius(element) * if scene.is_soft(element) { 1.5 } else { 1.0 };

@@ -147,6 +147,7 @@ fn middle(shape: &Shape) -> DVec3 {
         | Shape::Cone { base, apex, .. } => (*base + *apex) * 0.5,
         Shape::Box { center, .. } => *center,
         Shape::Quadric(quadric) => quadric.center,
+        Shape::Function(function) => function.middle(),
         Shape::Arc {
             center,
             u,

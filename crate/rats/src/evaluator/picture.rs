@@ -169,6 +169,7 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
         } => a == b && b == c && c == d,
         Shape::Box { axes, .. } => scene::quadric::inverse(axes).is_none(),
         Shape::Quadric(ref quadric) => !quadric.is_surface(),
+        Shape::Function(ref function) => function.implicit().is_none(),
     };
     if is_soft && scene.is_too_long(element) {
         return Some((
@@ -197,6 +198,9 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
                 String::from(
                     "this quadric is no surface, or its box has no volume, so it is left out",
                 )
+            },
+            Shape::Function(_) => || {
+                String::from("this function's numbers cannot be computed with, so it is left out")
             },
             Shape::Arc { .. } => || {
                 String::from("this arc has no length (sweep radius or width 0), so it is left out")
@@ -247,6 +251,9 @@ fn is_in_bounds(part: &Part) -> bool {
         Shape::Polygon { ref rings, .. } => rings.iter().flatten().copied().all(fits),
         Shape::Curve { control, .. } => control.into_iter().all(fits),
         Shape::Plane { point, normal, .. } => fits(point) && normal.is_finite(),
+        Shape::Function(ref function) => <[glam::DVec3; 2]>::from(function.corners())
+            .into_iter()
+            .all(fits),
     };
     places && shape.radius().abs() <= MAX_MAGNITUDE && (1e-9..=1e9).contains(&part.growth)
 }

@@ -338,6 +338,7 @@ fn middle(shape: &Shape) -> DVec3 {
         Shape::Curve { control, .. } => control[0],
         Shape::Plane { point, .. } => *point,
         Shape::Quadric(quadric) => quadric.center,
+        Shape::Function(function) => function.middle(),
     }
 }
 

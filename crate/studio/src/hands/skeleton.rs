@@ -55,6 +55,7 @@ pub fn lines(shape: &Shape, size: f64) -> Vec<Vec<DVec3>> {
         }
         Shape::Box { center, axes } => edges(*center, *axes),
         Shape::Quadric(quadric) => cross(quadric.center, 0.15 * size),
+        Shape::Function(function) => cross(function.middle(), 0.15 * size),
     }
 }
 

@@ -104,7 +104,7 @@ impl Solid {
                 Quadric::new(quadric).map(|q| Self::Quadric(Box::new(q)))
             }
             // Several solids: see `Shape::parts`.
-            Shape::Polygon { .. } | Shape::Curve { .. } => None,
+            Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Function(_) => None,
         }
     }
 

@@ -1,8 +1,8 @@
 //! State of the lab: the open lesson and the numbers of all lessons.
 
-use super::pictures::Pictures;
-use super::{chart, convolution, grid, kernels, profiles, slice, spans, superposition};
 use crate::lesson::Lesson;
+use crate::pictures::Pictures;
+use crate::{chart, convolution, grid, kernels, profiles, slice, spans, superposition};
 use pool::Pool;
 use serde::Serialize;
 use std::cell::RefCell;
@@ -30,22 +30,22 @@ pub struct Report {
 /// The lab.
 pub struct Lab {
     open: bool,
-    pub(super) lesson: Lesson,
+    pub(crate) lesson: Lesson,
     /// The fragment of the address before the lab was entered.
     came_from: String,
     /// A message about the last action, and until when it is shown.
-    pub(super) said: Option<(&'static str, f64)>,
+    pub(crate) said: Option<(&'static str, f64)>,
     /// Small traced pictures.
     pub pictures: Pictures,
-    pub(super) readings: BTreeMap<&'static str, f64>,
-    pub(super) kernels: kernels::Kernels,
-    pub(super) convolution: convolution::Convolution,
-    pub(super) slice: slice::Slice,
-    pub(super) grid: grid::Grid,
-    pub(super) profiles: profiles::Profiles,
-    pub(super) chart: chart::Chart,
-    pub(super) superposition: superposition::Superposition,
-    pub(super) spans: spans::Spans,
+    pub(crate) readings: BTreeMap<&'static str, f64>,
+    pub(crate) kernels: kernels::Kernels,
+    pub(crate) convolution: convolution::Convolution,
+    pub(crate) slice: slice::Slice,
+    pub(crate) grid: grid::Grid,
+    pub(crate) profiles: profiles::Profiles,
+    pub(crate) chart: chart::Chart,
+    pub(crate) superposition: superposition::Superposition,
+    pub(crate) spans: spans::Spans,
 }
 
 impl Lab {

@@ -1,13 +1,13 @@
 //! Lesson 1: the nine kernels, bare and as the field of a point.
 
-use super::bench::Bench;
-use super::plot::{self, Axis, Plot, number};
-use super::sample;
-use super::tools::{self, Stage, choice, heading, reading, remark, slider};
-use crate::theme;
+use crate::bench::Bench;
+use crate::plot::{self, Axis, Plot, number};
+use crate::sample;
+use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
 use egui::{Align2, Color32, FontId, Sense, Stroke, Ui, pos2};
 use field::{Kernel, Shaping, Skeleton, THRESHOLD};
 use glam::DVec3;
+use widgets::theme;
 
 /// Below this share of the threshold an infinite kernel counts as over.
 const INFLUENCE: f64 = 1e-3;

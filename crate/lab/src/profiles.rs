@@ -1,13 +1,13 @@
 //! Lesson 5: the strength of a bone as a function along it.
 
-use super::bench::Bench;
-use super::grid::refused;
-use super::plot::{self, Axis, Plot};
-use super::tools::{Stage, heading, remark, slider};
+use crate::bench::Bench;
 use crate::command::Command;
-use crate::{places, theme};
+use crate::grid::refused;
+use crate::plot::{self, Axis, Plot};
+use crate::tools::{Stage, heading, remark, slider};
 use core::f64::consts::PI;
 use egui::{Align2, CursorIcon, FontId, Rect, Sense, Stroke, StrokeKind, Ui, vec2};
+use widgets::{places, theme};
 
 /// A profile of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

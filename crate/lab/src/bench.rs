@@ -1,14 +1,13 @@
 //! The services that a lesson draws with.
 
-use super::pictures::Pictures;
-use crate::command::Command;
-use crate::session::Session;
+use crate::pictures::Pictures;
+use crate::{Command, Dataset};
 use std::collections::BTreeMap;
 
 /// Everything a lesson works with beside its own numbers.
 pub struct Bench<'a> {
-    /// The open work.
-    pub session: &'a Session,
+    /// The dataset that is open in the editor.
+    pub dataset: Dataset<'a>,
     /// Small traced pictures.
     pub pictures: &'a mut Pictures,
     /// Commands of the user, carried out after the frame.

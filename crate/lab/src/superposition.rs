@@ -1,16 +1,16 @@
 //! Lesson 7: cutting a bone changes nothing, since the integral over the whole is the sum of those
 //! over its parts; a field made of distances bulges at the cut.
 
-use super::bench::Bench;
-use super::contour::Grid;
-use super::plot::{self, number};
-use super::sample::{self, Window};
-use super::tools::{self, Stage, choice, heading, reading, remark, slider};
-use crate::theme;
+use crate::bench::Bench;
+use crate::contour::Grid;
+use crate::plot::{self, number};
+use crate::sample::{self, Window};
+use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
 use core::f64::consts::PI;
 use egui::{Align2, Color32, CursorIcon, FontId, Mesh, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use field::{Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
+use widgets::theme;
 
 /// Samples of the fields, columns and rows.
 const SAMPLES: [usize; 2] = [121, 67];
@@ -205,9 +205,7 @@ impl Key {
         };
         let differences = [difference(&convolution), difference(&distance)];
         let swelling = {
-            let by = |index: usize| {
-                self.thickness(|at| sample::one(core::slice::from_ref(&fields[index]), at))
-            };
+            let by = |index: usize| self.thickness(|at| sample::one(&[&fields[index]], at));
             let far = |parts: &[Skeleton]| self.thickness(|at| self.by_distance(parts, at));
             [by(1) / by(0).max(1e-9), far(&parts) / far(&whole).max(1e-9)]
         };

@@ -6,17 +6,17 @@
 //! its last picture; the one being traced is finished even if the slider has gone on, as otherwise
 //! nothing would ever be seen while it moves.
 
-use crate::picture::Assembly;
-use crate::theme;
 use egui::{
     Color32, ColorImage, Context, FontId, Pos2, Rect, TextureHandle, TextureOptions, Ui, vec2,
 };
+use pool::Assembly;
 use pool::{Job, Pool};
 use rats::{File, Project, Severity};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::rc::Rc;
+use widgets::theme;
 use worker::Kind;
 use worker::errors::{Pixel, unpack};
 

@@ -1,13 +1,13 @@
 //! The controls of the lessons, all of one kind: sliders under their names, chips for kernels,
 //! choices side by side.
 
-use super::plot;
-use crate::{places, slider, theme};
+use crate::plot;
 use egui::{
     Button, Color32, Rect, Response, RichText, Sense, Slider, Stroke, StrokeKind, Ui, UiBuilder,
     vec2,
 };
 use field::Kernel;
+use widgets::{places, slider, theme};
 
 /// Width of the controls beside a figure.
 const SIDE: f32 = 292.0;

@@ -1,13 +1,12 @@
 //! Lesson 6: every kernel on every primitive, traced and timed.
 
-use super::bench::Bench;
-use super::formulas::{self, BONES, Bone};
-use super::grid::refused;
-use super::plot::number;
-use super::sample;
-use super::tools::{self, heading, remark};
+use crate::bench::Bench;
 use crate::command::Command;
-use crate::{places, theme};
+use crate::formulas::{self, BONES, Bone};
+use crate::grid::refused;
+use crate::plot::number;
+use crate::sample;
+use crate::tools::{self, heading, remark};
 use egui::{
     Align2, Color32, CursorIcon, FontId, Frame, Margin, Rect, RichText, Sense, Stroke, StrokeKind,
     Ui, pos2, vec2,
@@ -17,6 +16,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::hint::black_box;
 use wide::f32x8;
+use widgets::{places, theme};
 
 /// Seconds of each of the three timings of a cell, the quickest of which counts: browsers' clocks
 /// tick every tenth of a millisecond.
@@ -174,7 +174,7 @@ fn time(cell: Cell) -> Option<f64> {
     for _ in 0..3 {
         let mut sum = f32x8::splat(0.0);
         let mut count = 0u32;
-        let begun = crate::clock::stopwatch();
+        let begun = widgets::clock::stopwatch();
         let mut taken = 0.0;
         while taken < TIMING {
             for place in &places {
@@ -182,7 +182,7 @@ fn time(cell: Cell) -> Option<f64> {
                 sum += jet.value + jet.gradient[0] + jet.gradient[1] + jet.gradient[2];
             }
             count += 64;
-            taken = crate::clock::stopwatch() - begun;
+            taken = widgets::clock::stopwatch() - begun;
         }
         black_box(sum);
         quickest = quickest.min(1e9 * taken / (8.0 * f64::from(count)));
@@ -209,8 +209,8 @@ impl Chart {
         }
         let frame = f64::from(ui.input(|input| input.unstable_dt));
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
-        let begun = crate::clock::stopwatch();
-        while !self.is_timed() && crate::clock::stopwatch() - begun < budget {
+        let begun = widgets::clock::stopwatch();
+        while !self.is_timed() && widgets::clock::stopwatch() - begun < budget {
             let index = self.timings % CELLS;
             let cell = (Kernel::ALL[index / BONES.len()], BONES[index % BONES.len()]);
             let cost = time(cell).unwrap_or(f64::NAN);
@@ -427,9 +427,9 @@ impl Chart {
 /// Closed formulas, special functions and numerical integrals in colours of their own.
 fn way_colour(ui: &Ui, way: &str) -> Color32 {
     match way {
-        "closed" | "windowed" => super::plot::hue(ui, 2),
-        "Carlson" | "error function" | "Owen's T" | "dilogarithm" => super::plot::hue(ui, 1),
-        _ => super::plot::hue(ui, 0),
+        "closed" | "windowed" => crate::plot::hue(ui, 2),
+        "Carlson" | "error function" | "Owen's T" | "dilogarithm" => crate::plot::hue(ui, 1),
+        _ => crate::plot::hue(ui, 0),
     }
 }
 

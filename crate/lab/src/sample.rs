@@ -1,7 +1,7 @@
 //! The field on a plane, eight points at a time, a little in each frame.
 
-use super::contour::Grid;
-use field::{BlobScale, Kernel, Shaping, Sum};
+use crate::contour::Grid;
+use field::{BlobScale, Implicit, Kernel, Shaping, Sum};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -40,17 +40,17 @@ impl Window {
 
 /// The largest of the fields of some bodies at eight points: inside any of them it is above T. Without bodies it is 0.
 #[must_use]
-pub fn eight(bodies: &[Sum], points: [DVec3; 8]) -> [f32; 8] {
+pub fn eight(bodies: &[&dyn Implicit], points: [DVec3; 8]) -> [f32; 8] {
     let axis = |pick: fn(&DVec3) -> f64| f32x8::from(points.map(|p| pick(&p) as f32));
     let point = [axis(|p| p.x), axis(|p| p.y), axis(|p| p.z)];
-    let values = bodies.iter().map(|body| body.sum(point).value);
+    let values = bodies.iter().map(|body| body.jet8(point).value);
     let largest = values.reduce(|a, b| a.fast_max(b));
     largest.unwrap_or(f32x8::splat(0.0)).to_array()
 }
 
 /// The same at one point.
 #[must_use]
-pub fn one(bodies: &[Sum], point: DVec3) -> f64 {
+pub fn one(bodies: &[&dyn Implicit], point: DVec3) -> f64 {
     f64::from(eight(bodies, [point; 8])[0])
 }
 
@@ -80,19 +80,19 @@ impl Filling {
         self.grid.values.len() >= self.grid.width * self.grid.height
     }
 
-    /// Goes on until the grid is full or `enough` says so, which it is asked now and then. Gives
-    /// whether the grid is full.
+    /// Goes on until the grid is full or `enough` says so, which it is asked now and then: the more often, the more elements the
+    /// bodies have. Gives whether the grid is full.
     pub fn go_on(
         &mut self,
-        bodies: &[Sum],
+        bodies: &[&dyn Implicit],
+        elements: usize,
         window: &Window,
         mut enough: impl FnMut() -> bool,
     ) -> bool {
         let Grid { width, height, .. } = self.grid;
         let all = width * height;
         // A batch takes some tens of microseconds, whatever the field.
-        let primitives: usize = bodies.iter().map(|body| body.primitives.len()).sum();
-        let batch = (4000 / primitives.max(1)).clamp(1, 64);
+        let batch = (4000 / elements.max(1)).clamp(1, 64);
         let mut done = 0;
         while self.grid.values.len() < all {
             let first = self.grid.values.len();
@@ -118,7 +118,7 @@ impl Filling {
 #[must_use]
 pub fn whole(field: &Sum, window: &Window, width: usize, height: usize) -> Grid {
     let mut filling = Filling::new(width, height);
-    filling.go_on(core::slice::from_ref(field), window, || false);
+    filling.go_on(&[field], field.primitives.len(), window, || false);
     filling.grid
 }
 
@@ -151,9 +151,9 @@ mod tests {
             assert!((f64::from(*value) - want).abs() < 1e-5 * want.max(1.0));
         }
         let mut filling = Filling::new(61, 41);
-        let bodies = core::slice::from_ref(&field);
-        assert!(!filling.go_on(bodies, &window, || true));
-        while !filling.go_on(bodies, &window, || true) {}
+        let bodies: &[&dyn Implicit] = &[&field];
+        assert!(!filling.go_on(bodies, 1, &window, || true));
+        while !filling.go_on(bodies, 1, &window, || true) {}
         assert_eq!(filling.grid, grid);
     }
 }

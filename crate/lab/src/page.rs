@@ -1,17 +1,17 @@
 //! The lab's page: its bar, the list of lessons, and the open lesson.
 
-use super::bench::Bench;
-use super::state::Lab;
-use super::text;
+use crate::bench::Bench;
 use crate::command::Command;
-use crate::icon::{self, Icon};
+use crate::dataset::Dataset;
 use crate::lesson::Lesson;
-use crate::session::Session;
-use crate::{places, platform, screen, theme};
+use crate::state::Lab;
+use crate::text;
 use egui::{
     Align, Align2, Button, CentralPanel, Color32, FontId, Layout, Margin, Panel, Pos2, Rect,
     RichText, ScrollArea, Sense, Stroke, Ui, vec2,
 };
+use widgets::icon::{self, Icon};
+use widgets::{places, screen, theme};
 
 /// Width of the list of lessons on a wide page.
 const LIST: f32 = 236.0;
@@ -20,12 +20,14 @@ const MEASURE: f32 = 820.0;
 
 /// State outside the lab that its page shows.
 pub struct Frame<'a> {
-    /// The open work.
-    pub session: &'a Session,
+    /// The dataset that is open in the editor.
+    pub dataset: Dataset<'a>,
     /// Fraction done of the picture that the workers trace for the editor, while they do.
     pub tracing: Option<f64>,
     /// The chosen palette.
     pub theme: theme::Choice,
+    /// Seconds on the page's clock.
+    pub now: f64,
 }
 
 /// Draws the lab in place of the editor.
@@ -38,7 +40,7 @@ pub fn show(lab: &mut Lab, frame: &Frame<'_>, ui: &mut Ui, commands: &mut Vec<Co
     Panel::top("lab bar")
         .exact_size(if narrow { 52.0 } else { 46.0 })
         .frame(flat)
-        .show(ui, |ui| lab_bar(lab, frame.theme, ui, narrow, commands));
+        .show(ui, |ui| lab_bar(lab, frame, ui, narrow, commands));
     if narrow {
         Panel::top("lab lessons")
             .exact_size(54.0)
@@ -69,7 +71,7 @@ pub fn show(lab: &mut Lab, frame: &Frame<'_>, ui: &mut Ui, commands: &mut Vec<Co
                     .show(ui, |ui| {
                         ui.set_width(width);
                         ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
-                        lesson(lab, frame.session, ui, all, narrow, commands);
+                        lesson(lab, frame.dataset, ui, all, narrow, commands);
                     });
             });
     });
@@ -77,7 +79,7 @@ pub fn show(lab: &mut Lab, frame: &Frame<'_>, ui: &mut Ui, commands: &mut Vec<Co
 
 fn lab_bar(
     lab: &mut Lab,
-    chosen: theme::Choice,
+    frame: &Frame<'_>,
     ui: &mut Ui,
     narrow: bool,
     commands: &mut Vec<Command>,
@@ -90,7 +92,7 @@ fn lab_bar(
             .on_hover_text("Back to your dataset, as you left it (Esc)");
         places::note(ui.ctx(), "lab back", back.rect);
         if back.clicked() {
-            commands.push(Command::CloseLab);
+            commands.push(Command::Close);
         }
         ui.add_space(4.0);
         icon::mark(ui);
@@ -102,14 +104,14 @@ fn lab_bar(
             let share = ui.add(share).on_hover_text("Copy a link to this lesson");
             places::note(ui.ctx(), "lab share", share.rect);
             if share.clicked() {
-                commands.push(Command::ShareLab);
+                commands.push(Command::Share);
             }
             let next = theme::other(ui);
-            let tip = format!("Colours: {}", theme::label(chosen));
+            let tip = format!("Colours: {}", theme::label(frame.theme));
             if icon::button(ui, Icon::Theme, &tip, true).clicked() {
                 commands.push(Command::SetTheme(next));
             }
-            let now = platform::now(ui.ctx());
+            let now = frame.now;
             if let Some((said, until)) = lab.said {
                 if now < until {
                     ui.label(RichText::new(said).color(palette.weak).size(13.0));
@@ -147,7 +149,7 @@ fn strip(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
                         button.scroll_to_me(Some(Align::Center));
                     }
                     if button.clicked() && !chosen {
-                        commands.push(Command::OpenLab(lesson));
+                        commands.push(Command::Open(lesson));
                     }
                 }
                 ui.add_space(10.0);
@@ -223,7 +225,7 @@ fn list(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
                 .on_hover_cursor(egui::CursorIcon::PointingHand)
                 .clicked();
             if clicked && !chosen {
-                commands.push(Command::OpenLab(lesson));
+                commands.push(Command::Open(lesson));
             }
         }
     });
@@ -240,7 +242,7 @@ fn lesson_name(lesson: Lesson) -> &'static str {
 /// Title, sentences, button, and the figure.
 fn lesson(
     lab: &mut Lab,
-    session: &Session,
+    dataset: Dataset<'_>,
     ui: &mut Ui,
     all: Rect,
     narrow: bool,
@@ -281,7 +283,7 @@ fn lesson(
     ui.add_space(if narrow { 6.0 } else { 12.0 });
     let used = ui.cursor().top() - top;
     let mut bench = Bench {
-        session,
+        dataset,
         pictures: &mut lab.pictures,
         commands,
         readings: &mut lab.readings,

@@ -4,12 +4,12 @@
 //! divided by what an endless bar would give, so that a long bar has the field 1. With H the
 //! kernel's integral from 0, a bar [a, b] gives `w·(H((b−x)/w) − H((a−x)/w))`.
 
-use super::bench::Bench;
-use super::plot::{self, Axis, Plot, number};
-use super::tools::{self, Stage, heading, reading, remark, slider};
-use crate::{places, theme};
+use crate::bench::Bench;
+use crate::plot::{self, Axis, Plot, number};
+use crate::tools::{self, Stage, heading, reading, remark, slider};
 use egui::{Align2, Button, Color32, CursorIcon, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 use field::Kernel;
+use widgets::{places, theme};
 
 /// The line shown.
 const LINE: [f64; 2] = [-5.0, 5.0];

@@ -1,10 +1,10 @@
 //! Figures by the painter alone: axes with round ticks, curves, filled areas, and grips to drag.
 
-use crate::{places, theme};
 use egui::{
     Align2, Color32, CursorIcon, FontId, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke,
     Ui, Vec2, pos2, vec2,
 };
+use widgets::{places, theme};
 
 /// Nine hues that stay apart for the colour-blind (after Okabe and Ito), as bright as each palette
 /// needs. They come in the order of `field::Kernel::ALL`.

@@ -214,7 +214,7 @@ mod tests {
             }
         }
         let context = Context::default();
-        context.set_fonts(crate::fonts::definitions());
+        context.set_fonts(widgets::fonts::definitions());
         let mut missing = String::new();
         let output = context.run_ui(RawInput::default(), |ui| {
             ui.ctx().fonts_mut(|fonts| {

@@ -4,18 +4,18 @@
 //! Pictures and maps come from the workers: for a map each pixel's hit is held against the exact
 //! crossing, found on the field itself in double precision.
 
-use super::bench::Bench;
-use super::grid::refused;
-use super::pictures::Shown;
-use super::slice::shade;
-use super::tools::{Stage, choice, heading, reading, remark, slider};
-use crate::theme;
+use crate::bench::Bench;
+use crate::grid::refused;
+use crate::pictures::Shown;
+use crate::slice::shade;
+use crate::tools::{Stage, choice, heading, reading, remark, slider};
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui,
     pos2, vec2,
 };
 use field::Kernel;
 use std::rc::Rc;
+use widgets::theme;
 use worker::errors::Pixel;
 
 /// Pixels of a map, across and down.

@@ -1,13 +1,13 @@
 //! Lesson 4: the T shape for a range of radii and blobbinesses.
 
-use super::bench::Bench;
-use super::pictures::Shown;
-use super::plot::number;
-use super::tools::{self, Stage, heading, remark, slider};
+use crate::bench::Bench;
 use crate::command::Command;
-use crate::{places, theme};
+use crate::pictures::Shown;
+use crate::plot::number;
+use crate::tools::{self, Stage, heading, remark, slider};
 use egui::{Align2, CursorIcon, FontId, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use field::Kernel;
+use widgets::{places, theme};
 
 /// Pictures in a row and in a column.
 const SIDE: usize = 4;

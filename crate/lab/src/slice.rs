@@ -3,20 +3,20 @@
 //! The field is sampled coarsely at once and then ever more finely, a few milliseconds in each
 //! frame, so that nothing stutters however large the dataset is.
 
-use super::bench::Bench;
-use super::plot::{self, number};
-use super::sample::{self, Filling, Window};
-use super::tools::{Stage, choice, heading, reading, remark, slider};
+use crate::bench::Bench;
 use crate::command::Command;
-use crate::session::Session;
-use crate::{examples, theme};
+use crate::dataset::Dataset;
+use crate::plot::{self, number};
+use crate::sample::{self, Filling, Window};
+use crate::tools::{Stage, choice, heading, reading, remark, slider};
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions,
     Ui, pos2, vec2,
 };
-use field::{Sum, THRESHOLD};
+use field::{Implicit, THRESHOLD};
 use glam::DVec3;
-use scene::{Scene, SoftSurface};
+use scene::{Scene, Surface};
+use widgets::theme;
 
 /// Samples across, from the first look to the last.
 const LEVELS: [usize; 5] = [24, 48, 96, 192, 320];
@@ -45,12 +45,18 @@ struct Cut {
     tall: f64,
 }
 
-/// The fields of a scene's bodies and where they are.
+/// The functions of a scene's bodies and where they are.
 struct Subject {
     generation: u64,
-    bodies: Vec<Sum>,
+    bodies: Vec<Surface>,
     center: DVec3,
     reach: f64,
+}
+
+impl Subject {
+    fn functions(&self) -> Vec<&dyn Implicit> {
+        self.bodies.iter().map(Surface::function).collect()
+    }
 }
 
 /// The lesson's state.
@@ -90,18 +96,17 @@ impl Default for Slice {
 
 impl Slice {
     /// Reads the scene anew if it changed.
-    fn look(&mut self, session: &Session) {
-        let generation = session.generation();
+    fn look(&mut self, dataset: Dataset<'_>) {
+        let generation = dataset.generation;
         let known = self.subject.as_ref().map(|subject| subject.generation);
         if known == Some(generation) {
             return;
         }
-        let (bodies, (center, reach)) = session.scene().map_or_else(
+        let (bodies, (center, reach)) = dataset.scene.map_or_else(
             || (Vec::new(), (DVec3::ZERO, 2.0)),
             |scene| {
-                let soft = scene.soft_surfaces();
-                let place = extent(&scene, &soft);
-                let bodies: Vec<Sum> = soft.into_iter().map(|surface| surface.sum).collect();
+                let bodies = scene.surfaces();
+                let place = extent(scene, &bodies);
                 let place = framed(&bodies, place).unwrap_or(place);
                 (bodies, place)
             },
@@ -115,14 +120,14 @@ impl Slice {
     }
 
     /// The plane's window.
-    fn window(&self, session: &Session, tall: f64) -> Option<(Window, DVec3)> {
+    fn window(&self, dataset: Dataset<'_>, tall: f64) -> Option<(Window, DVec3)> {
         let subject = self.subject.as_ref()?;
         let (right, up, normal) = match self.axis {
             Axis::X => (DVec3::NEG_Z, DVec3::Y, DVec3::X),
             Axis::Y => (DVec3::X, DVec3::NEG_Z, DVec3::Y),
             Axis::Z => (DVec3::X, DVec3::Y, DVec3::Z),
             Axis::Camera => {
-                let view = session.camera().projection(4, 3).world_from_view;
+                let view = dataset.camera.projection(4, 3).world_from_view;
                 (view.x_axis, view.y_axis, view.z_axis)
             }
         };
@@ -143,12 +148,15 @@ impl Slice {
             self.filling = grid(0, cut.tall);
         }
         let Some(subject) = &self.subject else { return };
-        let begun = crate::clock::stopwatch();
+        let functions = subject.functions();
+        let elements = elements_of(&subject.bodies);
+        let begun = widgets::clock::stopwatch();
         let frame = f64::from(ui.input(|input| input.unstable_dt));
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
         while self.level < LEVELS.len() {
-            let enough = || crate::clock::stopwatch() - begun > budget;
-            if !self.filling.go_on(&subject.bodies, &cut.window, enough) {
+            let enough = || widgets::clock::stopwatch() - begun > budget;
+            let filling = &mut self.filling;
+            if !filling.go_on(&functions, elements, &cut.window, enough) {
                 break;
             }
             let grid_done = core::mem::take(&mut self.filling).grid;
@@ -185,7 +193,7 @@ impl Slice {
             if self.level < LEVELS.len() {
                 self.filling = grid(self.level, cut.tall);
             }
-            if crate::clock::stopwatch() - begun > budget {
+            if widgets::clock::stopwatch() - begun > budget {
                 break;
             }
         }
@@ -196,12 +204,10 @@ impl Slice {
 
     /// Shows the lesson.
     pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        self.look(bench.session);
+        self.look(bench.dataset);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.95);
-        let soft = self.subject.as_ref().map_or(0, |subject| {
-            let bodies = subject.bodies.iter();
-            bodies.map(|body| body.primitives.len()).sum::<usize>()
-        });
+        let subject = self.subject.as_ref();
+        let soft = subject.map_or(0, |subject| elements_of(&subject.bodies));
         bench.readings.insert("primitives", soft as f64);
         if soft == 0 {
             nothing(ui, &stage, bench);
@@ -212,8 +218,8 @@ impl Slice {
         let tall = f64::from(place.height() / place.width().max(1.0));
         // Samples are square, and their number does not change with every pixel of the window.
         let tall = (tall * 40.0).round().max(1.0) / 40.0;
-        if let Some((window, _)) = self.window(bench.session, tall) {
-            let generation = bench.session.generation();
+        if let Some((window, _)) = self.window(bench.dataset, tall) {
+            let generation = bench.dataset.generation;
             self.work(
                 ui,
                 Cut {
@@ -326,7 +332,7 @@ impl Slice {
         };
         let x = f64::from((pointer.x - place.left()) / place.width());
         let y = f64::from((place.bottom() - pointer.y) / place.height());
-        let value = sample::one(&subject.bodies, window.at(x, y));
+        let value = sample::one(&subject.functions(), window.at(x, y));
         bench.readings.insert("value", value);
         let text = format!("F = {}", number(value));
         let font = FontId::proportional(14.0);
@@ -411,9 +417,17 @@ fn grid(level: usize, tall: f64) -> Filling {
 }
 
 /// The middle of all skeletons and how far flesh may be from it. Planes count for nothing.
-fn extent(scene: &Scene, soft: &[SoftSurface]) -> (DVec3, f64) {
-    let spheres: Vec<(DVec3, f64)> = soft
+fn extent(scene: &Scene, surfaces: &[Surface]) -> (DVec3, f64) {
+    let functions = surfaces.iter().filter_map(|surface| match surface {
+        Surface::Sum(_) => None,
+        Surface::Composed(surface) => surface.function.support(),
+    });
+    let spheres: Vec<(DVec3, f64)> = surfaces
         .iter()
+        .filter_map(|surface| match surface {
+            Surface::Sum(surface) => Some(surface),
+            Surface::Composed(_) => None,
+        })
         .flat_map(|surface| surface.sum.primitives.iter().zip(&surface.element))
         .filter_map(|(primitive, element)| {
             let (center, radius) = primitive.skeleton.bounding_sphere()?;
@@ -421,6 +435,7 @@ fn extent(scene: &Scene, soft: &[SoftSurface]) -> (DVec3, f64) {
             let flesh = 2.2 * scene.radius(&scene.elements[*element as usize]);
             Some((center, radius + flesh.min(primitive.influence)))
         })
+        .chain(functions.map(|ball| (ball.center, ball.radius)))
         .collect();
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for (center, radius) in &spheres {
@@ -435,16 +450,21 @@ fn extent(scene: &Scene, soft: &[SoftSurface]) -> (DVec3, f64) {
     (center, reach.clamp(1e-6, 1e9))
 }
 
+/// How many elements the functions of some bodies have.
+fn elements_of(bodies: &[Surface]) -> usize {
+    bodies.iter().map(|body| body.element().len()).sum()
+}
+
 /// The same more closely: where the flesh really is, as far as a coarse look in space finds it.
-fn framed(bodies: &[Sum], (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
+fn framed(bodies: &[Surface], (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
     /// Samples along each axis.
     const SIDE: usize = 20;
     /// More primitives would take too long for a look.
     const MOST: usize = 1500;
-    let primitives: usize = bodies.iter().map(|body| body.primitives.len()).sum();
-    if primitives > MOST {
+    if elements_of(bodies) > MOST {
         return None;
     }
+    let functions: Vec<&dyn Implicit> = bodies.iter().map(Surface::function).collect();
     let step = 2.0 * reach / (SIDE - 1) as f64;
     let at = |index: usize| {
         let (x, y, z) = (index % SIDE, index / SIDE % SIDE, index / SIDE / SIDE);
@@ -453,7 +473,7 @@ fn framed(bodies: &[Sum], (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)>
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for first in (0..SIDE * SIDE * SIDE).step_by(8) {
         let points = core::array::from_fn(|lane| at(first + lane));
-        for (value, point) in sample::eight(bodies, points).into_iter().zip(points) {
+        for (value, point) in sample::eight(&functions, points).into_iter().zip(points) {
             if f64::from(value) > 0.5 * THRESHOLD {
                 low = low.min(point);
                 high = high.max(point);
@@ -491,7 +511,7 @@ const SHADES: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-pub(super) fn shade(share: f32, dark: bool) -> Color32 {
+pub(crate) fn shade(share: f32, dark: bool) -> Color32 {
     let at = share.clamp(0.0, 1.0) * (SHADES.len() - 1) as f32;
     let index = (at as usize).min(SHADES.len() - 2);
     let t = at - index as f32;
@@ -567,13 +587,10 @@ fn nothing(ui: &mut Ui, stage: &Stage, bench: &mut Bench<'_>) {
         palette.weak,
     );
     let place = Rect::from_center_size(center + vec2(0.0, 14.0), vec2(180.0, 36.0));
-    let tee = examples::ALL.iter().position(|e| e.name == "tshape.rat");
-    if let Some(index) = tee
-        && ui
-            .place(place, egui::Button::new("Open the T-shape"))
-            .clicked()
-    {
-        bench.commands.push(Command::OpenExample(index));
+    let button = egui::Button::new("Open the T-shape");
+    if ui.place(place, button).clicked() {
+        let file = "tshape.rat";
+        bench.commands.push(Command::OpenExample { file });
     }
 }
 

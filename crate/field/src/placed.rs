@@ -1,0 +1,113 @@
+//! Functions moved, turned and stretched.
+use crate::{Ball, Enclosure, Implicit, Jet, Real};
+use glam::{DAffine3, DMat3, DVec3};
+use std::sync::Arc;
+use wide::f32x8;
+
+/// A function in coordinates of its own: at p its value is the inner function's at M⁻¹p.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    function: Arc<dyn Implicit>,
+    to_world: DAffine3,
+    to_own: DAffine3,
+    /// Bounds on how far the two maps stretch lengths.
+    growth: f64,
+    shrinkage: f64,
+}
+
+impl Placed {
+    /// The function placed by a map from its own coordinates to the world's. `None` if the map has no finite inverse.
+    #[must_use]
+    pub fn new(function: Arc<dyn Implicit>, to_world: DAffine3) -> Option<Self> {
+        let to_own = to_world.inverse();
+        let (growth, shrinkage) = (stretch(&to_world.matrix3), stretch(&to_own.matrix3));
+        let usable = to_world.is_finite()
+            && to_own.is_finite()
+            && growth.is_normal()
+            && shrinkage.is_normal();
+        usable.then_some(Self {
+            function,
+            to_world,
+            to_own,
+            growth,
+            shrinkage,
+        })
+    }
+
+    fn own<R: Real>(&self, point: [R; 3]) -> [R; 3] {
+        let DAffine3 {
+            matrix3,
+            translation,
+        } = self.to_own;
+        let [x, y, z] = matrix3.to_cols_array_2d();
+        core::array::from_fn(|i| {
+            R::splat(x[i]) * point[0]
+                + R::splat(y[i]) * point[1]
+                + R::splat(z[i]) * point[2]
+                + R::splat(translation[i])
+        })
+    }
+
+    fn world<R: Real>(&self, jet: Jet<R>) -> Jet<R> {
+        let columns = self.to_own.matrix3.to_cols_array_2d();
+        let [x, y, z] = jet.gradient;
+        let along = |c: [f64; 3]| R::splat(c[0]) * x + R::splat(c[1]) * y + R::splat(c[2]) * z;
+        Jet {
+            value: jet.value,
+            gradient: columns.map(along),
+        }
+    }
+}
+
+/// An upper bound on how much a map stretches lengths, which is exact for a similarity: by Gershgorin's theorem, the root of the
+/// greatest sum of a row of |MᵀM|.
+fn stretch(map: &DMat3) -> f64 {
+    let square = map.transpose() * *map;
+    let row = |i: usize| square.row(i).abs().element_sum();
+    libm::sqrt(row(0).max(row(1)).max(row(2))) * (1.0 + 1e-12)
+}
+
+impl Implicit for Placed {
+    fn jet(&self, point: DVec3) -> Jet<f64> {
+        let own = self.own(point.to_array());
+        self.world(self.function.jet(DVec3::from_array(own)))
+    }
+
+    fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
+        self.world(self.function.jet32(self.own(point)))
+    }
+
+    fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8> {
+        self.world(self.function.jet8(self.own(points)))
+    }
+
+    fn enclose(&self, ball: Ball) -> Enclosure {
+        let k = self.shrinkage;
+        let own = self.function.enclose(Ball {
+            center: self.to_own.transform_point3(ball.center),
+            radius: ball.radius * k,
+        });
+        Enclosure {
+            value: own.value,
+            slope: own.slope * k,
+            curvature: own.curvature * k * k,
+        }
+    }
+
+    fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
+        self.function
+            .shares(self.to_own.transform_point3(point), out);
+    }
+
+    fn support(&self) -> Option<Ball> {
+        self.support_at(crate::THRESHOLD)
+    }
+
+    fn support_at(&self, level: f64) -> Option<Ball> {
+        let Ball { center, radius } = self.function.support_at(level)?;
+        Some(Ball {
+            center: self.to_world.transform_point3(center),
+            radius: radius * self.growth,
+        })
+    }
+}

@@ -1,0 +1,115 @@
+//! The implicit function of each body: what every reader of surfaces asks for.
+
+use crate::{Scene, Shape, SoftSurface};
+use field::{Blend, Implicit};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The function of a body. Its surface is where the function equals [`field::THRESHOLD`].
+#[derive(Clone, Debug)]
+pub enum Surface {
+    /// A plain sum of primitives.
+    Sum(SoftSurface),
+    /// Any other function.
+    Composed(ComposedSurface),
+}
+
+/// The function of a body that is not a plain sum, and which elements its parts came from.
+#[derive(Clone, Debug)]
+pub struct ComposedSurface {
+    /// Index of the body in [`Scene::bodies`].
+    pub body: u32,
+    /// The function.
+    pub function: Arc<dyn Implicit>,
+    /// For each element of the function, the index of an element in [`Scene::elements`].
+    pub element: Vec<u32>,
+}
+
+impl Surface {
+    /// Index of the body in [`Scene::bodies`].
+    #[must_use]
+    pub fn body(&self) -> u32 {
+        match self {
+            Self::Sum(surface) => surface.body,
+            Self::Composed(surface) => surface.body,
+        }
+    }
+
+    /// The body's whole function.
+    #[must_use]
+    pub fn function(&self) -> &dyn Implicit {
+        match self {
+            Self::Sum(surface) => &surface.sum,
+            Self::Composed(surface) => &*surface.function,
+        }
+    }
+
+    /// For each element of the function, the index of an element in [`Scene::elements`].
+    #[must_use]
+    pub fn element(&self) -> &[u32] {
+        match self {
+            Self::Sum(surface) => &surface.element,
+            Self::Composed(surface) => &surface.element,
+        }
+    }
+}
+
+/// The element that has the largest share of a function's value at a point; `None` if none has one. Elements of the function that
+/// came from one element of the scene count together; `element` tells from which.
+#[must_use]
+pub fn strongest(function: &dyn Implicit, element: &[u32], point: glam::DVec3) -> Option<u32> {
+    let mut shares = Vec::new();
+    function.shares(point, &mut shares);
+    let mut sums = BTreeMap::new();
+    for (number, share) in shares {
+        *sums.entry(element.get(number as usize)?).or_insert(0.0) += share;
+    }
+    let most = sums.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    most.map(|(element, _)| *element)
+}
+
+impl Scene {
+    /// The functions of all bodies that have soft elements, in the order of [`Scene::bodies`].
+    #[must_use]
+    pub fn surfaces(&self) -> Vec<Surface> {
+        let mut functions: BTreeMap<u32, Vec<_>> = BTreeMap::new();
+        for (index, element) in (0..).zip(&self.elements) {
+            if let Shape::Function(function) = &element.shape
+                && self.is_soft(element)
+                && (element.body as usize) < self.bodies.len()
+                && let Some(function) = function.implicit()
+            {
+                let body = functions.entry(element.body).or_default();
+                body.push((index, function));
+            }
+        }
+        let mut surfaces = Vec::new();
+        for surface in self.soft_surfaces() {
+            match functions.remove(&surface.body) {
+                None => surfaces.push(Surface::Sum(surface)),
+                Some(parts) => surfaces.push(Surface::Composed(blend(surface, parts))),
+            }
+        }
+        for (body, parts) in functions {
+            let surface = SoftSurface {
+                body,
+                ..SoftSurface::default()
+            };
+            surfaces.push(Surface::Composed(blend(surface, parts)));
+        }
+        surfaces.sort_by_key(Surface::body);
+        surfaces
+    }
+}
+
+/// The sum of a body's primitives and of functions, each of one element.
+fn blend(surface: SoftSurface, functions: Vec<(u32, Arc<dyn Implicit>)>) -> ComposedSurface {
+    let mut element = surface.element;
+    element.extend(functions.iter().map(|(index, _)| index));
+    let functions = functions.into_iter().map(|(_, function)| (function, 1));
+    ComposedSurface {
+        body: surface.body,
+        function: Arc::new(Blend::new(surface.sum, functions.collect())),
+        element,
+    }
+}
