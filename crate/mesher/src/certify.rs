@@ -3,7 +3,7 @@
 //! Let a triangle have the unit normal n and be divided into a grid of equal triangles in balls of radius ρ, and let D bound the third
 //! derivative of F nearby. The gradients at the corners of a triangle of the grid, interpolated linearly, are the
 //! gradient in it up to e = D·ρ²/2 (terms whose second derivative jumps add their curvature times ρ). So
-//! −∇F·n is at least its least value s at those corners less e, and F − T is within e·ρ of a polynomial of the second degree, whose
+//! −∇F·n is at least its least value s at those corners less e, and F − T is within 3e·ρ of a polynomial of the second degree, whose
 //! size is at most that of its Bézier coefficients: the values at corners, and values plus half the slope along edges. With that
 //! bound m on |F − T| and a bound C on the curvature within d of the triangle, the line of steepest ascent or descent
 //! from any point of the triangle meets the surface within d, if d·(s − e − C·d) ≥ m.
@@ -100,7 +100,8 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
     let proved = |grid: usize, steep: f64, highest: f64| {
         let radius = radius / grid as f64;
         let rest = 0.5 * third * radius * radius + rough * radius + SLACK;
-        let (steep, off) = (steep - rest, highest + rest * radius + SLACK);
+        // Coefficients that are found from different corners differ by e times an edge.
+        let (steep, off) = (steep - rest, highest + 3.0 * rest * radius + SLACK);
         let square = steep * steep - 4.0 * curvature * off;
         // Not so for NaN.
         if !(steep > 0.0 && square >= 0.0) {
