@@ -373,13 +373,20 @@ impl Bound {
         } else {
             f64::INFINITY
         };
-        let Some(ripple) = &self.ripple else {
+        if self.ripple.is_none() {
             return own;
-        };
-        let [first, second, third, _] = ripple.derivatives(near.axis_distance);
+        }
+        let [first, second, third, _] = self.factor(near);
         own + 3.0 * self.derivative(near, 2) * first
             + 3.0 * self.derivative(near, 1) * second
             + self.magnitude(near) * third
+    }
+
+    /// Returns a bound on the jump of the gradient of f at a [kink](crate::kinks) of the profile.
+    #[must_use]
+    pub fn jump(&self, near: Nearness) -> f64 {
+        let [first, ..] = self.factor(near);
+        2.0 * self.magnitude(near) * first
     }
 
     /// Returns bounds on the first to fourth derivative of the profile's factor, over its size; 0 without a profile.

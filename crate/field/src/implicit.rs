@@ -101,10 +101,14 @@ pub struct Part {
 pub struct Variation {
     /// Bounds up to the second derivative. Its values need not be narrowed by [`Enclosure::about`].
     pub range: Enclosure,
+    /// The largest size of the second derivative along any line, between kinks.
+    pub curvature: f64,
     /// The largest size of the third derivative along any line, of the terms whose second derivative is continuous in the ball.
     pub third: f64,
-    /// The largest size of the second derivative along any line, of all other terms.
+    /// The largest size of the second derivative along any line, of all other terms, between kinks.
     pub rough: f64,
+    /// The sum of the jumps of the gradient in the ball; infinite if the value jumps.
+    pub jump: f64,
 }
 
 /// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
@@ -158,10 +162,15 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// the part are looked at.
     fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
         let range = self.enclose(ball);
+        let is_smooth = range.curvature.is_finite();
+        let curvature = if is_smooth { range.curvature } else { 0.0 };
         Variation {
             range,
+            curvature,
             third: 0.0,
-            rough: range.curvature,
+            rough: curvature,
+            // The gradient is not longer than the slope anywhere.
+            jump: if is_smooth { 0.0 } else { 2.0 * range.slope },
         }
     }
 }

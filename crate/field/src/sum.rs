@@ -191,18 +191,30 @@ impl Implicit for Sum {
         let known = self.known();
         let mut all = Variation {
             range: part.map_or(Enclosure::ZERO, |part| part.rest),
+            curvature: part.map_or(0.0, |part| part.rest.curvature),
             third: 0.0,
             rough: part.map_or(0.0, |part| part.rest.curvature),
+            jump: 0.0,
         };
         let mut add = |known: &Known| {
             let range = known.enclose(ball);
-            let near = known.bound.nearness(ball.center, ball.radius);
-            let third = known.bound.third(near);
             all.range = all.range.plus(range);
-            if range.curvature.is_finite() && third.is_finite() {
-                all.third += third;
+            let near = known.bound.nearness(ball.center, ball.radius);
+            if range.curvature.is_finite() {
+                let third = known.bound.third(near);
+                all.curvature += range.curvature;
+                if third.is_finite() {
+                    all.third += third;
+                } else {
+                    all.rough += range.curvature;
+                }
+            } else if range.slope.is_finite() {
+                let curvature = known.bound.curvature(near);
+                all.curvature += curvature;
+                all.rough += curvature;
+                all.jump += known.bound.jump(near).min(2.0 * range.slope);
             } else {
-                all.rough += range.curvature;
+                all.jump = f64::INFINITY;
             }
         };
         match part {

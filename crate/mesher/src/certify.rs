@@ -91,15 +91,16 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
     };
     let part = space.part_for(reach);
     let Variation {
-        range,
+        curvature,
         third,
         rough,
+        jump,
+        ..
     } = space.variation(part, reach);
-    let curvature = range.curvature;
     // What is proved with the least steepness and the highest value at the corners of a grid.
     let proved = |grid: usize, steep: f64, highest: f64| {
         let radius = radius / grid as f64;
-        let rest = 0.5 * third * radius * radius + rough * radius + SLACK;
+        let rest = (0.5 * third * radius + rough).min(curvature) * radius + jump + SLACK;
         // Coefficients that are found from different corners differ by e times an edge.
         let (steep, off) = (steep - rest, highest + 3.0 * rest * radius + SLACK);
         let square = steep * steep - 4.0 * curvature * off;

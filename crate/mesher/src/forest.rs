@@ -1,6 +1,6 @@
 //! A balanced forest of octrees: a box cut into cells, of which neighbours across faces and edges differ by one level at most.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use mesh::Aabb;
 
 /// No node, no part.
@@ -25,41 +25,21 @@ pub enum Side {
 /// Bounds on the function in a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Gradient at the centre.
-    pub gradient: DVec3,
-    /// Second derivative there.
-    pub hessian: DMat3,
-    /// Largest error of the gradient that follows from these two, in the cell.
+    /// Largest difference between the gradient and its linear interpolant in a tetrahedron of the cell.
     pub rest: f64,
-    /// Largest change of the gradient from the centre to any point of the cell.
-    pub spread: f64,
-    /// Largest distance between the level set of the linear interpolant and the surface in the cell; infinite if unknown.
+    /// Largest difference between the function and its linear interpolant there.
+    pub off: f64,
+    /// Largest distance between the level set of that interpolant and the surface in the cell; infinite if unknown.
     pub error: f64,
 }
 
 impl Bounds {
     /// No bounds.
     pub const NONE: Self = Self {
-        gradient: DVec3::ZERO,
-        hessian: DMat3::ZERO,
         rest: f64::INFINITY,
-        spread: f64::INFINITY,
+        off: f64::INFINITY,
         error: f64::INFINITY,
     };
-
-    /// Whether the gradient has a positive part along a direction in all of a polytope of the cell, with these corners relative
-    /// to the centre.
-    pub fn rises(&self, direction: DVec3, corners: &[DVec3]) -> bool {
-        let length = direction.length();
-        let start = self.gradient.dot(direction);
-        // Not so for NaN.
-        if start > self.spread * length {
-            return true;
-        }
-        let turned = self.hessian * direction;
-        let least = corners.iter().map(|c| turned.dot(*c)).fold(f64::INFINITY, f64::min);
-        start + least > self.rest * length
-    }
 }
 
 /// A cell.

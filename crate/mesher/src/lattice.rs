@@ -35,7 +35,7 @@ pub fn direction(side: usize) -> [i64; 3] {
 #[derive(Debug, Default)]
 pub struct Lattice {
     keys: Vec<Key>,
-    values: Vec<f64>,
+    values: Vec<(f64, DVec3)>,
 }
 
 impl Lattice {
@@ -62,13 +62,13 @@ impl Lattice {
     }
 
     /// Value at a vertex, less the threshold: never 0.
-    pub fn value(&self, key: Key) -> f64 {
-        self.values[self.index(key) as usize]
+    pub fn value(&self, index: u32) -> f64 {
+        self.values[index as usize].0
     }
 
-    /// Value by index.
-    pub fn value_of(&self, index: u32) -> f64 {
-        self.values[index as usize]
+    /// Gradient at a vertex.
+    pub fn gradient(&self, index: u32) -> DVec3 {
+        self.values[index as usize].1
     }
 
     /// Evaluates the function at all vertices of the tetrahedra of some cells where that was not done.
@@ -88,20 +88,22 @@ impl Lattice {
         let values = map(threads, &wanted, |(key, node)| {
             let cell = &space.forest.cells[*node as usize];
             let jet = space.jet(cell.part, space.forest.position(unpack(*key)));
-            let slope = DVec3::from_array(jet.gradient).length();
+            let gradient = DVec3::from_array(jet.gradient);
+            let slope = gradient.length();
             let least = space.forest.size(cell.level).max_element();
             let least = slope * (NUDGE * tolerance).min(0.02 * least) + f64::MIN_POSITIVE;
             let value = jet.value - THRESHOLD;
             // A value that is no number counts as outside.
-            if value.abs() >= least {
+            let value = if value.abs() >= least {
                 value
             } else if value > 0.0 {
                 least
             } else {
                 -least
-            }
+            };
+            (value, gradient)
         });
-        let mut all: Vec<(Key, f64)> = self.keys.drain(..).zip(self.values.drain(..)).collect();
+        let mut all: Vec<(Key, (f64, DVec3))> = self.keys.drain(..).zip(self.values.drain(..)).collect();
         all.extend(wanted.iter().map(|(key, _)| *key).zip(values));
         all.sort_unstable_by_key(|(key, _)| *key);
         (self.keys, self.values) = all.into_iter().unzip();

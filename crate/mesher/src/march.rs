@@ -97,7 +97,7 @@ fn in_cell(forest: &Forest, lattice: &Lattice, node: u32) -> Vec<([Place; 3], Or
     let mut triangles = Vec::new();
     tetrahedra(forest, node, &mut |keys, owners| {
         let corners = keys.map(|key| lattice.index(key));
-        let inside = corners.map(|i| lattice.value_of(i) > 0.0);
+        let inside = corners.map(|i| lattice.value(i) > 0.0);
         let owners = owners.map(|i| &forest.cells[i as usize]);
         let is_fixed = owners.iter().any(|cell| cell.undecided);
         let error = owners
@@ -117,7 +117,7 @@ fn in_cell(forest: &Forest, lattice: &Lattice, node: u32) -> Vec<([Place; 3], Or
     });
     triangles.extend(lids(forest, node, |key| {
         let index = lattice.index(key);
-        (index, lattice.value_of(index) > 0.0)
+        (index, lattice.value(index) > 0.0)
     }));
     triangles
 }
@@ -200,7 +200,7 @@ pub fn march(forest: &Forest, lattice: &Lattice, threads: usize) -> Raw {
         if a == b {
             return at(a);
         }
-        let [u, v] = [a, b].map(|i| lattice.value_of(i));
+        let [u, v] = [a, b].map(|i| lattice.value(i));
         at(a).lerp(at(b), u / (u - v))
     });
     let index = |place: &Place| match places.binary_search(place) {

@@ -1,10 +1,10 @@
 //! Refinement of cells until each proves that the linear interpolant has the topology of the surface and is near it.
 //!
-//! Let L be the interpolant of F on the tetrahedra of the [lattice](crate::lattice). Where no cell with F = T lies in a
+//! Let L be the interpolant of F on the tetrahedra of the [lattice](crate::lattice). Where no point with F = T lies in a
 //! tetrahedron, or else ⟨∇F(x), ∇L⟩ > 0 for all x of it, the level sets of (1−s)F + sL are isotopic for all s from 0 to 1: none
-//! of the generalised gradients vanishes (Agrachev, Pallaschke and Scholtes 1997, on piecewise smooth functions). The
-//! condition is Plantinga and Vegter's, for tetrahedra: it holds if ⟨g, ∇L⟩ > C·r·|∇L|, with g the gradient at the centre
-//! of a ball of radius r around the cell and C the bound on the curvature there.
+//! of the generalised gradients vanishes (Agrachev, Pallaschke and Scholtes 1997, on piecewise smooth functions). That is Plantinga
+//! and Vegter's condition, for tetrahedra. The gradient in a tetrahedron in a ball of radius R is the linear interpolant of
+//! those at its corners up to D·R²/2, with D a bound on the third derivative; or up to C·R, with C one on the second.
 
 use crate::forest::{Bounds, Cell, Forest, NONE, Side};
 use crate::lattice::Lattice;
@@ -15,10 +15,11 @@ use field::{Ball, Part, THRESHOLD, Variation};
 use glam::DVec3;
 use mesh::Aabb;
 
-/// Cells are split until the gradient is so many times its possible change: then nearly all tetrahedra pass.
-const STEADY: f64 = 1.2;
+/// Cells are split until the gradient is so many times the error of its interpolant: then nearly all tetrahedra pass.
+const STEADY: f64 = 1.5;
 
-/// |F − L| ≤ C·R²/2 on a tetrahedron in a ball of radius R (Waldron 1998), and those of a cell of size s have R² ≤ 5/16·s².
+/// The tetrahedra of a cell of size s are in balls with R² = 5/16·s²; linear interpolation is off by R²/2 times the second
+/// derivative at most (Waldron 1998).
 const INTERPOLATION: f64 = 5.0 / 32.0;
 
 /// Values nearer to the threshold than this share of the tolerance times the slope are moved away from it, so that no vertex
@@ -46,53 +47,42 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     };
     let Variation {
         range,
+        curvature,
         third,
         rough,
+        jump,
     } = space.variation(cell.part, ball);
     let jet = space.jet(cell.part, center);
-    let side_of = |[low, high]: [f64; 2]| {
-        if low - SLACK > THRESHOLD {
-            Side::Inside
-        } else if high + SLACK < THRESHOLD {
-            Side::Outside
-        } else {
-            Side::Crossing
-        }
-    };
     let gradient = DVec3::from_array(jet.gradient);
-    let mut side = side_of(range.about(&jet, radius).value);
-    let mut bounds = Bounds {
-        gradient,
-        spread: range.curvature * radius + SLACK / radius,
-        ..Bounds::NONE
+    // The cell is a box: a part of the ball.
+    let linear = (0.5 * gradient.abs() * size).element_sum();
+    let change = linear + (0.5 * curvature * radius + jump) * radius + SLACK;
+    let narrow = range.about(&jet, radius).value;
+    let low = narrow[0].max(jet.value - change);
+    let high = narrow[1].min(jet.value + change);
+    let side = if low - SLACK > THRESHOLD {
+        Side::Inside
+    } else if high + SLACK < THRESHOLD {
+        Side::Outside
+    } else {
+        Side::Crossing
     };
-    // Differences say nothing of terms whose second derivative jumps; it is at most √3 of their bound.
-    let is_smooth = third.is_finite() && rough.is_finite();
-    let mut bend = range.curvature;
-    if side == Side::Crossing && is_smooth {
-        let step = 1e-3 * radius;
-        let hessian = space.hessian(cell.part, center, step);
-        let rest = |r: f64| 0.5 * third * r * r + 3.0 * rough * r + third * step * r + SLACK / r;
-        let norm = hessian.to_cols_array().map(|x| x * x).into_iter().sum::<f64>().sqrt();
-        // The cell is a box.
-        let linear = (gradient.abs() * size * 0.5).element_sum();
-        let change = linear + 0.5 * norm * radius * radius + radius * rest(radius) + 1e-12;
-        side = side_of([jet.value - change, jet.value + change]);
-        bounds.hessian = hessian;
-        bounds.rest = rest(radius);
-        bounds.spread = bounds.spread.min(norm * radius + rest(radius));
-        bend = bend.min(norm + third * around + 3.0 * rough);
-    }
-    let steep = gradient.length();
     let longest = size.max_element();
-    let beyond = bounds.spread + bend * (around - radius);
-    let off =
-        bend * INTERPOLATION * longest * longest + NUDGE * tolerance * (steep + beyond) + SLACK;
+    let square = INTERPOLATION * longest * longest;
+    let reach = (2.0 * square).sqrt();
+    let rest = (third * square + rough * reach).min(curvature * reach) + jump + SLACK / radius;
+    let off = curvature * square + jump * reach + SLACK;
+    let steep = gradient.length();
+    let nudged = off + NUDGE * tolerance * steep;
+    let mut bounds = Bounds {
+        rest: if rest.is_nan() { f64::INFINITY } else { rest },
+        off,
+        error: f64::INFINITY,
+    };
     // Not so for NaN.
-    let is_steady = steep > STEADY * bounds.spread.min(0.6 * bounds.spread + bounds.rest);
-    let least = steep - beyond.min(0.6 * beyond + bounds.rest);
-    if least > 0.0 {
-        bounds.error = off / least;
+    let is_steady = steep > STEADY * rest;
+    if is_steady {
+        bounds.error = nudged / (steep - rest);
     }
     let wanted = side == Side::Crossing && !(is_steady && bounds.error <= tolerance);
     let split = wanted && cell.level < forest.deepest;
@@ -185,7 +175,7 @@ pub fn refine(
         look_beside(space, tolerances, threads);
         let crossing = crossing(&space.forest);
         lattice.extend(space, &crossing, tolerances[0], threads);
-        let failing = map(threads, &crossing, |node| failing(space, &lattice, *node));
+        let failing = map(threads, &crossing, |node| failing(space, &lattice, *node, tolerances[0]));
         let mut failing: Vec<u32> = failing.into_iter().flatten().collect();
         failing.sort_unstable();
         failing.dedup();
@@ -317,23 +307,34 @@ pub fn crossing(forest: &Forest) -> Vec<u32> {
 }
 
 /// The cells in which a tetrahedron of a cell does not prove the topology.
-fn failing(space: &Space<'_>, lattice: &Lattice, node: u32) -> Vec<u32> {
+fn failing(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> Vec<u32> {
     let cells = &space.forest.cells;
     let mut failing = Vec::new();
     crate::lattice::tetrahedra(&space.forest, node, &mut |keys, owners| {
+        let vertices = keys.map(|key| lattice.index(key));
+        let values = vertices.map(|i| lattice.value(i));
+        let bounds = owners.map(|owner| cells[owner as usize].bounds);
+        let off = bounds[0].off.max(bounds[1].off);
+        let gradients = vertices.map(|i| lattice.gradient(i));
+        let steepest = gradients.iter().map(|g| g.length()).fold(0.0, f64::max);
+        let off = off + 2.0 * NUDGE * tolerance * steepest;
+        // Neither the function nor its interpolant is 0 in it.
+        if values.iter().all(|v| *v > off) || values.iter().all(|v| *v < -off) {
+            return;
+        }
         let corners = keys.map(|key| space.forest.position(crate::lattice::unpack(key)));
-        let values = keys.map(|key| lattice.value(key));
         let slope = gradient(&corners, &values);
-        for (k, owner) in owners.into_iter().enumerate() {
-            let center = space.forest.center(&cells[owner as usize]);
-            let mut within = corners.map(|p| p - center);
-            if owners[0] != owners[1] {
-                // The half in this cell ends where the line of the centres crosses the face.
-                within[1 - k] = 0.5 * (corners[0] + corners[1]) - center;
-            }
-            let proves = cells[owner as usize].bounds.rises(slope, &within);
-            if !proves && !failing.contains(&owner) {
-                failing.push(owner);
+        let rises = gradients.map(|gradient| gradient.dot(slope));
+        let least = rises.into_iter().fold(f64::INFINITY, f64::min);
+        let rest = bounds[0].rest.max(bounds[1].rest);
+        // Not so for NaN.
+        let proves = least > rest * slope.length();
+        if !proves {
+            for (owner, own) in owners.into_iter().zip(bounds) {
+                // The other one alone may be to blame.
+                if own.rest >= 0.5 * rest && !failing.contains(&owner) {
+                    failing.push(owner);
+                }
             }
         }
     });

@@ -2,7 +2,7 @@
 
 use field::{Ball, Implicit, Jet, Part, Variation};
 use core::sync::atomic::{AtomicU64, Ordering};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use crate::forest::{Cell, Forest, NONE};
 
@@ -58,18 +58,6 @@ impl<'a> Space<'a> {
     pub fn variation(&self, part: u32, ball: Ball) -> Variation {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
         self.function.variation(self.part(part), ball)
-    }
-
-    /// The second derivative at a point, from differences over a step; the error is that of the third derivative times the
-    /// step.
-    pub fn hessian(&self, part: u32, point: DVec3, step: f64) -> DMat3 {
-        let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
-            let [one, other] = [step, -step]
-                .map(|step| DVec3::from_array(self.jet(part, point + axis * step).gradient));
-            (one - other) / (2.0 * step)
-        });
-        let columns = DMat3::from_cols(columns[0], columns[1], columns[2]);
-        0.5 * (columns + columns.transpose())
     }
 
     /// Number of evaluations of values and bounds.
