@@ -107,8 +107,10 @@ pub struct Variation {
     pub third: f64,
     /// The largest size of the second derivative along any line, of all other terms, between kinks.
     pub rough: f64,
-    /// The sum of the jumps of the gradient in the ball; infinite if the value jumps.
+    /// The sum of the jumps of the gradient at kinks in the ball.
     pub jump: f64,
+    /// The sum of the jumps of the value in the ball; the derivatives are then those on either side.
+    pub step: f64,
 }
 
 /// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
@@ -171,6 +173,7 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
             rough: curvature,
             // The gradient is not longer than the slope anywhere.
             jump: if is_smooth { 0.0 } else { 2.0 * range.slope },
+            step: 0.0,
         }
     }
 }

@@ -195,6 +195,7 @@ impl Implicit for Sum {
             third: 0.0,
             rough: part.map_or(0.0, |part| part.rest.curvature),
             jump: 0.0,
+            step: 0.0,
         };
         let mut add = |known: &Known| {
             let range = known.enclose(ball);
@@ -208,13 +209,14 @@ impl Implicit for Sum {
                 } else {
                     all.rough += range.curvature;
                 }
-            } else if range.slope.is_finite() {
+            } else {
                 let curvature = known.bound.curvature(near);
                 all.curvature += curvature;
                 all.rough += curvature;
                 all.jump += known.bound.jump(near).min(2.0 * range.slope);
-            } else {
-                all.jump = f64::INFINITY;
+                if !range.slope.is_finite() {
+                    all.step += range.value[1] - range.value[0];
+                }
             }
         };
         match part {

@@ -8,7 +8,7 @@
 //! bound m on |F − T| and a bound C on the curvature within d of the triangle, the line of steepest ascent or descent
 //! from any point of the triangle meets the surface within d, if d·(s − e − C·d) ≥ m.
 //!
-//! A closed mesh of such triangles that was made from an isotopic one by changes of such triangles covers each point of the
+//! A closed mesh of such triangles that was made from an isotopic one by changes near the surface covers each point of the
 //! surface exactly once: along those lines it is mapped to the surface with positive orientation and degree 1. So it is
 //! isotopic to the surface, does not cut itself, and no point of the surface is farther from it than from the mesh the
 //! points of which are mapped there.
@@ -95,6 +95,7 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
         third,
         rough,
         jump,
+        step,
         ..
     } = space.variation(part, reach);
     // What is proved with the least steepness and the highest value at the corners of a grid.
@@ -102,7 +103,7 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
         let radius = radius / grid as f64;
         let rest = (0.5 * third * radius + rough).min(curvature) * radius + jump + SLACK;
         // Coefficients that are found from different corners differ by e times an edge.
-        let (steep, off) = (steep - rest, highest + 3.0 * rest * radius + SLACK);
+        let (steep, off) = (steep - rest, highest + 3.0 * rest * radius + step + SLACK);
         let square = steep * steep - 4.0 * curvature * off;
         // Not so for NaN.
         if !(steep > 0.0 && square >= 0.0) {
@@ -160,6 +161,40 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
         }
     }
     None
+}
+
+/// The place of the surface on a segment between two points where the function, less the threshold, has other signs:
+/// as a share of the way, between `margin` and 1 − `margin`. By false position with the slopes that were met on the way.
+pub fn root(space: &Space<'_>, [a, b]: [DVec3; 2], [at_a, at_b]: [f64; 2], margin: f64) -> Vertex {
+    let part = space.part_for(Ball {
+        center: 0.5 * (a + b),
+        radius: 0.5 * a.distance(b),
+    });
+    let (mut low, mut high) = ((0.0, at_a), (1.0, at_b));
+    let mut share = at_a / (at_a - at_b);
+    let mut vertex = Vertex::new(a.lerp(b, share), &space.jet(part, a.lerp(b, share)));
+    for _ in 0..4 {
+        let slope = vertex.gradient.dot(b - a);
+        if (vertex.value > 0.0) == (at_a > 0.0) {
+            low = (share, vertex.value);
+        } else {
+            high = (share, vertex.value);
+        }
+        let newton = share - vertex.value / slope;
+        let next = if newton > low.0 && newton < high.0 {
+            newton
+        } else {
+            low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1)
+        };
+        let next = next.clamp(margin, 1.0 - margin);
+        let is_done = (next - share).abs() < 1e-5;
+        share = next;
+        if is_done {
+            break;
+        }
+        vertex = Vertex::new(a.lerp(b, share), &space.jet(part, a.lerp(b, share)));
+    }
+    vertex
 }
 
 /// The point of the surface that is reached from a position along gradients, by a few steps of Newton's; not farther than

@@ -16,14 +16,20 @@ use mesh::{FaceId, HalfEdgeId, HalfEdgeMesh, TriangleMesh, VertexId};
 const FAIR: f64 = 0.42;
 /// Most edges at a vertex after a collapse.
 const MOST_EDGES: usize = 9;
+/// Rounds in which triangles are divided or removed until all are near the surface.
+const SETTLE_ROUNDS: usize = 24;
+/// Sine of the smallest angle below which a triangle is not divided but removed.
+const THIN: f64 = 0.25;
 /// Most rounds of one kind of edit.
 const MOST_ROUNDS: usize = 60;
 
 /// A change of the mesh.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Edit {
     /// Merges the origin of a half-edge into its target.
     Collapse(HalfEdgeId),
+    /// The same, as long as the mesh stays near the surface at all.
+    Merge(HalfEdgeId),
     /// Replaces an edge by the other diagonal.
     Flip(HalfEdgeId),
     /// Puts a vertex on an edge.
@@ -78,18 +84,18 @@ impl<'a> Improver<'a> {
         threads: usize,
     ) -> Result<Self, MeshError> {
         let Raw {
-            positions,
+            vertices,
             triangles,
             origins,
             ..
         } = raw;
-        let mut is_fixed = vec![false; positions.len()];
+        let mut is_fixed = vec![false; vertices.len()];
         for (triangle, origin) in triangles.iter().zip(&origins) {
             for i in triangle.iter().filter(|_| origin.is_fixed) {
                 is_fixed[*i as usize] = true;
             }
         }
-        let vertices = map(threads, &positions, |p| Vertex::new(*p, &space.jet_at(*p)));
+        let positions = vertices.iter().map(|v| v.position).collect();
         let mesh = HalfEdgeMesh::from_triangles(&TriangleMesh::new(positions, triangles))
             .map_err(|error| MeshError::Failed(error.to_string()))?;
         Ok(Self {
@@ -102,7 +108,11 @@ impl<'a> Improver<'a> {
             mesh,
             vertices,
             is_fixed,
-            errors: origins.iter().map(|origin| origin.error).collect(),
+            // Sliding to the surface may have turned flat triangles.
+            errors: origins
+                .iter()
+                .map(|origin| if origin.is_fixed { origin.error } else { f32::INFINITY })
+                .collect(),
             round: 1,
         })
     }
@@ -112,8 +122,7 @@ impl<'a> Improver<'a> {
     /// # Errors
     /// If the caller cancels.
     pub fn run(mut self, progress: &mut Progress<'_>) -> Result<Improved, MeshError> {
-        self.collapse(&mut progress.part(0.0, 0.3))?;
-        self.relax(&mut progress.part(0.3, 0.4))?;
+        self.collapse(&mut progress.part(0.0, 0.4))?;
         self.settle(&mut progress.part(0.4, 0.5))?;
         for i in 0..3 {
             let mut progress = progress.part(0.5 + 0.16 * i as f32, 0.66 + 0.16 * i as f32);
@@ -123,6 +132,7 @@ impl<'a> Improver<'a> {
         }
         self.flip(progress)?;
         self.relax(progress)?;
+        self.settle(progress)?;
         let mesh = &self.mesh;
         let error = mesh.faces().map(|f| self.errors[f.index()]).fold(0.0, f32::max);
         let normals = mesh.vertices().map(|v| self.vertices[v.index()].normal());
@@ -154,7 +164,7 @@ impl<'a> Improver<'a> {
             edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let edits = edges.into_iter().map(|(_, h)| Edit::Collapse(h));
             let done = self.do_round(edits.collect());
-            if done * 400 < self.mesh.face_count() {
+            if done * 200 < self.mesh.face_count() {
                 break;
             }
         }
@@ -193,49 +203,74 @@ impl<'a> Improver<'a> {
         Ok(())
     }
 
-    /// Proves triangles anew that are too far from the surface, and divides those that are too large.
+    /// Proves triangles that are not yet proved to be near the surface; divides those that are too large, and removes flat ones.
     fn settle(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
-        for round in 0..MOST_ROUNDS {
-            progress.at(round as f32 / MOST_ROUNDS as f32)?;
-            let tolerance = self.tolerance as f32;
-            let far: Vec<FaceId> = self
-                .mesh
-                .faces()
-                .filter(|f| self.errors[f.index()] > tolerance)
+        for round in 0..SETTLE_ROUNDS {
+            progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
+            let far = self.unproved();
+            let mut edits: Vec<(f64, Edit)> = far
+                .into_iter()
+                .filter_map(|f| self.remedy(f, round))
                 .collect();
-            let this = &*self;
-            let proved = map(self.threads, &far, |f| {
-                let corners = this.corners(*f).map(|v| this.vertices[v.index()]);
-                distance(this.space, corners.each_ref(), this.tolerance)
-            });
-            let mut edges: Vec<(f64, HalfEdgeId)> = Vec::new();
-            for (f, proved) in far.into_iter().zip(proved) {
-                if let Some(distance) = proved {
-                    self.errors[f.index()] = distance as f32;
-                } else {
-                    edges.extend(self.longest_edge(f));
-                }
-            }
-            edges.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            edges.dedup();
-            let edits = edges.into_iter().map(|(_, h)| Edit::Split(h));
-            if self.do_round(edits.collect()) == 0 {
+            edits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            edits.dedup_by_key(|(_, edit)| *edit);
+            let edits = edits.into_iter().map(|(_, edit)| edit).collect::<Vec<_>>();
+            if edits.is_empty() || (self.do_round(edits) == 0 && round > 3) {
                 break;
             }
         }
+        self.unproved();
         Ok(())
     }
 
-    /// The longest edge of a face, as its even half-edge, with its length; `None` if it is fixed.
-    fn longest_edge(&self, f: FaceId) -> Option<(f64, HalfEdgeId)> {
-        let mesh = &self.mesh;
-        let edges = mesh.face_half_edges(f).map(|h| {
-            let [a, b] = [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v));
-            (a.distance_squared(b), h.min(mesh.twin(h)))
+    /// The faces that are not proved to be within the tolerance, also after another attempt.
+    fn unproved(&mut self) -> Vec<FaceId> {
+        let tolerance = self.tolerance as f32;
+        let faces = self.mesh.faces();
+        let far: Vec<FaceId> = faces
+            .filter(|f| self.errors[f.index()] > tolerance && !self.is_fixed_face(*f))
+            .collect();
+        let this = &*self;
+        let proved = map(self.threads, &far, |f| {
+            let corners = this.corners(*f).map(|v| this.vertices[v.index()]);
+            distance(this.space, corners.each_ref(), this.tolerance)
         });
-        let longest = edges.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))?;
-        let [a, b, c, d] = self.diamond(longest.1).map(|v| self.is_fixed[v.index()]);
-        (!(a && b && (c || d))).then_some(longest)
+        let mut unproved = Vec::new();
+        for (f, proved) in far.into_iter().zip(proved) {
+            match proved {
+                Some(distance) => self.errors[f.index()] = distance as f32,
+                None => unproved.push(f),
+            }
+        }
+        unproved
+    }
+
+    fn is_fixed_face(&self, f: FaceId) -> bool {
+        self.corners(f).iter().all(|v| self.is_fixed[v.index()])
+    }
+
+    /// What may help a face that is not proved to be near the surface.
+    fn remedy(&self, f: FaceId, round: usize) -> Option<(f64, Edit)> {
+        let mesh = &self.mesh;
+        let mut edges: Vec<(f64, HalfEdgeId)> = mesh
+            .face_half_edges(f)
+            .map(|h| {
+                let [a, b] = [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v));
+                (a.distance_squared(b), h.min(mesh.twin(h)))
+            })
+            .collect();
+        edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let (short, long) = (edges.first()?, edges.last()?);
+        if self.angle(f) > THIN || round % 4 == 3 {
+            let [a, b, c, d] = self.diamond(long.1).map(|v| self.is_fixed[v.index()]);
+            return (!(a && b && (c || d))).then_some((-long.0, Edit::Split(long.1)));
+        }
+        if round % 2 == 1 {
+            return self.flip_gain(long.1).map(|gain| (-gain, Edit::Flip(long.1)));
+        }
+        let [a, b] = [mesh.origin(short.1), mesh.target(short.1)].map(|v| self.is_fixed[v.index()]);
+        let h = if a { mesh.twin(short.1) } else { short.1 };
+        (!(a && b)).then_some((short.0, Edit::Merge(h)))
     }
 
     /// Plans those of some edits, in their order, that do not touch each other, and applies those that are good. Returns how
@@ -272,7 +307,7 @@ impl<'a> Improver<'a> {
     fn touched(&self, edit: Edit, out: &mut Vec<VertexId>) {
         let mesh = &self.mesh;
         match edit {
-            Edit::Collapse(h) => {
+            Edit::Collapse(h) | Edit::Merge(h) => {
                 out.extend([mesh.origin(h), mesh.target(h)]);
                 out.extend(mesh.neighbors(mesh.origin(h)));
                 out.extend(mesh.neighbors(mesh.target(h)));
@@ -294,14 +329,17 @@ impl<'a> Improver<'a> {
 
     fn plan(&self, edit: Edit) -> Option<Plan> {
         match edit {
-            Edit::Collapse(h) => self.plan_collapse(h),
+            Edit::Collapse(h) => self.plan_collapse(h, [self.tolerance, FAIR]),
+            Edit::Merge(h) => self.plan_collapse(h, [self.coarse, 0.1]),
             Edit::Flip(h) => self.plan_flip(h),
             Edit::Split(h) => self.plan_split(h),
             Edit::Move(v) => self.plan_move(v),
         }
     }
 
-    fn plan_collapse(&self, h: HalfEdgeId) -> Option<Plan> {
+    /// The collapse of an edge, with the largest distance from the surface, and the least sine of an angle unless there is a smaller
+    /// one.
+    fn plan_collapse(&self, h: HalfEdgeId, limits: [f64; 2]) -> Option<Plan> {
         let mesh = &self.mesh;
         let (u, v) = (mesh.origin(h), mesh.target(h));
         let common = mesh.neighbors(u).filter(|n| mesh.find_half_edge(v, *n).is_some());
@@ -310,26 +348,32 @@ impl<'a> Improver<'a> {
         }
         let [at_u, at_v] = [u, v].map(|v| self.vertices[v.index()]);
         if self.is_fixed[v.index()] {
-            return self.try_collapse(h, at_v, false);
+            return self.try_collapse(h, at_v, false, limits);
         }
         let length = at_u.position.distance(at_v.position);
         let middle = 0.5 * (at_u.position + at_v.position);
         let between = project(self.space, middle, length, self.tolerance);
         between
-            .and_then(|vertex| self.try_collapse(h, vertex, true))
-            .or_else(|| self.try_collapse(h, at_v, false))
-            .or_else(|| self.try_collapse(h, at_u, true))
+            .and_then(|vertex| self.try_collapse(h, vertex, true, limits))
+            .or_else(|| self.try_collapse(h, at_v, false, limits))
+            .or_else(|| self.try_collapse(h, at_u, true, limits))
     }
 
     /// The collapse of an edge to a vertex; `moves` if the target of the half-edge gets another position.
-    fn try_collapse(&self, h: HalfEdgeId, vertex: Vertex, moves: bool) -> Option<Plan> {
+    fn try_collapse(
+        &self,
+        h: HalfEdgeId,
+        vertex: Vertex,
+        moves: bool,
+        [tolerance, fair]: [f64; 2],
+    ) -> Option<Plan> {
         let mesh = &self.mesh;
         let ends = [mesh.origin(h), mesh.target(h)];
         let beside = [mesh.face(h), mesh.face(mesh.twin(h))];
         let around = |v: VertexId| mesh.vertex_faces(v).filter(move |f| !beside.contains(&Some(*f)));
         let mut faces: Vec<FaceId> = around(ends[0]).collect();
         let before = mesh.vertex_faces(ends[0]).chain(mesh.vertex_faces(ends[1]));
-        let before = before.map(|f| self.angle(f)).fold(FAIR, f64::min);
+        let before = before.map(|f| self.angle(f)).fold(fair, f64::min);
         if moves {
             faces.extend(around(ends[1]));
         }
@@ -337,7 +381,7 @@ impl<'a> Improver<'a> {
             .iter()
             .map(|f| self.corners_with(*f, &ends, vertex))
             .collect();
-        let plan = self.prove(&faces, &corners, before, self.tolerance)?;
+        let plan = self.prove(&faces, &corners, before, tolerance)?;
         Some(Plan {
             vertex: Some(vertex),
             faces: plan,
@@ -489,7 +533,7 @@ impl<'a> Improver<'a> {
 
     fn apply(&mut self, edit: Edit, plan: &Plan) -> bool {
         let center = match (edit, plan.vertex) {
-            (Edit::Collapse(h), Some(vertex)) => {
+            (Edit::Collapse(h) | Edit::Merge(h), Some(vertex)) => {
                 let v = self.mesh.target(h);
                 if self.mesh.collapse_edge(h, vertex.position).is_err() {
                     return false;

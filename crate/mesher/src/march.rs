@@ -1,10 +1,13 @@
-//! Marching tetrahedra: the level set of the linear interpolant, closed by lids where the box cuts it off.
+//! Marching tetrahedra: the level set of the linear interpolant, closed by lids where the box cuts it off. Its vertices slide
+//! along the edges of the lattice to the surface: that keeps each triangle in its tetrahedron, so that the mesh does not cut
+//! itself.
 
+use crate::certify::{Vertex, root};
 use crate::forest::{Forest, NONE, Side};
 use crate::lattice::{Key, Lattice, boundary_triangles, tetrahedra, unpack};
 use crate::parallel::map;
 use crate::refine::crossing;
-use glam::DVec3;
+use crate::space::Space;
 
 /// An edge of the lattice on which a vertex of the mesh lies, as the numbers of its ends, the lower one first; or twice the same
 /// vertex of the lattice.
@@ -24,8 +27,8 @@ pub struct Origin {
 /// The mesh before it is improved.
 #[derive(Debug, Default)]
 pub struct Raw {
-    /// Positions.
-    pub positions: Vec<DVec3>,
+    /// Vertices: on edges of the lattice where the surface crosses those, and at corners of lids.
+    pub vertices: Vec<Vertex>,
     /// Triangles.
     pub triangles: Vec<[u32; 3]>,
     /// What is known of each.
@@ -33,6 +36,9 @@ pub struct Raw {
     /// Whether there are lids.
     pub is_cut: bool,
 }
+
+/// Vertices keep away from the ends of their edges by this share of them.
+const MARGIN: f64 = 0.01;
 
 /// Even permutations that bring one corner to the front.
 const FIRST: [[usize; 4]; 4] = [[0, 1, 2, 3], [1, 0, 3, 2], [2, 0, 1, 3], [3, 0, 2, 1]];
@@ -152,7 +158,8 @@ fn lids(
 
 /// The level set of the interpolant in all cells. Leaves that are wholly inside have lids, too: `lattice` is extended by
 /// their vertices.
-pub fn march(forest: &Forest, lattice: &Lattice, threads: usize) -> Raw {
+pub fn march(space: &Space<'_>, lattice: &Lattice, threads: usize) -> Raw {
+    let forest = &space.forest;
     let cells = crossing(forest);
     let mut triangles: Vec<([Place; 3], Origin)> =
         map(threads, &cells, |node| in_cell(forest, lattice, *node))
@@ -195,20 +202,20 @@ pub fn march(forest: &Forest, lattice: &Lattice, threads: usize) -> Raw {
         };
         forest.position(unpack(key))
     };
-    let positions = places.iter().map(|place| {
+    let vertices = map(threads, &places, |place| {
         let [a, b] = [(place >> 32) as u32, *place as u32];
         if a == b {
-            return at(a);
+            return Vertex::new(at(a), &space.jet_at(at(a)));
         }
-        let [u, v] = [a, b].map(|i| lattice.value(i));
-        at(a).lerp(at(b), u / (u - v))
+        let values = [a, b].map(|i| lattice.value(i));
+        root(space, [at(a), at(b)], values, MARGIN)
     });
     let index = |place: &Place| match places.binary_search(place) {
         Ok(i) | Err(i) => i as u32,
     };
     Raw {
         is_cut: triangles.iter().any(|(_, origin)| origin.is_lid),
-        positions: positions.collect(),
+        vertices,
         triangles: triangles.iter().map(|(p, _)| p.each_ref().map(index)).collect(),
         origins: triangles.iter().map(|(_, origin)| *origin).collect(),
     }

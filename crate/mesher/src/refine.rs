@@ -51,12 +51,13 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
         third,
         rough,
         jump,
+        step,
     } = space.variation(cell.part, ball);
     let jet = space.jet(cell.part, center);
     let gradient = DVec3::from_array(jet.gradient);
     // The cell is a box: a part of the ball.
     let linear = (0.5 * gradient.abs() * size).element_sum();
-    let change = linear + (0.5 * curvature * radius + jump) * radius + SLACK;
+    let change = linear + (0.5 * curvature * radius + jump) * radius + step + SLACK;
     let narrow = range.about(&jet, radius).value;
     let low = narrow[0].max(jet.value - change);
     let high = narrow[1].min(jet.value + change);
@@ -71,7 +72,7 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     let square = INTERPOLATION * longest * longest;
     let reach = (2.0 * square).sqrt();
     let rest = (third * square + rough * reach).min(curvature * reach) + jump + SLACK / radius;
-    let off = curvature * square + jump * reach + SLACK;
+    let off = curvature * square + jump * reach + step + SLACK;
     let steep = gradient.length();
     let nudged = off + NUDGE * tolerance * steep;
     let mut bounds = Bounds {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::forest::{Cell, Forest, NONE};
 
 /// Bound on the sum of terms that are left out at a place, in units of the threshold.
-pub const SLACK: f64 = 1e-9;
+pub const SLACK: f64 = 1e-7;
 
 /// Parts with fewer terms are not divided further.
 const FEW_TERMS: usize = 4;

@@ -82,7 +82,7 @@ pub fn polygonize(
             min: (hull.min - room).max(domain.min),
             max: (hull.max + room).min(domain.max),
         },
-        0.5 * tolerance,
+        tolerance,
     );
     let mut space = Space::new(function, forest);
     let max_raw = max_triangles.saturating_mul(4);
@@ -104,7 +104,7 @@ pub fn polygonize(
     )
     .map_err(too_many)?;
     progress.at(0.4)?;
-    let raw = march(&space.forest, &lattice, threads);
+    let raw = march(&space, &lattice, threads);
     drop(lattice);
     if raw.triangles.is_empty() {
         return Err(MeshError::Nothing);
