@@ -241,6 +241,7 @@ fn summary(part: &ModelPart) -> Value {
         "box": [bounds.min, bounds.max],
         "error": part.error,
         "undecided": part.undecided.len(),
+        "unproved": part.unproved,
         "smallest_angle": mesh.smallest_angle().map(f64::to_degrees),
         "raw_triangles": part.raw_triangles,
     })

@@ -70,6 +70,8 @@ pub struct Improved {
     pub mesh: TriangleMesh,
     /// The largest proved distance of a triangle from the surface.
     pub error: f64,
+    /// Number of triangles of which no distance is proved.
+    pub unproved: usize,
 }
 
 impl<'a> Improver<'a> {
@@ -134,7 +136,9 @@ impl<'a> Improver<'a> {
         self.relax(progress)?;
         self.settle(progress)?;
         let mesh = &self.mesh;
-        let error = mesh.faces().map(|f| self.errors[f.index()]).fold(0.0, f32::max);
+        let errors = || mesh.faces().map(|f| self.errors[f.index()]);
+        let unproved = errors().filter(|error| error.is_infinite()).count();
+        let error = errors().filter(|error| error.is_finite()).fold(0.0, f32::max);
         let normals = mesh.vertices().map(|v| self.vertices[v.index()].normal());
         let normals: Vec<DVec3> = normals.collect();
         let triangles = mesh.to_triangles();
@@ -143,6 +147,7 @@ impl<'a> Improver<'a> {
         Ok(Improved {
             mesh,
             error: f64::from(error),
+            unproved,
         })
     }
 

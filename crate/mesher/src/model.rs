@@ -8,11 +8,11 @@ use crate::surface::{SurfaceMesh as Mesh, box_of, extent, polygonize};
 use crate::unite;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Topology, TriangleMesh};
-use scene::surface::Surface;
-use scene::{Element, Scene, Shape};
+use scene::{Element, Scene, Shape, Surface};
+use serde::{Deserialize, Serialize};
 
 /// How far the mesh may be from the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Tolerance {
     /// In units of the scene.
     Absolute(f64),
@@ -27,7 +27,7 @@ impl Default for Tolerance {
 }
 
 /// Wishes for the mesh of a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wishes {
     /// How far the mesh may be from the surface.
     pub tolerance: Tolerance,
@@ -85,6 +85,8 @@ pub struct ModelPart {
     pub error: f64,
     /// Centres of the cells in which the topology is not proved.
     pub undecided: Vec<DVec3>,
+    /// Triangles whose distance from the surface is not proved.
+    pub unproved: usize,
     /// Triangles before they were made fewer.
     pub raw_triangles: usize,
 }
@@ -327,6 +329,7 @@ fn soft_part(
         mut mesh,
         error,
         undecided,
+        unproved,
         raw_triangles,
         evaluations,
         is_cut,
@@ -350,12 +353,19 @@ fn soft_part(
             first.z,
         ));
     }
+    if unproved > 0 {
+        model.notes.push(format!(
+            "{name}: of {unproved} of {} triangles the distance from the surface is not proved",
+            mesh.triangles.len()
+        ));
+    }
     model.parts.push(ModelPart {
         name,
         mesh,
         is_closed: true,
         error,
         undecided,
+        unproved,
         raw_triangles,
     });
     Ok(())
@@ -429,6 +439,7 @@ fn hard_parts<'a>(
             is_closed,
             error,
             undecided: Vec::new(),
+            unproved: 0,
             raw_triangles: 0,
         });
     }
@@ -524,6 +535,7 @@ fn unite(model: &mut Model) -> Result<(), MeshError> {
             is_closed: true,
             error: closed.iter().map(|part| part.error).fold(0.0, f64::max),
             undecided: closed.iter().flat_map(|part| part.undecided.clone()).collect(),
+            unproved: closed.iter().map(|part| part.unproved).sum(),
             raw_triangles: closed.iter().map(|part| part.raw_triangles).sum(),
         });
     }

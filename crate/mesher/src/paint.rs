@@ -3,8 +3,7 @@
 use crate::parallel::map;
 use glam::DVec3;
 use mesh::{Group, Material, TriangleMesh, roughness_from_phong};
-use scene::surface::Surface;
-use scene::{Finish, Scene};
+use scene::{Finish, Scene, Surface};
 use std::collections::BTreeMap;
 
 /// The material of a finish.

@@ -16,8 +16,10 @@ pub struct SurfaceMesh {
     /// A closed manifold with normals, oriented outward.
     pub mesh: TriangleMesh,
     /// No point of the mesh is farther from the surface than this, and no point of the surface farther from the mesh, but for
-    /// undecided cells.
+    /// undecided cells and unproved triangles.
     pub error: f64,
+    /// Triangles whose distance from the surface is not proved: near undecided cells and kinks.
+    pub unproved: usize,
     /// Centres of the cells in which the topology of the surface is not proved: none if all is.
     pub undecided: Vec<DVec3>,
     /// Edge length of these cells, and the least that cells may have.
@@ -138,6 +140,7 @@ pub fn polygonize(
     Ok(SurfaceMesh {
         mesh: improved.mesh,
         error: improved.error,
+        unproved: improved.unproved,
         undecided,
         finest,
         cells,
