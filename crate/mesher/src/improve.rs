@@ -132,9 +132,9 @@ impl<'a> Improver<'a> {
             self.relax(&mut progress.part(0.2, 0.6))?;
             self.collapse(&mut progress.part(0.6, 1.0))?;
         }
-        self.flip(progress)?;
-        self.relax(progress)?;
-        self.settle(progress)?;
+        self.flip(&mut progress.part(0.98, 0.985))?;
+        self.relax(&mut progress.part(0.985, 0.99))?;
+        self.settle(&mut progress.part(0.99, 1.0))?;
         let mesh = &self.mesh;
         let errors = || mesh.faces().map(|f| self.errors[f.index()]);
         let unproved = errors().filter(|error| error.is_infinite()).count();
@@ -220,7 +220,7 @@ impl<'a> Improver<'a> {
             edits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             edits.dedup_by_key(|(_, edit)| *edit);
             let edits = edits.into_iter().map(|(_, edit)| edit).collect::<Vec<_>>();
-            if edits.is_empty() || (self.do_round(edits) == 0 && round > 3) {
+            if edits.is_empty() || (self.do_round(edits) == 0 && round > 8) {
                 break;
             }
         }
@@ -266,16 +266,31 @@ impl<'a> Improver<'a> {
             .collect();
         edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let (short, long) = (edges.first()?, edges.last()?);
-        if self.angle(f) > THIN || round % 4 == 3 {
-            let [a, b, c, d] = self.diamond(long.1).map(|v| self.is_fixed[v.index()]);
-            return (!(a && b && (c || d))).then_some((-long.0, Edit::Split(long.1)));
+        let is_fixed = |v: VertexId| self.is_fixed[v.index()];
+        let split = |(length, h): (f64, HalfEdgeId)| {
+            let [a, b, c, d] = self.diamond(h).map(is_fixed);
+            (!(a && b && (c || d))).then_some((-length, Edit::Split(h)))
+        };
+        if self.angle(f) > THIN && round % 4 < 2 {
+            return split(*long);
         }
-        if round % 2 == 1 {
-            return self.flip_gain(long.1).map(|gain| (-gain, Edit::Flip(long.1)));
+        let merge = |(length, h): (f64, HalfEdgeId)| {
+            let [a, b] = [mesh.origin(h), mesh.target(h)].map(is_fixed);
+            let h = if a { mesh.twin(h) } else { h };
+            (!(a && b)).then_some((length, Edit::Merge(h)))
+        };
+        match round % 8 {
+            0 | 2 => merge(*short),
+            1 | 5 => Some((-long.0, Edit::Flip(long.1))),
+            4 => merge(edges[1]),
+            6 => merge(*long),
+            3 => split(*long),
+            _ => {
+                let movable = self.corners(f).into_iter().filter(|v| !is_fixed(*v));
+                let least = movable.map(|v| (self.star_angle(v), Edit::Move(v)));
+                least.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+            }
         }
-        let [a, b] = [mesh.origin(short.1), mesh.target(short.1)].map(|v| self.is_fixed[v.index()]);
-        let h = if a { mesh.twin(short.1) } else { short.1 };
-        (!(a && b)).then_some((short.0, Edit::Merge(h)))
     }
 
     /// Plans those of some edits, in their order, that do not touch each other, and applies those that are good. Returns how
@@ -334,34 +349,74 @@ impl<'a> Improver<'a> {
 
     fn plan(&self, edit: Edit) -> Option<Plan> {
         match edit {
-            Edit::Collapse(h) => self.plan_collapse(h, [self.tolerance, FAIR]),
-            Edit::Merge(h) => self.plan_collapse(h, [self.coarse, 0.1]),
+            Edit::Collapse(h) => self.plan_collapse(h),
+            Edit::Merge(h) => self.plan_merge(h),
             Edit::Flip(h) => self.plan_flip(h),
             Edit::Split(h) => self.plan_split(h),
             Edit::Move(v) => self.plan_move(v),
         }
     }
 
-    /// The collapse of an edge, with the largest distance from the surface, and the least sine of an angle unless there is a smaller
-    /// one.
-    fn plan_collapse(&self, h: HalfEdgeId, limits: [f64; 2]) -> Option<Plan> {
+    /// Whether the mesh stays a manifold without an edge.
+    fn can_collapse(&self, h: HalfEdgeId) -> bool {
         let mesh = &self.mesh;
         let (u, v) = (mesh.origin(h), mesh.target(h));
         let common = mesh.neighbors(u).filter(|n| mesh.find_half_edge(v, *n).is_some());
-        if common.count() != 2 || mesh.degree(u) + mesh.degree(v) > MOST_EDGES + 4 {
+        common.count() == 2 && mesh.degree(u) + mesh.degree(v) <= MOST_EDGES + 4
+    }
+
+    /// A collapse after which more triangles are proved to be near the surface.
+    fn plan_merge(&self, h: HalfEdgeId) -> Option<Plan> {
+        let mesh = &self.mesh;
+        let ends = [mesh.origin(h), mesh.target(h)];
+        let beside = [mesh.face(h)?, mesh.face(mesh.twin(h))?];
+        if !self.can_collapse(h) {
+            return None;
+        }
+        let around = |v: VertexId| mesh.vertex_faces(v).filter(move |f| !beside.contains(f));
+        let before = self.unproved_among(around(ends[0]).chain(around(ends[1])).chain(beside));
+        let faces: Vec<FaceId> = around(ends[0]).chain(around(ends[1])).collect();
+        let target = |vertex: Vertex| {
+            let corners = faces.iter().map(|f| self.corners_with(*f, &ends, vertex));
+            let corners: Vec<[Vertex; 3]> = corners.collect();
+            let is_flat = |c: &[Vertex; 3]| sine(c.map(|v| v.position)) < 1e-3;
+            if corners.iter().any(is_flat) {
+                return None;
+            }
+            let faces = self.prove_more(&faces, &corners, before)?;
+            Some(Plan {
+                vertex: Some(vertex),
+                faces,
+            })
+        };
+        let [at_u, at_v] = ends.map(|v| self.vertices[v.index()]);
+        if self.is_fixed[ends[1].index()] {
+            return target(at_v);
+        }
+        let length = at_u.position.distance(at_v.position);
+        let middle = 0.5 * (at_u.position + at_v.position);
+        let between = project(self.space, middle, length, self.tolerance);
+        let choices = [Some(at_v), Some(at_u), between];
+        choices.into_iter().flatten().find_map(target)
+    }
+
+    fn plan_collapse(&self, h: HalfEdgeId) -> Option<Plan> {
+        let mesh = &self.mesh;
+        let (u, v) = (mesh.origin(h), mesh.target(h));
+        if !self.can_collapse(h) {
             return None;
         }
         let [at_u, at_v] = [u, v].map(|v| self.vertices[v.index()]);
         if self.is_fixed[v.index()] {
-            return self.try_collapse(h, at_v, false, limits);
+            return self.try_collapse(h, at_v, false);
         }
         let length = at_u.position.distance(at_v.position);
         let middle = 0.5 * (at_u.position + at_v.position);
         let between = project(self.space, middle, length, self.tolerance);
         between
-            .and_then(|vertex| self.try_collapse(h, vertex, true, limits))
-            .or_else(|| self.try_collapse(h, at_v, false, limits))
-            .or_else(|| self.try_collapse(h, at_u, true, limits))
+            .and_then(|vertex| self.try_collapse(h, vertex, true))
+            .or_else(|| self.try_collapse(h, at_v, false))
+            .or_else(|| self.try_collapse(h, at_u, true))
     }
 
     /// The collapse of an edge to a vertex; `moves` if the target of the half-edge gets another position.
@@ -370,7 +425,6 @@ impl<'a> Improver<'a> {
         h: HalfEdgeId,
         vertex: Vertex,
         moves: bool,
-        [tolerance, fair]: [f64; 2],
     ) -> Option<Plan> {
         let mesh = &self.mesh;
         let ends = [mesh.origin(h), mesh.target(h)];
@@ -378,7 +432,7 @@ impl<'a> Improver<'a> {
         let around = |v: VertexId| mesh.vertex_faces(v).filter(move |f| !beside.contains(&Some(*f)));
         let mut faces: Vec<FaceId> = around(ends[0]).collect();
         let before = mesh.vertex_faces(ends[0]).chain(mesh.vertex_faces(ends[1]));
-        let before = before.map(|f| self.angle(f)).fold(fair, f64::min);
+        let before = before.map(|f| self.angle(f)).fold(FAIR, f64::min);
         if moves {
             faces.extend(around(ends[1]));
         }
@@ -386,7 +440,7 @@ impl<'a> Improver<'a> {
             .iter()
             .map(|f| self.corners_with(*f, &ends, vertex))
             .collect();
-        let plan = self.prove(&faces, &corners, before, tolerance)?;
+        let plan = self.prove(&faces, &corners, before, self.tolerance)?;
         Some(Plan {
             vertex: Some(vertex),
             faces: plan,
@@ -410,6 +464,31 @@ impl<'a> Improver<'a> {
             Some((*f, distance as f32))
         });
         proved.collect()
+    }
+
+    /// Distances of triangles from the surface, infinite where none is proved; `None` if so many are not.
+    fn prove_more(
+        &self,
+        faces: &[FaceId],
+        corners: &[[Vertex; 3]],
+        unproved_before: usize,
+    ) -> Option<Vec<(FaceId, f32)>> {
+        let mut unproved = 0;
+        let mut proved = Vec::with_capacity(faces.len());
+        for (f, corners) in faces.iter().zip(corners) {
+            let distance = distance(self.space, corners.each_ref(), self.coarse);
+            unproved += usize::from(distance.is_none());
+            if unproved >= unproved_before {
+                return None;
+            }
+            proved.push((*f, distance.map_or(f32::INFINITY, |d| d as f32)));
+        }
+        Some(proved)
+    }
+
+    /// How many of some faces are not proved to be near the surface.
+    fn unproved_among(&self, faces: impl Iterator<Item = FaceId>) -> usize {
+        faces.filter(|f| self.errors[f.index()].is_infinite()).count()
     }
 
     /// Whether a triangle has a chance to be proved, and no angle is below the least one.
@@ -449,7 +528,11 @@ impl<'a> Improver<'a> {
             return None;
         }
         let faces = [mesh.face(h)?, mesh.face(mesh.twin(h))?];
-        let mut proved = self.prove(&faces, &[[s, r, p], [r, s, q]], 0.0, self.tolerance)?;
+        let corners = [[s, r, p], [r, s, q]];
+        let mut proved = match self.unproved_among(faces.into_iter()) {
+            0 => self.prove(&faces, &corners, 0.0, self.tolerance)?,
+            before => self.prove_more(&faces, &corners, before)?,
+        };
         // Either may get either number.
         let farthest = proved.iter().map(|(_, distance)| *distance).fold(0.0, f32::max);
         proved.iter_mut().for_each(|(_, distance)| *distance = farthest);
@@ -468,7 +551,11 @@ impl<'a> Improver<'a> {
         let (left, right) = (mesh.face(h)?, mesh.face(mesh.twin(h))?);
         let corners = [[p, m, r], [m, q, r], [q, m, s], [m, p, s]];
         let faces = [left, left, right, right];
-        let proved = self.prove(&faces, &corners, 0.0, self.coarse)?;
+        let proved = match self.unproved_among([left, right].into_iter()) {
+            0 => self.prove(&faces, &corners, 0.0, self.coarse)?,
+            // Each may be divided in an unproved part and another.
+            before => self.prove_more(&faces, &corners, before + 1)?,
+        };
         Some(Plan {
             vertex: Some(m),
             faces: proved,
@@ -496,6 +583,14 @@ impl<'a> Improver<'a> {
                 .iter()
                 .map(|f| self.corners_with(*f, &[v], vertex))
                 .collect();
+            let unproved = self.unproved_among(faces.iter().copied());
+            if unproved > 0 {
+                let proved = self.prove_more(&faces, &corners, unproved)?;
+                return Some(Plan {
+                    vertex: Some(vertex),
+                    faces: proved,
+                });
+            }
             // Better by a little, or as fair where the vertex has to come to the surface.
             let least = if is_off { before.min(FAIR) } else { before + 0.01 };
             let proved = self.prove(&faces, &corners, least, tolerance)?;

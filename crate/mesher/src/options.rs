@@ -8,7 +8,7 @@ use core::ops::ControlFlow;
 pub struct Options {
     /// Largest distance between mesh and surface, either way, in units of the model; > 0.
     pub tolerance: f64,
-    /// Most triangles of the result; four times as many may exist on the way.
+    /// Most triangles of the result.
     pub max_triangles: usize,
     /// Threads; the result does not depend on them. 1 in wasm.
     pub threads: usize,
@@ -68,7 +68,7 @@ impl fmt::Display for MeshError {
                 write!(f, "the mesh needs more than {limit} triangles")?;
                 match fitting {
                     Some(tolerance) => write!(f, "; a tolerance of {tolerance:.2e} would fit"),
-                    None => f.write_str("; the surface is too rough for any tolerance"),
+                    None => f.write_str(", as the surface is very rough"),
                 }
             }
             Self::Cancelled => f.write_str("cancelled"),

@@ -87,11 +87,11 @@ pub fn polygonize(
         tolerance,
     );
     let mut space = Space::new(function, forest);
-    let max_raw = max_triangles.saturating_mul(4);
+    let max_cells = max_triangles.saturating_mul(2).max(LEAST_CELLS);
     let too_many = |error| match error {
         MeshError::TooMany { fitting, .. } => MeshError::TooMany {
             limit: max_triangles,
-            fitting,
+            fitting: fitting.map(|error| error / COARSE).filter(|fitting| *fitting > tolerance),
         },
         other => other,
     };
@@ -100,7 +100,7 @@ pub fn polygonize(
     let lattice = refine::refine(
         &mut space,
         [coarse, tolerance],
-        max_raw,
+        max_cells,
         threads,
         &mut progress.part(0.02, 0.4),
     )
@@ -152,6 +152,9 @@ pub fn polygonize(
 
 /// Cells may be so many times as far from the surface as the result.
 const COARSE: f64 = 16.0;
+
+/// A limit of cells that is not too low for any surface's topology.
+const LEAST_CELLS: usize = 400_000;
 
 fn check(domain: &Aabb) -> Result<(), MeshError> {
     let size = domain.max - domain.min;
