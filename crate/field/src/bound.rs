@@ -471,6 +471,34 @@ impl Bound {
         least(self.whole * point, self.endless * endless)
     }
 
+    /// Returns a bound from below on f in a ball, ≥ 0: 0 but for kernels with a pole on a point or a curve, near which the field
+    /// is much larger than its slope tells. Kernels fall with distance, so that the part of a curve within a length l of the
+    /// nearest point gives l·h(d + l) or more.
+    #[must_use]
+    pub fn least(&self, center: DVec3, radius: f64) -> f64 {
+        let is_plain = self.width == self.finest && self.ripple.is_none() && !self.negative;
+        // Of these the distance is known exactly.
+        let is_line = matches!(self.place, Place::Point(_) | Place::Segment { .. } | Place::Arc(_));
+        if !(self.kernel.has_pole() && is_plain && is_line) {
+            return 0.0;
+        }
+        let distance = self.place.nearness(center, 0.0).distance + radius;
+        let at = |more: f64| self.kernel.value((distance + more) * self.width);
+        if self.dimension == 0 {
+            return self.whole * at(0.0);
+        }
+        // One way from the nearest point there is half of the curve at least.
+        let half = 0.5 * self.size.sqrt() / self.finest;
+        let density = self.whole / (2.0 * half);
+        let (mut from, mut sum) = (0.0, 0.0);
+        let mut to = distance.min(half);
+        while from < half && to > from {
+            sum += (to - from) * at(to);
+            (from, to) = (to, (2.0 * to).min(half));
+        }
+        density * sum
+    }
+
     /// Returns a distance from the skeleton beyond which `|f|` is at most `share`.
     #[must_use]
     pub fn distance_of(&self, share: f64) -> f64 {

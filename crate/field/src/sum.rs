@@ -55,7 +55,11 @@ impl Known {
         let unless = |broken: bool, bound: f64| if broken { f64::INFINITY } else { bound };
         Enclosure {
             value: [
-                if bound.carves() { -magnitude } else { 0.0 },
+                if bound.carves() {
+                    -magnitude
+                } else {
+                    bound.least(center, radius)
+                },
                 if bound.adds() { magnitude } else { 0.0 },
             ],
             slope: unless(jumps, bound.slope(near)),

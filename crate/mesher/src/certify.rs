@@ -71,7 +71,7 @@ fn ball([a, b, c]: &[DVec3; 3]) -> Ball {
 }
 
 /// Divisions of an edge that are tried.
-const GRIDS: [usize; 2] = [2, 3];
+const GRIDS: [usize; 3] = [2, 3, 6];
 
 /// The largest distance of a triangle from the surface, as proved; `None` if it is not proved to be at most the tolerance.
 pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Option<f64> {
@@ -130,7 +130,7 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
             continue;
         }
         let share = 1.0 / grid as f64;
-        let mut vertices = Vec::with_capacity(10);
+        let mut vertices = Vec::with_capacity(28);
         for i in 0..=grid {
             for j in 0..=grid - i {
                 let k = grid - i - j;
@@ -170,9 +170,12 @@ pub fn root(space: &Space<'_>, [a, b]: [DVec3; 2], [at_a, at_b]: [f64; 2], margi
         center: 0.5 * (a + b),
         radius: 0.5 * a.distance(b),
     });
+    // Exact where the segment is across an axis.
+    let at = |share: f64| a + (b - a) * share;
+    let evaluate = |share: f64| Vertex::new(at(share), &space.jet(part, at(share)));
     let (mut low, mut high) = ((0.0, at_a), (1.0, at_b));
     let mut share = at_a / (at_a - at_b);
-    let mut vertex = Vertex::new(a.lerp(b, share), &space.jet(part, a.lerp(b, share)));
+    let mut vertex = evaluate(share);
     for _ in 0..4 {
         let slope = vertex.gradient.dot(b - a);
         if (vertex.value > 0.0) == (at_a > 0.0) {
@@ -192,7 +195,7 @@ pub fn root(space: &Space<'_>, [a, b]: [DVec3; 2], [at_a, at_b]: [f64; 2], margi
         if is_done {
             break;
         }
-        vertex = Vertex::new(a.lerp(b, share), &space.jet(part, a.lerp(b, share)));
+        vertex = evaluate(share);
     }
     vertex
 }

@@ -67,6 +67,7 @@ pub struct Cell {
 #[derive(Debug)]
 pub struct Forest {
     low: DVec3,
+    high: DVec3,
     /// Size of a root cell.
     root: DVec3,
     /// Root cells along each axis.
@@ -93,6 +94,7 @@ impl Forest {
         }
         let mut forest = Self {
             low: bounds.min,
+            high: bounds.max,
             root,
             counts,
             deepest,
@@ -147,7 +149,10 @@ impl Forest {
     /// Position of whole coordinates.
     pub fn position(&self, key: [u32; 3]) -> DVec3 {
         let unit = self.root * (0.5 * scale(self.deepest));
-        self.low + DVec3::from_array(key.map(f64::from)) * unit
+        let position = self.low + DVec3::from_array(key.map(f64::from)) * unit;
+        let last = [0, 1, 2].map(|i| key[i] == self.counts[i] * self.span(0));
+        // Exact on the boundary.
+        DVec3::select(glam::BVec3::from_array(last), self.high, position)
     }
 
     /// The cell at a level and place, or the leaf that contains it; `None` outside the box.

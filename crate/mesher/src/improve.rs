@@ -46,6 +46,23 @@ struct Plan {
     faces: Vec<(FaceId, f32)>,
 }
 
+/// How many faces are not proved to be near the surface at all, and how many only to be farther than the tolerance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Unproved {
+    all: usize,
+    far: usize,
+}
+
+impl Unproved {
+    fn add(&mut self, distance: f32, tolerance: f64) {
+        if distance.is_infinite() {
+            self.all += 1;
+        } else if distance > tolerance as f32 {
+            self.far += 1;
+        }
+    }
+}
+
 /// A mesh that is being improved.
 pub struct Improver<'a> {
     space: &'a Space<'a>,
@@ -137,6 +154,7 @@ impl<'a> Improver<'a> {
         self.settle(&mut progress.part(0.99, 1.0))?;
         let mesh = &self.mesh;
         let errors = || mesh.faces().map(|f| self.errors[f.index()]);
+        // What is fixed has its error from its cell.
         let unproved = errors().filter(|error| error.is_infinite()).count();
         let error = errors().filter(|error| error.is_finite()).fold(0.0, f32::max);
         let normals = mesh.vertices().map(|v| self.vertices[v.index()].normal());
@@ -466,29 +484,33 @@ impl<'a> Improver<'a> {
         proved.collect()
     }
 
-    /// Distances of triangles from the surface, infinite where none is proved; `None` if so many are not.
+    /// Distances of triangles from the surface, infinite where none is proved; `None` if they are no better than before: fewer
+    /// may not be proved at all, or as few and fewer not to be within the tolerance.
     fn prove_more(
         &self,
         faces: &[FaceId],
         corners: &[[Vertex; 3]],
-        unproved_before: usize,
+        before: Unproved,
     ) -> Option<Vec<(FaceId, f32)>> {
-        let mut unproved = 0;
+        let mut now = Unproved::default();
         let mut proved = Vec::with_capacity(faces.len());
         for (f, corners) in faces.iter().zip(corners) {
             let distance = distance(self.space, corners.each_ref(), self.coarse);
-            unproved += usize::from(distance.is_none());
-            if unproved >= unproved_before {
+            let distance = distance.map_or(f32::INFINITY, |d| d as f32);
+            now.add(distance, self.tolerance);
+            if now >= before {
                 return None;
             }
-            proved.push((*f, distance.map_or(f32::INFINITY, |d| d as f32)));
+            proved.push((*f, distance));
         }
         Some(proved)
     }
 
     /// How many of some faces are not proved to be near the surface.
-    fn unproved_among(&self, faces: impl Iterator<Item = FaceId>) -> usize {
-        faces.filter(|f| self.errors[f.index()].is_infinite()).count()
+    fn unproved_among(&self, faces: impl Iterator<Item = FaceId>) -> Unproved {
+        let mut unproved = Unproved::default();
+        faces.for_each(|f| unproved.add(self.errors[f.index()], self.tolerance));
+        unproved
     }
 
     /// Whether a triangle has a chance to be proved, and no angle is below the least one.
@@ -529,9 +551,11 @@ impl<'a> Improver<'a> {
         }
         let faces = [mesh.face(h)?, mesh.face(mesh.twin(h))?];
         let corners = [[s, r, p], [r, s, q]];
-        let mut proved = match self.unproved_among(faces.into_iter()) {
-            0 => self.prove(&faces, &corners, 0.0, self.tolerance)?,
-            before => self.prove_more(&faces, &corners, before)?,
+        let before = self.unproved_among(faces.into_iter());
+        let mut proved = if before == Unproved::default() {
+            self.prove(&faces, &corners, 0.0, self.tolerance)?
+        } else {
+            self.prove_more(&faces, &corners, before)?
         };
         // Either may get either number.
         let farthest = proved.iter().map(|(_, distance)| *distance).fold(0.0, f32::max);
@@ -551,11 +575,13 @@ impl<'a> Improver<'a> {
         let (left, right) = (mesh.face(h)?, mesh.face(mesh.twin(h))?);
         let corners = [[p, m, r], [m, q, r], [q, m, s], [m, p, s]];
         let faces = [left, left, right, right];
-        let proved = match self.unproved_among([left, right].into_iter()) {
-            0 => self.prove(&faces, &corners, 0.0, self.coarse)?,
-            // Each may be divided in an unproved part and another.
-            before => self.prove_more(&faces, &corners, before + 1)?,
+        // All may be too far, as they can be divided again, but no more may be unproved.
+        let before = self.unproved_among([left, right].into_iter());
+        let allowed = Unproved {
+            all: before.all,
+            far: 5,
         };
+        let proved = self.prove_more(&faces, &corners, allowed)?;
         Some(Plan {
             vertex: Some(m),
             faces: proved,
@@ -572,9 +598,9 @@ impl<'a> Improver<'a> {
         let along = along - normal * along.dot(normal);
         let before = self.star_angle(v);
         let is_off = own.value.abs() > 1e-2 * self.tolerance * own.gradient.length();
-        let is_far = mesh.vertex_faces(v).any(|f| f64::from(self.errors[f.index()]) > self.tolerance);
-        let tolerance = if is_far { self.coarse } else { self.tolerance };
-        let reach = along.length() + tolerance;
+        let unproved = self.unproved_among(mesh.vertex_faces(v));
+        let is_proved = unproved == Unproved::default();
+        let reach = along.length() + if is_proved { self.tolerance } else { self.coarse };
         [1.0, 0.5, 0.0].into_iter().find_map(|share| {
             let start = own.position + along * share;
             let vertex = project(self.space, start, reach, self.tolerance)?;
@@ -583,8 +609,7 @@ impl<'a> Improver<'a> {
                 .iter()
                 .map(|f| self.corners_with(*f, &[v], vertex))
                 .collect();
-            let unproved = self.unproved_among(faces.iter().copied());
-            if unproved > 0 {
+            if !is_proved {
                 let proved = self.prove_more(&faces, &corners, unproved)?;
                 return Some(Plan {
                     vertex: Some(vertex),
@@ -593,7 +618,7 @@ impl<'a> Improver<'a> {
             }
             // Better by a little, or as fair where the vertex has to come to the surface.
             let least = if is_off { before.min(FAIR) } else { before + 0.01 };
-            let proved = self.prove(&faces, &corners, least, tolerance)?;
+            let proved = self.prove(&faces, &corners, least, self.tolerance)?;
             Some(Plan {
                 vertex: Some(vertex),
                 faces: proved,
