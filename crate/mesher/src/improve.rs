@@ -105,12 +105,11 @@ impl<'a> Improver<'a> {
         let Raw {
             vertices,
             triangles,
-            origins,
-            ..
+            is_lid,
         } = raw;
         let mut is_fixed = vec![false; vertices.len()];
-        for (triangle, origin) in triangles.iter().zip(&origins) {
-            for i in triangle.iter().filter(|_| origin.is_fixed) {
+        for (triangle, is_lid) in triangles.iter().zip(&is_lid) {
+            for i in triangle.iter().filter(|_| *is_lid) {
                 is_fixed[*i as usize] = true;
             }
         }
@@ -127,10 +126,10 @@ impl<'a> Improver<'a> {
             mesh,
             vertices,
             is_fixed,
-            // Sliding to the surface may have turned flat triangles.
-            errors: origins
+            // Sliding to the surface may have turned flat triangles; lids are exact.
+            errors: is_lid
                 .iter()
-                .map(|origin| if origin.is_fixed { origin.error } else { f32::INFINITY })
+                .map(|is_lid| if *is_lid { 0.0 } else { f32::INFINITY })
                 .collect(),
             round: 1,
         })
@@ -154,7 +153,6 @@ impl<'a> Improver<'a> {
         self.settle(&mut progress.part(0.99, 1.0))?;
         let mesh = &self.mesh;
         let errors = || mesh.faces().map(|f| self.errors[f.index()]);
-        // What is fixed has its error from its cell.
         let unproved = errors().filter(|error| error.is_infinite()).count();
         let error = errors().filter(|error| error.is_finite()).fold(0.0, f32::max);
         let normals = mesh.vertices().map(|v| self.vertices[v.index()].normal());

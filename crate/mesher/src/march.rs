@@ -13,17 +13,6 @@ use crate::space::Space;
 /// vertex of the lattice.
 type Place = u64;
 
-/// What is known of a triangle.
-#[derive(Clone, Copy, Debug)]
-pub struct Origin {
-    /// Its distance from the surface, at most; infinite if unknown.
-    pub error: f32,
-    /// Whether it is to stay as it is: on the boundary of the box, or where the topology is not sure.
-    pub is_fixed: bool,
-    /// Whether it is on the boundary of the box.
-    pub is_lid: bool,
-}
-
 /// The mesh before it is improved.
 #[derive(Debug, Default)]
 pub struct Raw {
@@ -31,10 +20,8 @@ pub struct Raw {
     pub vertices: Vec<Vertex>,
     /// Triangles.
     pub triangles: Vec<[u32; 3]>,
-    /// What is known of each.
-    pub origins: Vec<Origin>,
-    /// Whether there are lids.
-    pub is_cut: bool,
+    /// Whether each is a lid on the boundary of the box.
+    pub is_lid: Vec<bool>,
 }
 
 /// Vertices keep away from the ends of their edges by this share of them.
@@ -99,27 +86,12 @@ fn lid(corners: [u32; 3], inside: [bool; 3], mut each: impl FnMut([Place; 3])) {
 }
 
 /// The triangles of one cell.
-fn in_cell(forest: &Forest, lattice: &Lattice, node: u32) -> Vec<([Place; 3], Origin)> {
+fn in_cell(forest: &Forest, lattice: &Lattice, node: u32) -> Vec<([Place; 3], bool)> {
     let mut triangles = Vec::new();
-    tetrahedra(forest, node, &mut |keys, owners| {
+    tetrahedra(forest, node, &mut |keys, _| {
         let corners = keys.map(|key| lattice.index(key));
         let inside = corners.map(|i| lattice.value(i) > 0.0);
-        let owners = owners.map(|i| &forest.cells[i as usize]);
-        let is_fixed = owners.iter().any(|cell| cell.undecided);
-        let error = owners
-            .iter()
-            // The surface crosses an edge of the tetrahedron.
-            .map(|cell| match is_fixed {
-                true => forest.size(cell.level).length(),
-                false => cell.bounds.error,
-            })
-            .fold(0.0, f64::max);
-        let origin = Origin {
-            error: error as f32,
-            is_fixed,
-            is_lid: false,
-        };
-        in_tetrahedron(corners, inside, |places| triangles.push((places, origin)));
+        in_tetrahedron(corners, inside, |places| triangles.push((places, false)));
     });
     triangles.extend(lids(forest, node, |key| {
         let index = lattice.index(key);
@@ -133,12 +105,7 @@ fn lids(
     forest: &Forest,
     node: u32,
     mut vertex: impl FnMut(Key) -> (u32, bool),
-) -> Vec<([Place; 3], Origin)> {
-    let origin = Origin {
-        error: 0.0,
-        is_fixed: true,
-        is_lid: true,
-    };
+) -> Vec<([Place; 3], bool)> {
     let mut triangles = Vec::new();
     for side in 0..6 {
         let cell = &forest.cells[node as usize];
@@ -149,7 +116,7 @@ fn lids(
             let vertices = triangle.map(&mut vertex);
             let [corners, inside] = [vertices.map(|v| v.0), vertices.map(|v| u32::from(v.1))];
             lid(corners, inside.map(|i| i == 1), |places| {
-                triangles.push((places, origin));
+                triangles.push((places, true));
             });
         }
     }
@@ -161,7 +128,7 @@ fn lids(
 pub fn march(space: &Space<'_>, lattice: &Lattice, threads: usize) -> Raw {
     let forest = &space.forest;
     let cells = crossing(forest);
-    let mut triangles: Vec<([Place; 3], Origin)> =
+    let mut triangles: Vec<([Place; 3], bool)> =
         map(threads, &cells, |node| in_cell(forest, lattice, *node))
             .into_iter()
             .flatten()
@@ -214,9 +181,8 @@ pub fn march(space: &Space<'_>, lattice: &Lattice, threads: usize) -> Raw {
         Ok(i) | Err(i) => i as u32,
     };
     Raw {
-        is_cut: triangles.iter().any(|(_, origin)| origin.is_lid),
         vertices,
         triangles: triangles.iter().map(|(p, _)| p.each_ref().map(index)).collect(),
-        origins: triangles.iter().map(|(_, origin)| *origin).collect(),
+        is_lid: triangles.iter().map(|(_, is_lid)| *is_lid).collect(),
     }
 }

@@ -20,7 +20,9 @@ pub struct SurfaceMesh {
     pub error: f64,
     /// Triangles whose distance from the surface is not proved: near undecided cells and kinks.
     pub unproved: usize,
-    /// Centres of the cells in which the topology of the surface is not proved: none if all is.
+    /// Centres of the cells in which the topology of the surface is not proved before it is meshed: none if all is. If all triangles
+    /// are proved, components of the surface may be missing there that are as small as a cell; the others have the topology of
+    /// the mesh.
     pub undecided: Vec<DVec3>,
     /// Edge length of these cells, and the least that cells may have.
     pub finest: f64,
@@ -84,7 +86,7 @@ pub fn polygonize(
             min: (hull.min - room).max(domain.min),
             max: (hull.max + room).min(domain.max),
         },
-        tolerance,
+        2.0 * tolerance,
     );
     let mut space = Space::new(function, forest);
     let max_cells = max_triangles.saturating_mul(2).max(LEAST_CELLS);
@@ -125,7 +127,7 @@ pub fn polygonize(
     let finest = forest.size(forest.deepest).max_element();
     let cells = refine::crossing(forest).len();
     let raw_triangles = raw.triangles.len();
-    let is_cut = raw.is_cut;
+    let is_cut = raw.is_lid.contains(&true);
     let improver = Improver::new(&space, raw, [tolerance, coarse], threads)?;
     let improved = improver.run(&mut progress.part(0.4, 1.0))?;
     if improved.mesh.triangles.len() > max_triangles {
