@@ -86,7 +86,7 @@ pub fn polygonize(
             min: (hull.min - room).max(domain.min),
             max: (hull.max + room).min(domain.max),
         },
-        2.0 * tolerance,
+        FINEST * tolerance,
     );
     let mut space = Space::new(function, forest);
     let max_cells = max_triangles.saturating_mul(2).max(LEAST_CELLS);
@@ -151,6 +151,9 @@ pub fn polygonize(
         evaluations: space.evaluations(),
     })
 }
+
+/// Cells are at least so large, in tolerances: smaller parts of a surface are found if triangles near them cannot be proved.
+const FINEST: f64 = 4.0;
 
 /// Cells may be so many times as far from the surface as the result.
 const COARSE: f64 = 16.0;
