@@ -162,6 +162,8 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
 
     /// Bounds on the whole function in a ball, which must be within that of the part, if there is one: then only the terms of
     /// the part are looked at.
+    fn debug(&self, _ball: Ball) {}
+    /// x
     fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
         let range = self.enclose(ball);
         let is_smooth = range.curvature.is_finite();

@@ -191,6 +191,17 @@ impl Implicit for Sum {
         sum(terms, point.to_array())
     }
 
+    fn debug(&self, ball: Ball) {
+        let mut all: Vec<(f64, usize)> = self.known().iter().enumerate().map(|(i, k)| (k.bound.curvature(k.bound.nearness(ball.center, ball.radius)), i)).collect();
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (c, i) in &all[..4.min(all.len())] {
+            let p = &self.primitives[*i];
+            let k = &self.known()[*i];
+            let near = k.bound.nearness(ball.center, ball.radius);
+            let kind = format!("{:?}", p.skeleton);
+            eprintln!("   C {c:.2} value {:.4} magnitude {:.4} jump {:.3} distance {:.4} width {:.2} inf {:.3} prof {} tap {} {}", p.value(ball.center.to_array()), k.bound.magnitude(near), k.bound.jump(near), near.distance, p.width, p.influence, p.profile.is_some(), p.tapered.is_some(), &kind[..90.min(kind.len())]);
+        }
+    }
     fn variation(&self, part: Option<&Part>, ball: Ball) -> Variation {
         let known = self.known();
         let mut all = Variation {

@@ -181,6 +181,16 @@ pub fn refine(
         failing.sort_unstable();
         failing.dedup();
         let mut is_done = true;
+        for node in failing.iter().step_by(failing.len() / 12 + 1) {
+            let cell = space.forest.cells[*node as usize];
+            let p = space.forest.center(&cell);
+            let size = space.forest.size(cell.level);
+            let jet = space.jet(cell.part, p);
+            let ball = Ball { center: p, radius: 0.5 * size.length() };
+            let v = space.variation(cell.part, ball);
+            eprintln!("{p} size {} value {:.4} g {:.3} var {:.3?} about {:.3?} rest {:.3}", size.x, jet.value, DVec3::from_array(jet.gradient).length(), v, v.range.about(&jet, ball.radius).value, cell.bounds.rest);
+            space.function.debug(ball);
+        }
         for node in failing {
             let cell = &mut space.forest.cells[node as usize];
             if cell.level == space.forest.deepest {
