@@ -296,7 +296,8 @@ fn lens_and_rays() {
 
 #[test]
 fn means_are_of_many_samples() {
-    let samples = |text: &str| scene(text).settings.samples;
+    // Some are told that their words alone do nothing.
+    let samples = |text: &str| run(text, &[], 0.0).scene.settings.samples;
     for text in [
         "aperture 0.2",
         "penumbra on\nlight White position 0 9 0 size 1",
