@@ -188,7 +188,9 @@ fn a_phone_has_knobs_for_fingers() {
 
 #[test]
 fn every_example_has_shapes_to_pick_with_handles() {
-    for example in examples::ALL {
+    // Those with images and meshes of their own show nothing without them.
+    let alone = examples::ALL.into_iter().filter(|e| e.files.is_empty());
+    for example in alone {
         let project = example.project();
         let compiled = rats::compile(&project);
         let scene = &compiled.scene;
