@@ -9,7 +9,7 @@ use field::{Ball, Enclosure, Implicit, Jet, Kernel, Sum, THRESHOLD};
 use glam::{DAffine3, DMat3, DVec3};
 use scene::{Body, Element, Form, Function, Scene, Shape};
 use std::sync::Arc;
-use tracer::{Hit, Pass, Picture, Stats, Tile};
+use tracer::{Hit, Pass, Picture, Reference, Stats, Tile};
 use trials::{Kind, Row, check};
 use wide::f32x8;
 
@@ -501,4 +501,54 @@ fn bodies_in_contact_are_seen_where_they_are() {
         }
     }
     assert!(crossings > 150 && shared > 4, "{crossings} {shared}");
+}
+
+/// The general path for a function that is no sum, judged by the reference. `SINEW_RAYS` sets how many rays there are.
+#[test]
+fn a_smooth_maximum_is_within_the_tolerance() {
+    const LIMIT: f64 = 12.0;
+    let wanted = std::env::var("SINEW_RAYS").ok();
+    let wanted = wanted.and_then(|n| n.parse().ok()).unwrap_or(400);
+    let (mut seen, mut hits, mut uncertain, mut faults) = (0, 0, 0, Vec::new());
+    for seed in 0.. {
+        if seen >= wanted {
+            break;
+        }
+        let mut scene = in_bodies(seed + 500, 6, 1);
+        let parts = || <[_; 2]>::try_from(scene.soft_surfaces()).ok();
+        let (Some(a), Some(b)) = (parts(), parts()) else {
+            continue;
+        };
+        let k = [0.05, 0.3, 0.8][seed as usize % 3];
+        let function = SmoothMaximum {
+            parts: a.map(|surface| surface.sum),
+            k,
+        };
+        let mut reference = Reference::smooth_maximum(b.map(|surface| surface.sum.primitives), k);
+        for element in &mut scene.elements {
+            element.finish = u32::MAX;
+        }
+        let mut picture = Picture::new(&scene, [256; 2]);
+        picture.add_function(Arc::new(function), vec![0, 0]);
+        let rays = rays(&mut Numbers(seed * 2 + 11), 3);
+        for (&(origin, direction), hit) in rays.iter().zip(picture.cast(&rays)) {
+            let t = hit.map(|hit| hit.t).filter(|t| *t < LIMIT);
+            let verdict = reference.judge(origin, direction, t, LIMIT, |t| picture.tolerance(t));
+            seen += 1;
+            hits += usize::from(t.is_some());
+            uncertain += usize::from(!verdict.certain);
+            if let Some(fault) = verdict.fault {
+                faults.push((seed, t, fault));
+            }
+        }
+    }
+    println!(
+        "{seen} rays, {hits} hits, {uncertain} undecided, {} faults",
+        faults.len()
+    );
+    assert!(faults.is_empty(), "{faults:?}");
+    assert!(
+        4 * hits > seen && 200 * uncertain <= seen,
+        "{hits} {uncertain} of {seen}"
+    );
 }

@@ -1,6 +1,6 @@
 //! SCENE: `report`, `reset`, `shoot`.
 
-use super::air::Air;
+use super::surroundings::Air;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::problem::Outcome;

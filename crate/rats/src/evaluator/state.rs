@@ -1,9 +1,9 @@
 //! The state of a running text, which every command reads and changes.
 
-use super::air::Air;
-use super::images::Images;
+use super::surroundings::Air;
+use super::frozen::Frozen;
+use super::image_list::Images;
 use super::model::Model;
-use super::moments::Frozen;
 use super::palette::Palette;
 use super::view_plane::ViewPlane;
 use super::watched::Watch;
