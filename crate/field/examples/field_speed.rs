@@ -83,7 +83,7 @@ fn main() {
     }
 }
 
-fn rate<R: Evaluate>(primitive: &Primitive) -> f64
+fn rate<R: Evaluate<Scalar: Evaluate>>(primitive: &Primitive) -> f64
 where
     R::Scalar: Scalar,
 {

@@ -111,7 +111,7 @@ pub use real::Real;
 pub use shaping::{BlobScale, Shaping, Taper};
 pub use skeleton::Skeleton;
 pub use sum::{Sum, sum};
-pub use term::{Evaluate, EvaluateScalar};
+pub use term::Evaluate;
 
 /// The iso-value T: the surface is where the field equals it.
 pub const THRESHOLD: f64 = 1.0;

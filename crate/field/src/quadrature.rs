@@ -247,9 +247,7 @@ fn over_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> f64 {
             Skeleton::Curve { .. } => {
                 let (low, high) = (place(i), t.max(place(i)));
                 let mut speed = |t: f64| at(t).1;
-                let whole = panel(&mut speed, low, high);
-                let tolerance = 1e-11 * whole.size;
-                refine(&mut speed, low, high, whole, tolerance, DEPTH)
+                crate::integral::of_one_panel(&mut speed, low, high, 1e-11)
             }
             _ => (t - place(i)) * total,
         };

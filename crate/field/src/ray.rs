@@ -1,5 +1,6 @@
 //! A primitive's field along a ray.
-use crate::term::{Evaluate, EvaluateScalar, Prepared, Term};
+use crate::real::Scalar;
+use crate::term::{Evaluate, Prepared, Term};
 use glam::DVec3;
 
 /// A primitive seen along a ray `origin + t·direction`.
@@ -15,7 +16,7 @@ pub struct AlongRay<'a, S> {
     direction: [S; 3],
 }
 
-impl<'a, S: EvaluateScalar> AlongRay<'a, S> {
+impl<'a, S: Scalar + Evaluate> AlongRay<'a, S> {
     pub(crate) fn new(prepared: &'a Prepared, origin: DVec3, direction: DVec3) -> Self {
         let frame = &prepared.double.frame;
         let round = |v: DVec3| v.to_array().map(S::round);

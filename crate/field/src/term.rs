@@ -2,7 +2,6 @@
 use crate::bone::curve::Law;
 use crate::bone::{Arc, Bone, Curve, Polygon, Segment, Triangle};
 use crate::form::Form;
-use crate::real::Scalar;
 use crate::skeleton::{area_vector, cubic, orthonormal};
 use crate::waves::Waves;
 use crate::{Jet, Kernel, Real, Skeleton, point};
@@ -58,20 +57,16 @@ impl Frame<f64> {
 
 /// A number type in which fields are evaluated: `f64`, `f32` or `f32x8`. The chart's formulas are too long to be compiled again
 /// wherever one is used, so they are compiled once for each of these, in this crate.
-pub trait Evaluate: Real<Scalar: EvaluateScalar> {
+pub trait Evaluate: Real {
+    /// Selects the precision of a term prepared in both.
+    #[doc(hidden)]
+    fn prepared(term: &Prepared) -> &Term<Self::Scalar>;
     /// A term's value and local gradient at a local position.
     #[doc(hidden)]
     fn evaluate(term: &Term<Self::Scalar>, local: [Self; 3]) -> Jet<Self>;
     /// Value and gradient of a point primitive at a position in world coordinates, see [`Term`].
     #[doc(hidden)]
     fn evaluate_point(term: &Term<Self::Scalar>, position: [Self; 3]) -> Jet<Self>;
-}
-
-/// A precision in which primitives are prepared: `f64` or `f32`.
-pub trait EvaluateScalar: Scalar + Evaluate<Scalar = Self> {
-    /// Selects this precision of a term prepared in both.
-    #[doc(hidden)]
-    fn prepared(term: &Prepared) -> &Term<Self>;
 }
 
 /// Frame, form and factor.

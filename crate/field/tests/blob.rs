@@ -57,7 +57,11 @@ fn cases() -> Vec<(Primitive, DVec3, DVec3)> {
     cases
 }
 
-fn on_ray<R: Evaluate>(primitive: &Primitive, origin: DVec3, direction: DVec3) -> field::BlobOnRay<R> {
+fn on_ray<R: Real<Scalar: Evaluate>>(
+    primitive: &Primitive,
+    origin: DVec3,
+    direction: DVec3,
+) -> field::BlobOnRay<R> {
     let blob: Blob<R::Scalar> = primitive.blob().expect("a blob");
     let middle = (primitive.blob_middle() - origin).to_array().map(R::splat);
     blob.on_ray(middle, direction.to_array().map(R::splat))

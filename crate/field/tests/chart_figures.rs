@@ -128,7 +128,7 @@ fn typical(kind: Kind) -> Skeleton {
 }
 
 /// Million evaluations a second along rays near the skeleton.
-fn rate<R: Evaluate>(primitive: &Primitive) -> f64
+fn rate<R: Evaluate<Scalar: Evaluate>>(primitive: &Primitive) -> f64
 where
     R::Scalar: Scalar,
 {

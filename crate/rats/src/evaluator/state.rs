@@ -1,10 +1,10 @@
 //! The state of a running text, which every command reads and changes.
 
-use super::surroundings::Air;
 use super::frozen::Frozen;
 use super::image_list::Images;
 use super::model::Model;
 use super::palette::Palette;
+use super::surroundings::Air;
 use super::view_plane::ViewPlane;
 use super::watched::Watch;
 use crate::compiled::{HotVariable, Output, Placement};
