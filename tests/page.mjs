@@ -165,7 +165,19 @@ export class Sinew {
   /** Where a widget is, in CSS pixels. */
   async place(name) {
     await this.page.waitForFunction((name) => sinew.debug.rects()[name], name, { timeout: 60_000 });
-    return this.page.evaluate((name) => sinew.debug.rects()[name], name);
+    return this.page.evaluate(async (name) => {
+      const frame = () => new Promise((done) => requestAnimationFrame(done));
+      const now = () => sinew.debug.rects()[name];
+      let last = now();
+      // In the frame in which a menu opens, or grows, its rows may be elsewhere than in the next one.
+      for (let [still, frames] = [0, 0]; still < 3 && frames < 60; frames++) {
+        await frame();
+        const { x, y, w, h } = now() ?? last;
+        still = x === last.x && y === last.y && w === last.w && h === last.h ? still + 1 : 0;
+        last = { x, y, w, h };
+      }
+      return last;
+    }, name);
   }
 
   /** Clicks the middle of a widget. */
