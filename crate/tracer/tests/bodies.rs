@@ -552,3 +552,66 @@ fn a_smooth_maximum_is_within_the_tolerance() {
         "{hits} {uncertain} of {seen}"
     );
 }
+
+/// Molecules of three balls spread through a cube, all in one body or each in one of its own.
+fn molecules(count: u32, apart: bool) -> Scene {
+    let mut scene = common::empty();
+    common::clothe(&mut scene, vec![common::soft(-4.0, 1.0)]);
+    let mut numbers = Numbers(5);
+    let radius = 0.7 / f64::from(count).cbrt();
+    for number in 0..count {
+        let center = numbers.vector();
+        let body = if apart { number } else { 0 };
+        for around in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let shape = Shape::Sphere {
+                center: center + 0.5 * radius * around,
+                radius: 0.6 * radius,
+            };
+            let element = Element {
+                kernel: Kernel::Gauss,
+                body,
+                ..common::element(shape, 0)
+            };
+            scene.elements.push(element);
+        }
+    }
+    let bodies = if apart { count as usize } else { 1 };
+    scene.bodies.resize(bodies, Body::default());
+    scene
+}
+
+/// Thousands of bodies take about as long as one body of their elements. The goal is twice at most, `cargo xtask bench models`; a
+/// test may be disturbed.
+#[test]
+fn very_many_bodies_take_as_long_as_one() {
+    const SIDE: u32 = 96;
+    let whole = Tile {
+        x: 0,
+        y: 0,
+        width: SIDE,
+        height: SIDE,
+    };
+    let scenes = [false, true].map(|apart| molecules(5000, apart));
+    let (mut seconds, mut evaluations, mut lit) = ([f64::INFINITY; 2], [0; 2], [0; 2]);
+    for _ in 0..5 {
+        for (i, scene) in scenes.iter().enumerate() {
+            let begun = std::time::Instant::now();
+            let picture = Picture::new(scene, [SIDE; 2]);
+            let mut stats = Stats::default();
+            let pixels = picture.trace(whole, Pass::Full, &|| false, &mut stats);
+            seconds[i] = seconds[i].min(begun.elapsed().as_secs_f64());
+            evaluations[i] = stats.field_evaluations;
+            let pixels = pixels.expect("nobody asked to stop");
+            let background = pixels[..4].to_vec();
+            lit[i] = pixels
+                .chunks_exact(4)
+                .filter(|p| **p != background[..])
+                .count();
+        }
+    }
+    println!("{seconds:?} s, {evaluations:?} evaluations, {lit:?} pixels");
+    let [one, many] = lit;
+    assert!(many > 2000 && one > 2000, "{lit:?} pixels show something");
+    assert!(evaluations[1] <= 2 * evaluations[0], "{evaluations:?}");
+    assert!(seconds[1] <= 3.0 * seconds[0], "{seconds:?}");
+}
