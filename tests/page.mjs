@@ -83,7 +83,7 @@ export class Sinew {
   }
 
   async ready() {
-    const isThere = () => globalThis.sinew?.ready || document.querySelector('#loading.failed');
+    const isThere = () => Boolean(globalThis.sinew?.ready) || document.querySelector('#loading.failed');
     await this.page.waitForFunction(isThere, undefined, { timeout: PATIENCE });
     const failure = await this.page.evaluate(() => document.querySelector('#loading.failed')?.innerText);
     assert.equal(failure, undefined, 'the page could not start');
