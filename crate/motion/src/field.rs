@@ -29,10 +29,7 @@ pub fn line(p: DVec3, a: DVec3, b: DVec3) -> (f64, DVec3) {
     }
     let value = length * (ra + rb) / (product * sum);
     let (ua, ub) = (to_a / ra, to_b / rb);
-    let slope = (ua + ub) / (ra + rb)
-        - ua / ra
-        - ub / rb
-        - (ua * rb + ub * ra + to_a + to_b) / sum;
+    let slope = (ua + ub) / (ra + rb) - ua / ra - ub / rb - (ua * rb + ub * ra + to_a + to_b) / sum;
     (value, slope * value)
 }
 

@@ -47,8 +47,7 @@ impl Link {
                 let [a, b, c] = nodes;
                 let (of_a, of_c) = (1.0 - share, share);
                 let apart = places[b] - (places[a] * of_a + places[c] * of_c);
-                let weight =
-                    inverse[b] + inverse[a] * of_a * of_a + inverse[c] * of_c * of_c;
+                let weight = inverse[b] + inverse[a] * of_a * of_a + inverse[c] * of_c * of_c;
                 let Some(move_by) = correction(apart, rest, weight, give, step) else {
                     return;
                 };

@@ -71,7 +71,9 @@ impl Simulation {
         for &node in &pinned {
             inverse[node] = 0.0;
         }
-        let reach = flesh.thinnest().map_or(f64::INFINITY, |radius| 0.5 * radius);
+        let reach = flesh
+            .thinnest()
+            .map_or(f64::INFINITY, |radius| 0.5 * radius);
         Ok(Self {
             settings,
             obstacles: setup.obstacles.clone(),
@@ -134,6 +136,18 @@ impl Simulation {
         self.flesh.deepest(&self.places, &self.obstacles)
     }
 
+    /// The momentum, `Σ mv`.
+    #[must_use]
+    pub fn momentum(&self) -> DVec3 {
+        let all = self.velocities.iter().zip(&self.masses);
+        all.fold(DVec3::ZERO, |sum, (v, m)| sum + *v * *m)
+    }
+
+    /// The energy of flesh that is pressed into other flesh, or into its own folds.
+    pub fn pressed(&mut self) -> f64 {
+        self.flesh.energy(&self.places, self.settings.stiffness)
+    }
+
     /// Operations of a frame, roughly: each takes some nanoseconds.
     #[must_use]
     pub fn work(&self) -> u64 {
@@ -154,7 +168,7 @@ impl Simulation {
             potential: -potential
                 .map(|(x, m)| m * self.settings.gravity.dot(*x))
                 .sum::<f64>(),
-            elastic: springs + self.flesh.energy(&self.places, self.settings.stiffness),
+            elastic: springs + self.pressed(),
         }
     }
 
@@ -195,14 +209,16 @@ impl Simulation {
             let links = self.links.iter().rev();
             links.for_each(|link| link.solve(places, inverse, h));
         } else {
-            self.links.iter().for_each(|link| link.solve(places, inverse, h));
+            self.links
+                .iter()
+                .for_each(|link| link.solve(places, inverse, h));
         }
         self.backwards = !self.backwards;
         self.flesh
             .solve_folds(places, &self.previous, inverse, &settings, h);
         self.flesh.solve_obstacles(
             places,
-            &self.previous,
+            &mut self.previous,
             &self.velocities,
             inverse,
             &self.obstacles,

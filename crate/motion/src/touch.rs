@@ -4,7 +4,7 @@ use crate::field::{distance, line};
 use crate::obstacle::{Obstacle, foot};
 use crate::setup::{Body, Settings};
 use glam::DVec3;
-use skeleton::{Node, Polyline, Skeleton};
+use skeleton::Polyline;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -12,15 +12,14 @@ use std::collections::BinaryHeap;
 const LEVELS: u32 = 1;
 /// The most samples of a segment, besides its ends.
 const MOST_BETWEEN: usize = 3;
-/// Weights below this are left out.
-const LEAST_WEIGHT: f64 = 1e-6;
 
 /// A mean of some nodes: their numbers and weights, which add up to 1.
 type Mean = Vec<(u32, f64)>;
 
 fn at(mean: &Mean, places: &[DVec3]) -> DVec3 {
-    mean.iter()
-        .fold(DVec3::ZERO, |sum, &(node, weight)| sum + places[node as usize] * weight)
+    mean.iter().fold(DVec3::ZERO, |sum, &(node, weight)| {
+        sum + places[node as usize] * weight
+    })
 }
 
 /// `Σ weight²/mass`: the inverse of the mass that a force on the point meets.
@@ -130,9 +129,19 @@ impl Flesh {
     }
 
     /// Adds the vertices, segments and samples of a body.
-    fn add(&mut self, body: &Body, polyline: &Polyline, first: usize) -> Result<(), skeleton::Error> {
+    fn add(
+        &mut self,
+        body: &Body,
+        polyline: &Polyline,
+        first: usize,
+    ) -> Result<(), skeleton::Error> {
         let base = self.vertices.len();
-        let means = means(body, polyline, first)?;
+        let weights = body.skeleton.weights(body.scheme, LEVELS)?;
+        let shifted = |(node, weight): (usize, f64)| ((first + node) as u32, weight);
+        let means: Vec<Mean> = weights
+            .into_iter()
+            .map(|own| own.into_iter().map(shifted).collect())
+            .collect();
         let radius_at = |segment: &skeleton::Segment| {
             let [a, b] = segment.ends.map(|end| polyline.vertices[end].radius);
             0.5 * (a + b)
@@ -153,7 +162,13 @@ impl Flesh {
             let (a, b, _) = pieces[one];
             self.samples.push(Sample {
                 mean: means[index].clone(),
-                radius: thickness(&pieces, vertex.position, b - a, vertex.radius, around.len() == 1),
+                radius: thickness(
+                    &pieces,
+                    vertex.position,
+                    b - a,
+                    vertex.radius,
+                    around.len() == 1,
+                ),
                 far: Vec::new(),
                 near: Vec::new(),
                 overlap: 0.0,
@@ -222,7 +237,10 @@ impl Flesh {
             }
         }
         for (index, host) in samples.zip(hosts) {
-            let (point, radius) = (at(&self.samples[index].mean, places), self.samples[index].radius);
+            let (point, radius) = (
+                at(&self.samples[index].mean, places),
+                self.samples[index].radius,
+            );
             let mut far = Vec::new();
             for number in 0..self.segments.len() {
                 if segments.contains(&number) {
@@ -234,7 +252,8 @@ impl Flesh {
                     };
                     let [a, b] = self.ends(number);
                     let apart = point.distance(a.lerp(b, foot(point, a, b)));
-                    let is_far = way(host[0]).min(way(host[1])) > 2.0 * reach && apart > 1.05 * reach;
+                    let is_far =
+                        way(host[0]).min(way(host[1])) > 2.0 * reach && apart > 1.05 * reach;
                     if !is_far {
                         continue;
                     }
@@ -246,13 +265,16 @@ impl Flesh {
     }
 
     fn ends(&self, segment: usize) -> [DVec3; 2] {
-        self.segments[segment].ends.map(|end| self.now[end as usize])
+        self.segments[segment]
+            .ends
+            .map(|end| self.now[end as usize])
     }
 
     /// Takes the vertices to where the nodes are.
     fn refresh(&mut self, places: &[DVec3]) {
         self.now.clear();
-        self.now.extend(self.vertices.iter().map(|mean| at(mean, places)));
+        self.now
+            .extend(self.vertices.iter().map(|mean| at(mean, places)));
     }
 
     /// Looks for the segments near each sample.
@@ -329,13 +351,16 @@ impl Flesh {
         }
         self.refresh(places);
         let moved = places.iter().zip(&self.looked);
-        let moved = moved.map(|(a, b)| a.distance_squared(*b)).fold(0.0, f64::max);
+        let moved = moved
+            .map(|(a, b)| a.distance_squared(*b))
+            .fold(0.0, f64::max);
         if !(4.0 * moved <= self.margin * self.margin) {
             self.look(places);
         }
         self.before.clear();
         let vertices = &self.vertices;
-        self.before.extend(vertices.iter().map(|mean| at(mean, previous)));
+        self.before
+            .extend(vertices.iter().map(|mean| at(mean, previous)));
         for index in 0..self.samples.len() {
             let Some((depth, push_by)) = self.depth(index, places) else {
                 continue;
@@ -345,16 +370,19 @@ impl Flesh {
             if depth <= 0.0 {
                 continue;
             }
-            let normal = push_by.slope;
-            // The share of each segment in the push, on the point of it that is nearest.
+            // The share of each segment in the push, on the point of it that is nearest; the push is their sum, so that it equals
+            // the push back.
             let mut shares: Vec<(usize, f64, DVec3)> = Vec::with_capacity(sample.far.len());
-            let mut weight = inverse_mass(&sample.mean, inverse) * normal.length_squared();
+            let mut normal = DVec3::ZERO;
+            let mut weight = 0.0;
+            let least = 1e-6 * push_by.slope.length_squared();
             for &number in &sample.far {
                 let [a, b] = self.ends(number as usize);
                 let own = line(push_by.point, a, b).1 * push_by.scale;
-                if own.length_squared() < 1e-6 * normal.length_squared() {
+                if own.length_squared() < least {
                     continue;
                 }
+                normal += own;
                 let along = foot(push_by.point, a, b);
                 let [first, second] = self.segments[number as usize].ends;
                 let of = |end: u32| inverse_mass(&self.vertices[end as usize], inverse);
@@ -362,6 +390,7 @@ impl Flesh {
                     * ((1.0 - along) * (1.0 - along) * of(first) + along * along * of(second));
                 shares.push((number as usize, along, own));
             }
+            weight += inverse_mass(&sample.mean, inverse) * normal.length_squared();
             let give = sample.radius / settings.stiffness;
             let hold = weight + give / (step * step);
             if !(hold > 0.0) {
@@ -373,7 +402,9 @@ impl Flesh {
             if impulse * own > depth {
                 impulse = depth / own;
             }
-            let rub = self.friction(index, &push_by, &shares, previous, settings, impulse, inverse);
+            let rub = self.friction(
+                index, &push_by, &shares, previous, settings, impulse, inverse,
+            );
             let sample = &self.samples[index];
             push(&sample.mean, normal * impulse + rub, places, inverse);
             let length = normal.length();
@@ -381,8 +412,18 @@ impl Flesh {
                 let share = own.dot(normal) / (length * length);
                 let back = -own * impulse - rub * share;
                 let [first, second] = self.segments[number].ends;
-                push(&self.vertices[first as usize], back * (1.0 - along), places, inverse);
-                push(&self.vertices[second as usize], back * along, places, inverse);
+                push(
+                    &self.vertices[first as usize],
+                    back * (1.0 - along),
+                    places,
+                    inverse,
+                );
+                push(
+                    &self.vertices[second as usize],
+                    back * along,
+                    places,
+                    inverse,
+                );
             }
         }
     }
@@ -410,9 +451,9 @@ impl Flesh {
         let Some(&(number, along, _)) = strongest else {
             return DVec3::ZERO;
         };
-        let [a, b] = self.segments[number].ends.map(|end| {
-            self.now[end as usize] - self.before[end as usize]
-        });
+        let [a, b] = self.segments[number]
+            .ends
+            .map(|end| self.now[end as usize] - self.before[end as usize]);
         let slide = own - a.lerp(b, along);
         let slide = slide - normal * slide.dot(normal);
         let [first, second] = self.segments[number].ends;
@@ -420,14 +461,18 @@ impl Flesh {
         let weight = inverse_mass(&sample.mean, inverse)
             + (1.0 - along) * (1.0 - along) * of(first)
             + along * along * of(second);
-        resisted(slide, weight, settings.friction * impulse * push_by.slope.length())
+        resisted(
+            slide,
+            weight,
+            settings.friction * impulse * push_by.slope.length(),
+        )
     }
 
     /// Takes samples out of obstacles, with friction, and notes which were in one.
     pub fn solve_obstacles(
         &mut self,
         places: &mut [DVec3],
-        previous: &[DVec3],
+        previous: &mut [DVec3],
         velocities: &[DVec3],
         inverse: &[f64],
         obstacles: &[Obstacle],
@@ -451,7 +496,11 @@ impl Flesh {
                     normal,
                     speed: at(&sample.mean, velocities).dot(normal),
                 });
-                let slide = point - at(&sample.mean, previous);
+                // What was too deep before is put out without a speed, as if it had been out.
+                let before = at(&sample.mean, previous);
+                let sunk = (sample.radius - obstacle.distance(before).0).clamp(0.0, depth);
+                push(&sample.mean, normal * (sunk / weight), previous, inverse);
+                let slide = point - before;
                 let slide = slide - normal * slide.dot(normal);
                 let impulse = depth / weight;
                 let rub = resisted(slide, weight, friction * impulse);
@@ -473,7 +522,12 @@ impl Flesh {
             };
             if speed > left || (speed < left && bounce > 0.0 && hit.speed < -least) {
                 let weight = inverse_mass(mean, inverse);
-                push(mean, hit.normal * ((left - speed) / weight), velocities, inverse);
+                push(
+                    mean,
+                    hit.normal * ((left - speed) / weight),
+                    velocities,
+                    inverse,
+                );
             }
         }
     }
@@ -511,7 +565,10 @@ impl Flesh {
             let apart = obstacles.iter().map(|o| o.distance(point).0);
             sample.radius - apart.fold(f64::INFINITY, f64::min)
         };
-        self.samples.iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
+        self.samples
+            .iter()
+            .map(depth)
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Operations of a step, roughly.
@@ -537,41 +594,6 @@ fn resisted(slide: DVec3, weight: f64, most: f64) -> DVec3 {
         return DVec3::ZERO;
     }
     slide * (-(length / weight).min(most) / length)
-}
-
-/// For each vertex of the refined curves the nodes it is a mean of. Refinement is linear in the nodes' places, so that it
-/// is told by three nodes at a time being moved along the axes.
-fn means(body: &Body, polyline: &Polyline, first: usize) -> Result<Vec<Mean>, skeleton::Error> {
-    let count = body.skeleton.nodes.len();
-    let mut means: Vec<Mean> = vec![Vec::new(); polyline.vertices.len()];
-    for start in (0..count).step_by(3) {
-        let nodes = (0..count).map(|i| Node {
-            position: match i.checked_sub(start) {
-                Some(axis @ 0..3) => DVec3::AXES[axis],
-                _ => DVec3::ZERO,
-            },
-            radius: 0.0,
-        });
-        let probe = Skeleton {
-            nodes: nodes.collect(),
-            curves: body.skeleton.curves.clone(),
-        };
-        let refined = probe.polyline(body.scheme, LEVELS)?;
-        for (mean, vertex) in means.iter_mut().zip(&refined.vertices) {
-            for (axis, weight) in vertex.position.to_array().into_iter().enumerate() {
-                if weight.abs() > LEAST_WEIGHT {
-                    mean.push(((first + start + axis) as u32, weight));
-                }
-            }
-        }
-    }
-    for mean in &mut means {
-        let sum: f64 = mean.iter().map(|(_, weight)| weight).sum();
-        for (_, weight) in mean {
-            *weight /= sum;
-        }
-    }
-    Ok(means)
 }
 
 /// A point on the way from one mean to another.

@@ -66,7 +66,10 @@ pub fn run<'a>(
     let (mut scene, placements) = state.run_all();
     state.note_unused_materials();
     state.lint(&scene);
-    if (state.animated || state.moving.is_any()) && state.shutter > 0.0 && !state.report.has_errors() {
+    if (state.animated || state.moving.is_any())
+        && state.shutter > 0.0
+        && !state.report.has_errors()
+    {
         let exposure = Exposure {
             sources,
             assets,

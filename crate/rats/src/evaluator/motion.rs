@@ -19,7 +19,6 @@ use scene::{Curves, Form, Shape};
 use skeleton::{Node, Skeleton};
 use std::cell::RefCell;
 use std::ops::Range;
-use std::rc::Rc;
 use std::sync::Arc;
 
 /// Motions that are kept: all of one text, before and after an edit.
@@ -54,12 +53,17 @@ struct Kept {
     frames: Vec<Vec<DVec3>>,
     /// The first frame in which something was too fast.
     hurried: Option<usize>,
+    /// How far the flesh is in obstacles in frame 0.
+    sunk: f64,
 }
 
 /// What a text says in its frames.
 struct Told {
     texts: Vec<String>,
-    frames: Vec<Rc<Vec<Setup>>>,
+    /// Its motions in frame 0.
+    first: Vec<Setup>,
+    /// For each frame the places of the pinned nodes of each motion.
+    pins: Vec<Vec<Vec<DVec3>>>,
     /// Steps of one run.
     steps: u64,
 }
@@ -102,13 +106,16 @@ pub fn motion<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     for index in parts {
         let part = &mut run.model.parts[index];
         part.moves = true;
-        let count = part.element.shape.curves().map_or(0, |c| c.skeleton.nodes.len());
+        let count = part
+            .element
+            .shape
+            .curves()
+            .map_or(0, |c| c.skeleton.nodes.len());
         let own: Vec<DVec3> = places.by_ref().take(count).collect();
         // Frame 0 is the text's to the last bit.
         if run.moment > 0.0 && own.len() == count {
-            put(part, &own).map_err(|error| {
-                Problem::new(command.word_span.clone(), error.to_string())
-            })?;
+            put(part, &own)
+                .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
         }
     }
     Ok(Flow::Next)
@@ -122,11 +129,7 @@ struct Wanted {
 }
 
 impl Wanted {
-    fn read<'a>(
-        run: &mut Evaluator<'a>,
-        command: &'a Command,
-        given: &Given<'a>,
-    ) -> Outcome<Self> {
+    fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command, given: &Given<'a>) -> Outcome<Self> {
         let names = given.names("object");
         let mut ranges = Vec::new();
         for name in &names {
@@ -139,7 +142,8 @@ impl Wanted {
             ));
         }
         let shapes = ranges.iter().map(|(_, range)| range.len() as u64);
-        run.scope.step(1 + shapes.sum::<u64>(), &command.word_span)?;
+        run.scope
+            .step(1 + shapes.sum::<u64>(), &command.word_span)?;
         let (mut parts, mut bodies) = (Vec::new(), Vec::new());
         for (span, range) in ranges {
             for index in range {
@@ -267,10 +271,7 @@ fn pin<'a>(
     Ok(())
 }
 
-fn no_such_node<'n>(
-    name: &Name<'_>,
-    all: impl Iterator<Item = &'n Vec<String>>,
-) -> Box<Problem> {
+fn no_such_node<'n>(name: &Name<'_>, all: impl Iterator<Item = &'n Vec<String>>) -> Box<Problem> {
     let names: Vec<&str> = all.flatten().map(String::as_str).collect();
     Problem::new(
         name.span.clone(),
@@ -383,18 +384,21 @@ fn moved(
     left: u64,
 ) -> Result<Moved, motion::Error> {
     KEEP.with_borrow_mut(|keep| {
+        // Frames that are computed must be of the same pins, as far as they are wanted.
         let is_it = |kept: &Kept| {
             let both = kept.pins.len().min(pins.len());
-            // As far as frames are computed, they must be of the same pins.
-            let computed = kept.frames.len() - 1;
-            kept.setup == setup
-                && kept.pins[..both] == pins[..both]
-                && (both >= computed || kept.pins.len() == pins.len())
+            let same = if pins.is_empty() {
+                kept.pins.is_empty()
+            } else {
+                kept.pins[..both] == pins[..both] && kept.pins.len() >= kept.frames.len() - 1
+            };
+            kept.setup == setup && (moment <= 0.0 || same)
         };
         match keep.iter().position(is_it) {
             Some(index) => keep[index..].rotate_left(1),
             None => {
                 let simulation = Simulation::new(&setup)?;
+                let sunk = simulation.deepest();
                 if keep.len() >= KEPT {
                     keep.remove(0);
                 }
@@ -404,6 +408,7 @@ fn moved(
                     pins: Vec::new(),
                     simulation,
                     hurried: None,
+                    sunk,
                 });
             }
         }
@@ -434,14 +439,13 @@ impl Kept {
         let share = reached - before as f64;
         let between = self.frames[before].iter().zip(&self.frames[behind]);
         let at = |(a, b): (&DVec3, &DVec3)| if share > 0.0 { a.lerp(*b, share) } else { *a };
-        let start = Simulation::new(&self.setup);
         Moved {
             places: between.map(at).collect(),
             work: each * behind as u64,
             stopped: (moment > most as f64).then_some(most),
             hurried: self.hurried.filter(|&number| number <= behind),
             speed_limit: self.simulation.speed_limit(),
-            sunk: start.map_or(0.0, |start| start.deepest()),
+            sunk: self.sunk,
         }
     }
 }
@@ -450,50 +454,37 @@ impl Evaluator<'_> {
     /// What the motion of this number is in frame 0, and where its pinned nodes are in the frames up to this one. `None` if there is
     /// none in frame 0.
     fn told(&mut self, number: usize, frame: usize) -> Option<(Setup, Vec<Vec<DVec3>>)> {
-        let frames = TOLD.with_borrow_mut(|told| {
+        TOLD.with_borrow_mut(|told| {
             let texts = self.sources.all[..self.sources.own].iter();
-            let same = told.as_ref().is_some_and(|told| {
+            let is_same = |told: &Told| {
                 told.texts.len() == self.sources.own
                     && texts.clone().zip(&told.texts).all(|(a, b)| a.text == b)
+            };
+            let mut now = told.take().filter(is_same).unwrap_or_else(|| Told {
+                texts: texts.clone().map(|s| s.text.to_owned()).collect(),
+                first: Vec::new(),
+                pins: Vec::new(),
+                steps: 0,
             });
-            if !same {
-                *told = Some(Told {
-                    texts: texts.map(|source| source.text.to_owned()).collect(),
-                    frames: Vec::new(),
-                    steps: 0,
-                });
-            }
-            let told = told.as_mut()?;
-            while told.frames.len() <= frame {
-                let count = told.frames.len() as u64;
-                if count > 1 && count * told.steps > MAX_PIN_STEPS {
+            while now.pins.len() <= frame {
+                let count = now.pins.len() as u64;
+                if count * now.steps > MAX_PIN_STEPS {
                     break;
                 }
                 let scope = Scope::new(self.scope.symbols.clone());
                 let mut other = Evaluator::new(self.sources, self.assets, count as f64, scope);
                 other.moving.asked = true;
                 other.run_all();
-                told.steps = told.steps.max(other.scope.steps());
-                told.frames.push(Rc::new(other.moving.found));
+                now.steps = now.steps.max(other.scope.steps());
+                now.pins.push(other.moving.found.iter().map(pins).collect());
+                if count == 0 {
+                    now.first = other.moving.found;
+                }
             }
-            Some(told.frames.clone())
-        })?;
-        let first = frames.first()?.get(number)?.clone();
-        let pinned = first.bodies.iter().any(|body| !body.pinned.is_empty());
-        if !pinned {
-            return Some((first, Vec::new()));
-        }
-        let mut last = pins(&first);
-        let mut all = Vec::with_capacity(frame);
-        for index in 1..=frame {
-            let now = frames.get(index).and_then(|setups| setups.get(number)).map(pins);
-            // As many as in frame 0: else they stay.
-            if let Some(now) = now.filter(|now| now.len() == last.len()) {
-                last = now;
-            }
-            all.push(last.clone());
-        }
-        Some((first, all))
+            let found = now.at(number, frame);
+            *told = Some(now);
+            found
+        })
     }
 
     fn warn(&mut self, command: &Command, moved: &Moved) {
@@ -530,11 +521,33 @@ impl Evaluator<'_> {
     }
 }
 
+impl Told {
+    fn at(&self, number: usize, frame: usize) -> Option<(Setup, Vec<Vec<DVec3>>)> {
+        let first = self.first.get(number)?.clone();
+        let mut last = pins(&first);
+        if last.is_empty() {
+            return Some((first, Vec::new()));
+        }
+        let mut all = Vec::with_capacity(frame);
+        for index in 1..=frame {
+            let now = self.pins.get(index).and_then(|motions| motions.get(number));
+            // As many as in frame 0: else they stay.
+            if let Some(now) = now.filter(|now| now.len() == last.len()) {
+                last.clone_from(now);
+            }
+            all.push(last.clone());
+        }
+        Some((first, all))
+    }
+}
+
 /// The places of the pinned nodes, body by body.
 fn pins(setup: &Setup) -> Vec<DVec3> {
     let of = |body: &Body| -> Vec<DVec3> {
         let nodes = body.pinned.iter();
-        nodes.map(|&node| body.skeleton.nodes[node].position).collect()
+        nodes
+            .map(|&node| body.skeleton.nodes[node].position)
+            .collect()
     };
     setup.bodies.iter().flat_map(of).collect()
 }
