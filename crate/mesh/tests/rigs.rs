@@ -10,7 +10,12 @@ fn bar() -> (Export, Rig) {
         positions.push(DVec3::new(f64::from(i), -0.5, 0.2));
         positions.push(DVec3::new(f64::from(i), 0.5, 0.2));
     }
-    let triangles = (0..3).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 1], [2 * i + 1, 2 * i + 2, 2 * i + 3]]);
+    let triangles = (0..3).flat_map(|i| {
+        [
+            [2 * i, 2 * i + 2, 2 * i + 1],
+            [2 * i + 1, 2 * i + 2, 2 * i + 3],
+        ]
+    });
     let shares = positions.iter().map(|p| {
         let along = (p.x / 1.5) as f32;
         if along <= 1.0 {
@@ -26,7 +31,11 @@ fn bar() -> (Export, Rig) {
         parent,
         place: DVec3::X * x,
     };
-    let joints = vec![joint("A", None, 0.0), joint("B", Some(0), 1.5), joint("C", Some(1), 3.0)];
+    let joints = vec![
+        joint("A", None, 0.0),
+        joint("B", Some(0), 1.5),
+        joint("C", Some(1), 3.0),
+    ];
     let frames = (0..5).map(|i| {
         let t = f64::from(i) * 0.2;
         let pose = |x: f64, turn: f64| Pose {
@@ -43,7 +52,10 @@ fn bar() -> (Export, Rig) {
     };
     let export = Export {
         name: "bar".into(),
-        parts: vec![Part { name: "bar".into(), mesh }],
+        parts: vec![Part {
+            name: "bar".into(),
+            mesh,
+        }],
         millimetres: 20.0,
     };
     (export, rig)
@@ -55,7 +67,9 @@ fn floats(accessor: &gltf::Accessor<'_>, bytes: &[u8]) -> Vec<f32> {
     let start = view.offset() + accessor.offset();
     let count = accessor.count() * accessor.dimensions().multiplicity();
     let numbers = bytes[start..].chunks_exact(4).take(count);
-    numbers.map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
+    numbers
+        .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
+        .collect()
 }
 
 #[test]
@@ -68,7 +82,12 @@ fn another_reader_moves_the_vertices_as_the_rig_does() {
     let inverse = floats(&skin.inverse_bind_matrices().unwrap(), &bytes);
     let inverse: Vec<Mat4> = inverse.chunks(16).map(Mat4::from_cols_slice).collect();
     let joints: Vec<usize> = skin.joints().map(|joint| joint.index()).collect();
-    assert_eq!(skin.joints().map(|j| j.name().unwrap().to_owned()).collect::<Vec<_>>(), ["A", "B", "C"]);
+    assert_eq!(
+        skin.joints()
+            .map(|j| j.name().unwrap().to_owned())
+            .collect::<Vec<_>>(),
+        ["A", "B", "C"]
+    );
     let primitive = glb.meshes().next().unwrap().primitives().next().unwrap();
     let reader = primitive.reader(|_| Some(&bytes));
     let positions: Vec<[f32; 3]> = reader.read_positions().unwrap().collect();
@@ -84,7 +103,10 @@ fn another_reader_moves_the_vertices_as_the_rig_does() {
             .collect();
         for node in &joints {
             let (mut place, mut turn) = (Vec3::ZERO, Quat::IDENTITY);
-            for channel in animation.channels().filter(|c| c.target().node().index() == *node) {
+            for channel in animation
+                .channels()
+                .filter(|c| c.target().node().index() == *node)
+            {
                 let times = floats(&channel.sampler().input(), &bytes);
                 assert!((times[number] - number as f32 / 25.0).abs() < 1e-6);
                 let values = floats(&channel.sampler().output(), &bytes);
@@ -98,8 +120,13 @@ fn another_reader_moves_the_vertices_as_the_rig_does() {
             local[*node] = Mat4::from_rotation_translation(turn, place);
         }
         let mut global = local.clone();
-        let mut stack: Vec<(gltf::Node<'_>, Mat4)> =
-            glb.scenes().next().unwrap().nodes().map(|n| (n, Mat4::IDENTITY)).collect();
+        let mut stack: Vec<(gltf::Node<'_>, Mat4)> = glb
+            .scenes()
+            .next()
+            .unwrap()
+            .nodes()
+            .map(|n| (n, Mat4::IDENTITY))
+            .collect();
         while let Some((node, above)) = stack.pop() {
             global[node.index()] = above * local[node.index()];
             stack.extend(node.children().map(|child| (child, global[node.index()])));
@@ -114,7 +141,10 @@ fn another_reader_moves_the_vertices_as_the_rig_does() {
             // Metres: 20 mm a unit.
             let own = export.parts[0].mesh.positions[i];
             let expected = rig.skinned(own, &rig.shares[0][i], frame) * 0.02;
-            assert!(moved.as_dvec3().distance(expected) < 1e-6, "{number} {i}: {moved} {expected}");
+            assert!(
+                moved.as_dvec3().distance(expected) < 1e-6,
+                "{number} {i}: {moved} {expected}"
+            );
         }
     }
     // At rest the reader of our own finds the plain mesh.

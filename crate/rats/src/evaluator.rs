@@ -90,6 +90,7 @@ pub fn run<'a>(
         tool_origins: state.tool_origins,
         output: state.output,
         animated: state.animated || state.moving.is_any(),
+        rate: state.moving.rate(),
     }
 }
 

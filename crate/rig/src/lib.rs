@@ -33,6 +33,9 @@ use scene::{Curves, Element, Scene, Shape, SoftSurface};
 /// The most nodes of all skeletons that are rigged.
 pub const MOST_NODES: usize = 2000;
 
+/// The share of skeletons in the field that makes a vertex follow them.
+const LEAST_SHARE: f64 = 0.01;
+
 /// A skeleton of a scene.
 struct Skeleton<'a> {
     /// Its element's index in the scene.
@@ -74,9 +77,7 @@ pub fn rig(scenes: &[Scene], rate: f64, meshes: &[&TriangleMesh]) -> Result<Rig,
     };
     let rest = skeletons(first);
     if rest.is_empty() {
-        return Err(
-            "there is no skeleton to rig: joints come from the command `skeleton`".into(),
-        );
+        return Err("there is no skeleton to rig: joints come from the command `skeleton`".into());
     }
     let count: usize = rest.iter().map(|own| own.places.len()).sum();
     if count > MOST_NODES {
@@ -213,15 +214,23 @@ impl Weights {
             let off = |(surface, _): &&(SoftSurface, Vec<Hold>)| {
                 (surface.sum.jet(*point).value - field::THRESHOLD).abs()
             };
-            let surface = self.surfaces.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+            let surface = self
+                .surfaces
+                .iter()
+                .min_by(|a, b| off(a).total_cmp(&off(b)));
             sums.fill(0.0);
             if let Some((surface, holds)) = surface {
                 shares.clear();
                 surface.sum.shares(*point, &mut shares);
+                let all: f64 = shares.iter().map(|(_, share)| share).sum();
                 for &(primitive, share) in &shares {
                     for &(joint, weight) in &holds[primitive as usize] {
                         sums[joint] += share * weight;
                     }
+                }
+                // Of a shape far from all skeletons a trace is left of each.
+                if sums.iter().sum::<f64>() < LEAST_SHARE * all {
+                    sums.fill(0.0);
                 }
             }
             strongest(&sums)

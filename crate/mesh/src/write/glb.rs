@@ -136,7 +136,12 @@ impl Builder {
     }
 
     /// The nodes of the joints, the first of which has the number `first`; the skin, and the animation if there are two frames or more.
-    fn rig(&mut self, rig: &Rig, millimetres: f64, first: usize) -> (Vec<Value>, Value, Option<Value>) {
+    fn rig(
+        &mut self,
+        rig: &Rig,
+        millimetres: f64,
+        first: usize,
+    ) -> (Vec<Value>, Value, Option<Value>) {
         let rest = rig.rest();
         let local = rig.local(&rest, millimetres);
         let nodes = rig.joints.iter().enumerate().map(|(i, joint)| {
@@ -188,7 +193,8 @@ impl Builder {
                 channels.push(json!({
                     "sampler": samplers.len(), "target": { "node": first + i, "path": path }
                 }));
-                samplers.push(json!({ "input": times, "output": output, "interpolation": "LINEAR" }));
+                samplers
+                    .push(json!({ "input": times, "output": output, "interpolation": "LINEAR" }));
             }
         }
         let animation = json!({ "name": "motion", "samplers": samplers, "channels": channels });

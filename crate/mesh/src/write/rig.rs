@@ -114,7 +114,9 @@ impl Rig {
     fn check(&self, vertices: &[usize]) -> Result<(), Error> {
         let joints = self.joints.len();
         if joints == 0 || joints > MOST_JOINTS {
-            return fail(format!("a rig has 1 to {MOST_JOINTS} joints, this one has {joints}"));
+            return fail(format!(
+                "a rig has 1 to {MOST_JOINTS} joints, this one has {joints}"
+            ));
         }
         let is_before = |(i, joint): (usize, &Joint)| joint.parent.is_none_or(|p| p < i);
         if !self.joints.iter().enumerate().all(is_before) {
@@ -134,7 +136,10 @@ impl Rig {
         }
         let sound = |pose: &Pose| pose.place.is_finite() && pose.turn.is_normalized();
         let frames = self.frames.iter();
-        if !frames.clone().all(|frame| frame.len() == joints && frame.iter().all(sound)) {
+        if !frames
+            .clone()
+            .all(|frame| frame.len() == joints && frame.iter().all(sound))
+        {
             return fail("a rig has a frame without a sound pose for each joint");
         }
         if !(self.rate > 0.0 && self.rate.is_finite())

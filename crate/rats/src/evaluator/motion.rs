@@ -31,6 +31,8 @@ pub struct Moving {
     count: usize,
     /// Their operations up to this frame.
     work: u64,
+    /// Frames of a second of the last one.
+    rate: Option<f64>,
     /// Whether the run is only asked for setups, which it puts into `found`.
     asked: bool,
     found: Vec<Setup>,
@@ -40,6 +42,11 @@ impl Moving {
     /// Whether anything moves.
     pub fn is_any(&self) -> bool {
         self.count > 0
+    }
+
+    /// Frames of a second, as the last motion says.
+    pub fn rate(&self) -> Option<f64> {
+        self.rate
     }
 }
 
@@ -86,6 +93,7 @@ pub fn motion<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     }
     let number = run.moving.count;
     run.moving.count += 1;
+    run.moving.rate = Some(wanted.setup.settings.rate);
     if run.moving.asked {
         run.moving.found.push(wanted.setup);
         return Ok(Flow::Next);
@@ -468,7 +476,8 @@ impl Evaluator<'_> {
             });
             while now.pins.len() <= frame {
                 let count = now.pins.len() as u64;
-                if count * now.steps > MAX_PIN_STEPS {
+                let is_free = count > 0 && now.first.iter().all(|setup| pins(setup).is_empty());
+                if is_free || count * now.steps > MAX_PIN_STEPS {
                     break;
                 }
                 let scope = Scope::new(self.scope.symbols.clone());
