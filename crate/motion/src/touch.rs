@@ -13,6 +13,9 @@ const LEVELS: u32 = 1;
 /// The most samples of a segment, besides its ends.
 const MOST_BETWEEN: usize = 3;
 
+/// The share of its radius by which a sample that begins in an obstacle is put out in a step.
+const RISE: f64 = 0.05;
+
 /// A mean of some nodes: their numbers and weights, which add up to 1.
 type Mean = Vec<(u32, f64)>;
 
@@ -496,10 +499,12 @@ impl Flesh {
                     normal,
                     speed: at(&sample.mean, velocities).dot(normal),
                 });
-                // What was too deep before is put out without a speed, as if it had been out.
+                // What was too deep before is put out bit by bit, and without a speed, as if it had been out.
                 let before = at(&sample.mean, previous);
                 let sunk = (sample.radius - obstacle.distance(before).0).clamp(0.0, depth);
-                push(&sample.mean, normal * (sunk / weight), previous, inverse);
+                let out = sunk.min(RISE * sample.radius);
+                push(&sample.mean, normal * (out / weight), previous, inverse);
+                let depth = depth - sunk + out;
                 let slide = point - before;
                 let slide = slide - normal * slide.dot(normal);
                 let impulse = depth / weight;

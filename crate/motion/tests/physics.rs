@@ -138,6 +138,10 @@ fn energy_of_folds_that_meet_does_not_grow() {
         }
         let mut simulation = simulation(vec![chain(10, 0.5, 0.2), above], vec![], settings);
         stir(&mut simulation, seed, 3.0);
+        for i in 10..18 {
+            let velocity = simulation.velocities()[i] - DVec3::Y * 2.0;
+            simulation.set_velocity(i, velocity);
+        }
         let first = simulation.energy().total();
         let (mut most, mut pressed) = (first, 0.0f64);
         for _ in 0..10_000 / settings.steps {
