@@ -10,11 +10,15 @@ use std::collections::BinaryHeap;
 
 /// Levels of subdivision of the curves that touch.
 const LEVELS: u32 = 1;
+/// Samples are at most so many radii apart, unless that are too many.
+const SPACING: f64 = 1.5;
 /// The most samples of a segment, besides its ends.
 const MOST_BETWEEN: usize = 3;
 
+/// Radii within which curves add to the thickness of the flesh at a point.
+const NEAR: f64 = 8.0;
 /// The share of its radius by which a sample that begins in an obstacle is put out in a step.
-const RISE: f64 = 0.05;
+const RISE: f64 = 0.005;
 
 /// A mean of some nodes: their numbers and weights, which add up to 1.
 type Mean = Vec<(u32, f64)>;
@@ -125,7 +129,7 @@ impl Flesh {
         flesh.margin = flesh.samples.iter().map(|s| s.radius).fold(0.0, f64::max);
         flesh.look(&places);
         for index in 0..flesh.samples.len() {
-            let overlap = flesh.depth(index, &places).map_or(0.0, |(depth, _)| depth);
+            let overlap = flesh.depth(index, &places).map_or(0.0, |(depth, _)| depth.max(0.0));
             flesh.samples[index].overlap = overlap;
         }
         Ok(flesh)
@@ -183,7 +187,7 @@ impl Flesh {
                 radius,
             });
             let between = if radius > 0.0 {
-                ((segment.length / radius) as usize).min(MOST_BETWEEN)
+                ((segment.length / (SPACING * radius)) as usize).min(MOST_BETWEEN)
             } else {
                 0
             };
@@ -227,7 +231,7 @@ impl Flesh {
             let radius = segment.ends.map(|end| polyline.vertices[end].radius);
             let radius = 0.5 * (radius[0] + radius[1]);
             let between = if radius > 0.0 {
-                ((segment.length / radius) as usize).min(MOST_BETWEEN)
+                ((segment.length / (SPACING * radius)) as usize).min(MOST_BETWEEN)
             } else {
                 0
             };
@@ -625,9 +629,15 @@ fn thickness(
     let Some(along) = along.try_normalize().filter(|_| radius > 0.0) else {
         return radius;
     };
+    // Those farther away add a hundredth at most.
+    let is_near = |&&(a, b, _): &&(DVec3, DVec3, f64)| {
+        let reach = NEAR * radius + 0.5 * a.distance(b);
+        point.distance_squared((a + b) * 0.5) < reach * reach
+    };
+    let near: Vec<_> = pieces.iter().filter(is_near).collect();
     let value = |p: DVec3| {
-        let field = |&(a, b, r): &(DVec3, DVec3, f64)| 0.5 * r * r * line(p, a, b).0;
-        pieces.iter().map(field).sum::<f64>()
+        let field = |&&(a, b, r): &&(DVec3, DVec3, f64)| 0.5 * r * r * line(p, a, b).0;
+        near.iter().map(field).sum::<f64>()
     };
     let reach = |direction: DVec3| {
         let mut reach = radius;

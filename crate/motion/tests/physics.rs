@@ -126,6 +126,7 @@ fn energy_does_not_grow_in_ten_thousand_steps() {
 #[test]
 fn energy_of_folds_that_meet_does_not_grow() {
     // The ends fly at each other and the chain folds together.
+    let mut pressed = 0.0f64;
     for seed in 1..6 {
         let settings = Settings {
             bending: 0.01,
@@ -138,20 +139,25 @@ fn energy_of_folds_that_meet_does_not_grow() {
         }
         let mut simulation = simulation(vec![chain(10, 0.5, 0.2), above], vec![], settings);
         stir(&mut simulation, seed, 3.0);
-        for i in 10..18 {
-            let velocity = simulation.velocities()[i] - DVec3::Y * 2.0;
-            simulation.set_velocity(i, velocity);
+        // Each body as a whole: the upper one comes down at 1.
+        for (range, down) in [(0..10, 0.0), (10..18, 1.0)] {
+            let mean =
+                simulation.velocities()[range.clone()].iter().sum::<DVec3>() / range.len() as f64;
+            for i in range {
+                let velocity = simulation.velocities()[i] - mean - DVec3::Y * down;
+                simulation.set_velocity(i, velocity);
+            }
         }
         let first = simulation.energy().total();
-        let (mut most, mut pressed) = (first, 0.0f64);
+        let mut most = first;
         for _ in 0..10_000 / settings.steps {
             simulation.advance(&[]);
             most = most.max(simulation.energy().total());
             pressed = pressed.max(simulation.pressed());
         }
-        assert!(pressed > 0.0, "they never meet");
         assert!(most <= 1.01 * first, "{seed}: {most} of {first}");
     }
+    assert!(pressed > 1.0, "they hardly meet: {pressed}");
 }
 
 #[test]
@@ -439,7 +445,7 @@ fn folds_and_bodies_do_not_pass_through_each_other() {
         for i in 9..18 {
             simulation.set_velocity(i, DVec3::Y * -share * limit);
         }
-        for frame in 0..100 {
+        for frame in 0..40 {
             simulation.advance(&[]);
             let places = simulation.positions();
             let middle = |range: std::ops::Range<usize>| places[range].to_vec()[4].y;
@@ -590,14 +596,11 @@ fn springs_of_no_length_and_nodes_below_the_floor_are_harmless() {
     let sunk = chain(4, 1.0, 0.3);
     let mut simulation = simulation(vec![twice, sunk], vec![floor(0.5)], Settings::default());
     assert!(simulation.deepest() > 0.7);
-    for _ in 0..100 {
+    for frame in 0..100 {
         simulation.advance(&[]);
-        assert!(
-            simulation
-                .positions()
-                .iter()
-                .all(|p| p.is_finite() && p.y < 2.0)
-        );
+        for (i, p) in simulation.positions().iter().enumerate() {
+            assert!(p.is_finite() && p.y < 2.0, "{frame} {i}: {p}");
+        }
     }
     assert!(simulation.deepest() < 0.02, "{}", simulation.deepest());
 }

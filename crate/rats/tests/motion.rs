@@ -174,14 +174,16 @@ fn too_much_is_refused_or_stops_with_words() {
         far.diagnostics
     );
     assert_eq!(nodes(&far, 0), nodes(&run(&text, 3000.0), 0));
-    // Many steps: it stops before, and the same place counts further on.
-    let text = format!("{TAIL}motion {{ steps 200 }}");
+    // Many nodes and steps: it stops before.
+    let nodes: String = (0..150).map(|i| format!("node n{i} <{i} 0 0> ")).collect();
+    let along: String = (0..150).map(|i| format!("n{i} ")).collect();
+    let text = format!(
+        "surface s, diffuse Red, radius 0.3\nskeleton s, A {{ {nodes} curve {along} }}\nmotion {{ steps 200 }}"
+    );
     let far = run(&text, 2999.0);
-    let stopped = far
-        .diagnostics
-        .iter()
-        .find(|d| d.message.contains("too much work"));
-    assert!(stopped.is_some(), "{:?}", far.diagnostics);
+    let stopped = far.diagnostics.iter();
+    let mut stopped = stopped.filter(|d| d.message.contains("too much work"));
+    assert!(stopped.next().is_some(), "{:?}", far.diagnostics);
     // Too many motions.
     let text = TAIL.to_owned() + &"instance TAIL T\nmotion T { }\n".repeat(40);
     assert_eq!(

@@ -11,7 +11,11 @@ fn scenes(text: &str, count: u32) -> Vec<Scene> {
     let scene = |frame: u32| {
         let compiled = compile_at(&project, &[], f64::from(frame));
         let worst = compiled.diagnostics.iter().map(|d| d.severity).max();
-        assert!(worst <= Some(rats::Severity::Warning), "{:?}", compiled.diagnostics);
+        assert!(
+            worst <= Some(rats::Severity::Warning),
+            "{:?}",
+            compiled.diagnostics
+        );
         compiled.scene
     };
     (0..count).map(scene).collect()
