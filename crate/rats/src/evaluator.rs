@@ -25,6 +25,7 @@ mod materials;
 mod messages;
 mod model;
 mod moments;
+mod motion;
 mod objects;
 mod options;
 mod palette;
@@ -68,7 +69,10 @@ pub fn run<'a>(
     let (mut scene, placements) = state.run_all();
     state.note_unused_materials();
     state.lint(&scene);
-    if state.animated && state.shutter > 0.0 && !state.report.has_errors() {
+    if (state.animated || state.moving.is_any())
+        && state.shutter > 0.0
+        && !state.report.has_errors()
+    {
         let exposure = Exposure {
             sources,
             assets,
@@ -88,7 +92,8 @@ pub fn run<'a>(
         tools: state.tools,
         tool_origins: state.tool_origins,
         output: state.output,
-        animated: state.animated,
+        animated: state.animated || state.moving.is_any(),
+        rate: state.moving.rate(),
     }
 }
 

@@ -3,6 +3,7 @@
 use super::frozen::Frozen;
 use super::image_list::Images;
 use super::model::Model;
+use super::motion::Moving;
 use super::palette::Palette;
 use super::surroundings::Air;
 use super::view_plane::ViewPlane;
@@ -71,6 +72,8 @@ pub struct Evaluator<'a> {
     pub(super) output: Output,
     /// Whether a variable changes with every frame.
     pub(super) animated: bool,
+    /// What `motion` has moved.
+    pub(super) moving: Moving,
     /// The file that is being run.
     pub(super) file: usize,
     /// The files that are being read, the innermost last.
@@ -127,6 +130,7 @@ impl<'a> Evaluator<'a> {
             tool_origins: Vec::new(),
             output: Output::default(),
             animated: false,
+            moving: Moving::default(),
             file: 0,
             reading: Vec::new(),
             uses: Vec::new(),
