@@ -23,12 +23,15 @@
 //!
 //! - `bulge.rs`: the three bulges and bounds on them;
 //! - `squashed.rs`: the deformed function;
+//! - `folded.rs`: the folds of one skeleton, which press each other;
 //! - `coating.rs`: whether a bulge would wrap the other body.
 
 mod bulge;
 mod coating;
+mod folded;
 mod squashed;
 
 pub use bulge::{Bulge, Spread};
 pub use coating::coats;
+pub use folded::Folded;
 pub use squashed::Squashed;

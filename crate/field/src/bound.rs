@@ -467,6 +467,12 @@ impl Bound {
         self.ripple.is_some()
     }
 
+    /// A factor m and a width parameter w such that `|f| ≤ m·h(w·d)` at a distance d from the skeleton, for the kernel h.
+    #[must_use]
+    pub fn far(&self) -> [f64; 2] {
+        [self.whole, self.width]
+    }
+
     /// Whether the term can be above zero.
     #[must_use]
     pub fn adds(&self) -> bool {

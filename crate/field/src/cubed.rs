@@ -5,6 +5,7 @@
 use crate::Real;
 
 pub mod arc;
+pub mod cone;
 pub mod polygon;
 pub mod segment;
 

@@ -28,7 +28,7 @@ use crate::bone::Curve;
 use crate::bone::curve::{SINGLE_TERMS, Span, TERMS};
 use crate::inverse::POLE2;
 use crate::metaballs::INNER2;
-use crate::{Jet, Kernel, Real};
+use crate::{Jet, Kernel, Real, cubed};
 
 /// In `x = STEEP·sinh y` (see the module).
 const STEEP: f64 = core::f64::consts::FRAC_PI_2;
@@ -42,7 +42,10 @@ pub fn jet<R: Real>(kernel: Kernel, bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R
         Kernel::Gauss => smooth(bone, p, |q| Kernel::Gauss.pair(q)),
         Kernel::Inverse => with_pole(bone, p, false, |q| Kernel::Inverse.pair(q)),
         Kernel::Squared => with_pole(bone, p, true, |q| Kernel::Squared.pair(q)),
-        Kernel::Cubed => with_pole(bone, p, true, |q| Kernel::Cubed.pair(q)),
+        Kernel::Cubed => match &bone.cone {
+            Some(cone) => cubed::cone::jet(cone, p),
+            None => with_pole(bone, p, true, |q| Kernel::Cubed.pair(q)),
+        },
         Kernel::Metaballs => compact(bone, p, true, |q| Kernel::Metaballs.pair(q)),
         Kernel::Soft => compact(bone, p, false, |q| Kernel::Soft.pair(q)),
         Kernel::Quartic => compact(bone, p, false, |q| Kernel::Quartic.pair(q)),

@@ -32,7 +32,7 @@
 //! - [`Shaping`] turns a radius, a blobbiness and a strength into a kernel's width and height;
 //! - [`Implicit`] is any function with a surface, with value, gradient and proven bounds; [`Sum`] is the convolution
 //!   surface's, [`Exponentials`] that of metaballs that fall with distance; [`Blend`] adds functions, [`Placed`] moves and
-//!   stretches one;
+//!   stretches one; [`Local`] is a skeleton's convolution whose folds do not blend;
 //! - [`Primitive`] is a term of the field: value, gradient, depth of influence, and the ray interval within it;
 //!   [`Bound`] gives upper bounds on its size, its derivatives and the error of a cubic Hermite span;
 //! - [`Blob`] is a primitive whose largest value on any interval of a ray has a closed form;
@@ -73,6 +73,7 @@ mod inverse;
 pub mod kernel;
 pub mod kinks;
 mod legendre;
+pub mod local;
 mod metaballs;
 mod placed;
 mod plane;
@@ -102,6 +103,7 @@ pub use exponentials::Exponentials;
 pub use implicit::{Ball, Enclosure, Implicit};
 pub use kernel::{Derivatives, Kernel};
 pub use kinks::Kink;
+pub use local::Local;
 pub use placed::Placed;
 pub use primitive::{Jet, Primitive};
 pub use profile::{Profile, Wave};

@@ -38,6 +38,52 @@ impl Grid {
         pieces
     }
 
+    /// The pieces of the sheets on which two bodies in contact touch: where the leading body changes, and both their fields are
+    /// `level`. `leading` says which body leads at each sample and by how much.
+    #[must_use]
+    pub fn border(&self, leading: &[(u32, f32)], level: f32) -> Vec<[[f32; 2]; 2]> {
+        let mut pieces = Vec::new();
+        if leading.len() < self.width * self.height || self.values.len() < leading.len() {
+            return pieces;
+        }
+        // On either side of a sheet a field is above its level by half of what it leads by.
+        let touches = |index: usize| {
+            let (_, apart) = leading[index];
+            apart.is_finite()
+                && (self.values[index] - level - 0.5 * apart).abs() < 0.03 * (1.0 + apart)
+        };
+        for y in 0..self.height.saturating_sub(1) {
+            for x in 0..self.width.saturating_sub(1) {
+                let corners = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
+                let at = corners.map(|[x, y]| y * self.width + x);
+                if at.iter().all(|i| leading[*i].0 == leading[at[0]].0)
+                    || !at.iter().all(|i| touches(*i))
+                {
+                    continue;
+                }
+                let mut crossings = Vec::new();
+                for side in 0..4 {
+                    let [a, b] = [side, (side + 1) % 4];
+                    let ((first, here), (second, there)) = (leading[at[a]], leading[at[b]]);
+                    if first != second {
+                        let t = here / (here + there).max(f32::MIN_POSITIVE);
+                        let [p, q] = [corners[a], corners[b]].map(|p| p.map(|c| c as f32));
+                        crossings.push([p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])]);
+                    }
+                }
+                match crossings[..] {
+                    [p, q] => pieces.push([p, q]),
+                    // Three bodies meet.
+                    _ => {
+                        let middle = [x as f32 + 0.5, y as f32 + 0.5];
+                        pieces.extend(crossings.iter().map(|p| [*p, middle]));
+                    }
+                }
+            }
+        }
+        pieces
+    }
+
     /// Polygons that cover where the value is above `level`, in units of samples: one for each run
     /// of cells that lie inside as a whole, one for each cell that the line crosses.
     #[must_use]

@@ -32,6 +32,7 @@
 mod bench;
 pub mod chart;
 mod command;
+pub mod contact;
 pub mod contour;
 pub mod convolution;
 mod dataset;

@@ -54,11 +54,34 @@ pub fn one(bodies: &[&dyn Implicit], point: DVec3) -> f64 {
     f64::from(eight(bodies, [point; 8])[0])
 }
 
+/// For each of eight points the body whose field is the largest there, and by how much it is larger than the next one's.
+#[must_use]
+pub fn leading(bodies: &[&dyn Implicit], points: [DVec3; 8]) -> [(u32, f32); 8] {
+    let axis = |pick: fn(&DVec3) -> f64| f32x8::from(points.map(|p| pick(&p) as f32));
+    let point = [axis(|p| p.x), axis(|p| p.y), axis(|p| p.z)];
+    let mut leading = [(0, f32::INFINITY); 8];
+    let mut most = [f32::NEG_INFINITY; 8];
+    for (number, body) in (0..).zip(bodies) {
+        for (lane, value) in body.jet8(point).value.to_array().into_iter().enumerate() {
+            let apart = (value - most[lane]).abs();
+            if value > most[lane] {
+                most[lane] = value;
+                leading[lane] = (number, apart);
+            } else {
+                leading[lane].1 = leading[lane].1.min(apart);
+            }
+        }
+    }
+    leading
+}
+
 /// A grid that is being filled.
 #[derive(Clone, Debug, Default)]
 pub struct Filling {
     /// The samples so far.
     pub grid: Grid,
+    /// For each of them the leading body, see [`leading`], if there are several.
+    pub leading: Vec<(u32, f32)>,
 }
 
 impl Filling {
@@ -71,6 +94,7 @@ impl Filling {
                 height: height.max(2),
                 values: Vec::new(),
             },
+            leading: Vec::new(),
         }
     }
 
@@ -105,6 +129,10 @@ impl Filling {
             let values = eight(bodies, points);
             let left = (all - first).min(8);
             self.grid.values.extend_from_slice(&values[..left]);
+            if bodies.len() > 1 {
+                self.leading
+                    .extend_from_slice(&leading(bodies, points)[..left]);
+            }
             done += 1;
             if done % batch == 0 && enough() {
                 break;
@@ -125,7 +153,7 @@ pub fn whole(field: &Sum, window: &Window, width: usize, height: usize) -> Grid 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use field::{Primitive, Skeleton};
+    use field::{Primitive, Skeleton, THRESHOLD};
 
     #[test]
     fn samples_are_the_field() {
@@ -155,5 +183,44 @@ mod tests {
         assert!(!filling.go_on(bodies, 1, &window, || true));
         while !filling.go_on(bodies, 1, &window, || true) {}
         assert_eq!(filling.grid, grid);
+    }
+
+    #[test]
+    fn bodies_in_contact_have_one_border() {
+        let shaping = shaping(Kernel::Cauchy, 0.8, 2.0);
+        let ball = |x: f64| -> std::sync::Arc<dyn Implicit> {
+            let center = DVec3::X * x;
+            let own = Primitive::new(Skeleton::Point { center }, &shaping, None);
+            std::sync::Arc::new(own.into_iter().collect::<Sum>())
+        };
+        let (left, right) = (ball(-0.5), ball(0.5));
+        let press = |own: &std::sync::Arc<dyn Implicit>, other: &std::sync::Arc<dyn Implicit>| {
+            let bulge = contact::Bulge::default();
+            contact::Squashed::new(own.clone(), vec![(other.clone(), bulge)])
+        };
+        let window = Window {
+            corner: DVec3::new(-2.0, -1.0, 0.0),
+            across: DVec3::X * 4.0,
+            up: DVec3::Y * 2.0,
+        };
+        let (a, b) = (press(&left, &right), press(&right, &left));
+        for (bodies, touch) in [
+            ([&a as &dyn Implicit, &b], true),
+            ([&*left, &*right], false),
+        ] {
+            let mut filling = Filling::new(80, 41);
+            filling.go_on(&bodies, 2, &window, || false);
+            let border = filling.grid.border(&filling.leading, THRESHOLD as f32);
+            assert_eq!(border.is_empty(), !touch);
+            // It is the line x = 0, in the middle of an odd number of steps.
+            assert!(
+                border
+                    .iter()
+                    .flatten()
+                    .all(|[x, _]| (x - 39.5).abs() < 0.05)
+            );
+            let length: f32 = border.iter().map(|[p, q]| (p[1] - q[1]).abs()).sum();
+            assert!(!touch || length > 15.0, "{length}");
+        }
     }
 }

@@ -159,14 +159,20 @@ impl Slice {
             if !filling.go_on(&functions, elements, &cut.window, enough) {
                 break;
             }
-            let grid_done = core::mem::take(&mut self.filling).grid;
+            let Filling {
+                grid: grid_done,
+                leading,
+            } = core::mem::take(&mut self.filling);
             let scale = [grid_done.width - 1, grid_done.height - 1].map(|n| n as f32);
             let share = |line: Vec<[[f32; 2]; 2]>| -> Vec<[[f32; 2]; 2]> {
                 line.into_iter()
                     .map(|piece| piece.map(|[x, y]| [x / scale[0], y / scale[1]]))
                     .collect()
             };
-            self.surface = share(grid_done.line(THRESHOLD as f32));
+            let mut surface = grid_done.line(THRESHOLD as f32);
+            // Bodies in contact share a sheet, which is one line.
+            surface.extend(grid_done.border(&leading, THRESHOLD as f32));
+            self.surface = share(surface);
             // Thin lines need fewer pieces than the finest grid would give.
             if self.level + 1 < LEVELS.len() {
                 let all = LINES.iter().flat_map(|level| grid_done.line(*level));

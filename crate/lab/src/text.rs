@@ -72,6 +72,14 @@ pub fn of(lesson: Lesson) -> Words {
                         where a ray runs along a bar, and four are better. The tracer here places spans \
                         by a proven bound on their error, so there is no number to choose.",
         },
+        Lesson::Contact => Words {
+            about: "pressed flat, with a bulge",
+            sentences: "Where two drops would overlap, what the other's field is above T is taken from each \
+                        drop's own, so that both end on the sheet where their fields are equal. Just outside \
+                        a small bulge is added instead, which leaves the surface smooth and gives back \
+                        some of the volume. Take hold of the drops, of where the bulge begins and of its \
+                        crest.",
+        },
     }
 }
 

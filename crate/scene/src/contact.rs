@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Two bodies that touch and do not overlap.
+/// Two bodies that touch and do not overlap. A body named twice: its locally convolved skeletons, whose folds do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Indices into [`Scene::bodies`].
@@ -17,6 +17,17 @@ pub struct Contact {
 }
 
 impl Scene {
+    /// The bulge of a body whose folds touch.
+    #[must_use]
+    pub fn fold(&self, body: u32) -> Option<Bulge> {
+        let of = |c: &&Contact| c.bodies == [body; 2] && c.bulge.is_usable();
+        self.contacts
+            .iter()
+            .rev()
+            .find(of)
+            .map(|contact| contact.bulge)
+    }
+
     /// For each body that touches others these and their bulges.
     #[must_use]
     pub fn partners(&self) -> BTreeMap<u32, BTreeMap<u32, Bulge>> {

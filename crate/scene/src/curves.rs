@@ -21,6 +21,8 @@ pub struct Curves {
     pub scheme: Scheme,
     /// How often.
     pub levels: u32,
+    /// Arc length within which the skeleton counts at a point, if not all of it does.
+    pub local: Option<f64>,
     /// The refined curves, made at first use.
     #[serde(skip)]
     polyline: OnceLock<Option<Polyline>>,
@@ -29,7 +31,7 @@ pub struct Curves {
 impl PartialEq for Curves {
     fn eq(&self, other: &Self) -> bool {
         self.skeleton == other.skeleton
-            && (self.scheme, self.levels) == (other.scheme, other.levels)
+            && (self.scheme, self.levels, self.local) == (other.scheme, other.levels, other.local)
     }
 }
 
@@ -44,6 +46,7 @@ impl Curves {
             skeleton,
             scheme,
             levels,
+            local: None,
             polyline: OnceLock::from(Some(polyline)),
         })
     }
@@ -63,6 +66,13 @@ impl Curves {
             polyline: OnceLock::from(Some(polyline)),
             ..self.clone()
         })
+    }
+
+    /// The same curves, convolved locally: only what is within an arc length of a point's place counts there.
+    #[must_use]
+    pub fn within(self, reach: f64) -> Self {
+        let local = Some(reach);
+        Self { local, ..self }
     }
 
     /// The refined curves; `None` if data from elsewhere are not usable.

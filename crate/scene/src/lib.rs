@@ -32,6 +32,7 @@ pub mod function;
 pub mod implicit_mesh;
 pub mod light;
 pub mod limbs;
+mod local;
 pub mod parts;
 pub mod quadric;
 pub mod settings;

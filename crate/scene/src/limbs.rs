@@ -27,8 +27,28 @@ pub fn cut(skeleton: Skeleton, shaping: Shaping) -> Vec<(Skeleton, Shaping)> {
         return vec![(skeleton, shaping)];
     }
     let count = pieces(&skeleton, &shaping);
+    cut_into(&skeleton, shaping, count)
+}
+
+/// A segment in pieces no longer than a length, of which there are not more than `most`, or as [`cut`] makes them.
+#[must_use]
+pub(crate) fn cut_short(
+    skeleton: &Skeleton,
+    shaping: Shaping,
+    longest: f64,
+    most: usize,
+) -> Vec<(Skeleton, Shaping)> {
+    let by_length = (skeleton.measure() / longest).ceil().min(most as f64) as usize;
+    let by_taper = match shaping.varies_along(skeleton) {
+        true => pieces(skeleton, &shaping),
+        false => 1,
+    };
+    cut_into(skeleton, shaping, by_length.max(by_taper))
+}
+
+fn cut_into(skeleton: &Skeleton, shaping: Shaping, count: usize) -> Vec<(Skeleton, Shaping)> {
     let bones: Vec<Skeleton> = (0..count)
-        .map(|i| part(&skeleton, share(i, count), share(i + 1, count)))
+        .map(|i| part(skeleton, share(i, count), share(i + 1, count)))
         .collect();
     // Tapers vary evenly with length, which the parameter of a curve does not.
     let lengths: Vec<f64> = bones.iter().map(Skeleton::measure).collect();

@@ -27,7 +27,8 @@ impl Scene {
 
     /// Whether an element adds primitives to the soft surface of its body.
     fn is_convolved(&self, element: &Element) -> bool {
-        self.settings.soft && self.flesh_of(element).is_some()
+        let is_local = || element.shape.curves().is_some_and(|c| c.local.is_some());
+        self.settings.soft && self.flesh_of(element).is_some() && !is_local()
     }
 
     /// The flesh of an element that has a skeleton and a finish, whether or not soft elements are drawn soft. Skeletons of curves
@@ -43,7 +44,7 @@ impl Scene {
     }
 
     /// The same in lengths of the world.
-    fn flesh_in_world(&self, element: &Element) -> Option<Flesh> {
+    pub(crate) fn flesh_in_world(&self, element: &Element) -> Option<Flesh> {
         let flesh = self.flesh_of(element)?;
         Some(flesh.scaled(self.frame(element).growth, self.settings.blob_scale))
     }
@@ -139,7 +140,7 @@ impl Scene {
     }
 
     /// The segments of a skeleton of curves, with their shapings in lengths of the world.
-    fn segments_of<'a>(
+    pub(crate) fn segments_of<'a>(
         &'a self,
         element: &'a Element,
         function: &'a Function,

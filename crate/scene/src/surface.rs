@@ -1,6 +1,6 @@
 //! The implicit function of each body: what every reader of surfaces asks for.
 
-use crate::{Scene, Shape, SoftSurface};
+use crate::{Element, Function, Scene, Shape, SoftSurface};
 use field::{Blend, Implicit};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -88,7 +88,7 @@ impl Scene {
         self.in_contact(self.surfaces_apart())
     }
 
-    /// The same without contacts.
+    /// The same without contacts of two bodies; folds of a skeleton do press each other.
     #[must_use]
     pub fn surfaces_apart(&self) -> Vec<Surface> {
         let mut functions: BTreeMap<u32, Vec<_>> = BTreeMap::new();
@@ -96,7 +96,7 @@ impl Scene {
             if let Shape::Function(function) = &element.shape
                 && self.is_soft(element)
                 && (element.body as usize) < self.bodies.len()
-                && let Some(function) = function.implicit()
+                && let Some(function) = self.function_of(element, function)
             {
                 let body = functions.entry(element.body).or_default();
                 body.push((index, function));
@@ -118,6 +118,20 @@ impl Scene {
         }
         surfaces.sort_by_key(Surface::body);
         surfaces
+    }
+}
+
+impl Scene {
+    /// The function of an element that is one; `None` if it is a sum of primitives, or its numbers are not usable.
+    fn function_of(&self, element: &Element, function: &Function) -> Option<Arc<dyn Implicit>> {
+        if function.curves().is_none() {
+            return function.implicit();
+        }
+        let local = Arc::new(self.local(element, function)?.ok()?);
+        Some(match self.fold(element.body) {
+            Some(bulge) => Arc::new(contact::Folded::new(local, bulge)),
+            None => local,
+        })
     }
 }
 

@@ -234,6 +234,8 @@ pub struct Slab {
     pub kinked: bool,
     /// Whether rounding of a pending primitive may be as large as T.
     blurring: bool,
+    /// Whether a pending primitive's pole is so near that bounds say nothing.
+    polar: bool,
     /// Shared and joined interpolant. [`NONE`]: not yet made.
     blocks: [u32; 2],
     beam: usize,
@@ -383,6 +385,7 @@ struct Sorted {
     smooth: bool,
     kinked: bool,
     blurring: bool,
+    polar: bool,
     /// Rounding of the shared interpolant.
     of_shared: Rounding,
 }
@@ -420,6 +423,9 @@ const MOST_BLURRED: usize = 32;
 
 /// Largest rounding error of an interpolant that root isolation uses in place of its primitives.
 const SHARP_INTERPOLANT: f64 = 2e-5;
+
+/// Bound on a field with a pole from which on its pole is near.
+const POLAR: f64 = 64.0 * THRESHOLD;
 
 /// Numbers of slabs and of list entries above which a tree is discarded between two packets.
 const LARGE: (usize, usize) = (1 << 16, 1 << 21);
@@ -721,6 +727,17 @@ impl<'a> Slabs<'a> {
         count <= MOST_BLURRED
     }
 
+    /// Whether the beam is so near a pole that bounds say nothing, and the slab so short that only single rays are farther from it.
+    /// Halving would go on for the rays beside the surface of a body that is as thin as the beam.
+    #[must_use]
+    pub fn is_polar(&self, index: u32, packet: usize) -> bool {
+        let slab = self.slab(index);
+        slab.polar && self.beams.quarter(slab.beam, packet).is_none() && {
+            let width = self.beams.get(slab.beam).width(slab.to);
+            width > self.narrow(slab.beam) * (slab.to - slab.from)
+        }
+    }
+
     /// Whether a slab's spans are at their final accuracy.
     #[must_use]
     pub fn is_final(&self, index: u32) -> bool {
@@ -857,6 +874,12 @@ impl<'a> Slabs<'a> {
         }
     }
 
+    /// Whether the kernel of a primitive of the list has a pole.
+    fn has_pole(&self, id: u32) -> bool {
+        let primitive = self.list[id as usize] as usize;
+        self.terms.primitives[primitive].kernel.has_pole()
+    }
+
     /// Estimate of a list entry's largest slope over its size, at a distance ([`Bound::relative_slope`]).
     fn relative_slope(&self, id: u32, distance: f64) -> f64 {
         match self.terms.clusters {
@@ -926,6 +949,7 @@ impl<'a> Slabs<'a> {
             anew: heritage.anew,
             kinked: sorted.kinked && !sorted.smooth && plan.resolves,
             blurring: sorted.blurring && plan.resolves,
+            polar: sorted.polar && plan.resolves,
             blocks: [NONE; 2],
             beam: heritage.beam,
             children: [0; 4],
@@ -1138,6 +1162,7 @@ impl<'a> Slabs<'a> {
                     }
                     if id & GROUP == 0 {
                         sorted.blurring |= 2.0 * rounding * self.cancels(id) >= THRESHOLD;
+                        sorted.polar |= magnitude >= POLAR && self.has_pole(id);
                     }
                     continue;
                 }

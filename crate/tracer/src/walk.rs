@@ -216,7 +216,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
         let all = self.sight.primitives.len();
         let most = (MOST_VISITS * all).clamp(MOST_WORK, MOST_WORK_OF_MANY);
-        if kinked || self.work > most || depth >= DEEPEST_SLAB || self.slabs.is_blurred(index) {
+        let single = self.slabs.is_polar(index, self.packet) || self.slabs.is_blurred(index);
+        if kinked || self.work > most || depth >= DEEPEST_SLAB || single {
             self.isolate(index, self.alive);
             return;
         }

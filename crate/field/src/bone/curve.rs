@@ -28,6 +28,7 @@
 //! Both precisions have spans of their own: those of double precision would cost single precision three
 //! times as much.
 use crate::Kernel;
+use crate::cubed::cone::Cone;
 use core::f64::consts::PI;
 use glam::DVec3;
 
@@ -58,6 +59,8 @@ pub struct Curve<S> {
     pub rule: Vec<[S; 2]>,
     /// Whether α or ω vary.
     pub tapered: bool,
+    /// Its closed form, if it has one; there are no nodes and spans then.
+    pub cone: Option<Cone<S>>,
     /// Bounds on its pieces, in double precision only.
     pub piece_bounds: Vec<PieceBounds>,
     /// The coarser version for single precision; `None` in that version itself.
@@ -167,6 +170,7 @@ impl<S: Copy> Curve<S> {
             spans: source.spans.iter().map(|span| span.cast(f)).collect(),
             rule: source.rule.iter().map(|pair| pair.map(f)).collect(),
             tapered: source.tapered,
+            cone: source.cone.as_ref().map(|cone| cone.cast(f)),
             piece_bounds: Vec::new(),
             single: None,
         }
@@ -212,6 +216,20 @@ impl Curve<f64> {
         double
     }
 
+    /// A straight curve that has a closed form: with the bounds of its pieces alone.
+    pub(crate) fn straight(cone: Cone<f64>, cubic: Cubic, law: Law<'_>) -> Self {
+        let pieces = cut(Kernel::Cubed, &[cubic], Some(law), Demands::SINGLE);
+        Self {
+            nodes: Vec::new(),
+            spans: Vec::new(),
+            rule: Vec::new(),
+            tapered: true,
+            cone: Some(cone),
+            piece_bounds: pieces.iter().map(Piece::bounds).collect(),
+            single: None,
+        }
+    }
+
     fn prepare(
         kernel: Kernel,
         cubics: &[Cubic],
@@ -236,6 +254,7 @@ impl Curve<f64> {
                 _ => demands.clipped,
             }),
             tapered: law.is_some(),
+            cone: None,
             piece_bounds: pieces.iter().map(Piece::bounds).collect(),
             single: None,
         };

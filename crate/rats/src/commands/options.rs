@@ -743,6 +743,12 @@ pub static SKELETON: &[OptionSpec] = &[
         "cubic",
         "how curves are refined",
     ),
+    option(
+        "local",
+        &[length("D", "the length along the curves within which flesh blends").at_least(1e-6)],
+        "",
+        "folds do not blend: at a point only what is within D along the curves counts",
+    ),
 ];
 
 /// `motion`.

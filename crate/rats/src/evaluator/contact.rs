@@ -9,15 +9,31 @@ use crate::syntax::Command;
 use contact::Bulge;
 use scene::Contact;
 
-/// `contact A B [fast c | height c m h | ripple c h n]`
+/// `contact A B [fast c | height c m h | ripple c h n]`, `contact A self …`
 pub fn contact<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
     let (a, b) = (given.name("A"), given.name("B"));
-    let bodies = [run.model.find_body(a)?, run.model.find_body(b)?];
-    if bodies[0] == bodies[1] {
+    let first = run.model.find_body(a)?;
+    let folds = b.text == "self";
+    let bodies = [
+        first,
+        if folds {
+            first
+        } else {
+            run.model.find_body(b)?
+        },
+    ];
+    if folds && !run.model.has_local(first) {
+        return Err(Problem::new(
+            b.span.clone(),
+            format!("`{}` has no skeleton whose folds could touch", a.text),
+        )
+        .hint("write `local 1` in the body's `skeleton`, before its block: within this length it blends"));
+    }
+    if bodies[0] == bodies[1] && !folds {
         return Err(
             Problem::new(b.span.clone(), format!("`{}` cannot touch itself", b.text))
-                .hint("name another body"),
+                .hint("name another body, or write `self` for its folds"),
         );
     }
     let bulge = bulge(&given)?;
@@ -36,7 +52,9 @@ pub fn contact<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
         contacts.remove(index);
         model.contact_places.remove(index);
     }
-    let shared = |c: &&Contact| c.bodies.iter().any(|body| bodies.contains(body));
+    let shared = |c: &&Contact| {
+        c.bodies[0] != c.bodies[1] && !folds && c.bodies.iter().any(|body| bodies.contains(body))
+    };
     let differs = contacts.iter().filter(shared).any(|c| c.bulge != bulge);
     contacts.push(Contact { bodies, bulge });
     model.contact_places.push((run.file, command.span.clone()));

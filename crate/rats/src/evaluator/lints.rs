@@ -41,6 +41,9 @@ impl Evaluator<'_> {
         let contacts = scene.contacts.iter().zip(self.model.contact_places.clone());
         for (contact, (file, span)) in contacts {
             let [a, b] = contact.bodies;
+            if a == b {
+                continue;
+            }
             let [Some(own), Some(other)] = [of(a), of(b)] else {
                 self.say_at(file, Severity::Warning, span, || {
                     let hint = "only soft shapes touch: give a material a `blobbiness`";

@@ -280,6 +280,17 @@ impl<'a> Model<'a> {
         .maybe_hint(suggestion))
     }
 
+    /// Whether a body has a skeleton that is convolved locally.
+    pub fn has_local(&self, body: u32) -> bool {
+        let mut own = self.parts.iter().filter(|part| part.element.body == body);
+        own.any(|part| {
+            part.element
+                .shape
+                .curves()
+                .is_some_and(|c| c.local.is_some())
+        })
+    }
+
     /// The number of the last body of a name.
     ///
     /// # Errors

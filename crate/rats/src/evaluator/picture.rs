@@ -6,6 +6,7 @@ use super::state::Evaluator;
 use crate::Severity;
 use crate::compiled::Placement;
 use crate::limits::MAX_MAGNITUDE;
+use field::local::LocalError;
 use glam::DVec3;
 use scene::{Body, Element, Finish, Frame, Scene, Settings, Shape};
 use std::collections::HashMap;
@@ -221,6 +222,27 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
             },
             hint("give it a larger radius, or cut it into pieces"),
         ));
+    }
+    if let Shape::Function(function) = &element.shape {
+        match scene.local(element, function) {
+            Some(Err(LocalError::Reach)) => {
+                return Some((
+                    || {
+                        String::from(
+                            "too many pieces of this skeleton are within its `local` length, so it is left out",
+                        )
+                    },
+                    hint("make `local` shorter, or `subdivide` less"),
+                ));
+            }
+            Some(Err(LocalError::Unusable)) => {
+                return Some((
+                    || String::from("a skeleton with `local` adds flesh, so this one is left out"),
+                    hint("give its material a `strength` above 0, or take `local` out"),
+                ));
+            }
+            Some(Ok(_)) | None => {}
+        }
     }
     degenerate.then(|| {
         let message: fn() -> String = match element.shape {

@@ -21,7 +21,7 @@ const LEVELS: f64 = 3.0;
 /// Segments that cost as much as a step.
 const SEGMENTS_PER_STEP: usize = 4;
 
-/// `skeleton sn, name { node A <x y z> [radius r] … curve A B … … }`
+/// `skeleton sn, name [subdivide n] [scheme name] [local D] { node A <x y z> [radius r] … curve A B … … }`
 pub fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let (sn, given) = operands(run, command)?;
     let name = given.name("name").clone();
@@ -200,8 +200,11 @@ impl<'a> Read<'a> {
         };
         let (places, curves): (Vec<_>, Vec<_>) = self.curves.into_iter().unzip();
         let nodes = self.nodes.into_iter().map(|(_, node)| node).collect();
-        let curves = Curves::new(Skeleton { nodes, curves }, scheme, levels)
+        let mut curves = Curves::new(Skeleton { nodes, curves }, scheme, levels)
             .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
+        if let Some(local) = given.option("local") {
+            curves = curves.within(local.given.number("D"));
+        }
         // A curve all of whose nodes are at one place has no flesh.
         let lengths = curves.polyline().map_or(&[][..], |p| &p.lengths);
         let flat = lengths.iter().position(|length| *length <= 0.0);

@@ -68,14 +68,14 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         .newer()
         .takes(&[
             parameter("A", Kind::Known(Names::Object), "a body's name"),
-            parameter("B", Kind::Known(Names::Object), "the other body's name"),
+            parameter("B", Kind::Known(Names::Object), "the other body's name, or `self`"),
         ])
         .options(o::CONTACT)
         .default("fast 0.2")
         .details("Where the bodies would overlap, each is pressed flat against the other, and beside it both swell a little. Fields are in units \
             of the threshold: the other body's surface is where its field is 1, and the bulge begins where it is c. The smaller c, the \
             wider the bulge; where the fields fall slowly a wide and high one would coat the other body, which a warning tells. A body can \
-            touch many others.")
+            touch many others. With `self` the folds of a body's skeletons touch, which needs `local` there.")
         .example(flesh!("body LEFT\n  sphere Flesh 1.2, -0.9 0 0\nclose\nbody RIGHT\n  sphere Flesh 1.2, 0.9 0 0\nclose\ncontact LEFT RIGHT")),
     row("skeleton", "curves that branch, with flesh around them", run(Routine::Skeleton))
         .newer()
@@ -87,7 +87,8 @@ pub static EXTENSIONS: &[CommandSpec] = &[
         .details("Nodes and curves stand in `{ … }`. A curve begins and ends at its end nodes, passes through nodes that it shares \
             with other curves, which branch there, and is drawn towards all others. A curve that ends where it begins is closed. The radius \
             varies smoothly from node to node. The flesh is soft whatever the material's blobbiness; its kernel is `cubed` unless the \
-            material names another. A skeleton is an object: it is moved, turned and copied by its name.")
+            material names another. With `local D` only the stretch within D along the curves counts at a point, so that a fold does \
+            not blend with what lies beside it; about four radii suit. A skeleton is an object: it is moved, turned and copied by its name.")
         .example("light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular Gray50, shine 40, radius 0.6, blobbiness -2\nskeleton Flesh, HAND {\n  node WRIST <-3 -1 0> radius 0.5\n  node PALM <-0.5 0 0> radius 0.9\n  node TIP <3 1.2 0> radius 0.3\n  node THUMB <0.5 2.4 0> radius 0.3\n  curve WRIST PALM TIP\n  curve PALM THUMB\n}"),
     row("motion", "let skeletons fall, swing and touch", run(Routine::Motion))
         .newer()
