@@ -1,4 +1,4 @@
-//! The lab: eight small lessons, each one figure to take hold of, that show how a convolution
+//! The lab: nine small lessons, each one figure to take hold of, that show how a convolution
 //! surface comes about. Each has its own link (`#lab=kernels`), and opening one leaves the open
 //! work alone.
 //!
@@ -46,6 +46,7 @@ pub mod profiles;
 pub mod sample;
 pub mod slice;
 pub mod spans;
+pub mod sculpting;
 mod state;
 pub mod superposition;
 mod text;

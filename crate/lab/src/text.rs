@@ -72,6 +72,13 @@ pub fn of(lesson: Lesson) -> Words {
                         where a ray runs along a bar, and four are better. The tracer here places spans \
                         by a proven bound on their error, so there is no number to choose.",
         },
+        Lesson::Sculpting => Words {
+            about: "a dog of a box, stroke by stroke",
+            sentences: "A virtual tool touches a mesh and pushes or pulls the vertices that it meets, and \
+                        their neighbours follow by a decay function. Where detail is wanted, a region is \
+                        chosen and divided, and smoothed again. Each stroke is a line of a text, so the \
+                        whole animal can be made again, step by step.",
+        },
     }
 }
 

@@ -199,7 +199,7 @@ mod tests {
             (DVec3::X, 0.4),
             (DVec3::new(1.0, 2.0, -0.5), 1.1),
             (DVec3::new(-0.3, 0.1, 0.9), 2.8),
-            (DVec3::Y, 1.570_796_326_794_896_6),
+            (DVec3::Y, core::f64::consts::FRAC_PI_2),
             (DVec3::Z, -0.7),
         ] {
             let half = 0.5 * angle;

@@ -15,6 +15,8 @@ pub struct Document {
     sculpture: Sculpture,
     /// Rises with every change of the mesh.
     revision: u64,
+    /// Rises with every change of its elements or its region.
+    topology: u64,
 }
 
 impl Document {
@@ -51,6 +53,7 @@ impl Document {
             tail,
             sculpture,
             revision: 0,
+            topology: 0,
         })
     }
 
@@ -72,6 +75,12 @@ impl Document {
     #[must_use]
     pub fn revision(&self) -> u64 {
         self.revision
+    }
+
+    /// Rises where its elements or its region may have changed.
+    #[must_use]
+    pub fn topology(&self) -> u64 {
+        self.topology
     }
 
     /// How many strokes can be undone, and how many redone.
@@ -135,11 +144,17 @@ impl Document {
     }
 
     fn wrote(&mut self, line: String) {
-        // Remarks at the end stay before what is new.
+        // Remarks at the end stay where they are, before what is new.
         let remarks = core::mem::take(&mut self.tail);
-        self.lines.push(remarks + &line);
+        let before = self.lines.last_mut().unwrap_or(&mut self.head);
+        before.push_str(&remarks);
+        if !before.ends_with('\n') {
+            before.push('\n');
+        }
+        self.lines.push(line);
         self.undone.clear();
         self.revision += 1;
+        self.topology += 1;
     }
 
     /// Takes the last stroke back; returns whether there was one.
@@ -152,6 +167,7 @@ impl Document {
         if is_undone {
             self.undone.extend(self.lines.pop());
             self.revision += 1;
+            self.topology += 1;
         }
         Ok(is_undone)
     }
@@ -166,6 +182,7 @@ impl Document {
         if is_redone {
             self.lines.extend(self.undone.pop());
             self.revision += 1;
+            self.topology += 1;
         }
         Ok(is_redone)
     }

@@ -54,6 +54,14 @@ pub fn update(surface: &mut Surface, clay: &Clay, is_same_topology: bool) {
     surface.smooth();
 }
 
+/// A mesh ready to be drawn, in the colours of clay, paint and masks.
+#[must_use]
+pub fn surface_of(clay: &Clay) -> Surface {
+    let mut surface = Surface::default();
+    update(&mut surface, clay, false);
+    surface
+}
+
 /// The sRGB value of a linear channel.
 fn encoded(x: f32) -> f32 {
     if x <= 0.003_130_8 {

@@ -27,5 +27,6 @@ mod place;
 
 pub use brush::{Brush, Doing};
 pub use document::Document;
+pub use drawn::surface_of;
 pub use keys::KEYS;
 pub use place::{Command, Outside, Sculpting, show};

@@ -38,6 +38,13 @@ pub fn show(app: &App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
         if lab.clicked() {
             commands.push(Command::ShowLab);
         }
+        let sculpt = ui
+            .button("Sculpt")
+            .on_hover_text("Push and pull a mesh with virtual tools");
+        places::note(ui.ctx(), "sculpt", sculpt.rect);
+        if sculpt.clicked() {
+            commands.push(Command::ShowSculpt);
+        }
         if !narrow {
             name(ui, work, commands);
         }

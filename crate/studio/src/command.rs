@@ -139,6 +139,30 @@ pub enum Command {
     CloseLab,
     /// Copy a link to the lesson.
     ShareLab,
+    /// Go on with a sculpture of the work, or ask how to begin one.
+    ShowSculpt,
+    /// Ask how to begin a sculpture.
+    NewSculpture,
+    /// Open a text of strokes in the place for sculpting.
+    OpenSculpture(String),
+    /// Begin a sculpture.
+    BeginSculpture {
+        /// The line of its text that says what it starts from.
+        start: String,
+        /// Whether it is a work of its own.
+        is_new: bool,
+    },
+    /// Replace a text of strokes.
+    SetStrokes {
+        /// The file's name.
+        name: String,
+        /// Its new text.
+        text: String,
+        /// The mesh that it makes, if it is known.
+        mesh: Option<Box<mesh::TriangleMesh>>,
+    },
+    /// Leave the place for sculpting.
+    CloseSculpt,
     /// Delete a saved work.
     Delete(String),
     /// Begin an empty work.

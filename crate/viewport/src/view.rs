@@ -92,6 +92,15 @@ impl View {
         self.center += (up * y - right * x) * pixel;
     }
 
+    /// Takes a point as the centre of rotation, at the distance that it has.
+    pub fn center_on(&mut self, point: DVec3) {
+        let depth = self.depth(point);
+        if depth > 0.0 {
+            self.center = point;
+            self.distance = depth;
+        }
+    }
+
     /// Comes nearer by a factor above 1.
     pub fn zoom(&mut self, factor: f64) {
         if factor.is_finite() && factor > 0.0 {
