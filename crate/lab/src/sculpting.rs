@@ -69,7 +69,8 @@ impl Pane {
     /// Draws the mesh into a rectangle.
     fn show(&mut self, ui: &Ui, rect: Rect, view: &View, wireframe: bool) {
         let scale = ui.ctx().pixels_per_point();
-        let size = [rect.width(), rect.height()].map(|side| ((side * scale) as usize).clamp(1, 1400));
+        let size =
+            [rect.width(), rect.height()].map(|side| ((side * scale) as usize).clamp(1, 1400));
         let wanted = (*view, size, wireframe);
         if self.drawn != Some(wanted) || self.texture.is_none() {
             let mut frame = Frame::new(size);
@@ -77,7 +78,11 @@ impl Pane {
             let look = Look {
                 light: Vec3::new(0.35, -0.65, 0.75),
                 wireframe,
-                background: if dark { [0.10, 0.112, 0.135] } else { [0.80, 0.815, 0.83] },
+                background: if dark {
+                    [0.10, 0.112, 0.135]
+                } else {
+                    [0.80, 0.815, 0.83]
+                },
                 accent: [0.33, 0.68, 0.98],
                 ..Look::default()
             };
@@ -94,7 +99,8 @@ impl Pane {
         }
         if let Some(texture) = &self.texture {
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-            ui.painter().image(texture.id(), rect, whole, Color32::WHITE);
+            ui.painter()
+                .image(texture.id(), rect, whole, Color32::WHITE);
         }
     }
 
@@ -128,7 +134,8 @@ fn bump(decay: Decay, radius: f64, range: f64) -> String {
 
 /// A plane whose middle is divided.
 fn divided(how: &str, levels: usize) -> String {
-    let mut text = String::from("strokes 1\nstart plane 6\nregion sphere 0.3 0.3 0.3 : 0.1 0.1 0\n");
+    let mut text =
+        String::from("strokes 1\nstart plane 6\nregion sphere 0.3 0.3 0.3 : 0.1 0.1 0\n");
     for _ in 0..levels {
         text += &format!("refine {how}\n");
     }
@@ -183,7 +190,9 @@ impl Sculpting {
         let mut load = |name: &str| Err(format!("there is no {name}"));
         if self.dog.is_none() {
             self.dog = Document::open(DOG, &mut load).ok();
-            let lines = DOG.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
+            let lines = DOG
+                .lines()
+                .map(|line| line.split('#').next().unwrap_or_default().trim());
             let lines = lines.filter(|line| !line.is_empty()).skip(1);
             self.lines = lines.map(str::to_owned).collect();
             self.step = self.lines.len().saturating_sub(1) as f64;
@@ -199,7 +208,10 @@ impl Sculpting {
                 .collect::<Vec<_>>()
         };
         let mut chosen = usize::MAX;
-        let choices: Vec<(usize, &str)> = stages.iter().map(|(at, name)| (*at, name.as_str())).collect();
+        let choices: Vec<(usize, &str)> = stages
+            .iter()
+            .map(|(at, name)| (*at, name.as_str()))
+            .collect();
         if choice(controls, &mut chosen, &choices) {
             self.step = chosen as f64;
         }
@@ -219,18 +231,29 @@ impl Sculpting {
         let _ = dog.go_to(at);
         let palette = theme::palette(controls.visuals());
         let line = self.lines.get(at).map_or("", String::as_str);
-        controls.label(egui::RichText::new(line).monospace().size(12.5).color(palette.command));
+        controls.label(
+            egui::RichText::new(line)
+                .monospace()
+                .size(12.5)
+                .color(palette.command),
+        );
         let mesh = dog.clay().mesh();
         let counts = [mesh.vertex_count(), mesh.face_count()];
         reading(controls, "vertices", &counts[0].to_string(), palette.strong);
         reading(controls, "faces", &counts[1].to_string(), palette.strong);
-        remark(controls, "Drag in the figure to turn it. The same text is in the gallery: Sculpt goes on with it.");
+        remark(
+            controls,
+            "Drag in the figure to turn it. The same text is in the gallery: Sculpt goes on with it.",
+        );
         bench.readings.insert("stroke", at as f64);
         bench.readings.insert("vertices", counts[0] as f64);
         bench.readings.insert("faces", counts[1] as f64);
         let key = format!("dog {at}");
-        let surface = (self.panes.first().is_none_or(|pane| pane.key.as_ref() != Some(&key)))
-            .then(|| surface_of(dog.clay()));
+        let surface = (self
+            .panes
+            .first()
+            .is_none_or(|pane| pane.key.as_ref() != Some(&key)))
+        .then(|| surface_of(dog.clay()));
         let rect = stage.figure;
         self.turned(ui, rect);
         let view = self.view;
@@ -246,8 +269,17 @@ impl Sculpting {
     fn decays(&mut self, ui: &mut Ui, stage: &mut Stage, bench: &mut Bench<'_>) {
         let controls = &mut stage.controls;
         slider(controls, "range", &mut self.range, 0.1..=1.0, "");
-        slider(controls, "radius of the tool", &mut self.radius, 0.05..=0.4, "");
-        remark(controls, "A ball pulls the middle of a plane up; what lies within the range along edges follows by the decay function's share. t is the distance over the range.");
+        slider(
+            controls,
+            "radius of the tool",
+            &mut self.radius,
+            0.05..=0.4,
+            "",
+        );
+        remark(
+            controls,
+            "A ball pulls the middle of a plane up; what lies within the range along edges follows by the decay function's share. t is the distance over the range.",
+        );
         for (name, formula) in [
             ("goo", "(1 − t⁴)²"),
             ("bell", "(1 + cos πt)/2"),
@@ -273,7 +305,8 @@ impl Sculpting {
             pane.show(ui, rect, &view, true);
             let font = FontId::proportional(14.0);
             let at = rect.left_top() + vec2(8.0, 6.0);
-            ui.painter().text(at, Align2::LEFT_TOP, decay.name(), font, palette.strong);
+            ui.painter()
+                .text(at, Align2::LEFT_TOP, decay.name(), font, palette.strong);
         }
     }
 
@@ -281,7 +314,10 @@ impl Sculpting {
         let controls = &mut stage.controls;
         slider(controls, "times", &mut self.levels, 1.0..=3.0, "");
         self.levels = self.levels.round();
-        remark(controls, "The blue faces are the region. With propagation the faces beside it are divided, too, so that all stay triangles; without, they gain vertices and stay one face.");
+        remark(
+            controls,
+            "The blue faces are the region. With propagation the faces beside it are divided, too, so that all stay triangles; without, they gain vertices and stay one face.",
+        );
         let palette = theme::palette(ui.visuals());
         let columns = if bench.narrow { 1 } else { 2 };
         let rows = 2 / columns;
@@ -289,7 +325,10 @@ impl Sculpting {
         view.look_from(DVec3::Z, DVec3::Y);
         view.zoom(1.35);
         let levels = self.levels as usize;
-        for (i, (how, name)) in [("propagate", "with propagation"), ("local", "without")].into_iter().enumerate() {
+        for (i, (how, name)) in [("propagate", "with propagation"), ("local", "without")]
+            .into_iter()
+            .enumerate()
+        {
             let rect = cell(stage.figure, i, columns, rows);
             let pane = self.pane(10 + i);
             let text = divided(how, levels);
@@ -297,10 +336,16 @@ impl Sculpting {
             pane.show(ui, rect, &view, true);
             let font = FontId::proportional(14.0);
             let at = rect.left_top() + vec2(8.0, 6.0);
-            ui.painter().text(at, Align2::LEFT_TOP, name, font, palette.strong);
+            ui.painter()
+                .text(at, Align2::LEFT_TOP, name, font, palette.strong);
             if let Some(clay) = clay_of(&text) {
                 let faces = clay.mesh().face_count();
-                reading(&mut stage.controls, &format!("faces {name}"), &faces.to_string(), palette.strong);
+                reading(
+                    &mut stage.controls,
+                    &format!("faces {name}"),
+                    &faces.to_string(),
+                    palette.strong,
+                );
                 let name = if i == 0 { "propagated" } else { "local" };
                 bench.readings.insert(name, faces as f64);
             }
@@ -341,7 +386,8 @@ mod tests {
             let mesh = clay.mesh();
             let height = |at: DVec3| {
                 let nearest = mesh.vertices().min_by(|a, b| {
-                    let far = |v: &mesh::VertexId| mesh.position(*v).truncate().distance(at.truncate());
+                    let far =
+                        |v: &mesh::VertexId| mesh.position(*v).truncate().distance(at.truncate());
                     far(a).total_cmp(&far(b))
                 });
                 nearest.map_or(0.0, |v| mesh.position(v).z)
@@ -357,6 +403,9 @@ mod tests {
             (mesh.face_count(), polygons)
         };
         let (with, without) = (count("propagate"), count("local"));
-        assert!(with.0 > without.0 && with.1 == 0 && without.1 > 0, "{with:?} {without:?}");
+        assert!(
+            with.0 > without.0 && with.1 == 0 && without.1 > 0,
+            "{with:?} {without:?}"
+        );
     }
 }

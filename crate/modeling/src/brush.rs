@@ -53,7 +53,9 @@ impl Doing {
             Self::Smooth => "Evens the surface (hold Shift with any tool)",
             Self::Mask => "Holds the surface fast; with Ctrl it lets go (M)",
             Self::Paint => "Colours the surface (C)",
-            Self::Region => "Chooses faces to refine, smooth or delete; with Ctrl it takes them out (B)",
+            Self::Region => {
+                "Chooses faces to refine, smooth or delete; with Ctrl it takes them out (B)"
+            }
         }
     }
 }
@@ -114,7 +116,10 @@ impl Brush {
     #[must_use]
     pub fn tool(&self, decimals: i32) -> Tool {
         let axes = (self.stretch * self.size).max(DVec3::splat(sculpt::limits::SMALLEST));
-        let mut tool = Tool::new(self.form, rounded(axes, decimals).max(DVec3::splat(smallest(decimals))));
+        let mut tool = Tool::new(
+            self.form,
+            rounded(axes, decimals).max(DVec3::splat(smallest(decimals))),
+        );
         tool.exponents = self.exponents.map(|e| round(e, 2).clamp(0.05, 2.0));
         tool.turn = rounded(angles(self.turn), 1);
         tool
@@ -152,7 +157,11 @@ pub fn round(x: f64, decimals: i32) -> f64 {
     let factor = power(decimals);
     let rounded = (x * factor).round() / factor;
     // No minus before nothing.
-    if rounded.is_finite() { rounded + 0.0 } else { 0.0 }
+    if rounded.is_finite() {
+        rounded + 0.0
+    } else {
+        0.0
+    }
 }
 
 /// The same for a vector.
@@ -208,7 +217,10 @@ mod tests {
             let mut tool = Tool::new(Form::Box, DVec3::ONE);
             tool.turn = angles(turn);
             for (own, column) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().zip([0, 1, 2]) {
-                assert!((turn * own).distance(tool.axes().col(column)) < 1e-6, "{axis} {angle}");
+                assert!(
+                    (turn * own).distance(tool.axes().col(column)) < 1e-6,
+                    "{axis} {angle}"
+                );
             }
         }
     }
@@ -220,7 +232,10 @@ mod tests {
             let mut brush = Brush::new(0.123_456_789 * size);
             brush.stretch.y = 1e-12;
             let mut sweep = brush.sweep(Doing::Push, false, decimals);
-            sweep.path.push(sculpt::PathPoint::new(rounded(DVec3::splat(size / 7.0), decimals)));
+            sweep.path.push(sculpt::PathPoint::new(rounded(
+                DVec3::splat(size / 7.0),
+                decimals,
+            )));
             let text = format!("strokes 1\nstart box 2\n{}\n", sculpt::Stroke::Sweep(sweep));
             assert!(text.len() < 140, "{text}");
             let _: sculpt::Script = text.parse().unwrap();

@@ -25,7 +25,9 @@ impl Document {
     /// # Errors
     /// What is wrong with the text, with its line.
     pub fn open(text: &str, load: Loader<'_>) -> Result<Self, String> {
-        let script: Script = text.parse().map_err(|told: sculpt::Diagnostic| told.to_string())?;
+        let script: Script = text
+            .parse()
+            .map_err(|told: sculpt::Diagnostic| told.to_string())?;
         let sculpture = Sculpture::open(&script, load).map_err(|told| told.to_string())?;
         let mut rest: Vec<&str> = text.split_inclusive('\n').collect();
         let mut take = |upto: usize, done: usize| -> String {
@@ -126,7 +128,11 @@ impl Document {
 
     /// Ends the stroke that was begun, and writes it. Returns whether there was one.
     pub fn end(&mut self) -> bool {
-        let Some(line) = self.sculpture.end_drag().map(|stroke| format!("{stroke}\n")) else {
+        let Some(line) = self
+            .sculpture
+            .end_drag()
+            .map(|stroke| format!("{stroke}\n"))
+        else {
             return false;
         };
         self.wrote(line);
@@ -163,7 +169,11 @@ impl Document {
     /// If strokes before had to be carried out again and one of them failed, which it did not the first time.
     pub fn undo(&mut self) -> Result<bool, String> {
         self.end();
-        let is_undone = self.sculpture.undo().map_err(|error| error.to_string())?.is_some();
+        let is_undone = self
+            .sculpture
+            .undo()
+            .map_err(|error| error.to_string())?
+            .is_some();
         if is_undone {
             self.undone.extend(self.lines.pop());
             self.revision += 1;
@@ -178,7 +188,11 @@ impl Document {
     /// If it cannot be carried out, which it could the first time.
     pub fn redo(&mut self) -> Result<bool, String> {
         self.end();
-        let is_redone = self.sculpture.redo().map_err(|error| error.to_string())?.is_some();
+        let is_redone = self
+            .sculpture
+            .redo()
+            .map_err(|error| error.to_string())?
+            .is_some();
         if is_redone {
             self.lines.extend(self.undone.pop());
             self.revision += 1;
@@ -221,9 +235,15 @@ mod tests {
         assert!(shorter.ends_with("stage horn\n# the end\n"), "{shorter}");
         assert_eq!(open(&shorter).clay().digest(), document.clay().digest());
         document.go_to(0).unwrap();
-        assert_eq!(document.text(), "# a horned ball\nstrokes 1\n\nstart sphere 4 # round\n# the end\n");
+        assert_eq!(
+            document.text(),
+            "# a horned ball\nstrokes 1\n\nstart sphere 4 # round\n# the end\n"
+        );
         document.go_to(3).unwrap();
-        assert_eq!((document.text(), document.clay().digest()), (TEXT.to_owned(), first));
+        assert_eq!(
+            (document.text(), document.clay().digest()),
+            (TEXT.to_owned(), first)
+        );
     }
 
     #[test]
@@ -257,6 +277,9 @@ mod tests {
             open("strokes 1\nstart sphere 4\npull\n").unwrap(),
             "line 3, column 5: a tool is expected: box, cylinder or sphere"
         );
-        assert_eq!(open("strokes 1\nstart file a.obj\n").unwrap(), "line 2, column 1: no a.obj");
+        assert_eq!(
+            open("strokes 1\nstart file a.obj\n").unwrap(),
+            "line 2, column 1: no a.obj"
+        );
     }
 }

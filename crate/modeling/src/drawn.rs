@@ -30,7 +30,9 @@ pub fn update(surface: &mut Surface, clay: &Clay, is_same_topology: bool) {
             corners.clear();
             corners.extend(mesh.face_vertices(f).map(|v| v.0));
             for i in 2..corners.len() {
-                surface.triangles.push([corners[0], corners[i - 1], corners[i]]);
+                surface
+                    .triangles
+                    .push([corners[0], corners[i - 1], corners[i]]);
                 if !marks.is_empty() {
                     surface.chosen.push(marks[f.index()]);
                 }
@@ -47,7 +49,11 @@ pub fn update(surface: &mut Surface, clay: &Clay, is_same_topology: bool) {
     for v in mesh.vertices() {
         surface.positions[v.index()] = mesh.position(v).as_vec3();
         let own = clay.color(v);
-        let color = if own == [1.0; 3] { CLAY } else { own.map(encoded) };
+        let color = if own == [1.0; 3] {
+            CLAY
+        } else {
+            own.map(encoded)
+        };
         let mask = 0.75 * clay.mask(v);
         surface.colors[v.index()] = [0, 1, 2].map(|k| color[k] + (MASK[k] - color[k]) * mask);
     }

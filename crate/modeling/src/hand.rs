@@ -88,7 +88,10 @@ pub fn hint(place: &Sculpting, narrow: bool) -> String {
     let axis = |axis: Option<usize>| axis.map_or("", |i| [" along x", " along y", " along z"][i]);
     match &place.hand.doing {
         State::Stroke(on) if on.is_free => {
-            format!("Grab{} · X, Y, Z: one axis · click: let go · Esc: give up", axis(on.axis))
+            format!(
+                "Grab{} · X, Y, Z: one axis · click: let go · Esc: give up",
+                axis(on.axis)
+            )
         }
         State::Modal(modal) => {
             let what = match modal.what {
@@ -97,9 +100,15 @@ pub fn hint(place: &Sculpting, narrow: bool) -> String {
                 Setting::Size => "Size of the tool",
                 Setting::Range => "Range of the decay",
             };
-            format!("{what}{} · click: take it · Esc: as it was", axis(modal.axis))
+            format!(
+                "{what}{} · click: take it · Esc: as it was",
+                axis(modal.axis)
+            )
         }
-        _ if narrow => format!("{}: a finger on the mesh · two fingers turn and zoom", place.brush.doing.name()),
+        _ if narrow => format!(
+            "{}: a finger on the mesh · two fingers turn and zoom",
+            place.brush.doing.name()
+        ),
         _ => format!(
             "{}: drag on the mesh · drag beside it: turn · wheel: zoom · ?: all keys",
             place.brush.doing.name()
@@ -115,7 +124,11 @@ pub fn pointer(
     rect: Rect,
     commands: &mut Vec<Command>,
 ) {
-    let response = ui.interact(rect, ui.scope_id().with("sculpture"), Sense::click_and_drag());
+    let response = ui.interact(
+        rect,
+        ui.scope_id().with("sculpture"),
+        Sense::click_and_drag(),
+    );
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Image, true, "The mesh that is sculpted")
     });
@@ -129,9 +142,13 @@ pub fn pointer(
             _ => None,
         });
         let button = |b| input.pointer.button_pressed(b);
-        let pressed = [PointerButton::Primary, PointerButton::Secondary, PointerButton::Middle]
-            .into_iter()
-            .find(|b| button(*b));
+        let pressed = [
+            PointerButton::Primary,
+            PointerButton::Secondary,
+            PointerButton::Middle,
+        ]
+        .into_iter()
+        .find(|b| button(*b));
         (
             input.pointer.latest_pos(),
             moves.collect::<Vec<Pos2>>(),
@@ -163,7 +180,9 @@ pub fn pointer(
         State::Stroke(on) if on.is_free && pressed.is_some() => {
             finish(place, pressed == Some(PointerButton::Primary), commands);
         }
-        State::Modal(_) if pressed.is_some() => end_modal(place, pressed == Some(PointerButton::Primary)),
+        State::Modal(_) if pressed.is_some() => {
+            end_modal(place, pressed == Some(PointerButton::Primary))
+        }
         _ => {}
     }
     let moves = if moves.is_empty() { vec![at] } else { moves };
@@ -316,7 +335,9 @@ fn moved(place: &mut Sculpting, rect: Rect, to: Pos2, modifiers: Modifiers, pres
         }
         State::Shift(from) => {
             let (a, b) = (place.pixel(rect, *from), place.pixel(rect, to));
-            place.view.shift([b[0] - a[0], b[1] - a[1]], place.frame.size());
+            place
+                .view
+                .shift([b[0] - a[0], b[1] - a[1]], place.frame.size());
             *from = to;
         }
         State::Modal(modal) => set(place, rect, to, modal, modifiers),
@@ -334,7 +355,10 @@ fn stroke_moved(place: &mut Sculpting, rect: Rect, to: Pos2, on: &mut Ongoing, p
             on.normal = found.normal;
         }
         // Beside the mesh it goes on at the same depth.
-        let point = found.map_or_else(|| view.point(pixel, on.depth, frame.size()), |found| found.point);
+        let point = found.map_or_else(
+            || view.point(pixel, on.depth, frame.size()),
+            |found| found.point,
+        );
         center(place, on.doing, on.reverses, point, on.normal)
     } else {
         let point = place.view.point(pixel, on.depth, place.frame.size());
@@ -363,7 +387,11 @@ fn along(place: &Sculpting, rect: Rect, to: Pos2, grip: DVec3, axis: usize) -> D
     let unit = DVec3::AXES[axis];
     let eye = place.view.eye();
     let pixel = place.pixel(rect, to);
-    let ray = (place.view.point(pixel, place.view.distance, place.frame.size()) - eye).normalize_or(DVec3::Z);
+    let ray = (place
+        .view
+        .point(pixel, place.view.distance, place.frame.size())
+        - eye)
+        .normalize_or(DVec3::Z);
     // The nearest points of two lines.
     let (b, w) = (unit.dot(ray), grip - eye);
     let d = 1.0 - b * b;
@@ -418,7 +446,11 @@ fn hover(place: &mut Sculpting, rect: Rect, at: Pos2, over: bool, modifiers: Mod
     match place.hand.doing {
         State::Idle => {
             let found = (over && rect.contains(at)).then(|| place.pick(rect, at));
-            let doing = if modifiers.shift { Doing::Smooth } else { place.brush.doing };
+            let doing = if modifiers.shift {
+                Doing::Smooth
+            } else {
+                place.brush.doing
+            };
             let reverses = modifiers.command || modifiers.ctrl;
             place.hand.shown = found.flatten().map(|found| {
                 let at = center(place, doing, reverses, found.point, found.normal);
@@ -439,7 +471,9 @@ fn set(place: &mut Sculpting, rect: Rect, to: Pos2, modal: &mut Modal, modifiers
     let factor = libm::exp2(f64::from((moved.x - moved.y) / DOUBLE));
     let before = &modal.before;
     match modal.what {
-        Setting::Size => place.brush.size = (before.size * factor).clamp(1e-4 * place.size, place.size),
+        Setting::Size => {
+            place.brush.size = (before.size * factor).clamp(1e-4 * place.size, place.size)
+        }
         Setting::Range => place.brush.range = (before.range.max(0.05) * factor).clamp(0.0, 12.0),
         Setting::Scale => match modal.axis {
             None => place.brush.size = (before.size * factor).clamp(1e-4 * place.size, place.size),
@@ -462,7 +496,9 @@ fn set(place: &mut Sculpting, rect: Rect, to: Pos2, modal: &mut Modal, modifiers
                 None => {
                     let half = 0.5 * rect.size().min_elem().max(1.0);
                     let way = Vec2::new(moved.x, -moved.y) / half;
-                    place.view.rolled([0.0, 0.0], [f64::from(way.x), f64::from(way.y)])
+                    place
+                        .view
+                        .rolled([0.0, 0.0], [f64::from(way.x), f64::from(way.y)])
                 }
             };
             place.brush.turn = (rolled * before.turn).normalize();
@@ -489,14 +525,16 @@ pub fn keys(place: &mut Sculpting, ui: &Ui, commands: &mut Vec<Command>) {
     if ctx.text_edit_focused() {
         return;
     }
-    let pressed = |modifiers: Modifiers, key: Key| ctx.input_mut(|input| input.consume_key(modifiers, key));
+    let pressed =
+        |modifiers: Modifiers, key: Key| ctx.input_mut(|input| input.consume_key(modifiers, key));
     if place.keys {
         if pressed(Modifiers::NONE, Key::Escape) || pressed(Modifiers::NONE, Key::Questionmark) {
             place.keys = false;
         }
         return;
     }
-    if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
+    if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y)
+    {
         place.redo(commands);
     } else if pressed(Modifiers::COMMAND, Key::Z) {
         match place.hand.doing {

@@ -113,17 +113,25 @@ fn tool(place: &mut Sculpting, ui: &mut Ui) {
                 .logarithmic(true)
                 .max_decimals(2)
                 .text(label(name));
-            ui.add(stretch).on_hover_text("Scale along an axis of the tool (S, then X, Y or Z)");
+            ui.add(stretch)
+                .on_hover_text("Scale along an axis of the tool (S, then X, Y or Z)");
         }
         for (i, name) in ["round, up", "round, about"].into_iter().enumerate() {
             let exponent = Slider::new(&mut place.brush.exponents[i], 0.05..=2.0)
                 .max_decimals(2)
                 .text(label(name));
-            ui.add(exponent).on_hover_text("Exponent of the superquadric: small is square, 1 round, 2 an octahedron");
+            ui.add(exponent).on_hover_text(
+                "Exponent of the superquadric: small is square, 1 round, 2 an octahedron",
+            );
         }
     });
     if place.brush.turn != DQuat::IDENTITY || place.brush.stretch != DVec3::ONE {
-        let upright = chip(ui, "Upright", false, "The tool neither turned nor stretched");
+        let upright = chip(
+            ui,
+            "Upright",
+            false,
+            "The tool neither turned nor stretched",
+        );
         if upright.clicked() {
             place.brush.turn = DQuat::IDENTITY;
             place.brush.stretch = DVec3::ONE;
@@ -152,7 +160,11 @@ fn decay(place: &mut Sculpting, ui: &mut Ui) {
     });
     ui.horizontal_wrapped(|ui| {
         for (constraint, name, tip) in [
-            (Constraint::Normal, "Normal", "Only along the surface's normal"),
+            (
+                Constraint::Normal,
+                "Normal",
+                "Only along the surface's normal",
+            ),
             (Constraint::Tangent, "Tangent", "Only across it"),
         ] {
             let is_chosen = place.brush.constraint == Some(constraint);
@@ -161,7 +173,14 @@ fn decay(place: &mut Sculpting, ui: &mut Ui) {
             }
         }
         let only = place.brush.only_region;
-        if chip(ui, "Only region", only, "The tool touches chosen faces only").clicked() {
+        if chip(
+            ui,
+            "Only region",
+            only,
+            "The tool touches chosen faces only",
+        )
+        .clicked()
+        {
             place.brush.only_region = !only;
         }
     });
@@ -180,8 +199,13 @@ fn curve(place: &mut Sculpting, ui: &mut Ui, decay: Decay) {
         (false, true) => palette.hover,
         (false, false) => palette.button,
     };
-    let color = if is_chosen { palette.on_accent } else { palette.text };
-    ui.painter().rect_filled(rect, f32::from(theme::ROUND), fill);
+    let color = if is_chosen {
+        palette.on_accent
+    } else {
+        palette.text
+    };
+    ui.painter()
+        .rect_filled(rect, f32::from(theme::ROUND), fill);
     let points = (-20..=20).map(|i| {
         let t = f64::from(i) / 20.0;
         let high = decay.at(t.abs() * 1.001) as f32;
@@ -210,7 +234,14 @@ fn symmetry(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
     let planes = place.document.clay().symmetry();
     ui.horizontal_wrapped(|ui| {
         for (axis, name) in ["x = 0", "y = 0", "z = 0"].into_iter().enumerate() {
-            if chip(ui, name, planes[axis], "What the tool does is done on the other side, too").clicked() {
+            if chip(
+                ui,
+                name,
+                planes[axis],
+                "What the tool does is done on the other side, too",
+            )
+            .clicked()
+            {
                 let mut planes = planes;
                 planes[axis] = !planes[axis];
                 place.carry_out(Stroke::Symmetry(planes), commands);
@@ -223,7 +254,14 @@ fn symmetry(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
 }
 
 /// A button that carries out a stroke.
-fn act(place: &mut Sculpting, ui: &mut Ui, name: &str, tip: &str, stroke: Stroke, commands: &mut Vec<Command>) {
+fn act(
+    place: &mut Sculpting,
+    ui: &mut Ui,
+    name: &str,
+    tip: &str,
+    stroke: Stroke,
+    commands: &mut Vec<Command>,
+) {
     if chip(ui, name, false, tip).clicked() {
         place.carry_out(stroke, commands);
     }
@@ -231,19 +269,62 @@ fn act(place: &mut Sculpting, ui: &mut Ui, name: &str, tip: &str, stroke: Stroke
 
 fn refinement(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
     let is_all = *place.document.clay().region() == Region::All;
-    heading(ui, if is_all { "Refine all" } else { "Refine the region" });
+    heading(
+        ui,
+        if is_all {
+            "Refine all"
+        } else {
+            "Refine the region"
+        },
+    );
     ui.horizontal_wrapped(|ui| {
         for (name, tip, stroke) in [
-            ("Divide", "Triangles become four; neighbours are divided so that all stay triangles (D)", Stroke::Refine(Refinement::Propagate)),
-            ("Divide here", "Neighbours stay one face and gain vertices", Stroke::Refine(Refinement::Local)),
-            ("Loop", "Smooths by Loop's subdivision (Shift+D)", Stroke::Loop(1)),
-            ("Average", "Smooths without new vertices", Stroke::Average(1, 0.5)),
-            ("Triangles", "Faces with more than three sides get a centre", Stroke::Refine(Refinement::Polygons)),
-            ("Centres", "Every face gets a centre", Stroke::Refine(Refinement::Centers)),
-            ("Simplify", "Half of the faces go, those first that change the shape least", Stroke::Simplify(0.5)),
+            (
+                "Divide",
+                "Triangles become four; neighbours are divided so that all stay triangles (D)",
+                Stroke::Refine(Refinement::Propagate),
+            ),
+            (
+                "Divide here",
+                "Neighbours stay one face and gain vertices",
+                Stroke::Refine(Refinement::Local),
+            ),
+            (
+                "Loop",
+                "Smooths by Loop's subdivision (Shift+D)",
+                Stroke::Loop(1),
+            ),
+            (
+                "Average",
+                "Smooths without new vertices",
+                Stroke::Average(1, 0.5),
+            ),
+            (
+                "Triangles",
+                "Faces with more than three sides get a centre",
+                Stroke::Refine(Refinement::Polygons),
+            ),
+            (
+                "Centres",
+                "Every face gets a centre",
+                Stroke::Refine(Refinement::Centers),
+            ),
+            (
+                "Simplify",
+                "Half of the faces go, those first that change the shape least",
+                Stroke::Simplify(0.5),
+            ),
             ("Fill holes", "Closes holes by a centre", Stroke::Fill),
-            ("To a face", "The region becomes one face", Stroke::Delete(Deletion::Face)),
-            ("To a hole", "The region becomes a hole", Stroke::Delete(Deletion::Hole)),
+            (
+                "To a face",
+                "The region becomes one face",
+                Stroke::Delete(Deletion::Face),
+            ),
+            (
+                "To a hole",
+                "The region becomes a hole",
+                Stroke::Delete(Deletion::Hole),
+            ),
         ] {
             act(place, ui, name, tip, stroke, commands);
         }
@@ -255,12 +336,36 @@ fn region(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         for (name, tip, stroke) in [
             ("All", "All faces (A)", Stroke::Region(RegionChange::All)),
-            ("None", "No face (Alt+A); then choose with Region", Stroke::Region(RegionChange::None)),
-            ("Others", "The others (I)", Stroke::Region(RegionChange::Invert)),
-            ("Grow", "The faces around, too", Stroke::Region(RegionChange::Grow(1))),
-            ("Shrink", "Without those at the border", Stroke::Region(RegionChange::Shrink(1))),
-            ("Unmask", "All vertices are free", Stroke::Masks(MaskChange::Clear)),
-            ("Swap mask", "Free vertices are held and held ones free", Stroke::Masks(MaskChange::Invert)),
+            (
+                "None",
+                "No face (Alt+A); then choose with Region",
+                Stroke::Region(RegionChange::None),
+            ),
+            (
+                "Others",
+                "The others (I)",
+                Stroke::Region(RegionChange::Invert),
+            ),
+            (
+                "Grow",
+                "The faces around, too",
+                Stroke::Region(RegionChange::Grow(1)),
+            ),
+            (
+                "Shrink",
+                "Without those at the border",
+                Stroke::Region(RegionChange::Shrink(1)),
+            ),
+            (
+                "Unmask",
+                "All vertices are free",
+                Stroke::Masks(MaskChange::Clear),
+            ),
+            (
+                "Swap mask",
+                "Free vertices are held and held ones free",
+                Stroke::Masks(MaskChange::Invert),
+            ),
         ] {
             act(place, ui, name, tip, stroke, commands);
         }
@@ -274,7 +379,11 @@ fn view(place: &mut Sculpting, ui: &mut Ui) {
             (Turning::View, "the view", "You go around the mesh"),
             (Turning::Mesh, "the mesh", "The mesh turns in the light"),
             (Turning::Tool, "the tool", "The tool turns (R)"),
-            (Turning::Light, "the light", "The light goes around, and with it the tool's shadow"),
+            (
+                Turning::Light,
+                "the light",
+                "The light goes around, and with it the tool's shadow",
+            ),
         ] {
             if chip(ui, name, place.turning == turning, tip).clicked() {
                 place.turning = turning;
@@ -322,7 +431,12 @@ pub fn stages(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
                         wanted = Some(done + undone);
                     }
                 }
-                let add = chip(ui, "+ Stage", false, "Keep what there is as a stage to go back to");
+                let add = chip(
+                    ui,
+                    "+ Stage",
+                    false,
+                    "Keep what there is as a stage to go back to",
+                );
                 places::note(ui.ctx(), "sculpt add stage", add.rect);
                 if add.clicked() {
                     let name = format!("stage {}", stages.len() + 1);

@@ -289,7 +289,11 @@ impl Sculpting {
         };
         let is_same = self.drawn.as_ref().is_some_and(|drawn| {
             let size = drawn.size;
-            *drawn == Drawn { size, ..wanted.clone() }
+            *drawn
+                == Drawn {
+                    size,
+                    ..wanted.clone()
+                }
         });
         let had = self.drawn.as_ref().map(|drawn| drawn.size);
         if is_same && self.texture.is_some() && (had == Some(wanted.size) || had == Some(fine)) {
@@ -333,9 +337,21 @@ impl Sculpting {
         let look = Look {
             light: self.light.as_vec3(),
             wireframe: self.wireframe,
-            background: if dark { [0.10, 0.112, 0.135] } else { [0.80, 0.815, 0.83] },
-            edge: if dark { [0.05, 0.06, 0.09] } else { [0.1, 0.1, 0.14] },
-            accent: if dark { [0.33, 0.68, 0.98] } else { [0.12, 0.42, 0.78] },
+            background: if dark {
+                [0.10, 0.112, 0.135]
+            } else {
+                [0.80, 0.815, 0.83]
+            },
+            edge: if dark {
+                [0.05, 0.06, 0.09]
+            } else {
+                [0.1, 0.1, 0.14]
+            },
+            accent: if dark {
+                [0.33, 0.68, 0.98]
+            } else {
+                [0.12, 0.42, 0.78]
+            },
             tool: tool.map(|(_, surface)| (surface, &spots[..])),
             planes: &planes,
         };
@@ -494,7 +510,13 @@ fn scene(
     let font = egui::FontId::proportional(12.5);
     let line = format!("{vertices} vertices · {faces} faces");
     let at = rect.left_bottom() + vec2(12.0, -10.0);
-    painter.text(at, egui::Align2::LEFT_BOTTOM, line, font.clone(), palette.weak);
+    painter.text(
+        at,
+        egui::Align2::LEFT_BOTTOM,
+        line,
+        font.clone(),
+        palette.weak,
+    );
     let hint = match &place.trouble {
         Some(trouble) => (trouble.clone(), palette.error),
         None => (hand::hint(place, narrow), palette.weak),
@@ -523,7 +545,11 @@ fn inset(outside: &Outside, ui: &Ui, rect: Rect, narrow: bool) {
     let Some((texture, [w, h])) = outside.traced else {
         return;
     };
-    let longest = if narrow { 96.0 } else { 190.0_f32.min(0.28 * rect.width()) };
+    let longest = if narrow {
+        96.0
+    } else {
+        190.0_f32.min(0.28 * rect.width())
+    };
     let size = vec2(w as f32, h as f32);
     let size = size * (longest / size.max_elem().max(1.0));
     let place = Rect::from_min_size(rect.right_bottom() - size - vec2(12.0, 12.0), size);
@@ -543,24 +569,33 @@ fn keys(place: &mut Sculpting, ctx: &Context) {
             let palette = theme::palette(ui.visuals());
             let width = (ctx.content_rect().width() - 60.0).min(560.0);
             ui.set_width(width);
-            ui.label(RichText::new("Hands and keys").size(17.0).color(palette.strong));
+            ui.label(
+                RichText::new("Hands and keys")
+                    .size(17.0)
+                    .color(palette.strong),
+            );
             ui.add_space(6.0);
             let most = (ctx.content_rect().height() - 160.0).max(120.0);
             ScrollArea::vertical().max_height(most).show(ui, |ui| {
-                egui::Grid::new("sculpt keys").num_columns(2).spacing([16.0, 5.0]).show(ui, |ui| {
-                    for (key, meaning) in KEYS {
-                        let label = |text, color| egui::Label::new(RichText::new(text).size(13.0).color(color)).wrap();
-                        ui.scope(|ui| {
-                            ui.set_width(0.36 * width);
-                            ui.add(label(key, palette.text));
-                        });
-                        ui.scope(|ui| {
-                            ui.set_width(0.56 * width);
-                            ui.add(label(meaning, palette.weak));
-                        });
-                        ui.end_row();
-                    }
-                });
+                egui::Grid::new("sculpt keys")
+                    .num_columns(2)
+                    .spacing([16.0, 5.0])
+                    .show(ui, |ui| {
+                        for (key, meaning) in KEYS {
+                            let label = |text, color| {
+                                egui::Label::new(RichText::new(text).size(13.0).color(color)).wrap()
+                            };
+                            ui.scope(|ui| {
+                                ui.set_width(0.36 * width);
+                                ui.add(label(key, palette.text));
+                            });
+                            ui.scope(|ui| {
+                                ui.set_width(0.56 * width);
+                                ui.add(label(meaning, palette.weak));
+                            });
+                            ui.end_row();
+                        }
+                    });
             });
             ui.add_space(8.0);
             ui.add(Button::new("Close")).clicked()

@@ -1,9 +1,9 @@
 //! Which files a text asks for, so that whoever keeps files can fetch them before compiling.
 
-use crate::{is_strokes, start_file};
 use crate::parser::parse;
 use crate::symbol::Symbols;
 use crate::syntax::{Block, Command, Datum, Node, Syntax};
+use crate::{is_strokes, start_file};
 use std::ops::Range;
 
 /// The file names after every `read` of a text, in order, wherever it stands, then the texts of strokes after `mesh`. Nothing is run, so

@@ -2,7 +2,8 @@
 
 use rats::{Asset, Compiled, File, Project, Severity, compile_at};
 
-const HORN: &str = "strokes 1\nstart sphere 4\npull sphere 0.4 0.4 0.4 cusp 0.8 : 0 0 0.9, 0 0 1.6\n";
+const HORN: &str =
+    "strokes 1\nstart sphere 4\npull sphere 0.4 0.4 0.4 cusp 0.8 : 0 0 0.9, 0 0 1.6\n";
 
 fn project(main: &str, strokes: &str) -> Project {
     let file = |name: &str, text: &str| File {
@@ -39,9 +40,22 @@ fn sculpture_is_a_mesh_like_any_other() {
         "soft on\nsurface Flesh, diffuse Coral, blobbiness -2, radius 0.2\nmesh Flesh horn.strokes\n",
         HORN,
     );
-    assert!(soft.diagnostics.iter().all(|d| d.severity != Severity::Error), "{:?}", soft.diagnostics);
+    assert!(
+        soft.diagnostics
+            .iter()
+            .all(|d| d.severity != Severity::Error),
+        "{:?}",
+        soft.diagnostics
+    );
     let balls = run("mesh Clay horn.strokes metaballs triangular 0.1 60\n", HORN);
-    assert!(balls.diagnostics.iter().all(|d| d.severity != Severity::Error), "{:?}", balls.diagnostics);
+    assert!(
+        balls
+            .diagnostics
+            .iter()
+            .all(|d| d.severity != Severity::Error),
+        "{:?}",
+        balls.diagnostics
+    );
     assert_eq!(balls.scene.elements.len(), 1);
 }
 
@@ -55,7 +69,14 @@ fn sculpture_that_grows_equals_one_made_at_once() {
     let at_once = std::thread::spawn(move || run("mesh Clay horn.strokes\n", &text).scene.elements);
     let at_once = at_once.join().unwrap();
     assert_eq!(grown.scene.elements.len(), 512);
-    assert!(grown.scene.elements.iter().zip(&at_once).all(|(a, b)| a.shape == b.shape));
+    assert!(
+        grown
+            .scene
+            .elements
+            .iter()
+            .zip(&at_once)
+            .all(|(a, b)| a.shape == b.shape)
+    );
     // And back.
     let back = run("mesh Clay horn.strokes\n", &format!("{HORN}# undone\n"));
     assert_eq!(back.scene.elements.len(), 128);
@@ -73,20 +94,44 @@ fn mistakes_are_told_where_they_stand() {
         .map(|d| (d.file.as_str(), d.line, d.column))
         .collect();
     assert_eq!(places, [("horn.strokes", 3, 6), ("horn.strokes", 4, 6)]);
-    assert_eq!(told.diagnostics[0].message, "a tool is expected: box, cylinder or sphere");
-    assert_eq!((told.diagnostics[0].related[0].file.as_str(), told.diagnostics[0].related[0].line), ("main.rat", 2));
+    assert_eq!(
+        told.diagnostics[0].message,
+        "a tool is expected: box, cylinder or sphere"
+    );
+    assert_eq!(
+        (
+            told.diagnostics[0].related[0].file.as_str(),
+            told.diagnostics[0].related[0].line
+        ),
+        ("main.rat", 2)
+    );
     let none = run("mesh Clay dog.strokes\n", HORN);
-    assert_eq!(none.diagnostics[0].message, "there is no text of strokes `dog.strokes` in the project");
-    assert_eq!(none.diagnostics[0].hint.as_deref(), Some("did you mean `horn.strokes`?"));
+    assert_eq!(
+        none.diagnostics[0].message,
+        "there is no text of strokes `dog.strokes` in the project"
+    );
+    assert_eq!(
+        none.diagnostics[0].hint.as_deref(),
+        Some("did you mean `horn.strokes`?")
+    );
 }
 
 #[test]
 fn sculpture_may_start_from_a_file() {
     let strokes = "strokes 1\nstart file cube.obj\nrefine\n";
-    let project = project("surface Clay, diffuse SandyBrown\nmesh Clay horn.strokes\n", strokes);
+    let project = project(
+        "surface Clay, diffuse SandyBrown\nmesh Clay horn.strokes\n",
+        strokes,
+    );
     let missing = compile_at(&project, &[], 0.0);
-    assert_eq!(missing.diagnostics[0].message, "there is no mesh `cube.obj` in the project");
-    assert_eq!((missing.diagnostics[0].line, missing.diagnostics[0].column), (2, 1));
+    assert_eq!(
+        missing.diagnostics[0].message,
+        "there is no mesh `cube.obj` in the project"
+    );
+    assert_eq!(
+        (missing.diagnostics[0].line, missing.diagnostics[0].column),
+        (2, 1)
+    );
     let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     let asset = Asset {
         name: "cube.obj".into(),
@@ -100,11 +145,21 @@ fn sculpture_may_start_from_a_file() {
 
 #[test]
 fn no_text_of_strokes_takes_long() {
-    let endless = format!("strokes 1\nstart sphere 60\n{}", "average 100\n".repeat(2000));
+    let endless = format!(
+        "strokes 1\nstart sphere 60\n{}",
+        "average 100\n".repeat(2000)
+    );
     let told = run("mesh Clay horn.strokes\n", &endless);
-    assert_eq!(told.diagnostics[0].message, "all strokes together take too long");
+    assert_eq!(
+        told.diagnostics[0].message,
+        "all strokes together take too long"
+    );
     let large = run("mesh Clay horn.strokes\n", "strokes 1\nstart sphere 400\n");
-    assert!(large.diagnostics[0].message.starts_with("this start has 1280000 faces"));
+    assert!(
+        large.diagnostics[0]
+            .message
+            .starts_with("this start has 1280000 faces")
+    );
     let growing = format!("strokes 1\nstart sphere 20\n{}", "refine\n".repeat(9));
     let told = run("mesh Clay horn.strokes\n", &growing);
     assert_eq!(told.errors(), 1);

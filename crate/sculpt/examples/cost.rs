@@ -29,7 +29,11 @@ fn step(clay: &mut Clay, sweep: &Sweep) -> (f64, usize) {
     for k in 0..31 {
         let angle = 0.2 * f64::from(k);
         let place = |t: f64| DVec3::new(libm::cos(angle) * t, libm::sin(angle) * t, 0.0);
-        let before: Vec<DVec3> = clay.mesh().vertices().map(|v| clay.mesh().position(v)).collect();
+        let before: Vec<DVec3> = clay
+            .mesh()
+            .vertices()
+            .map(|v| clay.mesh().position(v))
+            .collect();
         let mut drag = Drag::new(clay, sweep);
         if sweep.action == Action::Pull {
             drag.step(clay, PathPoint::new(place(1.0)));
@@ -66,7 +70,11 @@ fn pass(count: usize) -> f64 {
 fn main() {
     let mut small = ball(10_000);
     let mut large = ball(1_000_000);
-    for (name, action) in [("push", Action::Push), ("pull", Action::Pull), ("smooth", Action::Smooth)] {
+    for (name, action) in [
+        ("push", Action::Push),
+        ("pull", Action::Pull),
+        ("smooth", Action::Smooth),
+    ] {
         for vertices in [200.0, 2000.0] {
             let of_small = sweep(&small, action, vertices);
             let (a, moved_a) = step(&mut small, &of_small);

@@ -36,7 +36,8 @@ fn tetrahedron(mesh: &mut TriangleMesh, place: DVec3) {
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
     mesh.positions.extend(corners.map(|p| p + place));
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-    mesh.triangles.extend(faces.map(|f: [u32; 3]| f.map(|i| i + first)));
+    mesh.triangles
+        .extend(faces.map(|f: [u32; 3]| f.map(|i| i + first)));
 }
 
 #[test]
@@ -87,12 +88,18 @@ fn what_is_no_mesh_is_refused_in_words() {
     let told = |mesh: TriangleMesh| Clay::of_triangles(&mesh).map(drop).unwrap_err().to_string();
     assert_eq!(told(TriangleMesh::default()), "this mesh has no faces");
     let far = vec![DVec3::ZERO, DVec3::X * 1e10, DVec3::Y];
-    assert_eq!(told(TriangleMesh::new(far, vec![[0, 1, 2]])), "vertex 1 (from 0) is not within 1e9");
+    assert_eq!(
+        told(TriangleMesh::new(far, vec![[0, 1, 2]])),
+        "vertex 1 (from 0) is not within 1e9"
+    );
     let none = vec![DVec3::splat(f64::NAN), DVec3::X, DVec3::Y];
     assert!(told(TriangleMesh::new(none, vec![[0, 1, 2]])).contains("not within"));
     let many = vec![[0, 1, 2]; sculpt::limits::MAX_FACES + 1];
     let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
-    assert!(told(TriangleMesh::new(positions, many)).contains("more than the 2000000 that can be sculpted"));
+    assert!(
+        told(TriangleMesh::new(positions, many))
+            .contains("more than the 2000000 that can be sculpted")
+    );
 }
 
 // A minute as wasm in the profile of tests.
@@ -104,14 +111,20 @@ fn a_file_of_a_million_faces_is_opened_and_a_stroke_of_it_is_quick() {
     for y in 0..=n {
         for x in 0..=n {
             let (x, y) = (f64::from(x) / f64::from(n), f64::from(y) / f64::from(n));
-            mesh.positions.push(DVec3::new(x, y, 0.05 * libm::sin(9.0 * x) * libm::cos(7.0 * y)));
+            mesh.positions.push(DVec3::new(
+                x,
+                y,
+                0.05 * libm::sin(9.0 * x) * libm::cos(7.0 * y),
+            ));
         }
     }
     let at = |x: u32, y: u32| y * (n + 1) + x;
     for y in 0..n {
         for x in 0..n {
-            mesh.triangles.push([at(x, y), at(x + 1, y), at(x + 1, y + 1)]);
-            mesh.triangles.push([at(x, y), at(x + 1, y + 1), at(x, y + 1)]);
+            mesh.triangles
+                .push([at(x, y), at(x + 1, y), at(x + 1, y + 1)]);
+            mesh.triangles
+                .push([at(x, y), at(x + 1, y + 1), at(x, y + 1)]);
         }
     }
     let (clay, repairs) = Clay::of_triangles(&mesh).unwrap();

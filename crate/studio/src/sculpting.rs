@@ -62,7 +62,9 @@ fn shown(text: &str, file: &str) -> String {
         })
         .find(|name| is_free(name))
         .unwrap_or_default();
-    format!("surface {name}, diffuse <0.78 0.62 0.5>, specular White, shine 20\nmesh {name} {file}\n")
+    format!(
+        "surface {name}, diffuse <0.78 0.62 0.5>, specular White, shine 20\nmesh {name} {file}\n"
+    )
 }
 
 impl App {
@@ -74,7 +76,9 @@ impl App {
     /// Goes on with the text of strokes in the editor, or the first of the work, or asks how to begin.
     pub(crate) fn show_sculpt(&mut self) {
         let files = &self.work.session.project().files;
-        let shown = files.get(self.editor.file).filter(|_| self.editor.asset.is_none());
+        let shown = files
+            .get(self.editor.file)
+            .filter(|_| self.editor.asset.is_none());
         let shown = shown.filter(|file| is_strokes(&file.name));
         let first = files.iter().find(|file| is_strokes(&file.name));
         match shown.or(first).map(|file| file.name.clone()) {
@@ -87,7 +91,12 @@ impl App {
     pub(crate) fn open_sculpture(&mut self, name: &str) {
         self.dialog = None;
         let session = &self.work.session;
-        let Some(file) = session.project().files.iter().find(|file| file.name == name) else {
+        let Some(file) = session
+            .project()
+            .files
+            .iter()
+            .find(|file| file.name == name)
+        else {
             return;
         };
         let start = start_of(session, name, &file.text);
@@ -237,7 +246,11 @@ impl App {
         };
         let choice = |ui: &mut Ui, name: &str| {
             let button = ui.add(Button::new(RichText::new(name).size(14.5)));
-            places::note(ui.ctx(), format!("begin {}", name.to_lowercase()), button.rect);
+            places::note(
+                ui.ctx(),
+                format!("begin {}", name.to_lowercase()),
+                button.rect,
+            );
             button.clicked()
         };
         let id = egui::Id::unique("sculpt in this work");

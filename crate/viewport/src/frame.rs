@@ -203,7 +203,14 @@ impl Frame {
         }));
     }
 
-    fn fill(&mut self, index: u32, corners: &[u32; 3], culls: bool, is_chosen: bool, look: &Look<'_>) {
+    fn fill(
+        &mut self,
+        index: u32,
+        corners: &[u32; 3],
+        culls: bool,
+        is_chosen: bool,
+        look: &Look<'_>,
+    ) {
         let [a, b, c] = corners.map(|i| self.corners[i as usize]);
         if a.near <= 0.0 || b.near <= 0.0 || c.near <= 0.0 {
             return;
@@ -220,10 +227,7 @@ impl Frame {
             false => colors,
         };
         let [w, h] = self.size;
-        let (Some(xs), Some(ys)) = (
-            span([a.x, b.x, c.x], w),
-            span([a.y, b.y, c.y], h),
-        ) else {
+        let (Some(xs), Some(ys)) = (span([a.x, b.x, c.x], w), span([a.y, b.y, c.y], h)) else {
             return;
         };
         let inverse = 1.0 / area;
@@ -280,7 +284,11 @@ impl Frame {
         if outside(a.x, b.x, w) || outside(a.y, b.y, h) {
             return;
         }
-        let steps = (b.x - a.x).abs().max((b.y - a.y).abs()).ceil().clamp(1.0, 8192.0);
+        let steps = (b.x - a.x)
+            .abs()
+            .max((b.y - a.y).abs())
+            .ceil()
+            .clamp(1.0, 8192.0);
         for i in 0..=steps as u32 {
             let t = i as f32 / steps;
             let (x, y) = (a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t);
@@ -305,7 +313,10 @@ impl Frame {
     /// A plane of symmetry: faint, with an edge.
     fn plane(&mut self, camera: &Camera, axis: usize, half: f32, color: [f32; 3]) {
         let mut ends = [Vec3::ZERO; 4];
-        for (end, [s, t]) in ends.iter_mut().zip([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) {
+        for (end, [s, t]) in
+            ends.iter_mut()
+                .zip([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+        {
             end[(axis + 1) % 3] = half * s;
             end[(axis + 2) % 3] = half * t;
         }
@@ -340,7 +351,12 @@ impl Frame {
                 ..Corner::default()
             }
         };
-        let corners: Vec<Corner> = tool.positions.iter().zip(&tool.normals).map(corner).collect();
+        let corners: Vec<Corner> = tool
+            .positions
+            .iter()
+            .zip(&tool.normals)
+            .map(corner)
+            .collect();
         for triangle in &tool.triangles {
             let [a, b, c] = triangle.map(|i| corners[i as usize]);
             let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -360,10 +376,7 @@ impl Frame {
             return;
         }
         let [w, h] = self.size;
-        let (Some(xs), Some(ys)) = (
-            span([a.x, b.x, c.x], w),
-            span([a.y, b.y, c.y], h),
-        ) else {
+        let (Some(xs), Some(ys)) = (span([a.x, b.x, c.x], w), span([a.y, b.y, c.y], h)) else {
             return;
         };
         let inverse = 1.0 / area;
@@ -511,8 +524,12 @@ mod tests {
         let at = |i: usize, j: usize| (i * 2 * n + j % (2 * n)) as u32;
         for i in 0..n {
             for j in 0..2 * n {
-                surface.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
-                surface.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+                surface
+                    .triangles
+                    .push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                surface
+                    .triangles
+                    .push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
             }
         }
         surface.normals = surface.positions.clone();
@@ -562,7 +579,11 @@ mod tests {
         for order in [[0.0, 0.5], [0.5, 0.0]] {
             let mut surface = Surface::default();
             for (k, z) in order.into_iter().enumerate() {
-                let color = if z > 0.2 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+                let color = if z > 0.2 {
+                    [1.0, 0.0, 0.0]
+                } else {
+                    [0.0, 1.0, 0.0]
+                };
                 let (p, c, t) = square(z, color, 4 * k as u32);
                 surface.positions.extend(p);
                 surface.colors.extend(c);
@@ -600,7 +621,9 @@ mod tests {
         frame.draw(&view, &surface, &look);
         let with_tool = frame.rgba().to_vec();
         // In the middle of its shadow it is darker.
-        let pixel = view.project(plain.light.normalize().as_dvec3(), [120, 120]).unwrap();
+        let pixel = view
+            .project(plain.light.normalize().as_dvec3(), [120, 120])
+            .unwrap();
         let at = 4 * (pixel[1] as usize * 120 + pixel[0] as usize);
         assert!(f32::from(with_tool[at]) < 0.7 * f32::from(bare[at]));
         let mut edged = surface.clone();

@@ -102,7 +102,11 @@ mod tests {
         };
         let shadow = Shadow::of(&square, Vec3::new(5.0, 0.0, 2.0), Vec3::Z);
         assert_eq!(shadow.at(Vec3::new(5.2, 0.3, 0.0)), 1.0);
-        assert_eq!(shadow.at(Vec3::new(5.2, 0.3, 3.0)), 0.0, "between it and the light");
+        assert_eq!(
+            shadow.at(Vec3::new(5.2, 0.3, 3.0)),
+            0.0,
+            "between it and the light"
+        );
         assert_eq!(shadow.at(Vec3::new(6.3, 0.3, 0.0)), 0.0, "beside it");
         assert_eq!(shadow.at(Vec3::new(60.0, 0.3, 0.0)), 0.0, "far away");
     }

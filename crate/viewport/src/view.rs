@@ -118,7 +118,11 @@ impl View {
     #[must_use]
     pub fn pixels_at(&self, point: DVec3, size: [usize; 2]) -> f64 {
         let depth = self.depth(point);
-        if depth > 0.0 { self.focal(size) / depth } else { 0.0 }
+        if depth > 0.0 {
+            self.focal(size) / depth
+        } else {
+            0.0
+        }
     }
 
     /// The distance of a point from the eye along the view.

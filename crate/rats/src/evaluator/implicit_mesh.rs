@@ -1,11 +1,11 @@
 //! `mesh … metaballs`: meshes as soft shapes.
 
 use super::state::{Evaluator, Flow};
+use crate::Severity;
 use crate::given::Given;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
-use crate::Severity;
 use field::Kernel;
 use glam::DAffine3;
 use mesh::{Topology, TriangleMesh};

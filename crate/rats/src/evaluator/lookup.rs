@@ -113,7 +113,9 @@ impl<'a> Evaluator<'a> {
             let texts = own.iter().map(|source| source.name.as_str());
             let known: Vec<&str> = texts.filter(|name| crate::is_strokes(name)).collect();
             let hint = suggest::hint(name.text, known.iter().copied()).unwrap_or_else(|| {
-                String::from("add a file of this name, or draw it in Sculpt; it begins with `strokes 1`")
+                String::from(
+                    "add a file of this name, or draw it in Sculpt; it begins with `strokes 1`",
+                )
             });
             let message = format!("there is no text of strokes `{}` in the project", name.text);
             Problem::new(name.span.clone(), message).hint(hint)

@@ -4,7 +4,6 @@ use super::implicit_mesh;
 use super::model::Part;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::{assets, is_strokes};
 use crate::geometry::{self, ThreePoints, Transform};
 use crate::given::Given;
 use crate::limits::MAX_CORNERS;
@@ -12,6 +11,7 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::strokes::{self, Sculpted};
 use crate::syntax::Command;
+use crate::{assets, is_strokes};
 use field::Kernel;
 use glam::{DMat3, DVec3};
 use mesh::TriangleMesh;
@@ -439,8 +439,8 @@ pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
     }
     let asset = run.asset(file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
-    let mesh = assets::mesh(asset)
-        .map_err(|error| Problem::new(file.span.clone(), error.to_string()))?;
+    let mesh =
+        assets::mesh(asset).map_err(|error| Problem::new(file.span.clone(), error.to_string()))?;
     if let Some(metaballs) = implicit_mesh::metaballs(&given)? {
         let topology = assets::topology(asset).ok().map(|own| (*own).clone());
         return implicit_mesh::add(run, command, &name, topology, &mesh, metaballs);

@@ -32,7 +32,11 @@ pub fn pen_pressure() -> Option<f32> {
 /// Notes what a pointer event says about a pen.
 pub fn note_pen(event: &web_sys::PointerEvent) {
     let is_pen = event.pointer_type() == "pen";
-    PEN.set(is_pen.then(|| event.pressure()).filter(|pressure| *pressure > 0.0));
+    PEN.set(
+        is_pen
+            .then(|| event.pressure())
+            .filter(|pressure| *pressure > 0.0),
+    );
 }
 
 /// Says whether each frame keeps the tracer waiting.
