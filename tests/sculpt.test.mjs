@@ -25,7 +25,8 @@ async function until(sinew, wanted) {
 }
 
 /** Begins with a ball, and gives the middle of the place. */
-async function begin(sinew) {
+async function begin(sinew, narrow = false) {
+  if (narrow) await sinew.click('more');
   await sinew.click('sculpt');
   await sinew.click('begin ball');
   await until(sinew, (now) => now?.name === 'sculpture.strokes');
@@ -148,7 +149,7 @@ test("a pen's pressure is written", async () => {
 test('a finger sculpts and two fingers turn, on a phone', async () => {
   const sinew = await browser.open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   const { page } = sinew;
-  const { at, side } = await begin(sinew);
+  const { at, side } = await begin(sinew, true);
   const cdp = await page.context().newCDPSession(page);
   const touch = async (type, points) => {
     await cdp.send('Input.dispatchTouchEvent', {

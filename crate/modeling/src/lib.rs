@@ -29,4 +29,4 @@ pub use brush::{Brush, Doing};
 pub use document::Document;
 pub use drawn::surface_of;
 pub use keys::KEYS;
-pub use place::{Command, Outside, Sculpting, show};
+pub use place::{Command, Flesh, Outside, Sculpting, show};

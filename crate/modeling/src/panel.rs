@@ -1,7 +1,7 @@
 //! The controls: tool, decay, refinements, region, stages.
 
 use crate::brush::{Doing, round};
-use crate::place::{Command, Sculpting, Turning};
+use crate::place::{Command, Flesh, Sculpting, Turning};
 use egui::{Button, Color32, Rect, Response, RichText, ScrollArea, Sense, Slider, Ui, pos2, vec2};
 use glam::{DQuat, DVec3};
 use sculpt::{
@@ -75,6 +75,7 @@ pub fn controls(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>)
     refinement(place, ui, commands);
     region(place, ui, commands);
     view(place, ui);
+    flesh(place, ui, commands);
     ui.add_space(10.0);
 }
 
@@ -391,6 +392,30 @@ fn view(place: &mut Sculpting, ui: &mut Ui) {
         }
         if chip(ui, "Wireframe", place.wireframe, "Show the edges (W)").clicked() {
             place.wireframe = !place.wireframe;
+        }
+    });
+}
+
+fn flesh(place: &Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
+    heading(ui, "In the model it is");
+    ui.horizontal_wrapped(|ui| {
+        for (flesh, name, tip) in [
+            (Flesh::Hard, "a hard mesh", "The triangles themselves"),
+            (
+                Flesh::Convolved,
+                "flesh",
+                "Each triangle is a skeleton that flesh grows on; meshes of many faces take long to trace",
+            ),
+            (
+                Flesh::Metaballs,
+                "metaballs",
+                "A soft shell around the triangles",
+            ),
+        ] {
+            if chip(ui, name, false, tip).clicked() {
+                let edge = place.mean_edge();
+                commands.push(Command::Grow { flesh, edge });
+            }
         }
     });
 }

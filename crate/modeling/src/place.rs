@@ -29,12 +29,30 @@ pub enum Command {
         /// The mesh that it makes, if it is not too large for a model.
         mesh: Option<TriangleMesh>,
     },
+    /// Show the mesh in the model as this.
+    Grow {
+        /// As what.
+        flesh: Flesh,
+        /// The mean length of its edges.
+        edge: f64,
+    },
     /// Go back to the text.
     Close,
     /// Begin another one.
     New,
     /// Take another palette.
     SetTheme(theme::Choice),
+}
+
+/// As what a model shows a sculpture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flesh {
+    /// The triangles themselves.
+    Hard,
+    /// Each triangle is a skeleton with flesh on it.
+    Convolved,
+    /// Metaballs around the triangles.
+    Metaballs,
 }
 
 /// What is outside the place.
@@ -191,6 +209,18 @@ impl Sculpting {
     #[must_use]
     pub fn depth(&self) -> [usize; 2] {
         self.document.depth()
+    }
+
+    /// The mean length of the edges.
+    pub(crate) fn mean_edge(&self) -> f64 {
+        let mesh = self.document.clay().mesh();
+        let (mut sum, mut count) = (0.0, 0.0);
+        for h in mesh.edges() {
+            let ends = [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v));
+            sum += ends[0].distance(ends[1]);
+            count += 1.0;
+        }
+        sum / f64::max(count, 1.0)
     }
 
     /// Carries out a stroke, and tells the page.

@@ -134,6 +134,7 @@ impl App {
             Command::SetStrokes { name, text, mesh } => {
                 self.set_strokes(&name, text, mesh.map(|mesh| *mesh), now);
             }
+            Command::GrowFlesh { name, flesh, edge } => self.grow_flesh(&name, flesh, edge, now),
             Command::CloseSculpt => self.close_sculpt(),
             Command::Enable => {
                 self.notice = None;

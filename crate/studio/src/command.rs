@@ -161,6 +161,15 @@ pub enum Command {
         /// The mesh that it makes, if it is known.
         mesh: Option<Box<mesh::TriangleMesh>>,
     },
+    /// Show a sculpture as a hard mesh, as flesh or as metaballs.
+    GrowFlesh {
+        /// The name of its text.
+        name: String,
+        /// As what.
+        flesh: modeling::Flesh,
+        /// The mean length of its edges.
+        edge: f64,
+    },
     /// Leave the place for sculpting.
     CloseSculpt,
     /// Delete a saved work.

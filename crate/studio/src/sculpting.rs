@@ -8,7 +8,7 @@ use crate::project_file::Project;
 use crate::session::Session;
 use crate::{examples, places, platform, theme};
 use egui::{Button, Context, RichText, Ui};
-use modeling::{Outside, Sculpting};
+use modeling::{Flesh, Outside, Sculpting};
 use rats::{Asset, File, is_strokes};
 
 /// Shapes to begin with: name, and the line of the text.
@@ -65,6 +65,54 @@ fn shown(text: &str, file: &str) -> String {
     format!(
         "surface {name}, diffuse <0.78 0.62 0.5>, specular White, shine 20\nmesh {name} {file}\n"
     )
+}
+
+/// A text whose `mesh` command for a file shows it in another way; `None` if it has no such command.
+fn grown(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
+    let bare = file.rsplit('/').next().unwrap_or(file);
+    let is_it = |line: &&str| {
+        let words = line.split(|c: char| c.is_whitespace() || c == ',');
+        let mut words = words.filter(|word| !word.is_empty());
+        let is_mesh = words.next() == Some("mesh");
+        is_mesh
+            && words
+                .nth(1)
+                .is_some_and(|name| name == file || name == bare)
+    };
+    let line = text.lines().find(is_it)?;
+    let old = line.split_whitespace().nth(1)?.trim_end_matches(',');
+    let short = |x: f64| {
+        let digits = (2.0 - libm::floor(libm::log10(x.max(1e-9)))).clamp(0.0, 9.0) as usize;
+        format!("{x:.digits$}")
+    };
+    // Materials that flesh was grown of have names of their own, so that it can be taken away again.
+    let hard = old
+        .strip_suffix("Flesh")
+        .filter(|name| !name.is_empty())
+        .unwrap_or(old);
+    let soft = format!("{hard}Flesh");
+    let new = match flesh {
+        Flesh::Hard => format!("mesh {hard} {file}"),
+        Flesh::Metaballs => format!(
+            "mesh {hard} {file} metaballs triangular {} {}",
+            short(0.15 * edge),
+            short(14.0 / edge.max(1e-9))
+        ),
+        Flesh::Convolved => {
+            let command = format!("mesh {soft} {file}");
+            let is_there = text.contains(&format!("surface {soft},"));
+            let material = format!(
+                "surface {soft}, diffuse Coral, specular White, shine 40, kernel quartic, blobbiness -2, radius {}\n",
+                short(0.5 * edge)
+            );
+            if is_there {
+                command
+            } else {
+                material + &command
+            }
+        }
+    };
+    Some(text.replacen(line, &new, 1))
 }
 
 impl App {
@@ -203,6 +251,11 @@ impl App {
                 text,
                 mesh: mesh.map(Box::new),
             },
+            modeling::Command::Grow { flesh, edge } => Command::GrowFlesh {
+                name: name.clone(),
+                flesh,
+                edge,
+            },
             modeling::Command::Close => Command::CloseSculpt,
             modeling::Command::New => Command::NewSculpture,
             modeling::Command::SetTheme(choice) => Command::SetTheme(choice),
@@ -233,6 +286,30 @@ impl App {
             // What is on the screen goes back to what is kept.
             self.notice = Some(Notice::trouble(refused.to_string()));
         }
+    }
+
+    /// Shows a sculpture in another way: changes the `mesh` command of the text that uses it.
+    pub(crate) fn grow_flesh(&mut self, name: &str, flesh: Flesh, edge: f64, now: f64) {
+        let files = self.work.session.project().files.iter().enumerate();
+        let changed = files
+            .filter(|(_, file)| !is_strokes(&file.name))
+            .find_map(|(index, file)| Some((index, grown(&file.text, name, flesh, edge)?)));
+        let Some((index, text)) = changed else {
+            let text = format!("No text of this work has a line “mesh … {name}”.");
+            self.notice = Some(Notice::trouble(text));
+            return;
+        };
+        let session = &mut self.work.session;
+        session.end_step();
+        let result = session.set_text(index, text, now);
+        session.end_step();
+        self.notice = Some(match result {
+            Ok(()) => Notice::done(
+                String::from("The text says so now; the picture follows."),
+                now,
+            ),
+            Err(refused) => Notice::trouble(refused.to_string()),
+        });
     }
 
     /// The dialog that asks how to begin.
@@ -341,6 +418,37 @@ mod tests {
             let faces = compiled.scene.elements.len();
             assert!((700..1300).contains(&faces), "{name}: {faces}");
         }
+        let text = "surface Clay, diffuse Red\nmesh Clay, a.strokes\n";
+        let told = |text: &str| {
+            let file = |name: &str, text: &str| File {
+                name: name.into(),
+                text: text.into(),
+            };
+            let strokes = file("a.strokes", "strokes 1\nstart sphere 3\n");
+            let project = rats::Project {
+                files: vec![file("main.rat", text), strokes],
+            };
+            rats::compile(&project)
+        };
+        let soft = grown(text, "a.strokes", Flesh::Convolved, 0.4).unwrap();
+        assert!(soft.contains("mesh ClayFlesh a.strokes"), "{soft}");
+        assert_eq!(
+            told(&soft)
+                .diagnostics
+                .iter()
+                .filter(|d| d.severity == rats::Severity::Error)
+                .count(),
+            0
+        );
+        let balls = grown(&soft, "a.strokes", Flesh::Metaballs, 0.4).unwrap();
+        assert!(
+            balls.ends_with("mesh Clay a.strokes metaballs triangular 0.0600 35.0\n"),
+            "{balls}"
+        );
+        assert_eq!(told(&balls).scene.elements.len(), 1);
+        let hard = grown(&balls, "a.strokes", Flesh::Hard, 0.4).unwrap();
+        assert!(hard.ends_with("\nmesh Clay a.strokes\n"), "{hard}");
+        assert_eq!(grown(text, "b.strokes", Flesh::Hard, 0.4), None);
         assert!(shown("surface Clay, diffuse Red\n", "b.strokes").starts_with("surface Clay2,"));
     }
 }
