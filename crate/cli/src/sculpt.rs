@@ -136,11 +136,16 @@ fn tell(name: &str, clay: &Clay) {
         1 => String::from("1 hole"),
         count => format!("{count} holes"),
     };
+    let bounds = mesh::Aabb::of_points(mesh.vertices().map(|v| mesh.position(v)));
+    let extent = |axis: usize| format!("{:.3} … {:.3}", bounds.min[axis], bounds.max[axis]);
     eprintln!(
-        "{name}: {} vertices, {} faces, {} edges, {holes}",
+        "{name}: {} vertices, {} faces, {} edges, {holes}; x {}, y {}, z {}",
         mesh.vertex_count(),
         mesh.face_count(),
         mesh.edge_count(),
+        extent(0),
+        extent(1),
+        extent(2),
     );
 }
 

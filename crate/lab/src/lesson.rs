@@ -22,6 +22,8 @@ pub enum Lesson {
     Spans,
     /// Two drops that touch and do not melt.
     Contact,
+    /// Strokes of virtual tools.
+    Sculpting,
 }
 
 /// Start of a fragment that leads to a lesson.
@@ -39,6 +41,7 @@ impl Lesson {
         Self::Superposition,
         Self::Spans,
         Self::Contact,
+        Self::Sculpting,
     ];
 
     /// The word in its link.
@@ -54,6 +57,7 @@ impl Lesson {
             Self::Superposition => "superposition",
             Self::Spans => "spans",
             Self::Contact => "contact",
+            Self::Sculpting => "sculpting",
         }
     }
 
@@ -89,6 +93,7 @@ impl Lesson {
             Self::Superposition => "Superposition",
             Self::Spans => "How many spans?",
             Self::Contact => "Drops that do not melt",
+            Self::Sculpting => "Sculpting by strokes",
         }
     }
 }

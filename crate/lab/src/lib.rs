@@ -1,4 +1,4 @@
-//! The lab: eight small lessons, each one figure to take hold of, that show how a convolution
+//! The lab: nine small lessons, each one figure to take hold of, that show how a convolution
 //! surface comes about. Each has its own link (`#lab=kernels`), and opening one leaves the open
 //! work alone.
 //!
@@ -45,6 +45,7 @@ pub mod pictures;
 pub mod plot;
 pub mod profiles;
 pub mod sample;
+pub mod sculpting;
 pub mod slice;
 pub mod spans;
 mod state;

@@ -165,6 +165,7 @@ fn short(lesson: Lesson) -> &'static str {
         Lesson::Chart => "Chart",
         Lesson::Spans => "Spans",
         Lesson::Contact => "Contact",
+        Lesson::Sculpting => "Sculpting",
         _ => lesson.title(),
     }
 }
@@ -302,9 +303,13 @@ fn lesson(
         Lesson::Superposition => lab.superposition.show(ui, &mut bench),
         Lesson::Spans => lab.spans.show(ui, &mut bench),
         Lesson::Contact => lab.contact.show(ui, &mut bench),
+        Lesson::Sculpting => lab.sculpting.show(ui, &mut bench),
     }
     ui.add_space(if narrow { 24.0 } else { 8.0 });
-    if wanted {
+    if wanted && open == Lesson::Sculpting {
+        let file = crate::sculpting::Sculpting::example();
+        commands.push(Command::OpenExample { file });
+    } else if wanted {
         let (name, text) = match open {
             Lesson::Kernels => ("Kernels", lab.kernels.dataset()),
             Lesson::Convolution => ("Convolution", lab.convolution.dataset()),
@@ -315,6 +320,7 @@ fn lesson(
             Lesson::Superposition => ("Superposition", lab.superposition.dataset()),
             Lesson::Spans => ("Cross", lab.spans.dataset()),
             Lesson::Contact => ("Drops", lab.contact.dataset()),
+            Lesson::Sculpting => return,
         };
         commands.push(Command::OpenText {
             name: name.to_owned(),

@@ -2,7 +2,9 @@
 
 use crate::lesson::Lesson;
 use crate::pictures::Pictures;
-use crate::{chart, contact, convolution, grid, kernels, profiles, slice, spans, superposition};
+use crate::{
+    chart, contact, convolution, grid, kernels, profiles, sculpting, slice, spans, superposition,
+};
 use pool::Pool;
 use serde::Serialize;
 use std::cell::RefCell;
@@ -47,6 +49,7 @@ pub struct Lab {
     pub(crate) superposition: superposition::Superposition,
     pub(crate) spans: spans::Spans,
     pub(crate) contact: contact::Contact,
+    pub(crate) sculpting: sculpting::Sculpting,
 }
 
 impl Lab {
@@ -69,6 +72,7 @@ impl Lab {
             superposition: superposition::Superposition::default(),
             spans: spans::Spans::default(),
             contact: contact::Contact::default(),
+            sculpting: sculpting::Sculpting::default(),
         }
     }
 

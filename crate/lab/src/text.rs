@@ -80,6 +80,13 @@ pub fn of(lesson: Lesson) -> Words {
                         some of the volume. Take hold of the drops, of where the bulge begins and of its \
                         crest.",
         },
+        Lesson::Sculpting => Words {
+            about: "a dog of a box, stroke by stroke",
+            sentences: "A virtual tool touches a mesh and pushes or pulls the vertices that it meets, and \
+                        their neighbours follow by a decay function. Where detail is wanted, a region is \
+                        chosen and divided, and smoothed again. Each stroke is a line of a text, so the \
+                        whole animal can be made again, step by step.",
+        },
     }
 }
 

@@ -16,6 +16,10 @@ impl App {
         let pressed = |modifiers: Modifiers, key: Key| {
             ctx.input_mut(|input| input.consume_shortcut(&KeyboardShortcut::new(modifiers, key)))
         };
+        if self.sculpts() && self.dialog.is_none() {
+            // The place has keys of its own.
+            return;
+        }
         if self.lab.is_open() {
             // The text is out of sight, so no key may change it.
             if pressed(Modifiers::NONE, Key::Escape) {
@@ -121,6 +125,17 @@ impl App {
             Command::OpenLab(_) | Command::ShowLab | Command::CloseLab | Command::ShareLab => {
                 self.carry_out_in_lab(ctx, command, now);
             }
+            Command::ShowSculpt => self.show_sculpt(),
+            Command::NewSculpture => self.dialog = Some(Dialog::Sculpt),
+            Command::OpenSculpture(name) => self.open_sculpture(&name),
+            Command::BeginSculpture { start, is_new } => {
+                self.begin_sculpture(ctx, &start, is_new, now);
+            }
+            Command::SetStrokes { name, text, mesh } => {
+                self.set_strokes(&name, text, mesh.map(|mesh| *mesh), now);
+            }
+            Command::GrowFlesh { name, flesh, edge } => self.grow_flesh(&name, flesh, edge, now),
+            Command::CloseSculpt => self.close_sculpt(),
             Command::Enable => {
                 self.notice = None;
                 session.enable();

@@ -27,6 +27,7 @@ use crate::work::{Origin, Work};
 use crate::{Backend, fonts, platform, size};
 use egui::Context;
 use lab::{Lab, Lesson};
+use modeling::Sculpting;
 use pool::Pool;
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
@@ -43,6 +44,8 @@ pub enum Dialog {
     Help,
     /// A result of the text's jobs on pictures.
     Result,
+    /// How to begin a sculpture.
+    Sculpt,
 }
 
 /// Which part a narrow page shows below the picture.
@@ -111,6 +114,8 @@ pub struct App {
     pub(crate) videos: Option<Vec<VideoFormat>>,
     pub(crate) tray: Tray,
     pub(crate) lab: Lab,
+    /// The sculpture that is worked on, in place of the editor.
+    pub(crate) sculpting: Option<Box<Sculpting>>,
     /// Large meshes on their way into the work.
     pub(crate) reading: MeshReading,
     pub(crate) dialog: Option<Dialog>,
@@ -204,6 +209,7 @@ impl App {
             saving: None,
             videos: None,
             tray: Tray::default(),
+            sculpting: None,
             dialog: None,
             notice: None,
             tab: Tab::Text,
@@ -402,6 +408,7 @@ impl App {
     /// Another work is open: forget what belonged to the one before.
     pub(crate) fn opened(&mut self, ctx: &Context) {
         self.lab.close();
+        self.sculpting = None;
         self.player = Player::default();
         if let Some(saving) = self.saving.take() {
             self.forced_size = saving.forced;

@@ -38,6 +38,16 @@ pub fn show(app: &App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
         if lab.clicked() {
             commands.push(Command::ShowLab);
         }
+        // A narrow page has it in its menu.
+        if !narrow {
+            let sculpt = ui
+                .button("Sculpt")
+                .on_hover_text("Push and pull a mesh with virtual tools");
+            places::note(ui.ctx(), "sculpt", sculpt.rect);
+            if sculpt.clicked() {
+                commands.push(Command::ShowSculpt);
+            }
+        }
         if !narrow {
             name(ui, work, commands);
         }
@@ -124,6 +134,11 @@ fn more(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     places::note(ui.ctx(), "more", button.rect);
     egui::Popup::menu(&button).show(|ui| {
         ui.set_min_width(190.0);
+        let sculpt = ui.button("Sculpt");
+        places::note(ui.ctx(), "sculpt", sculpt.rect);
+        if sculpt.clicked() {
+            commands.push(Command::ShowSculpt);
+        }
         if ui.button("How it works").clicked() {
             commands.push(Command::ShowHelp);
         }

@@ -139,6 +139,39 @@ pub enum Command {
     CloseLab,
     /// Copy a link to the lesson.
     ShareLab,
+    /// Go on with a sculpture of the work, or ask how to begin one.
+    ShowSculpt,
+    /// Ask how to begin a sculpture.
+    NewSculpture,
+    /// Open a text of strokes in the place for sculpting.
+    OpenSculpture(String),
+    /// Begin a sculpture.
+    BeginSculpture {
+        /// The line of its text that says what it starts from.
+        start: String,
+        /// Whether it is a work of its own.
+        is_new: bool,
+    },
+    /// Replace a text of strokes.
+    SetStrokes {
+        /// The file's name.
+        name: String,
+        /// Its new text.
+        text: String,
+        /// The mesh that it makes, if it is known.
+        mesh: Option<Box<mesh::TriangleMesh>>,
+    },
+    /// Show a sculpture as a hard mesh, as flesh or as metaballs.
+    GrowFlesh {
+        /// The name of its text.
+        name: String,
+        /// As what.
+        flesh: modeling::Flesh,
+        /// The mean length of its edges.
+        edge: f64,
+    },
+    /// Leave the place for sculpting.
+    CloseSculpt,
     /// Delete a saved work.
     Delete(String),
     /// Begin an empty work.

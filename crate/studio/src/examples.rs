@@ -17,6 +17,8 @@ pub struct Example {
     /// Address of its thumbnail, a PNG file beside the page: fetched when the gallery is opened, as few
     /// visits open it.
     pub thumbnail: &'static str,
+    /// Names and texts of the strokes that its text uses.
+    pub texts: &'static [(&'static str, &'static str)],
     /// Addresses of the images and meshes that its text names, files beside the page: fetched when the example is opened.
     pub files: &'static [&'static str],
 }
@@ -33,11 +35,14 @@ impl Example {
     /// As a project.
     #[must_use]
     pub fn project(&self) -> Project {
+        let own = (self.name, self.text);
+        let all = core::iter::once(&own).chain(self.texts);
+        let file = |(name, text): &(&str, &str)| File {
+            name: (*name).to_owned(),
+            text: (*text).to_owned(),
+        };
         Project {
-            files: vec![File {
-                name: self.name.to_owned(),
-                text: self.text.to_owned(),
-            }],
+            files: all.map(file).collect(),
         }
     }
 }
@@ -51,7 +56,21 @@ macro_rules! example {
             name: concat!($name, ".rat"),
             text: include_str!(concat!("../../../www/examples/", $name, ".rat")),
             thumbnail: concat!("examples/", $name, ".png"),
+            texts: &[],
             files: &[$(concat!("examples/", $file)),*],
+        }
+    };
+}
+
+/// An example made by the strokes of a text of its name.
+macro_rules! sculpted {
+    ($title:literal, $about:literal, $name:literal) => {
+        Example {
+            texts: &[(
+                concat!($name, ".strokes"),
+                include_str!(concat!("../../../www/examples/", $name, ".strokes")),
+            )],
+            ..example!(SCULPTED, $title, $about, $name)
         }
     };
 }
@@ -61,11 +80,12 @@ const GROWN: &str = "Grown by commands";
 const CURVES: &str = "Curves with flesh";
 const FIRST: &str = "First steps";
 const MATTER: &str = "Light and matter";
+const SCULPTED: &str = crate::sculpting::GROUP;
 const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 40] = [
+pub const ALL: [Example; 47] = [
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -101,6 +121,10 @@ pub const ALL: [Example; 40] = [
     example!(CURVES, "Falling body", "it slides down a wall and folds: play it", "falling"),
     example!(CURVES, "Jelly frog", "it drops on steps: play it", "jelly"),
     example!(CURVES, "Floppy ears", "a shaken head, and what hangs on it: play it", "floppy-ears"),
+    sculpted!("Dog", "six stages from a box", "dog"),
+    sculpted!("Fish", "a ball with fins", "fish"),
+    sculpted!("Slug", "five minutes of work", "slug"),
+    sculpted!("Triceratops", "it was a cylinder", "triceratops"),
     example!(FIRST, "T-shape", "two bars that melt together", "tshape"),
     example!(FIRST, "Icicle", "a first little dataset", "icicle"),
     example!(STARFISH, "Starfish A", "seven arcs, the bare skeleton", "starfish-a"),

@@ -15,6 +15,7 @@
 //! | `setCamera(camera)` | looks from there; `null` goes back to the camera of the text |
 //! | `cancel()`, `render()` | stops the picture; traces it again |
 //! | `lab()` | the open lesson of the lab, see below; null in the editor |
+//! | `sculpture()` | the sculpture that is worked on: `{name, counts: [vertices, faces], depth: [undo, redo]}`; null in the editor |
 //!
 //! `status()` gives `phase` (`"idle"`, `"waiting"` for a pause in typing, `"tracing"`, `"done"`,
 //! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null), `remaining`
@@ -168,6 +169,10 @@ fn state(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
     })?;
     let p = parts.clone();
     method(sinew, "lab", move |_, _| to_js(&p.outbox.borrow().lab))?;
+    let p = parts.clone();
+    method(sinew, "sculpture", move |_, _| {
+        to_js(&p.outbox.borrow().sculpture)
+    })?;
     let p = parts.clone();
     method(sinew, "cancel", move |_, _| {
         p.requests.ask(Request::Cancel);

@@ -153,6 +153,16 @@ fn words(ui: &mut Ui, mut hints: bool, commands: &mut Vec<Command>) {
             ui.end_row();
         }
     });
+    heading(ui, "Sculpt");
+    egui::Grid::new("sculpt keys")
+        .spacing([18.0, 5.0])
+        .show(ui, |ui| {
+            for (key, meaning) in modeling::KEYS {
+                ui.label(RichText::new(key).color(palette.text).size(13.0));
+                ui.label(RichText::new(meaning).color(palette.weak).size(13.0));
+                ui.end_row();
+            }
+        });
     ui.add_space(6.0);
     if ui
         .checkbox(

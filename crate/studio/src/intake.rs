@@ -8,9 +8,9 @@ use rats::File;
 use rats::link::MAX_NAME;
 
 /// Extensions of texts.
-const TEXTS: [&str; 5] = ["rat", "art", "ice", "dat", "txt"];
+const TEXTS: [&str; 6] = ["rat", "art", "ice", "dat", "txt", "strokes"];
 /// The kinds of files that are accepted, in words.
-pub const KINDS: &str = "texts (.rat .art .ice .dat .txt), images (.png .gif .tga .tif .mtv), meshes (.obj .ply .stl .glb) and projects (.zip)";
+pub const KINDS: &str = "texts (.rat .art .ice .dat .txt .strokes), images (.png .gif .tga .tif .mtv), meshes (.obj .ply .stl .glb) and projects (.zip)";
 /// Files that are read at once.
 pub const MOST: usize = 32;
 
@@ -114,7 +114,7 @@ fn sort_named(taken: Vec<Taken>, most: usize) -> Sorted {
         };
         read.iter().any(own)
     };
-    let run = |file: &File| !is_read(file);
+    let run = |file: &File| !is_read(file) && !rats::is_strokes(&file.name);
     if let Some(first) = sorted.texts.iter().position(run) {
         sorted.texts[..=first].rotate_right(1);
     }

@@ -34,6 +34,15 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         commands.extend(wishes.into_iter().filter_map(Command::of_lab));
         return;
     }
+    if app.sculpts() {
+        let all = ui.max_rect();
+        app.sculpt(ui, commands);
+        if let Some(notice) = &app.notice {
+            notice::show(ui, all, notice, commands);
+        }
+        dialogs(app, ui.ctx(), commands);
+        return;
+    }
     let narrow = screen::is_narrow(ui.ctx());
     let palette = theme::palette(ui.visuals());
     let line = Stroke::new(1.0, palette.line);
@@ -492,7 +501,7 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
     let screen = ctx.content_rect();
     let width = match dialog {
         Dialog::Gallery | Dialog::Result => 860.0,
-        Dialog::Help => 640.0,
+        Dialog::Help | Dialog::Sculpt => 640.0,
     };
     let size = vec2(
         (screen.width() - 24.0).min(width),
@@ -528,6 +537,7 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
                     app.tray.show_large(ui, inner, kept, now, commands);
                 }
                 Dialog::Help => app.help.show(ui, app.settings.hints, commands),
+                Dialog::Sculpt => app.sculpt_dialog(ui, commands),
             }
         });
     places::note(ctx, "dialog", modal.response.rect);

@@ -56,6 +56,7 @@ pub mod render;
 pub mod report;
 pub mod request;
 mod screening;
+mod sculpting;
 pub mod session;
 pub mod settings;
 pub mod share;

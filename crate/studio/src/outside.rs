@@ -123,5 +123,10 @@ impl App {
         outbox.camera = session.camera();
         outbox.places = places::all(ctx);
         outbox.lab = self.lab.report();
+        outbox.sculpture = self.sculpting.as_ref().map(|place| report::Sculpture {
+            name: place.name.clone(),
+            counts: place.counts(),
+            depth: place.depth(),
+        });
     }
 }

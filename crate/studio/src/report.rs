@@ -101,8 +101,21 @@ pub struct Outbox {
     pub camera: Camera,
     /// The open lesson of the lab.
     pub lab: Option<lab::Report>,
+    /// The open sculpture.
+    pub sculpture: Option<Sculpture>,
     /// Places of the widgets, in points.
     pub places: crate::places::Places,
+}
+
+/// The sculpture that is worked on.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sculpture {
+    /// Name of its text.
+    pub name: String,
+    /// Vertices and faces.
+    pub counts: [usize; 2],
+    /// Strokes that can be undone, and that can be redone.
+    pub depth: [usize; 2],
 }
 
 /// Shared between the app and the handle.

@@ -323,10 +323,10 @@ fn said(compiled: &Compiled) -> Vec<(String, usize, rats::Severity)> {
 
 #[test]
 fn renaming_keeps_the_meaning_of_examples() {
-    // Those with images and meshes of their own do not compile without them.
+    // Those with images, meshes and other texts of their own do not compile without them.
     let whole = |project: &&Project| {
         let text = &project.files[0].text;
-        text.len() < 20_000 && rats::asset_names(text).is_empty()
+        text.len() < 20_000 && rats::asset_names(text).is_empty() && rats::reads(text).is_empty()
     };
     for project in examples().iter().filter(whole) {
         assert!(any_rename(project));

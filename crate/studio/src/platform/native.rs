@@ -22,6 +22,12 @@ pub fn now(ctx: &egui::Context) -> f64 {
     ctx.input(|input| input.time)
 }
 
+/// The pressure of a pen: there is none in tests.
+#[must_use]
+pub fn pen_pressure() -> Option<f32> {
+    None
+}
+
 /// Says whether each frame keeps the tracer waiting.
 pub fn set_frames_dear(_dear: bool) {}
 

@@ -19,6 +19,26 @@ pub fn now(_ctx: &egui::Context) -> f64 {
     crate::clock::stopwatch()
 }
 
+thread_local! {
+    static PEN: std::cell::Cell<Option<f32>> = const { std::cell::Cell::new(None) };
+}
+
+/// The pressure of a pen on the page, 0 … 1; `None` without a pen.
+#[must_use]
+pub fn pen_pressure() -> Option<f32> {
+    PEN.get()
+}
+
+/// Notes what a pointer event says about a pen.
+pub fn note_pen(event: &web_sys::PointerEvent) {
+    let is_pen = event.pointer_type() == "pen";
+    PEN.set(
+        is_pen
+            .then(|| event.pressure())
+            .filter(|pressure| *pressure > 0.0),
+    );
+}
+
 /// Says whether each frame keeps the tracer waiting.
 pub fn set_frames_dear(dear: bool) {
     crate::frames::dear(dear);

@@ -1,0 +1,454 @@
+//! Sculpting in the page: which text of strokes is open in the place (crate `modeling`), how one begins, and what it writes.
+
+use crate::app::{App, Dialog};
+use crate::asset::{self, Kind};
+use crate::command::Command;
+use crate::notice::Notice;
+use crate::project_file::Project;
+use crate::session::Session;
+use crate::{examples, places, platform, theme};
+use egui::{Button, Context, RichText, Ui};
+use modeling::{Flesh, Outside, Sculpting};
+use rats::{Asset, File, is_strokes};
+
+/// Shapes to begin with: name, and the line of the text.
+const SHAPES: [(&str, &str); 5] = [
+    ("Ball", "start sphere 12"),
+    ("Box", "start box 8"),
+    ("Cylinder", "start cylinder 8"),
+    ("Tetrahedron", "start tetrahedron 16"),
+    ("Plane", "start plane 24"),
+];
+
+/// What a new work is seen in.
+const STUDIO: &str = "\
+# The mesh is made by strokes of tools: Sculpt, above, goes on with it.
+framesize 640 480
+eyep 3.6 -4.6 2.6
+vrp 0 0 0
+vup 0 0 1
+fov 30
+sample 2
+background 0.86 0.88 0.9
+light White point, position 3 -6 8
+light <0.35 0.35 0.42> point, position -6 -3 3
+";
+
+/// The group of examples that are sculptures.
+pub const GROUP: &str = "Sculpted";
+
+/// The mesh file that a text of strokes of the session starts from.
+fn start_of(session: &Session, name: &str, text: &str) -> Option<Asset> {
+    let wanted = rats::start_file(text)?;
+    let all = session.assets();
+    let places = rats::places(name, &wanted);
+    let find = |place: &String| all.iter().find(|asset| asset.name == *place);
+    places.iter().find_map(find).cloned()
+}
+
+/// Reads the file that strokes start from.
+fn load(start: Option<&Asset>, name: &str) -> Result<mesh::TriangleMesh, String> {
+    let asset = start.ok_or_else(|| format!("there is no mesh `{name}` in this work"))?;
+    mesh::read(&asset.name, &asset.bytes).map_err(|error| error.to_string())
+}
+
+/// The lines that show a sculpture, of a material whose name the text does not have.
+fn shown(text: &str, file: &str) -> String {
+    let is_free = |name: &str| !text.contains(name);
+    let name = (1..)
+        .map(|n| match n {
+            1 => String::from("Clay"),
+            n => format!("Clay{n}"),
+        })
+        .find(|name| is_free(name))
+        .unwrap_or_default();
+    format!(
+        "surface {name}, diffuse <0.78 0.62 0.5>, specular White, shine 20\nmesh {name} {file}\n"
+    )
+}
+
+/// A text whose `mesh` command for a file shows it in another way; `None` if it has no such command.
+fn grown(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
+    let bare = file.rsplit('/').next().unwrap_or(file);
+    let is_it = |line: &&str| {
+        let words = line.split(|c: char| c.is_whitespace() || c == ',');
+        let mut words = words.filter(|word| !word.is_empty());
+        let is_mesh = words.next() == Some("mesh");
+        is_mesh
+            && words
+                .nth(1)
+                .is_some_and(|name| name == file || name == bare)
+    };
+    let line = text.lines().find(is_it)?;
+    let old = line.split_whitespace().nth(1)?.trim_end_matches(',');
+    let short = |x: f64| {
+        let digits = (2.0 - libm::floor(libm::log10(x.max(1e-9)))).clamp(0.0, 9.0) as usize;
+        format!("{x:.digits$}")
+    };
+    // Materials that flesh was grown of have names of their own, so that it can be taken away again.
+    let hard = old
+        .strip_suffix("Flesh")
+        .filter(|name| !name.is_empty())
+        .unwrap_or(old);
+    let soft = format!("{hard}Flesh");
+    let new = match flesh {
+        Flesh::Hard => format!("mesh {hard} {file}"),
+        Flesh::Metaballs => format!(
+            "mesh {hard} {file} metaballs triangular {} {}",
+            short(0.15 * edge),
+            short(14.0 / edge.max(1e-9))
+        ),
+        Flesh::Convolved => {
+            let command = format!("mesh {soft} {file}");
+            let is_there = text.contains(&format!("surface {soft},"));
+            let material = format!(
+                "surface {soft}, diffuse Coral, specular White, shine 40, kernel quartic, blobbiness -2, radius {}\n",
+                short(0.5 * edge)
+            );
+            if is_there {
+                command
+            } else {
+                material + &command
+            }
+        }
+    };
+    Some(text.replacen(line, &new, 1))
+}
+
+impl App {
+    /// Whether the place is open.
+    pub(crate) fn sculpts(&self) -> bool {
+        self.sculpting.is_some()
+    }
+
+    /// Goes on with the text of strokes in the editor, or the first of the work, or asks how to begin.
+    pub(crate) fn show_sculpt(&mut self) {
+        let files = &self.work.session.project().files;
+        let shown = files
+            .get(self.editor.file)
+            .filter(|_| self.editor.asset.is_none());
+        let shown = shown.filter(|file| is_strokes(&file.name));
+        let first = files.iter().find(|file| is_strokes(&file.name));
+        match shown.or(first).map(|file| file.name.clone()) {
+            Some(name) => self.open_sculpture(&name),
+            None => self.dialog = Some(Dialog::Sculpt),
+        }
+    }
+
+    /// Opens a text of strokes in the place.
+    pub(crate) fn open_sculpture(&mut self, name: &str) {
+        self.dialog = None;
+        let session = &self.work.session;
+        let Some(file) = session
+            .project()
+            .files
+            .iter()
+            .find(|file| file.name == name)
+        else {
+            return;
+        };
+        let start = start_of(session, name, &file.text);
+        match Sculpting::open(name, &file.text, &mut |name| load(start.as_ref(), name)) {
+            Ok(place) => {
+                self.notice = None;
+                self.sculpting = Some(Box::new(place));
+            }
+            Err(trouble) => {
+                let text = format!("{name}, {trouble}.");
+                self.notice = Some(Notice::trouble(text));
+            }
+        }
+    }
+
+    /// Begins a sculpture with a line of its text, in a new work or in the open one.
+    pub(crate) fn begin_sculpture(&mut self, ctx: &Context, start: &str, is_new: bool, now: f64) {
+        self.dialog = None;
+        let taken = |name: &str| {
+            let files = &self.work.session.project().files;
+            !is_new && files.iter().any(|file| file.name == name)
+        };
+        let name = (1..)
+            .map(|n| match n {
+                1 => String::from("sculpture.strokes"),
+                n => format!("sculpture{n}.strokes"),
+            })
+            .find(|name| !taken(name))
+            .unwrap_or_default();
+        let strokes = File {
+            name: name.clone(),
+            text: format!("strokes 1\n{start}\n"),
+        };
+        let result = if is_new {
+            let main = format!("{STUDIO}\n{}", shown("", &name));
+            let main = File {
+                name: String::from("main.rat"),
+                text: main,
+            };
+            let project = Project {
+                name: String::from("Sculpture"),
+                texts: vec![main, strokes],
+                ..Project::default()
+            };
+            let result = self.work.open_files(project);
+            if result.is_ok() {
+                platform::set_hash("");
+                self.opened(ctx);
+            }
+            result
+        } else {
+            let mut files = self.work.session.project().files.clone();
+            if let Some(main) = files.first_mut() {
+                if !main.text.ends_with('\n') {
+                    main.text.push('\n');
+                }
+                main.text += &shown(&main.text, &name);
+            }
+            files.push(strokes);
+            let put = self.work.session.put_files(files, now);
+            put.map_err(|refused| refused.to_string())
+        };
+        match result {
+            Ok(()) => self.open_sculpture(&name),
+            Err(trouble) => self.notice = Some(Notice::trouble(trouble)),
+        }
+    }
+
+    /// Leaves the place for the editor.
+    pub(crate) fn close_sculpt(&mut self) {
+        self.sculpting = None;
+    }
+
+    /// Draws the place, if it is open.
+    pub(crate) fn sculpt(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let Some(place) = &mut self.sculpting else {
+            return;
+        };
+        let session = &self.work.session;
+        let files = &session.project().files;
+        let Some(file) = files.iter().find(|file| file.name == place.name) else {
+            self.sculpting = None;
+            return;
+        };
+        if place.is_behind(&file.text) {
+            let start = start_of(session, &place.name, &file.text);
+            place.sync(&file.text, &mut |name| load(start.as_ref(), name));
+        }
+        let traced = self.renderer.texture().zip(self.renderer.image());
+        let traced = traced.filter(|((_, generation), _)| *generation == session.generation());
+        let outside = Outside {
+            now: platform::now(ui.ctx()),
+            theme: self.settings.theme,
+            pressure: platform::pen_pressure(),
+            traced: traced.map(|((texture, _), image)| (texture.id(), image.size)),
+            errors: session.errors(),
+        };
+        let mut wishes = Vec::new();
+        modeling::show(place, &outside, ui, &mut wishes);
+        let name = &place.name;
+        commands.extend(wishes.into_iter().map(|wish| match wish {
+            modeling::Command::Changed { text, mesh } => Command::SetStrokes {
+                name: name.clone(),
+                text,
+                mesh: mesh.map(Box::new),
+            },
+            modeling::Command::Grow { flesh, edge } => Command::GrowFlesh {
+                name: name.clone(),
+                flesh,
+                edge,
+            },
+            modeling::Command::Close => Command::CloseSculpt,
+            modeling::Command::New => Command::NewSculpture,
+            modeling::Command::SetTheme(choice) => Command::SetTheme(choice),
+        }));
+    }
+
+    /// Takes over the text of a sculpture, with the mesh that it makes.
+    pub(crate) fn set_strokes(
+        &mut self,
+        name: &str,
+        text: String,
+        mesh: Option<mesh::TriangleMesh>,
+        now: f64,
+    ) {
+        let session = &mut self.work.session;
+        let files = &session.project().files;
+        let Some(file) = files.iter().position(|file| file.name == name) else {
+            return;
+        };
+        if let Some(mesh) = mesh {
+            let start = start_of(session, name, &text);
+            rats::keep_sculpted(&text, start.as_ref(), mesh);
+        }
+        session.end_step();
+        let result = session.set_text(file, text, now);
+        session.end_step();
+        if let Err(refused) = result {
+            // What is on the screen goes back to what is kept.
+            self.notice = Some(Notice::trouble(refused.to_string()));
+        }
+    }
+
+    /// Shows a sculpture in another way: changes the `mesh` command of the text that uses it.
+    pub(crate) fn grow_flesh(&mut self, name: &str, flesh: Flesh, edge: f64, now: f64) {
+        let files = self.work.session.project().files.iter().enumerate();
+        let changed = files
+            .filter(|(_, file)| !is_strokes(&file.name))
+            .find_map(|(index, file)| Some((index, grown(&file.text, name, flesh, edge)?)));
+        let Some((index, text)) = changed else {
+            let text = format!("No text of this work has a line “mesh … {name}”.");
+            self.notice = Some(Notice::trouble(text));
+            return;
+        };
+        let session = &mut self.work.session;
+        session.end_step();
+        let result = session.set_text(index, text, now);
+        session.end_step();
+        self.notice = Some(match result {
+            Ok(()) => Notice::done(
+                String::from("The text says so now; the picture follows."),
+                now,
+            ),
+            Err(refused) => Notice::trouble(refused.to_string()),
+        });
+    }
+
+    /// The dialog that asks how to begin.
+    pub(crate) fn sculpt_dialog(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let palette = theme::palette(ui.visuals());
+        ui.label(RichText::new("Sculpt").heading().color(palette.strong));
+        ui.label("Push, pull, refine and smooth a mesh with virtual tools. What you do is written as a text of strokes, which belongs to the work like any other.");
+        let heading = |ui: &mut Ui, text: &str| {
+            ui.add_space(10.0);
+            ui.label(RichText::new(text).size(13.0).color(palette.weak));
+        };
+        let choice = |ui: &mut Ui, name: &str| {
+            let button = ui.add(Button::new(RichText::new(name).size(14.5)));
+            places::note(
+                ui.ctx(),
+                format!("begin {}", name.to_lowercase()),
+                button.rect,
+            );
+            button.clicked()
+        };
+        let id = egui::Id::unique("sculpt in this work");
+        let mut here = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or(false);
+        heading(ui, "Begin with");
+        ui.horizontal_wrapped(|ui| {
+            for (name, start) in SHAPES {
+                if choice(ui, name) {
+                    commands.push(Command::BeginSculpture {
+                        start: start.to_owned(),
+                        is_new: !here,
+                    });
+                }
+            }
+        });
+        let check = ui.checkbox(&mut here, "add it to the open work");
+        places::note(ui.ctx(), "begin here", check.rect);
+        ui.data_mut(|data| data.insert_temp(id, here));
+        let session = &self.work.session;
+        let meshes = session.assets().iter();
+        let meshes: Vec<&str> = meshes
+            .filter(|asset| asset::kind(&asset.name) == Some(Kind::Mesh))
+            .map(|asset| asset.name.as_str())
+            .collect();
+        if !meshes.is_empty() {
+            heading(ui, "A mesh of this work");
+            ui.horizontal_wrapped(|ui| {
+                for name in meshes {
+                    if choice(ui, name) {
+                        commands.push(Command::BeginSculpture {
+                            start: format!("start file {name}"),
+                            is_new: false,
+                        });
+                    }
+                }
+            });
+        }
+        let texts = session.project().files.iter();
+        let texts: Vec<&str> = texts
+            .map(|file| file.name.as_str())
+            .filter(|name| is_strokes(name))
+            .collect();
+        if !texts.is_empty() {
+            heading(ui, "Go on with");
+            ui.horizontal_wrapped(|ui| {
+                for name in texts {
+                    if choice(ui, name) {
+                        commands.push(Command::OpenSculpture(name.to_owned()));
+                    }
+                }
+            });
+        }
+        heading(ui, "An example, stroke by stroke");
+        ui.horizontal_wrapped(|ui| {
+            for (index, example) in examples::ALL.iter().enumerate() {
+                if example.group == GROUP && choice(ui, example.title) {
+                    commands.push(Command::OpenExample(index));
+                    commands.push(Command::ShowSculpt);
+                }
+            }
+        });
+        ui.add_space(12.0);
+        if choice(ui, "Close") {
+            commands.push(Command::Close);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_new_work_compiles_cleanly_with_each_shape() {
+        for (name, start) in SHAPES {
+            let file = |name: &str, text: String| File {
+                name: name.into(),
+                text,
+            };
+            let project = rats::Project {
+                files: vec![
+                    file("main.rat", format!("{STUDIO}{}", shown("", "a.strokes"))),
+                    file("a.strokes", format!("strokes 1\n{start}\n")),
+                ],
+            };
+            let compiled = rats::compile(&project);
+            assert_eq!(compiled.diagnostics, [], "{name}");
+            let faces = compiled.scene.elements.len();
+            assert!((700..1300).contains(&faces), "{name}: {faces}");
+        }
+        let text = "surface Clay, diffuse Red\nmesh Clay, a.strokes\n";
+        let told = |text: &str| {
+            let file = |name: &str, text: &str| File {
+                name: name.into(),
+                text: text.into(),
+            };
+            let strokes = file("a.strokes", "strokes 1\nstart sphere 3\n");
+            let project = rats::Project {
+                files: vec![file("main.rat", text), strokes],
+            };
+            rats::compile(&project)
+        };
+        let soft = grown(text, "a.strokes", Flesh::Convolved, 0.4).unwrap();
+        assert!(soft.contains("mesh ClayFlesh a.strokes"), "{soft}");
+        assert_eq!(
+            told(&soft)
+                .diagnostics
+                .iter()
+                .filter(|d| d.severity == rats::Severity::Error)
+                .count(),
+            0
+        );
+        let balls = grown(&soft, "a.strokes", Flesh::Metaballs, 0.4).unwrap();
+        assert!(
+            balls.ends_with("mesh Clay a.strokes metaballs triangular 0.0600 35.0\n"),
+            "{balls}"
+        );
+        assert_eq!(told(&balls).scene.elements.len(), 1);
+        let hard = grown(&balls, "a.strokes", Flesh::Hard, 0.4).unwrap();
+        assert!(hard.ends_with("\nmesh Clay a.strokes\n"), "{hard}");
+        assert_eq!(grown(text, "b.strokes", Flesh::Hard, 0.4), None);
+        assert!(shown("surface Clay, diffuse Red\n", "b.strokes").starts_with("surface Clay2,"));
+    }
+}

@@ -1,0 +1,187 @@
+// Sculpting in the page: mouse, pen and touch; what is done becomes a text and is seen in the traced picture.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { launch } from './page.mjs';
+import { colours } from './pictures.mjs';
+
+let browser;
+before(async () => {
+  browser = await launch('webgl2');
+});
+after(() => browser?.close());
+
+const sculpture = (sinew) => sinew.page.evaluate(() => sinew.sculpture());
+const strokes = (sinew) => sinew.page.evaluate(() => sinew.files()['sculpture.strokes']);
+
+/** Waits until the sculpture is as wanted, and gives it. */
+async function until(sinew, wanted) {
+  const deadline = Date.now() + 60_000;
+  for (;;) {
+    const now = await sculpture(sinew);
+    if (wanted(now)) return now;
+    assert.ok(Date.now() < deadline, `${wanted} never came true: ${JSON.stringify(now)}`);
+    await sinew.page.waitForTimeout(30);
+  }
+}
+
+/** Begins with a ball, and gives the middle of the place. */
+async function begin(sinew, narrow = false) {
+  if (narrow) await sinew.click('more');
+  await sinew.click('sculpt');
+  await sinew.click('begin ball');
+  await until(sinew, (now) => now?.name === 'sculpture.strokes');
+  const { x, y, w, h } = await sinew.place('sculpture');
+  await sinew.page.waitForTimeout(400);
+  return { at: [x + w / 2, y + h / 2], side: Math.min(w, h) };
+}
+
+async function drag(page, [x, y], [dx, dy], steps = 6) {
+  await page.mouse.move(x, y);
+  await page.waitForTimeout(120);
+  await page.mouse.down();
+  for (let i = 1; i <= steps; i += 1) {
+    await page.mouse.move(x + (dx * i) / steps, y + (dy * i) / steps);
+    await page.waitForTimeout(40);
+  }
+  await page.mouse.up();
+}
+
+test('mouse and keys pull, push, smooth and undo, and the picture shows it', async () => {
+  const sinew = await browser.open({ viewport: { width: 1200, height: 760 } });
+  const { page } = sinew;
+  const { at, side } = await begin(sinew);
+  assert.deepEqual((await sculpture(sinew)).counts, [578, 1152]);
+  const whole = await sinew.screen('sculpture');
+  assert.ok(colours(whole) > 200, 'the ball is shaded');
+
+  await drag(page, [at[0] + 0.1 * side, at[1] - 0.1 * side], [0.25 * side, -0.2 * side]);
+  await until(sinew, ({ depth }) => depth[0] === 1);
+  assert.match(await strokes(sinew), /^strokes 1\nstart sphere 12\npull sphere [\d. ]+ bell [\d.]+ : [-\d., ]+\n$/);
+  await sinew.keep('sculpt pulled');
+
+  await page.keyboard.press('p');
+  await drag(page, [at[0] - 0.15 * side, at[1] + 0.05 * side], [0.1 * side, 0.15 * side]);
+  await until(sinew, ({ depth }) => depth[0] === 2);
+  await page.keyboard.down('Shift');
+  await drag(page, [at[0] - 0.1 * side, at[1]], [0.1 * side, 0.05 * side]);
+  await page.keyboard.up('Shift');
+  await until(sinew, ({ depth }) => depth[0] === 3);
+  const text = await strokes(sinew);
+  assert.match(text, /\npush sphere .*\nsmooth sphere /);
+
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await until(sinew, ({ depth }) => depth[0] === 1 && depth[1] === 2);
+  await page.keyboard.press('Control+Shift+z');
+  await page.keyboard.press('Control+Shift+z');
+  await until(sinew, ({ depth }) => depth[0] === 3);
+  assert.equal(await strokes(sinew), text);
+
+  // G grabs without a button; Escape gives it up.
+  await page.mouse.move(at[0], at[1]);
+  await page.waitForTimeout(150);
+  await page.keyboard.press('g');
+  await page.mouse.move(at[0] + 0.1 * side, at[1], { steps: 4 });
+  await page.waitForTimeout(150);
+  await page.keyboard.press('Escape');
+  await page.waitForTimeout(150);
+  assert.equal(await strokes(sinew), text);
+
+  // Beside the mesh the view turns, which is no stroke; W shows the edges.
+  await drag(page, [at[0] - 0.47 * side, at[1] - 0.45 * side], [0.2 * side, 0.1 * side]);
+  await page.mouse.wheel(0, -200);
+  await page.keyboard.press('w');
+  await page.keyboard.press('d');
+  await until(sinew, ({ counts }) => counts[1] === 4608);
+  await page.waitForTimeout(700);
+  await sinew.keep('sculpt refined');
+  assert.equal((await sculpture(sinew)).depth[0], 4);
+
+  // Back in the editor the traced picture is of the same mesh.
+  await sinew.click('sculpt back');
+  await until(sinew, (now) => now === null);
+  const status = await sinew.finished();
+  assert.deepEqual([status.errors, status.elements], [0, 4608]);
+  assert.ok(colours(await sinew.image()) > 200, 'the sculpture is traced');
+  await sinew.keep('sculpt traced');
+  // The link carries the strokes.
+  const link = await sinew.link();
+  assert.ok(link.length < 2600, `${link.length} characters`);
+  assert.deepEqual(sinew.troubles, []);
+  await sinew.close();
+});
+
+test("a pen's pressure is written", async () => {
+  const sinew = await browser.open({ viewport: { width: 1000, height: 700 } });
+  const { page } = sinew;
+  const { at, side } = await begin(sinew);
+  await page.keyboard.press('p');
+  // Chromium's own tools make no pen events, so the page is told what a pen would tell.
+  const pen = (type, x, y, pressure) =>
+    page.evaluate(
+      ([type, x, y, pressure]) => {
+        const about = { clientX: x, clientY: y, pressure, pointerType: 'pen', pointerId: 9, bubbles: true, isPrimary: true };
+        document.querySelector('canvas').dispatchEvent(new PointerEvent(type, about));
+      },
+      [type, x, y, pressure],
+    );
+  const [x, y] = at;
+  await page.mouse.move(x, y);
+  await page.waitForTimeout(120);
+  await pen('pointerdown', x, y, 0.25);
+  await page.mouse.down();
+  for (let i = 1; i <= 5; i += 1) {
+    await pen('pointermove', x + 0.04 * side * i, y, 0.25 + 0.1 * i);
+    await page.mouse.move(x + 0.04 * side * i, y);
+    await page.waitForTimeout(60);
+  }
+  await page.mouse.up();
+  await until(sinew, ({ depth }) => depth[0] === 1);
+  const line = (await strokes(sinew)).split('\n')[2];
+  const points = line.split(' : ')[1].split(', ').map((point) => point.split(' ').map(Number));
+  const pressures = points.map((point) => point[3] ?? 1);
+  assert.ok(pressures[0] >= 0.2 && pressures[0] <= 0.3, line);
+  assert.ok(Math.max(...pressures) > 0.5 && Math.max(...pressures) < 0.8, line);
+  assert.deepEqual(sinew.troubles, []);
+  await sinew.close();
+});
+
+test('a finger sculpts and two fingers turn, on a phone', async () => {
+  const sinew = await browser.open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const { page } = sinew;
+  const { at, side } = await begin(sinew, true);
+  const cdp = await page.context().newCDPSession(page);
+  const touch = async (type, points) => {
+    await cdp.send('Input.dispatchTouchEvent', {
+      type,
+      touchPoints: points.map(([x, y], id) => ({ x, y, id })),
+    });
+    await page.waitForTimeout(60);
+  };
+  const [x, y] = at;
+  await touch('touchStart', [[x, y]]);
+  for (let i = 1; i <= 5; i += 1) await touch('touchMove', [[x + 0.05 * side * i, y - 0.04 * side * i]]);
+  await touch('touchEnd', []);
+  await until(sinew, ({ depth }) => depth[0] === 1);
+  await page.waitForTimeout(500);
+  await sinew.keep('sculpt phone');
+
+  const before = await sinew.page.screenshot();
+  await touch('touchStart', [[x - 60, y]]);
+  await touch('touchStart', [[x - 60, y], [x + 60, y]]);
+  for (let i = 1; i <= 5; i += 1) await touch('touchMove', [[x - 60 - 6 * i, y + 5 * i], [x + 60 + 6 * i, y + 5 * i]]);
+  await touch('touchEnd', []);
+  await page.waitForTimeout(500);
+  assert.equal((await sculpture(sinew)).depth[0], 1, 'two fingers make no stroke');
+  assert.ok(!before.equals(await sinew.page.screenshot()), 'they turn and zoom');
+  await sinew.click('sculpt more');
+  await page.waitForTimeout(400);
+  await sinew.keep('sculpt phone more');
+  const places = await sinew.page.evaluate(() => sinew.debug.rects());
+  for (const name of ['sculpt back', 'sculpt undo', 'sculpt more', 'sculpt pull', 'sculpture']) {
+    const place = places[name];
+    assert.ok(place && place.x >= 0 && place.x + place.w <= 391, `${name}: ${JSON.stringify(place)}`);
+  }
+  assert.deepEqual(sinew.troubles, []);
+  await sinew.close();
+});
