@@ -9,7 +9,7 @@ const SIZES = {
   desk: { viewport: { width: 1440, height: 900 } },
   phone: { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
 };
-const LESSONS = ['kernels', 'convolution', 'slice', 'grid', 'profiles', 'chart', 'superposition', 'spans'];
+const LESSONS = ['kernels', 'convolution', 'slice', 'grid', 'profiles', 'chart', 'superposition', 'spans', 'fitting'];
 /** A text of the visitor's own. */
 const OWN = '# mine\nframesize 64 48\nsurface s diffuse Gold, blobbiness -2\nsphere s 1 0 0 0\n';
 
@@ -62,6 +62,7 @@ const TOUCH = {
   kernels: ['lab slider Radius R', [40, 0], 'radius'],
   convolution: ['lab grip iso-value', [0, -40], 'iso'],
   superposition: ['lab grip cut', [45, 0], 'cut'],
+  fitting: ['lab grip point 3', [20, -30], 'triangular'],
 };
 
 for (const [size, options] of Object.entries(SIZES)) {

@@ -1,4 +1,4 @@
-//! The lab: eight small lessons, each one figure to take hold of, that show how a convolution
+//! The lab: nine small lessons, each one figure to take hold of, that show how a convolution
 //! surface comes about. Each has its own link (`#lab=kernels`), and opening one leaves the open
 //! work alone.
 //!
@@ -35,6 +35,7 @@ mod command;
 pub mod contour;
 pub mod convolution;
 mod dataset;
+pub mod fitting;
 pub mod formulas;
 pub mod grid;
 pub mod kernels;

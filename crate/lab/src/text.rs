@@ -72,6 +72,13 @@ pub fn of(lesson: Lesson) -> Words {
                         where a ray runs along a bar, and four are better. The tracer here places spans \
                         by a proven bound on their error, so there is no number to choose.",
         },
+        Lesson::Fitting => Words {
+            about: "implicit meshes that fit points",
+            sentences: "One coarse mesh, cut by a plane, becomes a soft surface in two ways: with a ball \
+                        around each facet, or with a thin shell. Both are fitted to the same measured \
+                        points, and the mesh follows its surface. Balls are as thick as facets are large, \
+                        so the mesh ends where it should not; shells are as thin as you like.",
+        },
     }
 }
 

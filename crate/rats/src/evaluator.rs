@@ -11,7 +11,6 @@ mod camera;
 mod contact;
 mod deform;
 mod dispatch;
-mod extent;
 mod images;
 mod implicit_mesh;
 mod interpreter;
@@ -86,6 +85,7 @@ pub fn run<'a>(
         tool_origins: state.tool_origins,
         output: state.output,
         animated: state.animated,
+        deforms: state.deforms,
     }
 }
 

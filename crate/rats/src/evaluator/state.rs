@@ -7,7 +7,7 @@ use super::moments::Frozen;
 use super::palette::Palette;
 use super::view_plane::ViewPlane;
 use super::watched::Watch;
-use crate::compiled::{HotVariable, Output, Placement};
+use crate::compiled::{Deform, HotVariable, Output, Placement};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Reader;
@@ -69,6 +69,7 @@ pub struct Evaluator<'a> {
     pub(super) tools: Vec<Tool>,
     pub(super) tool_origins: Vec<Origin>,
     pub(super) output: Output,
+    pub(super) deforms: Vec<Deform>,
     /// Whether a variable changes with every frame.
     pub(super) animated: bool,
     /// The file that is being run.
@@ -126,6 +127,7 @@ impl<'a> Evaluator<'a> {
             tools: Vec::new(),
             tool_origins: Vec::new(),
             output: Output::default(),
+            deforms: Vec::new(),
             animated: false,
             file: 0,
             reading: Vec::new(),
