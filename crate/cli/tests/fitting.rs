@@ -264,7 +264,7 @@ fn bad_input_is_told_in_words() {
         said.contains("the place 50 120 is outside its picture of 100 × 100 pixels"),
         "{said}"
     );
-    let said = fit(&head, &["--points", &four, "--thickness", "-1"]);
+    let said = fit(&head, &["--points", &four, "--thickness=-1"]);
     assert!(
         said.contains("--thickness") || said.contains("thickness"),
         "{said}"

@@ -102,6 +102,8 @@ mod tests {
         ] {
             assert_eq!(number(value, grain), text);
         }
-        assert_eq!(power_of_ten(3.2e-6), 1e-6_f64.max(power_of_ten(3.2e-6)));
+        for (value, power) in [(3.2e-6, 1e-6), (0.99, 0.1), (1.0, 1.0), (470.0, 100.0)] {
+            assert!((power_of_ten(value) / power - 1.0).abs() < 1e-9, "{value}");
+        }
     }
 }
