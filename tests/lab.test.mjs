@@ -9,7 +9,9 @@ const SIZES = {
   desk: { viewport: { width: 1440, height: 900 } },
   phone: { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
 };
-const LESSONS = ['kernels', 'convolution', 'slice', 'grid', 'profiles', 'chart', 'superposition', 'spans', 'contact'];
+const LESSONS = [
+  'kernels', 'convolution', 'slice', 'grid', 'profiles', 'chart', 'superposition', 'spans', 'contact', 'fitting',
+];
 /** A text of the visitor's own. */
 const OWN = '# mine\nframesize 64 48\nsurface s diffuse Gold, blobbiness -2\nsphere s 1 0 0 0\n';
 
@@ -63,6 +65,7 @@ const TOUCH = {
   convolution: ['lab grip iso-value', [0, -40], 'iso'],
   superposition: ['lab grip cut', [45, 0], 'cut'],
   contact: ['lab grip right drop', [30, 0], 'apart'],
+  fitting: ['lab grip point 3', [20, -30], 'triangular'],
 };
 
 for (const [size, options] of Object.entries(SIZES)) {

@@ -20,12 +20,14 @@
 //! assert!(moved.files[0].text.ends_with("sphere Clay 1, 2.5 0 0\n"));
 //! ```
 
+mod cage;
 mod decimal;
 mod drag;
 mod fixed;
 mod handle;
 mod maker;
 
+pub use cage::{cage, pull};
 pub use drag::drag;
 pub use handle::{Editable, Handle, Kind};
 

@@ -124,6 +124,23 @@ pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     darkroom::name::stays_inside(name).then(|| folder.join(name))
 }
 
+/// The bytes of a file that is no larger than a limit.
+///
+/// # Errors
+/// If it cannot be read or is too large.
+pub fn bounded(path: &Path, most: u64) -> Result<Vec<u8>, String> {
+    let size = std::fs::metadata(path)
+        .map_err(|error| format!("cannot open {}: {error}", path.display()))?
+        .len();
+    if size > most {
+        return Err(format!(
+            "{} has {size} bytes; the limit is {most}",
+            path.display()
+        ));
+    }
+    std::fs::read(path).map_err(|error| format!("cannot read {}: {error}", path.display()))
+}
+
 /// A text from disk.
 ///
 /// # Errors

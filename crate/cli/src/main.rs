@@ -8,10 +8,12 @@ mod animate;
 mod check;
 mod classic;
 mod files;
+mod fit;
 mod fmt;
 mod probe;
 mod render;
 mod report;
+mod scan;
 mod sculpt;
 mod share;
 mod time;
@@ -46,6 +48,10 @@ enum Command {
     Probe(probe::Probe),
     /// Carry out the strokes of a sculpture and write its mesh
     Sculpt(sculpt::Sculpt),
+    /// Bring a mesh onto measured points and outlines
+    Fit(Box<fit::Fit>),
+    /// Measure a dataset's surfaces: points and outlines, with noise, gaps and outliers
+    Scan(scan::Scan),
     /// Lay datasets out: indentation and spaces, nothing that they mean
     Fmt(fmt::Fmt),
     /// Print the evaluated scene as JSON
@@ -93,6 +99,8 @@ fn run() -> Outcome {
         Command::Render(command) => command.run(),
         Command::Animate(command) => command.run(),
         Command::Sculpt(command) => command.run(),
+        Command::Fit(command) => command.run(),
+        Command::Scan(command) => command.run(),
         Command::Fmt(command) => command.run(),
         Command::Probe(command) => command.run(),
         Command::Scene(command) => command.run(),

@@ -1,4 +1,4 @@
-//! Writes the trial head as an OBJ file, simplified to uneven facets.
+//! Writes the trial head as an OBJ file, simplified to uneven facets or, with `even`, as it is made.
 //!
 //! `cargo run -p fit --example head -- 420 www/examples/head.obj`
 
@@ -10,11 +10,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (Some(facets), Some(path)) = (arguments.next(), arguments.next()) else {
         return Err("give the number of facets and a file".into());
     };
-    let mut polygons = mesh::HalfEdgeMesh::from_triangles(&trial::head(4000))?;
-    mesh::simplify(&mut polygons, facets.parse()?);
-    let mesh = polygons
-        .to_triangles()
-        .map_err(|error| format!("{error:?}"))?;
+    let facets = facets.parse()?;
+    let mesh = if arguments.next().is_some_and(|word| word == "even") {
+        trial::head(facets)
+    } else {
+        fit::recovery::coarse(facets)?
+    };
     let mut text = String::from("# A head with neck and shoulders; it looks along -y, z is up.\n");
     for p in &mesh.positions {
         writeln!(text, "v {:.3} {:.3} {:.3}", p.x, p.y, p.z)?;

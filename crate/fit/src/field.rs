@@ -5,9 +5,10 @@ use field::Real;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Bvh};
 use metaballs::{Metaballs, circumscribed, nearest, profile};
+use serde::{Deserialize, Serialize};
 
 /// How a mesh is seen by a fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Kind {
     /// By its nearest facet.
     Explicit,

@@ -25,6 +25,7 @@
 //! ```
 
 mod align;
+mod cage;
 mod cell;
 mod cloud;
 mod contour;
@@ -32,9 +33,12 @@ mod deformation;
 mod disturb;
 mod error;
 mod field;
+mod lines;
 mod normal;
 mod outlines;
 mod problem;
+pub mod recovery;
+mod remarks;
 mod sibson;
 mod sight;
 mod solve;
@@ -42,15 +46,18 @@ mod stiffness;
 pub mod trial;
 
 pub use align::Rigid;
+pub use cage::{cage, web};
 pub use cloud::cloud;
 pub use deformation::Deformation;
 pub use disturb::{Disturbance, Numbers};
 pub use error::Error;
 pub use field::Kind;
+pub use lines::deform_lines;
 pub use outlines::{Outline, outlines, sights};
 pub use problem::{
     MAX_FITTED_CONTROLS, MAX_OBSERVATIONS, Observations, Options, Problem, mean_edge,
 };
+pub use remarks::remarks;
 pub use sibson::{MAX_CONTROLS, Sibson};
 pub use sight::Sight;
 pub use solve::{Fitted, Progress, fit};

@@ -4,8 +4,10 @@ use crate::deformation::Deformation;
 use crate::error::{Error, fail};
 use crate::field::Kind;
 use crate::sight::Sight;
+use crate::stiffness::stiffness;
 use glam::DVec3;
 use mesh::TriangleMesh;
+use serde::{Deserialize, Serialize};
 
 /// Most control points of a fit: its equations take time in proportion to their cube.
 pub const MAX_FITTED_CONTROLS: usize = 500;
@@ -13,7 +15,7 @@ pub const MAX_FITTED_CONTROLS: usize = 500;
 pub const MAX_OBSERVATIONS: usize = 200_000;
 
 /// Measured places of a surface.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observations {
     /// Points on the surface.
     pub points: Vec<DVec3>,
@@ -22,7 +24,7 @@ pub struct Observations {
 }
 
 /// How to fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {
     /// How the mesh is seen.
     pub kind: Kind,
@@ -32,6 +34,9 @@ pub struct Options {
     pub smooth: f64,
     /// Weight of the outlines beside the points, ≥ 0; at 1 they count alike.
     pub outlines: f64,
+    /// Whether distances count no more beyond the scale of the fit; otherwise squares of distances are summed, as if
+    /// there were no outliers.
+    pub saturates: bool,
     /// Whether the mesh is first turned and moved as a whole.
     pub align: bool,
     /// Most iterations in all.
@@ -45,6 +50,7 @@ impl Default for Options {
             slope: None,
             smooth: 0.02,
             outlines: 1.0,
+            saturates: true,
             align: false,
             iterations: 60,
         }
@@ -61,6 +67,8 @@ pub struct Problem {
     pub(crate) deformation: Deformation,
     pub(crate) observations: Observations,
     pub(crate) options: Options,
+    /// The moves to begin with.
+    pub(crate) start: Vec<DVec3>,
 }
 
 impl Problem {
@@ -84,11 +92,41 @@ impl Problem {
             deformation: Deformation::new(&mesh.positions, &cage.positions)?,
             observations,
             options,
+            start: vec![DVec3::ZERO; cage.positions.len()],
         };
         if problem.mean_edge() <= 0.0 {
             return fail("the mesh has no extent");
         }
         Ok(problem)
+    }
+
+    /// Lets the fit begin with moves of the control points, such as those of an earlier one.
+    ///
+    /// # Errors
+    /// If there are not as many moves as control points, or one is not finite.
+    pub fn starting_at(mut self, moves: Vec<DVec3>) -> Result<Self, Error> {
+        if moves.len() != self.controls.len() {
+            return fail(format!(
+                "there are {} moves to begin with for {} control points",
+                moves.len(),
+                self.controls.len()
+            ));
+        }
+        if let Some(bad) = moves.iter().position(|way| !way.is_finite()) {
+            return fail(format!(
+                "the move of control point {} is not finite",
+                bad + 1
+            ));
+        }
+        self.start = moves;
+        Ok(self)
+    }
+
+    /// Entries (i, j, value) with i ≥ j of the control mesh's stiffness matrix; one with i > j stands for both of its places,
+    /// and places may come several times, which add up.
+    #[must_use]
+    pub fn stiffness(&self) -> Vec<(u32, u32, f64)> {
+        stiffness(&self.controls, &self.cage)
     }
 
     /// The mean length of the edges of all triangles.

@@ -3,9 +3,10 @@
 use crate::field::{Field, Gradient};
 use glam::DVec3;
 use mesh::{Bvh, Ray};
+use serde::{Deserialize, Serialize};
 
 /// A line of sight through a point of an outline.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sight {
     /// The eye.
     pub origin: DVec3,

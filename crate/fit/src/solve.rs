@@ -5,11 +5,12 @@
 //! spread of the observations, and the implicit surface's k rises with it to its last value: coarse to fine.
 
 use crate::align::{Rigid, align};
+use crate::deformation::Deformation;
 use crate::error::Error;
 use crate::field::{Field, Gradient, Kind};
 use crate::normal::Normal;
 use crate::problem::{Options, Problem};
-use crate::stiffness::{energy, stiffness};
+use crate::stiffness::energy;
 use glam::DVec3;
 use mesh::{Aabb, Bvh};
 
@@ -33,6 +34,8 @@ pub struct Progress {
     pub outliers: f64,
     /// s, beyond which distances count no more.
     pub scale: f64,
+    /// How the mesh was turned and moved first.
+    pub rigid: Rigid,
     /// The control points' moves.
     pub moves: Vec<DVec3>,
 }
@@ -48,6 +51,8 @@ pub struct Fitted {
     pub positions: Vec<DVec3>,
     /// The last moment.
     pub last: Progress,
+    /// The factor of the moves' energy `½ Σ XᵀKX` in the sum that was made small last.
+    pub smooth: f64,
     /// Whether it was stopped before it had settled.
     pub stopped: bool,
 }
@@ -67,15 +72,20 @@ pub fn fit(problem: &Problem, tell: &mut dyn FnMut(&Progress) -> bool) -> Result
     } else {
         Rigid::IDENTITY
     };
-    for place in problem.positions.iter_mut().chain(&mut problem.controls) {
-        *place = rigid.apply(*place);
+    if rigid != Rigid::IDENTITY {
+        for place in problem.positions.iter_mut().chain(&mut problem.controls) {
+            *place = rigid.apply(*place);
+        }
+        // The far corners are those of the turned mesh, as where the moves are carried out.
+        problem.deformation = Deformation::new(&problem.positions, &problem.controls)?;
     }
-    let mut run = Run::new(&problem);
+    let mut run = Run::new(&problem, rigid);
     let stopped = !run.all(tell)?;
     Ok(Fitted {
         rigid,
         positions: run.positions.clone(),
         last: run.progress()?,
+        smooth: run.smooth,
         moves: run.moves,
         stopped,
     })
@@ -86,6 +96,7 @@ type Place = (DVec3, usize);
 
 struct Run<'a> {
     problem: &'a Problem,
+    rigid: Rigid,
     options: Options,
     stiffness: Vec<(u32, u32, f64)>,
     moves: Vec<DVec3>,
@@ -102,14 +113,17 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(problem: &'a Problem) -> Self {
+    fn new(problem: &'a Problem, rigid: Rigid) -> Self {
         let options = problem.options;
         Self {
             problem,
+            rigid,
             options,
-            stiffness: stiffness(&problem.controls, &problem.cage),
-            moves: vec![DVec3::ZERO; problem.controls.len()],
-            positions: problem.positions.clone(),
+            stiffness: problem.stiffness(),
+            moves: problem.start.clone(),
+            positions: problem
+                .deformation
+                .apply(&problem.positions, &problem.start),
             slope: options.slope.unwrap_or(20.0 / problem.mean_edge()),
             scale: f64::INFINITY,
             damping: 1e-3,
@@ -200,6 +214,7 @@ impl<'a> Run<'a> {
             residual,
             outliers: far as f64 / distances.len().max(1) as f64,
             scale: self.scale,
+            rigid: self.rigid,
             moves: self.moves.clone(),
         })
     }
@@ -269,8 +284,16 @@ impl<'a> Run<'a> {
             return None;
         }
         row.chain(self.problem);
+        Some(self.saturated(distance))
+    }
+
+    /// The residual of a distance, and its derivative.
+    fn saturated(&self, distance: f64) -> (f64, f64) {
+        if !self.options.saturates {
+            return (distance, 1.0);
+        }
         let share = libm::tanh(distance / self.scale);
-        Some((self.scale * share, 1.0 - share * share))
+        (self.scale * share, 1.0 - share * share)
     }
 
     /// The equations at the present moves, and the sum that is to fall.
@@ -309,8 +332,13 @@ impl<'a> Run<'a> {
         let field = self.field(positions)?;
         let mut gradient = Gradient::new();
         let term = |(place, class): &Place| {
-            let share = libm::tanh(field.distance(*place, &mut gradient) / self.scale);
-            0.5 * self.weights[*class] * (self.scale * share).powi(2)
+            let distance = field.distance(*place, &mut gradient);
+            let residual = if distance.is_finite() {
+                self.saturated(distance).0
+            } else {
+                self.scale
+            };
+            0.5 * self.weights[*class] * residual.powi(2)
         };
         let sum: f64 = places.iter().map(term).sum();
         Ok(sum + self.smooth * energy(&self.stiffness, moves))

@@ -24,6 +24,8 @@ pub enum Lesson {
     Contact,
     /// Strokes of virtual tools.
     Sculpting,
+    /// Implicit meshes that fit points.
+    Fitting,
 }
 
 /// Start of a fragment that leads to a lesson.
@@ -42,6 +44,7 @@ impl Lesson {
         Self::Spans,
         Self::Contact,
         Self::Sculpting,
+        Self::Fitting,
     ];
 
     /// The word in its link.
@@ -58,6 +61,7 @@ impl Lesson {
             Self::Spans => "spans",
             Self::Contact => "contact",
             Self::Sculpting => "sculpting",
+            Self::Fitting => "fitting",
         }
     }
 
@@ -94,6 +98,7 @@ impl Lesson {
             Self::Spans => "How many spans?",
             Self::Contact => "Drops that do not melt",
             Self::Sculpting => "Sculpting by strokes",
+            Self::Fitting => "Balls or thin shells?",
         }
     }
 }

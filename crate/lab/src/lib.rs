@@ -36,6 +36,7 @@ pub mod contact;
 pub mod contour;
 pub mod convolution;
 mod dataset;
+pub mod fitting;
 pub mod formulas;
 pub mod grid;
 pub mod kernels;

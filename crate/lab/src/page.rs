@@ -166,6 +166,7 @@ fn short(lesson: Lesson) -> &'static str {
         Lesson::Spans => "Spans",
         Lesson::Contact => "Contact",
         Lesson::Sculpting => "Sculpting",
+        Lesson::Fitting => "Fitting",
         _ => lesson.title(),
     }
 }
@@ -304,6 +305,7 @@ fn lesson(
         Lesson::Spans => lab.spans.show(ui, &mut bench),
         Lesson::Contact => lab.contact.show(ui, &mut bench),
         Lesson::Sculpting => lab.sculpting.show(ui, &mut bench),
+        Lesson::Fitting => lab.fitting.show(ui, &mut bench),
     }
     ui.add_space(if narrow { 24.0 } else { 8.0 });
     if wanted && open == Lesson::Sculpting {
@@ -321,6 +323,7 @@ fn lesson(
             Lesson::Spans => ("Cross", lab.spans.dataset()),
             Lesson::Contact => ("Drops", lab.contact.dataset()),
             Lesson::Sculpting => return,
+            Lesson::Fitting => ("Balls and shells", lab.fitting.dataset()),
         };
         commands.push(Command::OpenText {
             name: name.to_owned(),

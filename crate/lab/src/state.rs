@@ -3,7 +3,8 @@
 use crate::lesson::Lesson;
 use crate::pictures::Pictures;
 use crate::{
-    chart, contact, convolution, grid, kernels, profiles, sculpting, slice, spans, superposition,
+    chart, contact, convolution, fitting, grid, kernels, profiles, sculpting, slice, spans,
+    superposition,
 };
 use pool::Pool;
 use serde::Serialize;
@@ -50,6 +51,7 @@ pub struct Lab {
     pub(crate) spans: spans::Spans,
     pub(crate) contact: contact::Contact,
     pub(crate) sculpting: sculpting::Sculpting,
+    pub(crate) fitting: fitting::Fitting,
 }
 
 impl Lab {
@@ -73,6 +75,7 @@ impl Lab {
             spans: spans::Spans::default(),
             contact: contact::Contact::default(),
             sculpting: sculpting::Sculpting::default(),
+            fitting: fitting::Fitting::default(),
         }
     }
 

@@ -87,6 +87,13 @@ pub fn of(lesson: Lesson) -> Words {
                         chosen and divided, and smoothed again. Each stroke is a line of a text, so the \
                         whole animal can be made again, step by step.",
         },
+        Lesson::Fitting => Words {
+            about: "implicit meshes that fit points",
+            sentences: "One coarse mesh, cut by a plane, becomes a soft surface in two ways: with a ball \
+                        around each facet, or with a thin shell. Both are fitted to the same measured \
+                        points, and the mesh follows its surface. Balls are as thick as facets are large, \
+                        so the mesh ends where it should not; shells are as thin as you like.",
+        },
     }
 }
 

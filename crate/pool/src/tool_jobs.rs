@@ -11,6 +11,8 @@ use tools::{Answer, Job, Output, Request};
 pub enum ToolEvent {
     /// The fraction done, 0 … 1.
     Progress(f32),
+    /// What there is of the result so far.
+    Partial(Output),
     /// The job is over, with its result or an error message for the user. No event of it follows.
     Done(Result<Output, String>),
 }
@@ -78,6 +80,11 @@ impl<W: Workers> ToolsCore<W> {
             Answer::Progress { id, fraction } => {
                 if self.supervisor.progress(id, now) {
                     self.events.push((id, ToolEvent::Progress(fraction)));
+                }
+            }
+            Answer::Partial { id, output } => {
+                if self.supervisor.progress(id, now) {
+                    self.events.push((id, ToolEvent::Partial(output)));
                 }
             }
             Answer::Done { id, result } => {

@@ -1,8 +1,10 @@
 //! The result of compiling a text.
 
 use crate::{Diagnostic, Tool};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use scene::{Origin, Scene};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// The scene of a text, and all else that a run gives.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,6 +27,40 @@ pub struct Compiled {
     pub animated: bool,
     /// Frames of a second, where a `motion` says so.
     pub rate: Option<f64>,
+    /// The deformations that were carried out, in order.
+    pub deforms: Vec<Deform>,
+}
+
+/// A `deform` command that was carried out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deform {
+    /// Where the command stands.
+    pub origin: Origin,
+    /// Whether it was run in a loop, a defined command or the library, so that its numbers are not only its own.
+    pub repeated: bool,
+    /// The commands that made what is deformed.
+    pub of: Vec<Origin>,
+    /// The control points, in order.
+    pub controls: Vec<Control>,
+    /// The vertices before, each once, in the coordinates of the command.
+    pub positions: Arc<[DVec3]>,
+    /// The triangles between them.
+    pub triangles: Arc<[[u32; 3]]>,
+}
+
+/// A control point of a [`Deform`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Control {
+    /// Where it was.
+    pub place: DVec3,
+    /// Its move.
+    pub way: DVec3,
+    /// The bytes of its three numbers, with the signs around them.
+    pub span: Range<usize>,
+    /// The bytes of the three numbers of its move; `None` if it has none.
+    pub way_span: Option<Range<usize>>,
+    /// Whether the move's numbers are written out, or there is none.
+    pub is_literal: bool,
 }
 
 /// How an element came from its command.

@@ -11,7 +11,6 @@ mod camera;
 mod contact;
 mod deform;
 mod dispatch;
-mod extent;
 mod frozen;
 mod image_list;
 mod images;
@@ -94,6 +93,7 @@ pub fn run<'a>(
         output: state.output,
         animated: state.animated || state.moving.is_any(),
         rate: state.moving.rate(),
+        deforms: state.deforms,
     }
 }
 

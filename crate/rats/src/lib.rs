@@ -61,7 +61,7 @@ mod value;
 
 pub use assets::{is_mesh_read, keep_mesh};
 pub use compile::{compile, compile_at, provenance};
-pub use compiled::{Compiled, HotValue, HotVariable, Output, Placement};
+pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
 pub use reads::{ASSET_ENDINGS, asset_names, is_image, places, reads};

@@ -130,3 +130,55 @@ fn as_many_controls_as_are_taken() {
         "there are 4097 control points, more than the 4096 that are taken"
     );
 }
+
+#[test]
+fn controls_are_told_with_their_places_in_the_text() {
+    let text = "var up = 0.5\nmesh s gem.obj\ntranslate 1 0 0\ndeform { control <1 0 -1.2> move <0 0 up>\n  control 1 0 0.65\n  control <1, 1, 0> move 0 -.25 1e-1 }";
+    let compiled = run(text);
+    let whole = format!("surface s, diffuse Red\n{text}");
+    let [deform] = &compiled.deforms[..] else {
+        panic!("{:?}", compiled.deforms);
+    };
+    assert!(!deform.repeated);
+    let origin = deform.origin.start as usize..deform.origin.end as usize;
+    assert!(whole[origin].starts_with("deform {"));
+    let places: Vec<_> = deform
+        .controls
+        .iter()
+        .map(|c| &whole[c.span.clone()])
+        .collect();
+    assert_eq!(places, ["<1 0 -1.2>", "1 0 0.65", "<1, 1, 0>"]);
+    let ways: Vec<_> = deform
+        .controls
+        .iter()
+        .map(|c| {
+            (
+                c.way,
+                c.way_span.clone().map(|span| &whole[span]),
+                c.is_literal,
+            )
+        })
+        .collect();
+    assert_eq!(
+        ways,
+        [
+            (DVec3::Z * 0.5, Some("<0 0 up>"), false),
+            (DVec3::ZERO, None, true),
+            (DVec3::new(0.0, -0.25, 0.1), Some("0 -.25 1e-1"), true),
+        ]
+    );
+    // The mesh before, each vertex once.
+    let plain = corners(&run("mesh s gem.obj\ntranslate 1 0 0"));
+    let own = deform.triangles.iter().flatten();
+    let own: Vec<_> = own.map(|i| deform.positions[*i as usize]).collect();
+    assert_eq!(own, plain);
+    assert!(deform.positions.len() < plain.len() / 2);
+    let soft = text.replacen("gem.obj", "gem.obj metaballs triangular 0.05 30", 1);
+    assert_eq!(
+        run(&soft).deforms[0].triangles.len(),
+        deform.triangles.len()
+    );
+    let looped =
+        "mesh s gem.obj\nfor i = 1 to 2 {\n deform { control <0 0 -1.2> move <0 0 0.1> }\n}";
+    assert!(run(looped).deforms.iter().all(|d| d.repeated));
+}

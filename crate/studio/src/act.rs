@@ -140,6 +140,15 @@ impl App {
                 self.notice = None;
                 session.enable();
             }
+            Command::ShowFit(open) => {
+                self.fitting.open = open;
+                self.tab = if open { Tab::Fit } else { Tab::Text };
+            }
+            Command::StartFit => self.fitting.start(session, now),
+            Command::StopFit => {
+                self.fitting.stop(session, now);
+                session.compile();
+            }
             Command::ShowGallery => self.show_gallery(),
             Command::ShowHelp => {
                 self.help.turn_to_words();

@@ -9,6 +9,7 @@ use crate::command::Command;
 use crate::draft::Draft;
 use crate::editor::Editor;
 use crate::film::Player;
+use crate::fitting::Fitting;
 use crate::gallery::Gallery;
 use crate::hands::Hands;
 use crate::help::Help;
@@ -58,6 +59,8 @@ pub enum Tab {
     Sliders,
     /// The problems.
     Problems,
+    /// Fitting a mesh.
+    Fit,
 }
 
 /// Parts of an app that outlive it when the window must be started anew.
@@ -118,6 +121,8 @@ pub struct App {
     pub(crate) sculpting: Option<Box<Sculpting>>,
     /// Large meshes on their way into the work.
     pub(crate) reading: MeshReading,
+    /// Fitting a mesh to measured points.
+    pub(crate) fitting: Fitting,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) notice: Option<Notice>,
     pub(crate) tab: Tab,
@@ -189,8 +194,10 @@ impl App {
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
         let repaint = ctx.clone();
+        let repaint_fit = ctx.clone();
         let mut app = Self {
             reading: MeshReading::new(move || once(&repaint)),
+            fitting: Fitting::new(move || once(&repaint_fit)),
             lab: Lab::new(pool.clone(), lesson),
             renderer: Renderer::new(pool),
             draft: render_state
@@ -283,6 +290,9 @@ impl App {
         if self.reading.tick(&self.work.session) {
             self.work.session.compile();
         }
+        if self.fitting.tick(&mut self.work.session, now) {
+            self.work.session.compile();
+        }
         if self.settings != self.saved_settings {
             self.saved_settings = self.settings.clone();
             self.parts.shelf.borrow_mut().set_settings(&self.settings);
@@ -320,6 +330,7 @@ impl App {
             waits.push(self.renderer.wait(now));
         }
         waits.push(self.player.wait(now));
+        waits.push(self.fitting.wait(now));
         // A frame that was finished just now is taken into the film at the next tick.
         waits.push((self.saving.is_some() && self.is_finished()).then_some(0.0));
         waits.push(self.tray.wait(now).filter(|_| !self.lab.is_open()));
@@ -416,6 +427,7 @@ impl App {
         self.editor.reset(ctx);
         self.sliders.clear();
         self.tray.clear();
+        self.fitting.forget();
         self.hands.clear();
         self.renderer.clear();
         self.notice = None;

@@ -1,7 +1,7 @@
 //! Taking in files that were dropped on the page or opened: a new work where nothing of the user's
 //! is open, else new tabs.
 
-use crate::app::App;
+use crate::app::{App, Tab};
 use crate::asset::Asset;
 use crate::intake::{self, Sorted, Taken};
 use crate::notice::Notice;
@@ -56,8 +56,17 @@ impl App {
         let Sorted {
             texts,
             assets,
+            measured,
             refused,
         } = intake::sort(taken);
+        for (name, bytes) in measured {
+            if self.lab.is_open() {
+                platform::push_hash("");
+                self.lab.close();
+            }
+            self.fitting.add(name, bytes);
+            self.tab = Tab::Fit;
+        }
         let names = |texts: &[rats::File], assets: &[Asset]| {
             let texts = texts.iter().map(|file| file.name.clone());
             let assets = assets.iter().map(|asset| asset.name.clone());

@@ -84,6 +84,12 @@ pub enum Command {
     Cancel,
     /// Trace the picture again.
     Again,
+    /// Show the panel that fits meshes, or hide it.
+    ShowFit(bool),
+    /// Begin to fit what is chosen there.
+    StartFit,
+    /// End the fit.
+    StopFit,
     /// Draft, picture, or both in turn.
     SetShow(Show),
     /// Another picture size.

@@ -22,7 +22,7 @@
 //! (seconds or null), `fresh` (whether the picture on the screen is of the present text and camera),
 //! `picture` (`{width, height}` or null), `errors` (how many), `elements` (how many the text makes),
 //! `diagnostics` (each `{severity, message, file, span, line, column, hint, related, command}`), `hot`
-//! (names of the sliders), `assets` (names of the images and meshes), `reading` (name of the mesh that is being read, or null),
+//! (names of the sliders), `assets` (names of the images and meshes), `reading` (name of the mesh that is being read, or null), `fit` (`{running, iteration, residual, points, said}` of the panel that fits meshes, or null),
 //! `frame` (of an animated work, else
 //! null), `backend` (`"webgpu"`, `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`,
 //! `timings` (seconds: `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays,

@@ -9,8 +9,10 @@ use rats::link::MAX_NAME;
 
 /// Extensions of texts.
 const TEXTS: [&str; 6] = ["rat", "art", "ice", "dat", "txt", "strokes"];
+/// Extensions of measured points and outlines, beside PLY files without faces.
+const MEASURED: [&str; 2] = ["xyz", "json"];
 /// The kinds of files that are accepted, in words.
-pub const KINDS: &str = "texts (.rat .art .ice .dat .txt .strokes), images (.png .gif .tga .tif .mtv), meshes (.obj .ply .stl .glb) and projects (.zip)";
+pub const KINDS: &str = "texts (.rat .art .ice .dat .txt .strokes), images (.png .gif .tga .tif .mtv), meshes (.obj .ply .stl .glb), points to fit to (.ply .xyz), outlines (.json) and projects (.zip)";
 /// Files that are read at once.
 pub const MOST: usize = 32;
 
@@ -30,6 +32,8 @@ pub struct Sorted {
     pub texts: Vec<File>,
     /// Images and meshes.
     pub assets: Vec<Asset>,
+    /// Measured points and outlines: names and contents.
+    pub measured: Vec<(String, Vec<u8>)>,
     /// Why some were left out, a sentence each.
     pub refused: Vec<String>,
 }
@@ -41,8 +45,8 @@ pub struct Sorted {
 pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
     let (most, what) = if project_file::is_project(name) {
         (project_file::MAX_BYTES, "a project")
-    } else if asset::kind(name).is_some() {
-        (MAX_ASSET, "an image or a mesh")
+    } else if asset::kind(name).is_some() || MEASURED.contains(&asset::extension(name).as_str()) {
+        (MAX_ASSET, "an image, a mesh or a cloud of points")
     } else {
         (MAX_TEXT, "a text")
     };
@@ -148,11 +152,14 @@ pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
 
 fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     check_length(name, bytes.len() as f64)?;
-    if asset::kind(name).is_some() {
+    let extension = asset::extension(name);
+    if MEASURED.contains(&extension.as_str()) || (extension == "ply" && !has_faces(&bytes)) {
+        sorted.measured.push((name.to_owned(), bytes));
+    } else if asset::kind(name).is_some() {
         let asset = asset(name, bytes)?;
         sorted.assets.retain(|other| other.name != name);
         sorted.assets.push(asset);
-    } else if TEXTS.contains(&asset::extension(name).as_str()) {
+    } else if TEXTS.contains(&extension.as_str()) {
         let text = text(bytes).ok_or("there is no text in it")?;
         sorted.texts.retain(|other| other.name != name);
         sorted.texts.push(File {
@@ -163,6 +170,18 @@ fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
         return Err(format!("Sinew takes {KINDS}"));
     }
     Ok(())
+}
+
+/// Whether the heading of a PLY file tells of faces, or is none.
+fn has_faces(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    let head = String::from_utf8_lossy(head);
+    let heading = head.split("end_header").next().unwrap_or_default();
+    let mut lines = heading.lines();
+    let is_ply = lines.next().is_some_and(|line| line.trim() == "ply");
+    let has_vertices = heading.contains("element vertex");
+    let faces = lines.find_map(|line| line.trim().strip_prefix("element face"));
+    !is_ply || !has_vertices || faces.is_some_and(|count| count.trim() != "0")
 }
 
 /// A name, or a part of one between folders, in letters that a text can name it by.
@@ -210,6 +229,28 @@ mod tests {
         assert_eq!(names, ["body.rat", "leg.rat", "mö--bel-.txt"]);
         assert_eq!(sorted.texts[2].text, "# ä");
         assert_eq!(sorted.texts[1].text, "sphere a 1, 0 0 0\n");
+        assert_eq!(sorted.refused, Vec::<String>::new());
+    }
+
+    #[test]
+    fn points_are_measured_and_meshes_are_assets() {
+        let heading = |faces: &str| {
+            format!(
+                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{faces}end_header\n0 0 0\n1 0 0\n0 1 0\n"
+            )
+        };
+        let cloud = heading("");
+        let mesh =
+            heading("element face 1\nproperty list uchar int vertex_indices\n") + "3 0 1 2\n";
+        let sorted = sort(vec![
+            taken("cloud.ply", cloud.as_bytes()),
+            taken("mesh.ply", mesh.as_bytes()),
+            taken("a/b.xyz", b"0 0 0\n"),
+            taken("o.json", b"[]"),
+        ]);
+        let names: Vec<&str> = sorted.measured.iter().map(|m| m.0.as_str()).collect();
+        assert_eq!(names, ["cloud.ply", "b.xyz", "o.json"]);
+        assert_eq!(sorted.assets.len(), 1);
         assert_eq!(sorted.refused, Vec::<String>::new());
     }
 

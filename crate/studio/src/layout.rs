@@ -10,8 +10,8 @@ use crate::settings::Show;
 use crate::theme::{self, STRIP};
 use crate::view::{self, Scenery};
 use crate::{
-    bar, download, files, intake, notice, places, platform, problems, screen, size, sliders,
-    status, timeline, tray,
+    bar, download, files, fit_panel, intake, notice, places, platform, problems, screen, size,
+    sliders, status, timeline, tray,
 };
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
@@ -119,6 +119,12 @@ fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
             .frame(inset)
             .show(ui, |ui| problem_list(app, ui, commands));
     }
+    if app.fitting.open {
+        Panel::bottom("fit")
+            .exact_size(fit_panel::HEIGHT)
+            .frame(inset)
+            .show(ui, |ui| fit_panel::show(app, ui, commands));
+    }
     if !app.work.session.compiled().hot.is_empty() {
         let rows = sliders::height(ui, &app.work.session.compiled().hot);
         let most = (0.4 * ui.available_height()).clamp(60.0, 260.0);
@@ -223,6 +229,9 @@ fn picture_head(app: &App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>
             commands.push(Command::ShowAll);
         }
         size_menu(app, ui, commands);
+        if fit_panel::is_offered(app) {
+            fit_panel::button(app, ui, commands);
+        }
         reset_view(app, ui, commands);
     });
 }
@@ -377,6 +386,11 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         draft: draft.is_some(),
         touch: app.touch == Some(true),
     };
+    if app.fitting.open {
+        let sight = crate::hands::Sight::new(&session.camera(), rect);
+        let painter = ui.painter().with_clip_rect(rect);
+        fit_panel::points(&app.fitting, &painter, &sight, rect);
+    }
     app.hands.show(ui, rect, &picture, &around, commands);
     if let Some(notice) = &app.notice {
         notice::show(ui, place, notice, commands);
@@ -437,6 +451,14 @@ fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
                 }
             });
         }
+        Tab::Fit => {
+            Frame::new().inner_margin(12).show(&mut ui, |ui| {
+                ScrollArea::vertical()
+                    .id_salt("fit")
+                    .auto_shrink(false)
+                    .show(ui, |ui| fit_panel::show(app, ui, commands));
+            });
+        }
         Tab::Problems => {
             Frame::new().inner_margin(10).show(&mut ui, |ui| {
                 if app.work.session.diagnostics().is_empty() {
@@ -460,11 +482,17 @@ fn tab_row(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         0 => text.to_owned(),
         number => format!("{text} {number}"),
     };
-    for (tab, text) in [
+    let mut tabs = vec![
         (Tab::Text, String::from("Text")),
         (Tab::Sliders, count("Sliders", sliders)),
         (Tab::Problems, count("Problems", problems)),
-    ] {
+    ];
+    if fit_panel::is_offered(app) {
+        tabs.push((Tab::Fit, String::from("Fit")));
+    } else if app.tab == Tab::Fit {
+        app.tab = Tab::Text;
+    }
+    for (tab, text) in tabs {
         let open = app.tab == tab;
         let colour = match (open, tab == Tab::Problems && errors) {
             (_, true) => palette.error,
@@ -480,6 +508,7 @@ fn tab_row(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         places::note(ui.ctx(), format!("tab {tab:?}").to_lowercase(), button.rect);
         if button.clicked() {
             app.tab = tab;
+            app.fitting.open |= tab == Tab::Fit;
         }
     }
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -29,6 +29,8 @@ pub mod entry;
 pub mod examples;
 pub mod files;
 pub mod film;
+mod fit_panel;
+mod fitting;
 #[cfg(target_arch = "wasm32")]
 mod frames;
 pub mod gallery;

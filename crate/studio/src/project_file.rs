@@ -177,6 +177,7 @@ fn foreign(archive: &Archive<'_>) -> (Project, Vec<String>) {
         texts,
         assets,
         refused,
+        ..
     } = intake::sort_archive(taken);
     let project = Project {
         texts,

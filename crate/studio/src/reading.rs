@@ -51,8 +51,12 @@ impl MeshReading {
             };
             match event {
                 ToolEvent::Progress(fraction) => self.files[index].fraction = fraction,
+                ToolEvent::Partial(_) => {}
                 ToolEvent::Done(result) => {
-                    let mesh = result.map(|Output::Mesh(mesh)| mesh);
+                    let mesh = result.and_then(|output| match output {
+                        Output::Mesh(mesh) => Ok(mesh),
+                        _ => Err(String::from("the worker answered to another job")),
+                    });
                     rats::keep_mesh(&self.files.remove(index).asset, mesh);
                     any_read = true;
                 }

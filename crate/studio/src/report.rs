@@ -46,6 +46,8 @@ pub struct Report {
     pub assets: Vec<String>,
     /// Name of the mesh that is being read.
     pub reading: Option<String>,
+    /// The fit of a mesh that runs, or was last.
+    pub fit: Option<Fit>,
     /// The frame on show of an animated work.
     pub frame: Option<u32>,
     /// Rises when the text changes.
@@ -54,6 +56,21 @@ pub struct Report {
     pub name: String,
     /// Whether all changes are written to the browser's storage.
     pub saved: bool,
+}
+
+/// A fit of a mesh.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Fit {
+    /// Whether it runs.
+    pub running: bool,
+    /// Iterations that were written into the text.
+    pub iteration: u32,
+    /// Residual after those.
+    pub residual: f64,
+    /// Measured points that are read.
+    pub points: usize,
+    /// What the panel says.
+    pub said: Option<String>,
 }
 
 /// Seconds from the start of the picture.

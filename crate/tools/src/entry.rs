@@ -30,7 +30,8 @@ pub fn serve() -> Result<(), JsValue> {
         };
         drop(bytes);
         let mut report = |fraction| send(&Answer::Progress { id, fraction });
-        let result = run(job, &mut Progress::new(&mut report));
+        let mut pass = |output| send(&Answer::Partial { id, output });
+        let result = run(job, &mut Progress::new(&mut report).passing(&mut pass));
         send(&Answer::Done { id, result });
     });
     scope()?.set_onmessage(Some(on_message.as_ref().unchecked_ref()));

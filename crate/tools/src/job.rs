@@ -1,10 +1,12 @@
 //! Running jobs.
 
+use crate::fitting;
 use crate::message::{Job, Output};
 
 /// Progress of a running job.
 pub struct Progress<'a> {
     report: Option<&'a mut dyn FnMut(f32)>,
+    pass: Option<&'a mut dyn FnMut(Output)>,
 }
 
 impl<'a> Progress<'a> {
@@ -12,6 +14,23 @@ impl<'a> Progress<'a> {
     pub fn new(report: &'a mut dyn FnMut(f32)) -> Self {
         Self {
             report: Some(report),
+            pass: None,
+        }
+    }
+
+    /// Results before the end are passed on to `pass`, too.
+    #[must_use]
+    pub fn passing(self, pass: &'a mut dyn FnMut(Output)) -> Self {
+        Self {
+            pass: Some(pass),
+            ..self
+        }
+    }
+
+    /// Passes on what there is so far.
+    pub fn pass(&mut self, output: Output) {
+        if let Some(pass) = &mut self.pass {
+            pass(output);
         }
     }
 
@@ -26,7 +45,10 @@ impl<'a> Progress<'a> {
     /// Progress that is not passed on.
     #[must_use]
     pub fn silent() -> Self {
-        Self { report: None }
+        Self {
+            report: None,
+            pass: None,
+        }
     }
 }
 
@@ -42,6 +64,23 @@ pub fn run(job: Job, progress: &mut Progress<'_>) -> Result<Output, String> {
             progress.report(0.9);
             Ok(Output::Mesh(mesh))
         }
+        Job::ReadMeasured { name, bytes } => {
+            let is_outline = bytes.trim_ascii_start().first() == Some(&b'[');
+            let read = if is_outline {
+                fit::outlines(&bytes).map(|outlines| fit::Observations {
+                    points: Vec::new(),
+                    sights: fit::sights(&outlines),
+                })
+            } else {
+                fit::cloud(&name, &bytes).map(|points| fit::Observations {
+                    points,
+                    sights: Vec::new(),
+                })
+            };
+            read.map(Output::Measured)
+                .map_err(|error| error.to_string())
+        }
+        Job::Fit(wanted) => fitting::run(*wanted, progress).map_err(|error| error.to_string()),
     }
 }
 
@@ -69,6 +108,26 @@ mod tests {
         let direct = mesh::read("a.obj", SQUARE.as_bytes()).unwrap();
         assert_eq!(data, direct);
         assert!(fractions.is_sorted() && fractions[0] == 0.0);
+    }
+
+    #[test]
+    fn measured_files_are_read_by_their_content() {
+        let read = |name: &str, text: &str| {
+            let job = Job::ReadMeasured {
+                name: name.into(),
+                bytes: text.into(),
+            };
+            match run(job, &mut Progress::silent()) {
+                Ok(Output::Measured(found)) => Ok([found.points.len(), found.sights.len()]),
+                Ok(other) => panic!("{other:?}"),
+                Err(message) => Err(message),
+            }
+        };
+        assert_eq!(read("a.xyz", "0 0 1\n1 1 1\n"), Ok([2, 0]));
+        let outline = r#"[{"eye":[0,-5,0],"target":[0,0,0],"up":[0,0,1],"fov":40,"size":[9,9],"lines":[[[2,5]]]}]"#;
+        assert_eq!(read("a.json", outline), Ok([0, 1]));
+        let message = read("a.xyz", "0 0\n").unwrap_err();
+        assert!(message.contains("line 1"), "{message}");
     }
 
     #[test]

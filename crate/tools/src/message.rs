@@ -1,5 +1,7 @@
 //! Messages between the page and the tools worker: plain data, packed as bytes.
 
+use fit::{Observations, Options};
+use glam::DVec3;
 use mesh::TriangleMesh;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
@@ -15,6 +17,53 @@ pub enum Job {
         #[serde(with = "serde_bytes")]
         bytes: Vec<u8>,
     },
+    /// Read measured points from a PLY or XYZ file, or outlines from a JSON file.
+    ReadMeasured {
+        /// The file's name.
+        name: String,
+        /// The file's content.
+        #[serde(with = "serde_bytes")]
+        bytes: Vec<u8>,
+    },
+    /// Fit a mesh to measured points and outlines. Every iteration passes on an [`Output::Fit`].
+    Fit(Box<FitJob>),
+}
+
+/// A mesh to fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FitJob {
+    /// The mesh's vertices.
+    pub positions: Vec<DVec3>,
+    /// Its triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Its control points.
+    pub controls: Controls,
+    /// What it is fitted to.
+    pub observations: Observations,
+    /// How.
+    pub options: Options,
+}
+
+/// The control points of a fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Controls {
+    /// These, each with the move that the fit begins with.
+    Given(Vec<[DVec3; 2]>),
+    /// About so many around the mesh.
+    Around(u32),
+}
+
+/// A moment of a fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FitStep {
+    /// Iterations done.
+    pub iteration: u32,
+    /// As [`fit::Progress::residual`].
+    pub residual: f64,
+    /// As [`fit::Progress::outliers`].
+    pub outliers: f64,
+    /// The lines of a text that carry the fit out.
+    pub text: String,
 }
 
 /// Result of a [`Job`].
@@ -22,6 +71,10 @@ pub enum Job {
 pub enum Output {
     /// Of [`Job::ReadMesh`].
     Mesh(TriangleMesh),
+    /// Of [`Job::ReadMeasured`].
+    Measured(Observations),
+    /// Of [`Job::Fit`].
+    Fit(FitStep),
 }
 
 /// A message to the worker. Jobs run one after the other, in the order of their messages; the page
@@ -45,6 +98,13 @@ pub enum Answer {
         id: u64,
         /// Fraction done, 0 … 1.
         fraction: f32,
+    },
+    /// What a job has so far.
+    Partial {
+        /// Number of the job.
+        id: u64,
+        /// The result as far as it is.
+        output: Output,
     },
     /// A job is over.
     Done {
@@ -76,7 +136,6 @@ pub fn unpack<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, postcard::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
     #[test]
     fn messages_survive_packing_and_other_bytes_are_refused() {

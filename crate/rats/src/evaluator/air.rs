@@ -1,6 +1,5 @@
 //! What is around the shapes: background, sky, ground, fog and clouds of light.
 
-use super::extent::extent;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::given::Given;
@@ -8,7 +7,7 @@ use crate::limits::{MAX_BACKDROPS, MAX_CLOUDS};
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use glam::DVec3;
-use scene::{Background, Cloud, Fog, Ground, Rgb, Sky};
+use scene::{Background, Cloud, Fog, Ground, Rgb, Sky, extent};
 
 /// Directions in which a ray looks for the sky, if the text does not say.
 const SKY_SAMPLES: u32 = 4;

@@ -3,6 +3,8 @@
 use super::model::{Model, Part};
 use super::objects::target;
 use super::state::{Evaluator, Flow};
+use super::watch::written_out;
+use crate::compiled::{Control, Deform};
 use crate::given::Chosen;
 use crate::limits::STEPS_PER_VERTEX;
 use crate::problem::{Outcome, Problem};
@@ -19,6 +21,8 @@ use std::sync::Arc;
 /// Deformations that are kept: a text is compiled at every keystroke, and while a control point is dragged only its move
 /// changes.
 const KEPT: usize = 4;
+/// Deformations that are told of, at most: a loop may carry out many.
+const MOST_KEPT: usize = 64;
 
 /// Coordinates of vertices with respect to controls.
 struct Kept {
@@ -55,8 +59,9 @@ fn deformation(vertices: &[DVec3], controls: &[DVec3]) -> Result<Rc<Deformation>
 pub fn deform<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let given = run.given(command)?;
     let range = target(run, command, &given)?;
-    let (controls, moves) = controls(&given.options)?;
-    if controls.is_empty() {
+    let text = run.sources.all[run.file].text;
+    let points = controls(text, &given.options)?;
+    if points.is_empty() {
         return Err(Problem::new(
             command.span.clone(),
             "there are no control points to deform with",
@@ -66,26 +71,51 @@ pub fn deform<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     let vertices = Vertices::of(&run.model, range.clone(), &command.word_span)?;
     let work = vertices.places.len() as u64 * STEPS_PER_VERTEX + range.len() as u64;
     run.scope.step(work, &command.word_span)?;
+    let controls: Vec<DVec3> = points.iter().map(|control| control.place).collect();
+    let moves: Vec<DVec3> = points.iter().map(|control| control.way).collect();
     let deformation = deformation(&vertices.places, &controls)
         .map_err(|error| Problem::new(command.span.clone(), error.to_string()))?;
     let moved = deformation.apply(&vertices.places, &moves);
+    let triangles = vertices.triangles(&run.model.parts[range.clone()]);
+    let mut of: Vec<_> = run.model.parts[range.clone()]
+        .iter()
+        .map(|part| part.element.origin)
+        .collect();
+    of.dedup();
     vertices.put(&mut run.model.parts[range], &moved);
+    if run.deforms.len() < MOST_KEPT {
+        run.deforms.push(Deform {
+            origin: run.origin(command),
+            repeated: run.repeating > 0 || !run.is_own(),
+            of,
+            controls: points,
+            positions: vertices.places.into(),
+            triangles: triangles.into(),
+        });
+    }
     Ok(Flow::Next)
 }
 
-/// The control points, and the moves of each; those without one stay.
-fn controls(options: &[Chosen<'_>]) -> Outcome<(Vec<DVec3>, Vec<DVec3>)> {
-    let (mut controls, mut moves) = (Vec::new(), Vec::new());
-    let mut movable = false;
+/// The control points with their moves; those without one stay.
+fn controls(text: &str, options: &[Chosen<'_>]) -> Outcome<Vec<Control>> {
+    let mut controls: Vec<Control> = Vec::new();
     for chosen in options {
         let vector = chosen.given.vector("XYZ");
+        let span = chosen.given.span("XYZ");
+        let span = span.unwrap_or_else(|| chosen.span.clone());
         if chosen.name == "control" {
-            controls.push(vector);
-            moves.push(DVec3::ZERO);
-            movable = true;
-        } else if let (true, Some(last)) = (movable, moves.last_mut()) {
-            *last = vector;
-            movable = false;
+            controls.push(Control {
+                place: vector,
+                way: DVec3::ZERO,
+                span,
+                way_span: None,
+                is_literal: true,
+            });
+        } else if let Some(last) = controls.last_mut().filter(|c| c.way_span.is_none()) {
+            last.way = vector;
+            last.is_literal =
+                written_out(text, span.clone()).is_some_and(|numbers| numbers.len() == 3);
+            last.way_span = Some(span);
         } else {
             return Err(Problem::new(
                 chosen.span.clone(),
@@ -94,7 +124,7 @@ fn controls(options: &[Chosen<'_>]) -> Outcome<(Vec<DVec3>, Vec<DVec3>)> {
             .hint("each move stands behind its point: `control <0 0 0> move <0 0 1>`"));
         }
     }
-    Ok((controls, moves))
+    Ok(controls)
 }
 
 /// The vertices of some shapes, each once.
@@ -126,6 +156,29 @@ impl Vertices {
             }
         }
         Ok(Self { places, numbers })
+    }
+
+    /// The triangles between the vertices.
+    fn triangles(&self, parts: &[Part]) -> Vec<[u32; 3]> {
+        let mut triangles = Vec::new();
+        let mut first = 0;
+        for part in parts {
+            match &part.element.shape {
+                Shape::Triangle { .. } | Shape::Patch { .. } => {
+                    triangles.push([0, 1, 2].map(|i| self.numbers[first + i]));
+                    first += 3;
+                }
+                Shape::Function(function) => {
+                    if let Form::Mesh(mesh) = &function.form {
+                        let own = |i: u32| self.numbers[first + i as usize];
+                        triangles.extend(mesh.triangles.iter().map(|t| t.map(own)));
+                        first += mesh.positions.len();
+                    }
+                }
+                _ => {}
+            }
+        }
+        triangles
     }
 
     /// Gives the shapes their vertices back, moved.

@@ -8,7 +8,7 @@ use super::palette::Palette;
 use super::surroundings::Air;
 use super::view_plane::ViewPlane;
 use super::watched::Watch;
-use crate::compiled::{HotVariable, Output, Placement};
+use crate::compiled::{Deform, HotVariable, Output, Placement};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Reader;
@@ -70,6 +70,7 @@ pub struct Evaluator<'a> {
     pub(super) tools: Vec<Tool>,
     pub(super) tool_origins: Vec<Origin>,
     pub(super) output: Output,
+    pub(super) deforms: Vec<Deform>,
     /// Whether a variable changes with every frame.
     pub(super) animated: bool,
     /// What `motion` has moved.
@@ -129,6 +130,7 @@ impl<'a> Evaluator<'a> {
             tools: Vec::new(),
             tool_origins: Vec::new(),
             output: Output::default(),
+            deforms: Vec::new(),
             animated: false,
             moving: Moving::default(),
             file: 0,

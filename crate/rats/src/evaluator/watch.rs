@@ -246,7 +246,7 @@ impl<'a> Evaluator<'a> {
 
 /// The places of the numbers in a range of a text, each with its sign, if there is nothing else there but
 /// separators.
-fn written_out(text: &str, range: Range<usize>) -> Option<Vec<Range<usize>>> {
+pub(super) fn written_out(text: &str, range: Range<usize>) -> Option<Vec<Range<usize>>> {
     let mut spans = Vec::new();
     let mut sign: Option<usize> = None;
     for token in lex(text.get(range.clone())?) {

@@ -4,6 +4,7 @@
 //! The chosen shape also follows the caret of the editor. Nothing is kept here that the text does not
 //! say: each change goes through [`Command::Replace`], and a drag is one undo step.
 
+mod cage;
 mod knob;
 mod sight;
 mod skeleton;
@@ -39,6 +40,8 @@ pub struct Hands {
     /// The scene of a revision and frame, as the draft shows it or not, ready for clicks.
     picker: Option<((u64, u32, bool), Picker)>,
     drag: Option<Drag>,
+    /// The deformation whose control points are shown.
+    cage: cage::Cage,
 }
 
 /// A knob that is held.
@@ -65,6 +68,7 @@ pub struct Around<'a> {
 impl Hands {
     /// Lets go: no shape is chosen.
     pub fn let_go(&mut self) {
+        self.cage.let_go();
         self.chosen = None;
         self.handles.clear();
         self.made = None;
@@ -107,6 +111,7 @@ impl Hands {
             self.drag = None;
             commands.push(Command::Release);
         }
+        self.cage.release(ui, commands);
         // Places in the text are only known of a text that was compiled, and without errors: else the
         // picture is not of this text.
         if !session.is_compiled() || session.errors() > 0 || rect.width() < 1.0 {
@@ -117,6 +122,9 @@ impl Hands {
             self.count = scene.elements.len();
             self.let_go();
         }
+        if self.caret != around.caret && self.drag.is_none() {
+            self.cage.follow(session, around.caret);
+        }
         self.follow(session, around.caret);
         let sight = Sight::new(&session.camera(), rect);
         if picture.clicked()
@@ -124,17 +132,24 @@ impl Hands {
         {
             self.click(around, &sight, at, commands);
         }
-        let Some(chosen) = self.chosen.filter(|chosen| *chosen < self.count) else {
+        let is_cage = self.cage.chosen(session).is_some();
+        let chosen = self.chosen.filter(|chosen| *chosen < self.count);
+        if chosen.is_none() && !is_cage {
             return;
-        };
+        }
         if !around.covered && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
         {
             self.let_go();
             return;
         }
+        let painter = ui.painter().with_clip_rect(rect);
+        if is_cage {
+            self.cage.show(ui, &painter, rect, &sight, around, commands);
+            return;
+        }
+        let Some(chosen) = chosen else { return };
         let held = ui.input(|input| input.pointer.any_down());
         self.prepare(session, &sight, chosen, held);
-        let painter = ui.painter().with_clip_rect(rect);
         paint(&painter, &sight, scene, chosen);
         self.knobs(ui, &painter, rect, &sight, around.touch, commands);
     }
@@ -162,7 +177,9 @@ impl Hands {
             .and_then(|chosen| scene.elements.get(chosen))
             .is_some_and(|element| is_there(element.origin));
         if !stays {
-            self.let_go();
+            self.chosen = None;
+            self.handles.clear();
+            self.made = None;
             let position = |test: &dyn Fn(Origin) -> bool| {
                 scene
                     .elements
@@ -207,7 +224,10 @@ impl Hands {
         self.let_go();
         if let Some(element) = found.and_then(|hit| hit.element) {
             self.chosen = Some(element as usize);
-            let origin = scene.elements[element as usize].origin;
+            let mut origin = scene.elements[element as usize].origin;
+            if let Some(deform) = self.cage.choose_of(session, origin) {
+                origin = deform;
+            }
             commands.push(Command::ShowPlace {
                 file: origin.file as usize,
                 byte: origin.start as usize,

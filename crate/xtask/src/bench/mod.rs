@@ -7,6 +7,7 @@
 mod browser;
 mod certify;
 mod fields;
+mod fit;
 mod fused;
 mod goal;
 mod memory;
@@ -47,6 +48,8 @@ pub enum Part {
     Memory,
     /// The formulas of the fields.
     Fields,
+    /// Meshes fitted to measurements.
+    Fit,
 }
 
 /// Result of a part: its rows of the table of goals, and its section of the page.
@@ -141,6 +144,7 @@ fn title(part: Part) -> &'static str {
         Part::Profile => "Where the time goes",
         Part::Memory => "Memory",
         Part::Fields => "Fields",
+        Part::Fit => "Fitted meshes",
     }
 }
 
@@ -155,6 +159,7 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
         Part::Profile => profile::measure(),
         Part::Memory => memory::measure(),
         Part::Fields => fields::measure().map(|piece| (Vec::new(), piece)),
+        Part::Fit => fit::measure(),
     };
     (title(part), result)
 }

@@ -1,10 +1,11 @@
 //! Where shapes are and how far they reach.
 
+use crate::element::Shape;
 use glam::DVec3;
-use scene::Shape;
 
 /// The middle of the box around shapes, and the radius of the ball around that middle which holds it. Planes are left
 /// out, as they are endless; `None` if nothing else is there.
+#[must_use]
 pub fn extent<'s>(shapes: impl Iterator<Item = &'s Shape>) -> Option<(DVec3, f64)> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for shape in shapes {

@@ -1,0 +1,339 @@
+//! `sinew fit`: a mesh brought onto measured points and outlines.
+
+use crate::{Outcome, files, whole};
+use clap::{Args, ValueEnum};
+use fit::{Fitted, Kind, Observations, Options, Problem};
+use glam::DVec3;
+use mesh::{Aabb, Export, Format, Part, TriangleMesh};
+use serde_json::json;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Largest file of points or outlines, bytes.
+const MAX_BYTES: u64 = 64 * 1024 * 1024;
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Seen {
+    /// By its nearest facet
+    Explicit,
+    /// As balls around its facets
+    Spherical,
+    /// As shells around its facets
+    Triangular,
+}
+
+/// `sinew fit MESH --control CAGE --points CLOUD -o OUT`.
+#[derive(Args)]
+pub struct Fit {
+    /// The mesh: .obj, .ply, .stl, .glb or .3mf
+    mesh: PathBuf,
+    /// A mesh around it whose vertices are the control points
+    #[arg(long, value_name = "CAGE")]
+    control: PathBuf,
+    /// Measured points: .ply or .xyz
+    #[arg(long, value_name = "CLOUD", required_unless_present = "silhouettes")]
+    points: Option<PathBuf>,
+    /// Outlines in pictures, as `sinew scan` writes them: .json
+    #[arg(long, value_name = "FILE")]
+    silhouettes: Option<PathBuf>,
+    /// How the mesh is seen
+    #[arg(long, default_value = "triangular")]
+    kind: Seen,
+    /// Thickness of triangular shells, in the mesh's units; the default is a tenth of 1/k
+    #[arg(long, value_name = "D")]
+    thickness: Option<f64>,
+    /// k of the implicit surface at the end; the default is 20 over the mean edge
+    #[arg(long, value_name = "K")]
+    slope: Option<f64>,
+    /// Weight of smoothness; at 1 it counts as much as all measurements
+    #[arg(long, default_value_t = 0.02, value_name = "L")]
+    smooth: f64,
+    /// Weight of the outlines beside the points
+    #[arg(long, default_value_t = 1.0, value_name = "W")]
+    outlines: f64,
+    /// First turn and move the whole mesh onto the points
+    #[arg(long)]
+    align: bool,
+    /// Most iterations
+    #[arg(long, default_value_t = 60, value_name = "N")]
+    iterations: usize,
+    /// What to write: a dataset with `deform` lines (.rat) or the deformed mesh (.ply, .obj, .stl, .glb, .3mf); may be
+    /// given for each
+    #[arg(short, long, required = true, value_name = "OUT")]
+    output: Vec<PathBuf>,
+    /// Print numbers of the fit as JSON on the standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl Fit {
+    /// Fits, tells how it goes, and writes the result.
+    pub fn run(&self) -> Outcome {
+        let outputs: Vec<Target> = self
+            .output
+            .iter()
+            .map(|path| Target::of(path))
+            .collect::<Result<_, _>>()?;
+        let mesh = read_mesh(&self.mesh)?;
+        let cage = read_mesh(&self.control)?;
+        let mut observations = Observations::default();
+        if let Some(path) = &self.points {
+            let name = path.display().to_string();
+            observations.points =
+                fit::cloud(&name, &read(path)?).map_err(|e| format!("{name}: {e}"))?;
+        }
+        let mut views = Vec::new();
+        if let Some(path) = &self.silhouettes {
+            views = fit::outlines(&read(path)?).map_err(|e| format!("{}: {e}", path.display()))?;
+            observations.sights = fit::sights(&views);
+        }
+        let remarks =
+            fit::remarks(&mesh).map_err(|error| format!("{}: {error}", self.mesh.display()))?;
+        for remark in &remarks {
+            eprintln!("{}: {remark}", self.mesh.display());
+        }
+        let edge = fit::mean_edge(&mesh.positions, &mesh.triangles);
+        let slope = self.slope.unwrap_or(20.0 / edge);
+        let thickness = self.thickness.unwrap_or(0.1 / slope);
+        let options = Options {
+            kind: match self.kind {
+                Seen::Explicit => Kind::Explicit,
+                Seen::Spherical => Kind::Spherical,
+                Seen::Triangular => Kind::Triangular { thickness },
+            },
+            slope: Some(slope),
+            smooth: self.smooth,
+            outlines: self.outlines,
+            align: self.align,
+            iterations: self.iterations,
+            ..Options::default()
+        };
+        let counts = [observations.points.len(), observations.sights.len()];
+        let problem =
+            Problem::new(&mesh, &cage, observations, options).map_err(|e| e.to_string())?;
+        let start = Instant::now();
+        let mut tell = |progress: &fit::Progress| {
+            if !self.json {
+                eprintln!(
+                    "iteration {}: residual {:.4e}, scale {:.2e}",
+                    progress.iteration, progress.residual, progress.scale
+                );
+            }
+            true
+        };
+        let fitted = fit::fit(&problem, &mut tell).map_err(|error| error.to_string())?;
+        let seconds = start.elapsed().as_secs_f64();
+        for output in &outputs {
+            match output {
+                Target::Mesh(path, format) => write_mesh(path, *format, &mesh, &fitted)?,
+                Target::Dataset(path) => {
+                    let text = self.dataset(path, &cage, &fitted, &views, [slope, thickness])?;
+                    whole::write(path, |out| {
+                        out.write_all(text.as_bytes()).map_err(|e| e.to_string())
+                    })?;
+                }
+            }
+        }
+        if self.json {
+            let (axis, angle) = fitted.rigid.axis_angle();
+            let summary = json!({
+                "mesh": { "vertices": mesh.positions.len(), "triangles": mesh.triangles.len(), "mean_edge": edge },
+                "controls": cage.positions.len(),
+                "points": counts[0],
+                "sights": counts[1],
+                "remarks": remarks,
+                "iterations": fitted.last.iteration,
+                "residual": fitted.last.residual,
+                "outliers": fitted.last.outliers,
+                "turn": { "axis": axis.to_array(), "angle": angle },
+                "shift": fitted.rigid.shift.to_array(),
+                "moves": fitted.moves.iter().map(|m| m.to_array()).collect::<Vec<_>>(),
+                "seconds": seconds,
+            });
+            println!("{summary}");
+        } else {
+            eprintln!(
+                "{} points and {} lines of sight: residual {:.4e} after {} iterations, {:.0} % outliers, {seconds:.2} s",
+                counts[0],
+                counts[1],
+                fitted.last.residual,
+                fitted.last.iteration,
+                100.0 * fitted.last.outliers
+            );
+        }
+        Ok(true)
+    }
+
+    /// The dataset: a camera, the mesh, and the lines that deform it.
+    fn dataset(
+        &self,
+        path: &Path,
+        cage: &TriangleMesh,
+        fitted: &Fitted,
+        views: &[fit::Outline],
+        [slope, thickness]: [f64; 2],
+    ) -> Result<String, String> {
+        let name = beside(path, &self.mesh)?;
+        let mut text = format!(
+            "# {} fitted by `sinew fit`: residual {:.4e} after {} iterations\n\n",
+            name, fitted.last.residual, fitted.last.iteration
+        );
+        text += &view(&fitted.positions, views);
+        text += "surface Skin, diffuse NavajoWhite, specular Gray20, shine 20\n\n";
+        text += &format!("mesh Skin {name}");
+        match self.kind {
+            Seen::Explicit => text.push('\n'),
+            Seen::Spherical => text += &format!("   # metaballs spherical {slope:.4}\n"),
+            Seen::Triangular => {
+                text += &format!("   # metaballs triangular {thickness:.6} {slope:.4}\n");
+            }
+        }
+        text += &fit::deform_lines(None, &fitted.rigid, &cage.positions, &fitted.moves);
+        Ok(text)
+    }
+}
+
+/// A file to write.
+enum Target<'a> {
+    Dataset(&'a Path),
+    Mesh(&'a Path, Format),
+}
+
+impl<'a> Target<'a> {
+    fn of(path: &'a Path) -> Result<Self, String> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("rat"))
+        {
+            return Ok(Self::Dataset(path));
+        }
+        Format::of_name(&name)
+            .map(|format| Self::Mesh(path, format))
+            .ok_or_else(|| {
+                format!("{name}: the result is a dataset (.rat) or a mesh (.ply, .obj, .stl, .glb, .3mf)")
+            })
+    }
+}
+
+/// A file of points or outlines.
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    files::bounded(path, MAX_BYTES)
+}
+
+fn read_mesh(path: &Path) -> Result<TriangleMesh, String> {
+    let bytes = files::bounded(path, mesh::limits::MAX_BYTES as u64)?;
+    let name = path.display().to_string();
+    mesh::read(&name, &bytes).map_err(|error| format!("{name}: {error}"))
+}
+
+/// The name of the mesh for a dataset, which takes files from its own folder only and names of letters, digits and `._-+`:
+/// a mesh of elsewhere or of another name is copied there.
+fn beside(dataset: &Path, mesh: &Path) -> Result<String, String> {
+    let folder = match dataset.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let is_plain = |c: char| c.is_alphanumeric() || "._-+".contains(c);
+    let name: String = mesh
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .chars()
+        .map(|c| if is_plain(c) { c } else { '_' })
+        .collect();
+    let place = folder.join(&name);
+    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    };
+    if same(&place, mesh) {
+        return Ok(name);
+    }
+    if place.exists() {
+        return Err(format!(
+            "{} names `{name}` of its own folder, and another file of this name is there already; write the dataset elsewhere",
+            dataset.display()
+        ));
+    }
+    std::fs::copy(mesh, &place).map_err(|error| {
+        format!(
+            "cannot copy {} to {}: {error}",
+            mesh.display(),
+            place.display()
+        )
+    })?;
+    Ok(name)
+}
+
+/// Camera and lights that show what was fitted: the camera of the first outline, or one that sees all of it, with its
+/// longest side upright or, if that is the x axis, across.
+fn view(positions: &[DVec3], views: &[fit::Outline]) -> String {
+    let bounds = Aabb::of_points(positions.iter().copied());
+    let (middle, size) = (bounds.center(), bounds.size());
+    let (eye, target, up, fov, frame);
+    if let Some(view) = views.first() {
+        (eye, target, up) = (
+            DVec3::from_array(view.eye),
+            DVec3::from_array(view.target),
+            DVec3::from_array(view.up),
+        );
+        (fov, frame) = (view.fov, view.size.map(|s| s.clamp(1.0, 4096.0).round()));
+    } else {
+        let z_is_up = size.z >= size.y;
+        up = if z_is_up { DVec3::Z } else { DVec3::Y };
+        let forward = if z_is_up {
+            DVec3::new(0.5, -1.0, 0.3)
+        } else {
+            DVec3::new(0.5, 0.3, 1.0)
+        };
+        let distance = 0.5 * size.length() / libm::sin(15_f64.to_radians());
+        (eye, target) = (middle + forward.normalize() * distance, middle);
+        (fov, frame) = (32.0, [480.0, 480.0]);
+    }
+    let triple = |v: DVec3| format!("{:.4} {:.4} {:.4}", v.x, v.y, v.z);
+    let right = (target - eye).cross(up).normalize_or(DVec3::X);
+    let lamp = eye + (up - 0.7 * right) * eye.distance(target);
+    let other = right + 0.3 * up;
+    format!(
+        "framesize {} {}\neyep {}\nvrp {}\nvup {}\nfov {fov}\nbackground 0.06 0.07 0.09\nlight White, position {}, intensity 0.9\nlight LightSteelBlue, distant, direction {}, intensity 0.35, noshadow\n\n",
+        frame[0],
+        frame[1],
+        triple(eye),
+        triple(target),
+        triple(up),
+        triple(lamp),
+        triple(-other),
+    )
+}
+
+/// Writes the deformed mesh in the units of the fit.
+fn write_mesh(
+    path: &Path,
+    format: Format,
+    mesh: &TriangleMesh,
+    fitted: &Fitted,
+) -> Result<(), String> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let moved = TriangleMesh {
+        positions: fitted.positions.clone(),
+        normals: None,
+        ..mesh.clone()
+    };
+    let export = Export {
+        name: stem.into_owned(),
+        parts: vec![Part {
+            name: String::from("fitted"),
+            mesh: moved,
+        }],
+        millimetres: 1.0,
+    };
+    let written = export.write(format).map_err(|error| error.to_string())?;
+    for file in written {
+        whole::write(&path.with_file_name(&file.name), |out| {
+            out.write_all(&file.bytes).map_err(|e| e.to_string())
+        })?;
+    }
+    Ok(())
+}

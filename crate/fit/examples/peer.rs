@@ -1,0 +1,51 @@
+//! Fits the trial head to its points by plain squares, and writes the problem for another program to solve.
+//!
+//! `cargo run --release -p fit --example peer -- problem.json` prints the seconds that the fit took; the comparison is
+//! `tests/bench/fit_scipy.py`.
+
+use fit::recovery::{Trial, Way};
+use fit::{Deformation, Kind, trial};
+use serde_json::json;
+use std::time::Instant;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let path = std::env::args().nth(1).ok_or("give a file to write")?;
+    let truth = Trial::new(2000, 6667)?;
+    let head = trial::head(2000);
+    let cage = trial::cage();
+    let way = Way {
+        kind: Kind::Explicit,
+        sharpness: 20.0,
+        saturates: false,
+        outlines: false,
+    };
+    let start = Instant::now();
+    let problem = truth.problem(&head, way)?;
+    let fitted = fit::fit(&problem, &mut |_| true)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let deformation = Deformation::new(&head.positions, &cage.positions)?;
+    let mut weights = Vec::new();
+    for vertex in 0..deformation.vertices() {
+        let row = deformation.weights(vertex).iter();
+        weights.extend(row.map(|(control, weight)| json!([vertex, control, weight])));
+    }
+    let triples = |points: &[glam::DVec3]| -> Vec<[f64; 3]> {
+        points.iter().map(glam::DVec3::to_array).collect()
+    };
+    let problem = json!({
+        "vertices": triples(&head.positions),
+        "triangles": head.triangles,
+        "controls": cage.positions.len(),
+        "weights": weights,
+        "points": triples(truth.points()),
+        "stiffness": problem.stiffness(),
+        "smooth": fitted.smooth,
+        "moves": triples(&fitted.moves),
+    });
+    std::fs::write(path, problem.to_string())?;
+    println!(
+        "{}",
+        json!({ "seconds": seconds, "iterations": fitted.last.iteration })
+    );
+    Ok(())
+}

@@ -1,0 +1,312 @@
+//! The panel *Fit*: measured files, what is fitted and how, and how it goes.
+
+use crate::app::App;
+use crate::command::Command;
+use crate::fitting::{Fitting, Seen, Target};
+use crate::icon::{self, Icon};
+use crate::{places, slider, theme};
+use egui::{Button, Color32, Painter, Rect, RichText, Sense, Slider, Stroke, Ui, Vec2, pos2, vec2};
+
+/// Height of the panel beside the text.
+pub const HEIGHT: f32 = 326.0;
+/// Height of the plot.
+const PLOT: f32 = 74.0;
+
+/// Whether there is something to fit, so that the panel is offered.
+#[must_use]
+pub fn is_offered(app: &App) -> bool {
+    app.fitting.open || !Fitting::targets(&app.work.session).is_empty()
+}
+
+/// The button that shows and hides the panel.
+pub fn button(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let open = app.fitting.open;
+    let colour = if open { palette.accent } else { palette.text };
+    let button = ui.add(Button::new(RichText::new("Fit").size(12.5).color(colour)));
+    places::note(ui.ctx(), "fit", button.rect);
+    let button = button.on_hover_text("Bring a mesh onto measured points and outlines");
+    if button.clicked() {
+        commands.push(Command::ShowFit(!open));
+    }
+}
+
+/// Shows the panel.
+pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    places::note(ui.ctx(), "fit panel", ui.max_rect());
+    let targets = Fitting::targets(&app.work.session);
+    let fitting = &mut app.fitting;
+    ui.horizontal(|ui| {
+        ui.label(
+            RichText::new("Fit to measurements")
+                .size(12.5)
+                .color(palette.weak),
+        );
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if icon::button(ui, Icon::Close, "Close", true).clicked() {
+                commands.push(Command::ShowFit(false));
+            }
+        });
+    });
+    files(fitting, ui, commands);
+    target(fitting, ui, &targets);
+    kind(fitting, ui);
+    weights(fitting, ui, &targets);
+    buttons(app, ui, &targets, commands);
+    progress(&app.fitting, ui);
+}
+
+fn files(fitting: &mut Fitting, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let mut removed = None;
+    ui.horizontal_wrapped(|ui| {
+        for (index, file) in fitting.files.iter().enumerate() {
+            let text = format!("{} · {}  ×", file.name, file.words());
+            let chip = ui
+                .add(Button::new(RichText::new(text).size(12.5)))
+                .on_hover_text("Take it away");
+            places::note(ui.ctx(), format!("measured {}", file.name), chip.rect);
+            if chip.clicked() {
+                removed = Some(index);
+            }
+        }
+        if fitting.files.is_empty() {
+            let hint = "Drop points (.ply .xyz) or outlines (.json) on the page, or";
+            ui.label(RichText::new(hint).size(12.5).color(palette.weak));
+        }
+        let open = ui.add(Button::new(RichText::new("Open…").size(12.5)));
+        places::note(ui.ctx(), "fit open", open.rect);
+        if open.clicked() {
+            commands.push(Command::PickFiles);
+        }
+    });
+    if let Some(index) = removed {
+        fitting.remove(index);
+    }
+}
+
+fn target(fitting: &mut Fitting, ui: &mut Ui, targets: &[(Target, String)]) {
+    let palette = theme::palette(ui.visuals());
+    let Some((first, first_label)) = targets.first() else {
+        let hint = "Open a mesh and write a mesh command: it can be fitted then.";
+        ui.label(RichText::new(hint).size(12.5).color(palette.weak));
+        return;
+    };
+    let chosen = targets
+        .iter()
+        .find(|(target, _)| Some(target) == fitting.target.as_ref());
+    let label = chosen.map_or(first_label, |(_, label)| label);
+    if targets.len() == 1 {
+        fitting.target = Some(first.clone());
+        ui.label(RichText::new(label).size(12.5));
+        return;
+    }
+    let label = RichText::new(format!("{label}  ▾")).size(12.5);
+    ui.menu_button(label, |ui| {
+        for (target, label) in targets {
+            let is_chosen = fitting.target.as_ref() == Some(target);
+            if ui.selectable_label(is_chosen, label).clicked() {
+                fitting.target = Some(target.clone());
+            }
+        }
+    });
+}
+
+fn kind(fitting: &mut Fitting, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| {
+        for (seen, text, tip) in [
+            (
+                Seen::Explicit,
+                "Facets",
+                "Distances are taken from the nearest facet",
+            ),
+            (
+                Seen::Triangular,
+                "Thin shells",
+                "The mesh is seen as the implicit surface of thin shells around its facets",
+            ),
+            (
+                Seen::Spherical,
+                "Balls",
+                "The mesh is seen as the implicit surface of balls around its facets: thick where facets are large",
+            ),
+        ] {
+            let button = ui
+                .selectable_label(fitting.settings.seen == seen, RichText::new(text).size(12.5))
+                .on_hover_text(tip);
+            places::note(ui.ctx(), format!("fit {text}").to_lowercase(), button.rect);
+            if button.clicked() {
+                fitting.settings.seen = seen;
+            }
+        }
+    });
+}
+
+fn weights(fitting: &mut Fitting, ui: &mut Ui, targets: &[(Target, String)]) {
+    let is_new = match &fitting.target {
+        Some(target) => matches!(target, Target::Mesh(_)),
+        None => matches!(targets.first(), Some((Target::Mesh(_), _))),
+    };
+    let has_outlines = fitting.has_outlines();
+    let settings = &mut fitting.settings;
+    if is_new {
+        let mut count = f64::from(settings.count);
+        row(ui, "Control points", &mut count, 8.0..=240.0, |v| {
+            format!("{v:.0}")
+        });
+        settings.count = count.round() as u32;
+    }
+    row(ui, "Smoothness", &mut settings.smooth, -4.0..=1.0, |v| {
+        let weight = libm::exp(v * std::f64::consts::LN_10);
+        format!("{weight:.2e}")
+    });
+    if has_outlines {
+        row(ui, "Outlines", &mut settings.outlines, 0.0..=4.0, |v| {
+            format!("{v:.2}")
+        });
+    }
+}
+
+/// A name, a slider and its value.
+fn row(
+    ui: &mut Ui,
+    name: &str,
+    value: &mut f64,
+    range: std::ops::RangeInclusive<f64>,
+    words: impl Fn(f64) -> String,
+) {
+    ui.horizontal(|ui| {
+        let height = ui.spacing().interact_size.y;
+        ui.add_sized(
+            vec2(96.0, height),
+            egui::Label::new(RichText::new(name).size(12.5)),
+        );
+        ui.scope(|ui| {
+            slider::colours(ui);
+            ui.spacing_mut().slider_width = (ui.available_width() - 74.0).clamp(60.0, 300.0);
+            let slider = ui
+                .add(Slider::new(value, range).show_value(false).smart_aim(false))
+                .accessible_name(name);
+            places::note(ui.ctx(), format!("fit {name}").to_lowercase(), slider.rect);
+        });
+        ui.label(RichText::new(words(*value)).size(12.5));
+    });
+}
+
+fn buttons(app: &mut App, ui: &mut Ui, targets: &[(Target, String)], commands: &mut Vec<Command>) {
+    let palette = theme::palette(ui.visuals());
+    let can_undo = app.work.session.can_undo();
+    let fitting = &mut app.fitting;
+    ui.horizontal(|ui| {
+        let running = fitting.is_running();
+        let (text, command) = if running {
+            ("Stop", Command::StopFit)
+        } else {
+            ("Start", Command::StartFit)
+        };
+        let ready = running || (fitting.has_data() && !targets.is_empty());
+        let label = RichText::new(text).color(palette.on_accent);
+        let button = Button::new(label).fill(palette.accent);
+        let button = ui.add_enabled(ready, button);
+        places::note(ui.ctx(), "fit start", button.rect);
+        if button.clicked() {
+            commands.push(command);
+        }
+        let back = ui.add_enabled(
+            !running && fitting.last.is_some() && can_undo,
+            Button::new("Take back"),
+        );
+        places::note(ui.ctx(), "fit back", back.rect);
+        if back.clicked() {
+            fitting.last = None;
+            fitting.residuals.clear();
+            commands.push(Command::Undo);
+        }
+        let align = ui
+            .checkbox(
+                &mut fitting.settings.align,
+                RichText::new("turn and move first").size(12.5),
+            )
+            .on_hover_text("Brings the whole mesh near the points before it is deformed");
+        places::note(ui.ctx(), "fit align", align.rect);
+    });
+}
+
+fn progress(fitting: &Fitting, ui: &mut Ui) {
+    let palette = theme::palette(ui.visuals());
+    let mut words = Vec::new();
+    if let Some(last) = &fitting.last {
+        words.push(format!(
+            "iteration {} · residual {:.3e} · {:.0} % outliers",
+            last.iteration,
+            last.residual,
+            100.0 * last.outliers
+        ));
+    } else if fitting.is_running() {
+        words.push(String::from("Preparing"));
+    }
+    let bad = match &fitting.said {
+        Some((text, bad)) => {
+            words.push(text.clone());
+            *bad
+        }
+        None => false,
+    };
+    if !words.is_empty() {
+        let colour = if bad { palette.error } else { palette.text };
+        let label = ui.label(RichText::new(words.join(" · ")).size(12.5).color(colour));
+        places::note(ui.ctx(), "fit words", label.rect);
+    }
+    if fitting.residuals.len() > 1 {
+        let size = vec2(ui.available_width(), PLOT);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        places::note(ui.ctx(), "fit plot", rect);
+        plot(ui.painter(), rect, &fitting.residuals, palette);
+    }
+}
+
+/// The residuals of all iterations, to the logarithm.
+fn plot(painter: &Painter, rect: Rect, residuals: &[f64], palette: &theme::Palette) {
+    painter.rect_filled(rect, 6.0, palette.paper);
+    let log = |value: f64| libm::log10(value.max(1e-300));
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in residuals {
+        low = low.min(log(*value));
+        high = high.max(log(*value));
+    }
+    high = high.max(low + 0.3);
+    let inner = rect.shrink2(vec2(10.0, 10.0));
+    let last = (residuals.len() - 1) as f32;
+    let place = |(i, value): (usize, &f64)| {
+        let share = ((log(*value) - low) / (high - low)) as f32;
+        pos2(
+            inner.left() + inner.width() * i as f32 / last,
+            inner.bottom() - inner.height() * share,
+        )
+    };
+    let line: Vec<_> = residuals.iter().enumerate().map(place).collect();
+    let end = line[line.len() - 1];
+    painter.line(line, Stroke::new(2.0, palette.accent));
+    painter.circle_filled(end, 3.5, palette.accent);
+    let font = egui::FontId::proportional(11.0);
+    let text = |value: f64| format!("{:.1e}", libm::exp(value * std::f64::consts::LN_10));
+    let corner = inner.right_top() - vec2(0.0, 4.0);
+    painter.text(
+        corner,
+        egui::Align2::RIGHT_TOP,
+        format!("residual {} to {}", text(high), text(low)),
+        font,
+        palette.weak,
+    );
+}
+
+/// Draws measured points over the picture.
+pub fn points(fitting: &Fitting, painter: &Painter, sight: &crate::hands::Sight, rect: Rect) {
+    for point in fitting.points() {
+        if let Some(at) = sight.screen(point).filter(|at| rect.contains(*at)) {
+            let square = Rect::from_center_size(at, Vec2::splat(2.2));
+            painter.rect_filled(square, 0.0, Color32::from_rgb(90, 200, 255));
+        }
+    }
+}

@@ -1,0 +1,730 @@
+//! Fitting a mesh of the work to measured points and outlines, in the tools worker.
+//!
+//! The result is text: the `deform` of the mesh is written, or written anew, while the fit goes on, all as one undo step.
+//! Measured files are kept here, not in the work, until the page is closed.
+
+use crate::report;
+use crate::session::Session;
+use fit::{Kind, Observations, Options};
+use glam::DVec3;
+use pool::{ToolEvent, Tools};
+use rats::Deform;
+use scene::{Form, Origin, Shape};
+use std::ops::Range;
+use tools::{Controls, FitJob, FitStep, Job, Output};
+
+/// Measured files that are kept.
+pub const MOST_FILES: usize = 8;
+/// Seconds between changes of the text, for small meshes and for those of more than [`LARGE`] triangles.
+const BETWEEN: [f64; 2] = [0.25, 3.0];
+const LARGE: usize = 8000;
+/// Points that are drawn over the picture.
+const DRAWN: usize = 2500;
+
+/// A measured file.
+#[derive(Debug)]
+pub struct Measured {
+    /// Its name.
+    pub name: String,
+    /// Its points or lines of sight, once they are read.
+    pub found: Option<Observations>,
+    /// The job that reads it.
+    id: u64,
+}
+
+impl Measured {
+    /// Its content in a few words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        match &self.found {
+            None => String::from("reading"),
+            Some(found) if found.points.is_empty() => {
+                format!("{} lines of sight", found.sights.len())
+            }
+            Some(found) => format!("{} points", found.points.len()),
+        }
+    }
+}
+
+/// What a fit can move.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// The control points of a `deform`, by its place in the compiled text's list.
+    Deform(usize),
+    /// A `mesh` command, which gets an automatic cage.
+    Mesh(Origin),
+}
+
+/// How the mesh is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Seen {
+    /// By its nearest facet.
+    Explicit,
+    /// As balls.
+    Spherical,
+    /// As shells.
+    #[default]
+    Triangular,
+}
+
+/// What the user has set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// How the mesh is seen.
+    pub seen: Seen,
+    /// Decimal logarithm of the smoothness's weight.
+    pub smooth: f64,
+    /// Weight of outlines.
+    pub outlines: f64,
+    /// Control points of an automatic cage.
+    pub count: u32,
+    /// Whether the mesh is turned and moved first.
+    pub align: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            seen: Seen::default(),
+            smooth: -1.7,
+            outlines: 1.0,
+            count: 60,
+            align: false,
+        }
+    }
+}
+
+/// A fit that runs.
+struct Run {
+    id: u64,
+    file: usize,
+    /// Where its text begins.
+    start: usize,
+    /// Its text as it was written last.
+    text: String,
+    /// Before the text where there was none, and before each of its lines.
+    lead: &'static str,
+    indent: String,
+    /// The name of the object, with a space before it.
+    name: String,
+    waiting: Option<FitStep>,
+    written: f64,
+    between: f64,
+    /// Whether it has changed the text, so that the undo step is open.
+    is_held: bool,
+    /// Whether the worker is done with it.
+    done: bool,
+}
+
+/// The panel's state and the fit that runs.
+pub struct Fitting {
+    tools: Tools,
+    /// Whether the panel is shown.
+    pub open: bool,
+    /// Measured files.
+    pub files: Vec<Measured>,
+    /// What the user has set.
+    pub settings: Settings,
+    /// What is to be moved.
+    pub target: Option<Target>,
+    /// Residuals of the iterations of the last fit.
+    pub residuals: Vec<f64>,
+    /// The last iteration.
+    pub last: Option<FitStep>,
+    /// What there is to say, and whether it is bad.
+    pub said: Option<(String, bool)>,
+    run: Option<Run>,
+}
+
+impl Fitting {
+    /// Fits nothing yet; the worker is started for the first job. `repaint` is called when [`Fitting::tick`] has something to
+    /// do.
+    #[must_use]
+    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
+        Self {
+            tools: Tools::new(repaint),
+            open: false,
+            files: Vec::new(),
+            settings: Settings::default(),
+            target: None,
+            residuals: Vec::new(),
+            last: None,
+            said: None,
+            run: None,
+        }
+    }
+
+    /// Another work is open: the fit ends, and the measured files stay.
+    pub fn forget(&mut self) {
+        if let Some(run) = self.run.take() {
+            self.tools.cancel(run.id);
+        }
+        self.target = None;
+        self.residuals.clear();
+        (self.last, self.said) = (None, None);
+    }
+
+    /// Whether a fit runs.
+    #[must_use]
+    pub fn is_running(&self) -> bool {
+        self.run.is_some()
+    }
+
+    /// Reads a measured file and shows the panel.
+    pub fn add(&mut self, name: String, bytes: Vec<u8>) {
+        self.open = true;
+        self.said = None;
+        self.files.retain(|file| file.name != name);
+        if self.files.len() >= MOST_FILES {
+            self.files.remove(0);
+        }
+        let job = Job::ReadMeasured {
+            name: name.clone(),
+            bytes,
+        };
+        let id = self.tools.submit(job);
+        self.files.push(Measured {
+            name,
+            found: None,
+            id,
+        });
+    }
+
+    /// Takes a measured file away.
+    pub fn remove(&mut self, index: usize) {
+        if index < self.files.len() {
+            let file = self.files.remove(index);
+            if file.found.is_none() {
+                self.tools.cancel(file.id);
+            }
+        }
+    }
+
+    /// Whether there is anything to fit to.
+    #[must_use]
+    pub fn has_data(&self) -> bool {
+        self.files.iter().any(|file| file.found.is_some())
+    }
+
+    /// Whether outlines are among the data.
+    #[must_use]
+    pub fn has_outlines(&self) -> bool {
+        let mut found = self.files.iter().filter_map(|file| file.found.as_ref());
+        found.any(|found| !found.sights.is_empty())
+    }
+
+    /// Points to draw over the picture, not too many.
+    #[must_use]
+    pub fn points(&self) -> Vec<DVec3> {
+        let found = || self.files.iter().filter_map(|file| file.found.as_ref());
+        let count: usize = found().map(|found| found.points.len()).sum();
+        let step = count.div_ceil(DRAWN).max(1);
+        let all = found().flat_map(|found| found.points.iter().copied());
+        all.step_by(step).collect()
+    }
+
+    /// What can be fitted in the text, with a label each.
+    #[must_use]
+    pub fn targets(session: &Session) -> Vec<(Target, String)> {
+        let compiled = session.compiled();
+        let files = session.project().files.len();
+        let line = |origin: Origin| {
+            let text = session.text(origin.file as usize);
+            let before = text.get(..origin.start as usize).unwrap_or_default();
+            before.matches('\n').count() + 1
+        };
+        let mut targets = Vec::new();
+        let own = |deform: &&Deform| !deform.repeated && (deform.origin.file as usize) < files;
+        for (index, deform) in compiled.deforms.iter().enumerate() {
+            if own(&deform) {
+                let count = deform.controls.len();
+                let at = line(deform.origin);
+                let label = format!("deform in line {at}, {count} control points");
+                targets.push((Target::Deform(index), label));
+            }
+        }
+        let mut seen: Vec<Origin> = Vec::new();
+        let elements = compiled.scene.elements.iter().zip(&compiled.placements);
+        for (element, placement) in elements {
+            let origin = element.origin;
+            let is_mesh = match &element.shape {
+                Shape::Triangle { .. } | Shape::Patch { .. } => true,
+                Shape::Function(function) => matches!(function.form, Form::Mesh(_)),
+                _ => false,
+            };
+            if !is_mesh || placement.repeated || seen.last() == Some(&origin) {
+                continue;
+            }
+            if seen.contains(&origin) || compiled.deforms.iter().any(|d| d.of.contains(&origin)) {
+                continue;
+            }
+            let text = session.text(origin.file as usize);
+            let command = text.get(origin.start as usize..origin.end as usize);
+            let mut words = command.unwrap_or_default().split_whitespace();
+            if words.next().is_some_and(|w| w.eq_ignore_ascii_case("mesh")) {
+                seen.push(origin);
+                let name = words.nth(1).unwrap_or_default();
+                let name = name.trim_end_matches([',', ';']);
+                let label = format!("mesh {name} in line {}, a new cage", line(origin));
+                targets.push((Target::Mesh(origin), label));
+            }
+        }
+        targets
+    }
+
+    /// Begins the fit of what is chosen.
+    pub fn start(&mut self, session: &Session, now: f64) {
+        self.stop_worker();
+        self.residuals.clear();
+        (self.last, self.said) = (None, None);
+        if let Err(trouble) = self.try_start(session, now) {
+            self.said = Some((trouble, true));
+        }
+    }
+
+    fn try_start(&mut self, session: &Session, now: f64) -> Result<(), String> {
+        if !session.is_compiled() || session.errors() > 0 {
+            return Err(String::from("The text has errors; mend them first."));
+        }
+        let targets = Self::targets(session);
+        let chosen = targets
+            .iter()
+            .map(|(target, _)| target)
+            .find(|target| Some(*target) == self.target.as_ref())
+            .or(targets.first().map(|(target, _)| target))
+            .ok_or("There is no mesh in the text: open one and write a `mesh` command.")?;
+        let mut observations = Observations::default();
+        for found in self.files.iter().filter_map(|file| file.found.as_ref()) {
+            observations.points.extend(&found.points);
+            observations.sights.extend(&found.sights);
+        }
+        if observations == Observations::default() {
+            return Err(String::from(
+                "There are no measured points: drop a .ply or .xyz file, or outlines as .json.",
+            ));
+        }
+        let (place, deform) = match chosen {
+            Target::Deform(index) => {
+                let deform = &session.compiled().deforms[*index];
+                let place = Place::of(session, deform.origin)?;
+                (place, deform.clone())
+            }
+            Target::Mesh(origin) => Place::behind(session, *origin)?,
+        };
+        let is_new = place.old.is_empty();
+        let controls = if is_new {
+            Controls::Around(self.settings.count)
+        } else {
+            let both = deform.controls.iter().map(|c| [c.place, c.way]);
+            Controls::Given(both.collect())
+        };
+        let edge = fit::mean_edge(&deform.positions, &deform.triangles);
+        let slope = 20.0 / edge.max(f64::MIN_POSITIVE);
+        let job = FitJob {
+            positions: deform.positions.to_vec(),
+            triangles: deform.triangles.to_vec(),
+            controls,
+            observations,
+            options: Options {
+                kind: match self.settings.seen {
+                    Seen::Explicit => Kind::Explicit,
+                    Seen::Spherical => Kind::Spherical,
+                    Seen::Triangular => Kind::Triangular {
+                        thickness: 0.1 / slope,
+                    },
+                },
+                slope: Some(slope),
+                smooth: libm::exp(self.settings.smooth * std::f64::consts::LN_10),
+                outlines: self.settings.outlines,
+                align: self.settings.align,
+                ..Options::default()
+            },
+        };
+        let id = self.tools.submit(Job::Fit(Box::new(job)));
+        self.run = Some(Run {
+            id,
+            file: place.file,
+            start: place.start,
+            text: place.old,
+            lead: if is_new { "\n" } else { "" },
+            indent: place.indent,
+            name: place.name,
+            waiting: None,
+            written: now,
+            between: BETWEEN[usize::from(deform.triangles.len() > LARGE)],
+            is_held: false,
+            done: false,
+        });
+        Ok(())
+    }
+
+    /// Ends the fit; what it had found stays in the text.
+    pub fn stop(&mut self, session: &mut Session, now: f64) {
+        if let Some(run) = &self.run {
+            self.tools.cancel(run.id);
+            self.write(session, now, true);
+            self.finish(session);
+            self.said = Some((String::from("Stopped."), false));
+        }
+    }
+
+    fn stop_worker(&mut self) {
+        if let Some(run) = self.run.take() {
+            self.tools.cancel(run.id);
+        }
+    }
+
+    /// Takes in what the worker has found. Returns whether the text has changed.
+    pub fn tick(&mut self, session: &mut Session, now: f64) -> bool {
+        for (id, event) in self.tools.poll() {
+            if let Some(index) = self.files.iter().position(|file| file.id == id) {
+                match event {
+                    ToolEvent::Done(Ok(Output::Measured(found))) => {
+                        self.files[index].found = Some(found);
+                    }
+                    ToolEvent::Done(Err(trouble)) => {
+                        let name = self.files.remove(index).name;
+                        self.said = Some((format!("{name}: {trouble}."), true));
+                    }
+                    _ => {}
+                }
+                continue;
+            }
+            let Some(run) = self.run.as_mut().filter(|run| run.id == id) else {
+                continue;
+            };
+            match event {
+                ToolEvent::Partial(Output::Fit(step)) => {
+                    self.residuals.push(step.residual);
+                    run.waiting = Some(step);
+                }
+                ToolEvent::Done(Ok(Output::Fit(step))) => {
+                    run.waiting = Some(step);
+                    run.done = true;
+                }
+                ToolEvent::Done(Err(trouble)) => {
+                    self.said = Some((format!("{trouble}."), true));
+                    self.finish(session);
+                    return false;
+                }
+                _ => {}
+            }
+        }
+        self.write(session, now, false)
+    }
+
+    /// Writes what has come into the text, if it is time.
+    fn write(&mut self, session: &mut Session, now: f64, at_once: bool) -> bool {
+        let Some(run) = &mut self.run else {
+            return false;
+        };
+        let due = at_once || run.done || now - run.written >= run.between;
+        let Some(step) = run.waiting.take_if(|_| due) else {
+            return false;
+        };
+        let text = run.worded(&step.text);
+        self.last = Some(step);
+        let Some(range) = run.place(session) else {
+            self.tools.cancel(run.id);
+            self.said = Some((
+                String::from("The text was changed where the fit writes, so it has stopped."),
+                true,
+            ));
+            self.finish(session);
+            return false;
+        };
+        if !run.is_held {
+            session.end_step();
+            session.hold();
+            run.is_held = true;
+        }
+        run.start = range.start;
+        let done = run.done;
+        let replaced = session.replace(run.file, range, &text, now);
+        run.text = text;
+        run.written = now;
+        if let Err(refused) = replaced {
+            self.said = Some((refused.to_string(), true));
+            self.stop_worker_keeping(session);
+        } else if done {
+            self.said = Some((String::from("Done."), false));
+            self.finish(session);
+        }
+        true
+    }
+
+    fn stop_worker_keeping(&mut self, session: &mut Session) {
+        if let Some(run) = &self.run {
+            self.tools.cancel(run.id);
+        }
+        self.finish(session);
+    }
+
+    fn finish(&mut self, session: &mut Session) {
+        if let Some(run) = self.run.take()
+            && run.is_held
+        {
+            session.release();
+            session.end_step();
+        }
+    }
+
+    /// Its state for scripts, once the panel was used.
+    #[must_use]
+    pub fn report(&self) -> Option<report::Fit> {
+        let found = self.files.iter().filter_map(|file| file.found.as_ref());
+        self.open.then(|| report::Fit {
+            running: self.is_running(),
+            iteration: self.last.as_ref().map_or(0, |last| last.iteration),
+            residual: self.last.as_ref().map_or(0.0, |last| last.residual),
+            points: found.map(|found| found.points.len()).sum(),
+            said: self.said.as_ref().map(|(text, _)| text.clone()),
+        })
+    }
+
+    /// Seconds until the text may be changed again.
+    #[must_use]
+    pub fn wait(&self, now: f64) -> Option<f64> {
+        let run = self.run.as_ref()?;
+        run.waiting.as_ref()?;
+        Some((run.written + run.between - now).max(0.0))
+    }
+}
+
+impl Run {
+    /// The lines of a step as they stand in the text.
+    fn worded(&self, lines: &str) -> String {
+        let mut text = String::from(self.lead);
+        for (i, line) in lines.trim_end().lines().enumerate() {
+            if i > 0 {
+                text.push('\n');
+            }
+            if i > 0 || !self.lead.is_empty() {
+                text += &self.indent;
+            }
+            let mut words = line.splitn(2, ' ');
+            match (words.next(), words.next()) {
+                (Some("deform"), Some(rest)) => text += &format!("deform{} {rest}", self.name),
+                (Some("rotate" | "translate"), _) => text += &format!("{line}{}", self.name),
+                _ => text += line,
+            }
+        }
+        text
+    }
+
+    /// Where its text is now; `None` if it is there no more, or more than once.
+    fn place(&self, session: &Session) -> Option<Range<usize>> {
+        let text = (self.file < session.project().files.len()).then(|| session.text(self.file))?;
+        let here = self.start..self.start + self.text.len();
+        if text.get(here.clone()) == Some(&self.text) {
+            return Some(here);
+        }
+        let mut found = text.match_indices(&self.text);
+        match (self.text.is_empty(), found.next(), found.next()) {
+            (false, Some((start, _)), None) => Some(start..start + self.text.len()),
+            _ => None,
+        }
+    }
+}
+
+/// Where a fit writes.
+struct Place {
+    file: usize,
+    start: usize,
+    /// The text there; empty if it is to be added.
+    old: String,
+    indent: String,
+    name: String,
+}
+
+/// The white space at the start of the line that a byte is in.
+fn indent(text: &str, at: usize) -> String {
+    let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    let line = &text[start..at];
+    line[..line.len() - line.trim_start().len()].to_owned()
+}
+
+impl Place {
+    /// Of a `deform`.
+    fn of(session: &Session, origin: Origin) -> Result<Self, String> {
+        let file = origin.file as usize;
+        let text = session.text(file);
+        let range = origin.start as usize..origin.end as usize;
+        let old = text.get(range.clone()).ok_or("The text has changed.")?;
+        let head = old.split('{').next().unwrap_or_default();
+        let name = head.split_whitespace().nth(1);
+        Ok(Self {
+            file,
+            start: range.start,
+            old: old.to_owned(),
+            indent: indent(text, range.start),
+            name: name.map(|name| format!(" {name}")).unwrap_or_default(),
+        })
+    }
+
+    /// Behind a `mesh`, with what a `deform` there would move.
+    fn behind(session: &Session, origin: Origin) -> Result<(Self, Deform), String> {
+        let file = origin.file as usize;
+        let text = session.text(file);
+        let mut start = origin.end as usize;
+        let rest = text.get(start..).ok_or("The text has changed.")?;
+        let line = rest.split('\n').next().unwrap_or_default();
+        let behind = line.trim();
+        if behind.is_empty() || behind.starts_with('#') {
+            start += line.trim_end().len();
+        }
+        let indent = indent(text, origin.start as usize);
+        let mut project = session.project().clone();
+        let trial = format!("\n{indent}deform {{ control <0 0 0> }}");
+        project.files[file].text.insert_str(start, &trial);
+        let at = (start + 1 + indent.len()) as u32;
+        let frame = f64::from(session.film_frame());
+        let compiled = rats::compile_at(&project, session.assets(), frame);
+        let found = compiled.deforms.into_iter();
+        let deform = found
+            .filter(|d| d.origin.file as usize == file && d.origin.start == at)
+            .next_back()
+            .ok_or("This mesh cannot be deformed where it stands in the text.")?;
+        let place = Self {
+            file,
+            start,
+            old: String::new(),
+            indent,
+            name: String::new(),
+        };
+        Ok((place, deform))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::asset::Asset;
+    use crate::session::Kept;
+    use rats::{File, Project};
+    use std::time::{Duration, Instant};
+
+    const TEXT: &str = "surface s, diffuse Red\nobject A\n  mesh s head.obj  # the head\nclose\n";
+
+    fn session(text: &str) -> Session {
+        let head = fit::trial::head(300);
+        let mut obj = String::new();
+        for p in &head.positions {
+            obj += &format!("v {} {} {}\n", p.x, p.y, p.z);
+        }
+        for [a, b, c] in &head.triangles {
+            obj += &format!("f {} {} {}\n", a + 1, b + 1, c + 1);
+        }
+        let kept = Kept {
+            project: Project {
+                files: vec![File {
+                    name: String::from("main.rat"),
+                    text: text.to_owned(),
+                }],
+            },
+            assets: vec![Asset {
+                name: String::from("head.obj"),
+                bytes: obj.into_bytes().into(),
+            }],
+            ..Kept::default()
+        };
+        let mut session = Session::new(kept, true);
+        session.compile();
+        assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
+        session
+    }
+
+    /// The head sheared by a tenth of its height, as an XYZ file.
+    fn cloud() -> Vec<u8> {
+        let head = fit::trial::head(300);
+        let points = fit::trial::sample(&head.positions, &head.triangles, 500, 3);
+        let line = |p: &DVec3| format!("{} {} {}\n", p.x + 0.1 * p.z, p.y, p.z);
+        points.iter().map(line).collect::<String>().into_bytes()
+    }
+
+    fn until(fitting: &mut Fitting, session: &mut Session, done: impl Fn(&Fitting) -> bool) {
+        let start = Instant::now();
+        while !done(fitting) {
+            assert!(start.elapsed() < Duration::from_secs(60));
+            fitting.tick(session, start.elapsed().as_secs_f64());
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    #[test]
+    fn fit_writes_a_deform_as_one_step_and_goes_on_from_it() {
+        let mut session = session(TEXT);
+        let mut fitting = Fitting::new(|| {});
+        fitting.settings.count = 16;
+        fitting.settings.seen = Seen::Explicit;
+        fitting.start(&session, 0.0);
+        assert!(fitting.said.take().is_some_and(|(_, bad)| bad), "no data");
+        fitting.add(String::from("cloud.xyz"), cloud());
+        until(&mut fitting, &mut session, Fitting::has_data);
+        assert_eq!(fitting.files[0].words(), "500 points");
+        let targets = Fitting::targets(&session);
+        assert_eq!(targets.len(), 1);
+        assert_eq!(targets[0].1, "mesh head.obj in line 3, a new cage");
+        fitting.start(&session, 0.0);
+        until(&mut fitting, &mut session, |fitting| !fitting.is_running());
+        assert_eq!(fitting.said, Some((String::from("Done."), false)));
+        let first = fitting.last.clone().expect("a step").residual;
+        assert!(first < 0.02, "{first}");
+        let text = session.text(0).to_owned();
+        assert!(
+            text.contains("  mesh s head.obj  # the head\n  deform {\n    control <"),
+            "{text}"
+        );
+        session.compile();
+        assert_eq!(session.errors(), 0);
+        assert_eq!(session.compiled().deforms[0].controls.len(), 16);
+        // Fitted again it begins where it was, in the same place.
+        let targets = Fitting::targets(&session);
+        assert_eq!(targets[0].1, "deform in line 4, 16 control points");
+        fitting.start(&session, 0.0);
+        until(&mut fitting, &mut session, |fitting| !fitting.is_running());
+        assert!(
+            fitting.residuals[0] < 1.5 * first,
+            "{:?}",
+            fitting.residuals
+        );
+        assert_eq!(session.text(0).matches("deform").count(), 1);
+        // Two steps back is the text of before.
+        session.undo();
+        assert_eq!(session.text(0), text);
+        session.undo();
+        assert_eq!(session.text(0), TEXT);
+    }
+
+    #[test]
+    fn changed_text_stops_the_fit_and_trouble_is_told() {
+        let mut session = session(TEXT);
+        let mut fitting = Fitting::new(|| {});
+        fitting.add(String::from("bad.xyz"), b"1 2\n".to_vec());
+        until(&mut fitting, &mut session, |fitting| fitting.said.is_some());
+        let said = fitting
+            .said
+            .take()
+            .map(|(text, _)| text)
+            .unwrap_or_default();
+        assert!(said.contains("bad.xyz: line 1"), "{said}");
+        assert!(fitting.files.is_empty());
+        fitting.add(String::from("cloud.xyz"), cloud());
+        until(&mut fitting, &mut session, Fitting::has_data);
+        fitting.start(&session, 0.0);
+        until(&mut fitting, &mut session, |fitting| fitting.last.is_some());
+        if fitting.is_running() {
+            session.set_text(0, TEXT.to_owned(), 0.0).expect("taken");
+            until(&mut fitting, &mut session, |fitting| !fitting.is_running());
+            let said = fitting
+                .said
+                .take()
+                .map(|(text, _)| text)
+                .unwrap_or_default();
+            assert!(said.contains("was changed") || said == "Done.", "{said}");
+        }
+        fitting.start(&session, 0.0);
+        fitting.stop(&mut session, 0.0);
+        assert!(!fitting.is_running());
+    }
+}

@@ -1,0 +1,160 @@
+//! The control points of a `deform` as knobs on the picture, with the cage between them.
+
+use super::knob;
+use super::sight::Sight;
+use super::{Around, stroke};
+use crate::command::Command;
+use crate::session::Session;
+use assist::handles::{self, Handle};
+use egui::{Painter, Rect, Ui, Vec2};
+use glam::DVec3;
+use rats::Deform;
+use scene::Origin;
+use std::collections::BTreeSet;
+
+/// Knobs that are shown, at most: the nearest to the eye.
+const MOST_KNOBS: usize = 240;
+
+/// The deformation whose cage is shown.
+#[derive(Default)]
+pub struct Cage {
+    /// Index in the compiled text's list.
+    chosen: Option<usize>,
+    /// The handles of a revision, and the lines between the controls.
+    made: Option<(u64, usize, Vec<Handle>)>,
+    /// The control points that `edges` are of.
+    places: Vec<DVec3>,
+    edges: Vec<[u32; 2]>,
+    drag: Option<(usize, DVec3)>,
+}
+
+fn contains(origin: Origin, file: usize, byte: usize) -> bool {
+    origin.file as usize == file && (origin.start as usize..=origin.end as usize).contains(&byte)
+}
+
+impl Cage {
+    /// Shows none.
+    pub fn let_go(&mut self) {
+        self.chosen = None;
+        self.drag = None;
+    }
+
+    /// The deformation that is shown.
+    pub fn chosen<'s>(&self, session: &'s Session) -> Option<&'s Deform> {
+        session.compiled().deforms.get(self.chosen?)
+    }
+
+    /// Chooses the deformation in which the caret is; another place of the caret lets go.
+    pub fn follow(&mut self, session: &Session, caret: Option<(usize, usize)>) {
+        let Some((file, byte)) = caret else { return };
+        let deforms = &session.compiled().deforms;
+        let found = deforms
+            .iter()
+            .position(|deform| contains(deform.origin, file, byte));
+        if found.is_none() && self.drag.is_some() {
+            return;
+        }
+        self.chosen = found;
+    }
+
+    /// Chooses the last deformation of what a command has made. Returns where it stands.
+    pub fn choose_of(&mut self, session: &Session, origin: Origin) -> Option<Origin> {
+        let deforms = &session.compiled().deforms;
+        self.chosen = deforms
+            .iter()
+            .rposition(|deform| deform.of.contains(&origin));
+        Some(deforms[self.chosen?].origin)
+    }
+
+    /// Ends a drag whose pointer is up.
+    pub fn release(&mut self, ui: &Ui, commands: &mut Vec<Command>) {
+        if self.drag.is_some() && !ui.input(|input| input.pointer.any_down()) {
+            self.drag = None;
+            commands.push(Command::Release);
+        }
+    }
+
+    /// Draws cage and knobs, and takes what is done to them.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        painter: &Painter,
+        rect: Rect,
+        sight: &Sight,
+        around: &Around<'_>,
+        commands: &mut Vec<Command>,
+    ) {
+        let session = around.session;
+        let (Some(index), Some(deform)) = (self.chosen, self.chosen(session)) else {
+            return;
+        };
+        let key = (session.revision(), index);
+        if self
+            .made
+            .as_ref()
+            .is_none_or(|made| (made.0, made.1) != key)
+        {
+            let handles = handles::cage(deform);
+            let places = deform.controls.iter().map(|control| control.place);
+            if !places.clone().eq(self.places.iter().copied()) {
+                self.places = places.collect();
+                self.edges = edges(&self.places);
+            }
+            self.made = Some((key.0, key.1, handles));
+        }
+        let Some((.., handles)) = &self.made else {
+            return;
+        };
+        for [a, b] in &self.edges {
+            let ends = [*a, *b].map(|i| handles[i as usize].place);
+            stroke(painter, sight, &ends, 0.35);
+        }
+        let mut order: Vec<usize> = (0..handles.len()).collect();
+        // The nearest last, above the others.
+        order.sort_by(|a, b| {
+            let [a, b] = [a, b].map(|i| sight.depth(handles[*i].place));
+            b.total_cmp(&a)
+        });
+        let first = order.len().saturating_sub(MOST_KNOBS);
+        for i in order.split_off(first) {
+            let handle = &handles[i];
+            let Some(at) = sight.screen(handle.place).filter(|at| rect.contains(*at)) else {
+                continue;
+            };
+            let answer = knob::show(ui, painter, rect, i, at, handle, around.touch);
+            let mut target = None;
+            if answer.begins {
+                commands.push(Command::Hold);
+                self.drag = Some((i, handle.place));
+            }
+            if let Some((held, place)) = &mut self.drag
+                && *held == i
+                && answer.pulled != Vec2::ZERO
+            {
+                *place = sight.moved(*place, answer.pulled, answer.deep);
+                target = Some(*place);
+            }
+            if answer.nudged != Vec2::ZERO {
+                target = Some(sight.moved(handle.place, answer.nudged, answer.deep));
+            }
+            let Some(target) = target else { continue };
+            let grain = sight.point(handle.place);
+            if let Some(edit) = handles::pull(session.project(), deform, i, target, grain) {
+                commands.push(Command::Replace {
+                    file: edit.file,
+                    range: edit.span,
+                    with: edit.text,
+                });
+            }
+        }
+    }
+}
+
+/// The lines of the cage.
+fn edges(controls: &[DVec3]) -> Vec<[u32; 2]> {
+    let mut edges = BTreeSet::new();
+    for [a, b, c] in fit::web(controls) {
+        edges.extend([[a, b], [b, c], [a, c]]);
+    }
+    edges.into_iter().collect()
+}
