@@ -3,7 +3,7 @@
 use crate::bench::Bench;
 use crate::contour::Grid;
 use crate::plot::{self, Axis, Plot, grip, number};
-use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
+use crate::tools::{Stage, choice, heading, reading, remark, slider};
 use egui::{CursorIcon, Rect, Stroke, Ui, vec2};
 use field::{Implicit, THRESHOLD};
 use fit::{Observations, Options, Problem};

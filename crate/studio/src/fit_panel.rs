@@ -15,7 +15,7 @@ const PLOT: f32 = 74.0;
 /// Whether there is something to fit, so that the panel is offered.
 #[must_use]
 pub fn is_offered(app: &App) -> bool {
-    app.fitting.open || !Fitting::targets(&app.work.session).is_empty()
+    app.fitting.open || !app.fitting.targets.is_empty()
 }
 
 /// The button that shows and hides the panel.
@@ -35,7 +35,7 @@ pub fn button(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
 pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     places::note(ui.ctx(), "fit panel", ui.max_rect());
-    let targets = Fitting::targets(&app.work.session);
+    let targets = app.fitting.targets.clone();
     let fitting = &mut app.fitting;
     ui.horizontal(|ui| {
         ui.label(

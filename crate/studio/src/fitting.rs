@@ -127,6 +127,9 @@ pub struct Fitting {
     pub settings: Settings,
     /// What is to be moved.
     pub target: Option<Target>,
+    /// What can be fitted in the text, with a label each, and the revision that this is of.
+    pub targets: Vec<(Target, String)>,
+    listed: Option<(u64, bool)>,
     /// Residuals of the iterations of the last fit.
     pub residuals: Vec<f64>,
     /// The last iteration.
@@ -147,6 +150,8 @@ impl Fitting {
             files: Vec::new(),
             settings: Settings::default(),
             target: None,
+            targets: Vec::new(),
+            listed: None,
             residuals: Vec::new(),
             last: None,
             said: None,
@@ -160,6 +165,7 @@ impl Fitting {
             self.tools.cancel(run.id);
         }
         self.target = None;
+        self.listed = None;
         self.residuals.clear();
         (self.last, self.said) = (None, None);
     }
@@ -376,6 +382,12 @@ impl Fitting {
 
     /// Takes in what the worker has found. Returns whether the text has changed.
     pub fn tick(&mut self, session: &mut Session, now: f64) -> bool {
+        // A scene may have a million elements, so they are not looked through at every frame.
+        let text = (session.revision(), session.is_compiled());
+        if self.listed != Some(text) && session.is_compiled() {
+            self.listed = Some(text);
+            self.targets = Self::targets(session);
+        }
         for (id, event) in self.tools.poll() {
             if let Some(index) = self.files.iter().position(|file| file.id == id) {
                 match event {
