@@ -3,7 +3,7 @@
 use crate::{Outcome, files, report, whole};
 use clap::Args;
 use mesh::{Export, Format, Level, Part, Topology, TriangleMesh};
-use mesher::{Model, ModelPart, Progress, Tolerance, Wishes, mesh_scene};
+use mesher::{Model, ModelPart, Phase, Progress, Step, Tolerance, Wishes, coat_scene, mesh_scene};
 use serde_json::{Value, json};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -45,6 +45,10 @@ pub struct Mesh {
     /// Write so many coarser levels of detail beside, as NAME-1, NAME-2 …: each has a quarter of the triangles
     #[arg(long, value_name = "N", default_value_t = 0)]
     lod: usize,
+    /// Instead of a mesh within a tolerance a quick coating of the soft elements' skeletons: closed shells that overlap, whose
+    /// edges are split where the field in their middle is off its threshold by more than B
+    #[arg(long, value_name = "B", conflicts_with_all = ["tolerance", "relative", "union", "outer", "body", "lod"])]
+    coat: Option<f64>,
     /// Threads; default: as many as the machine has cores
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -70,6 +74,9 @@ impl Mesh {
         }
         let loaded = files::load(&self.file)?;
         let clean = report::to_stderr(&loaded);
+        if let Some(bound) = self.coat {
+            return self.coat(&loaded, format, bound).map(|()| clean);
+        }
         let available = || std::thread::available_parallelism().map_or(1, usize::from);
         let wishes = Wishes {
             tolerance: self
@@ -84,7 +91,11 @@ impl Mesh {
         };
         let start = Instant::now();
         let mut progress = Bar::new();
-        let mut show = |fraction| progress.show(fraction);
+        let mut clock = Clock::new();
+        let mut show = |step: Step| {
+            clock.enter(step.phase);
+            progress.show(step.fraction)
+        };
         let model = mesh_scene(
             &loaded.compiled.scene,
             &wishes,
@@ -93,6 +104,7 @@ impl Mesh {
         progress.clear();
         let model = model.map_err(|error| format!("{}: {error}", self.file.display()))?;
         let mesh_seconds = start.elapsed().as_secs_f64();
+        let phases = clock.stop();
 
         let start = Instant::now();
         let longest = model.bounds().size().max_element();
@@ -123,14 +135,12 @@ impl Mesh {
                     "triangles": count(parts),
                     "error": error,
                 })).collect::<Vec<_>>(),
-                "files": written.iter().map(|(path, bytes)| json!({
-                    "name": path,
-                    "bytes": bytes,
-                })).collect::<Vec<_>>(),
+                "files": sizes(&written),
                 "threads": wishes.threads,
                 "seconds": {
                     "compile": loaded.compile_seconds,
                     "mesh": mesh_seconds,
+                    "phases": phases,
                     "levels": lod_seconds,
                     "write": write_seconds,
                 },
@@ -151,6 +161,58 @@ impl Mesh {
             );
         }
         Ok(clean)
+    }
+
+    /// Writes a coating of the skeletons.
+    fn coat(&self, loaded: &files::Loaded, format: Format, bound: f64) -> Result<(), String> {
+        let is_sound = bound > 0.0 && bound.is_finite();
+        if !is_sound {
+            return Err("--coat takes a positive number".into());
+        }
+        let start = Instant::now();
+        let bodies = coat_scene(&loaded.compiled.scene, bound, &mut Vec::new());
+        let seconds = start.elapsed().as_secs_f64();
+        if bodies.is_empty() {
+            return Err(format!(
+                "{}: there is no skeleton to coat: nothing is soft",
+                self.file.display()
+            ));
+        }
+        let parts = bodies.iter().map(|body| Part {
+            name: body.name.clone(),
+            mesh: body.coat.mesh.clone(),
+        });
+        let parts: Vec<Part> = parts.collect();
+        let all = parts.iter().fold(mesh::Aabb::EMPTY, |all, part| {
+            all.union(&part.mesh.bounds())
+        });
+        let millimetres = self.size / all.size().max_element();
+        let written = write(&self.output.with_extension(""), format, &parts, millimetres)?;
+        let evaluations: u64 = bodies.iter().map(|body| body.coat.evaluations).sum();
+        if self.json {
+            let summary = json!({
+                "bound": bound,
+                "millimetres": millimetres,
+                "evaluations": evaluations,
+                "parts": bodies.iter().map(|body| json!({
+                    "name": body.name,
+                    "vertices": body.coat.mesh.positions.len(),
+                    "triangles": body.coat.mesh.triangles.len(),
+                    "buried": body.coat.buried,
+                    "excess": body.coat.excess,
+                })).collect::<Vec<_>>(),
+                "files": sizes(&written),
+                "seconds": { "compile": loaded.compile_seconds, "mesh": seconds },
+            });
+            println!("{summary}");
+        } else {
+            eprintln!(
+                "{}: {} triangles, {evaluations} evaluations, {seconds:.3} s",
+                self.output.display(),
+                count(&parts),
+            );
+        }
+        Ok(())
     }
 
     /// The meshes of the file, and of those of coarser levels with their distances from the first.
@@ -201,6 +263,12 @@ fn whole_group(from: &TriangleMesh, to: &TriangleMesh) -> Vec<mesh::Group> {
         triangles: 0..to.triangles.len() as u32,
         ..group.clone()
     }]
+}
+
+/// The names of files with their sizes.
+fn sizes(written: &[(String, usize)]) -> Vec<Value> {
+    let size = |(path, bytes): &(String, usize)| json!({ "name": path, "bytes": bytes });
+    written.iter().map(size).collect()
 }
 
 fn count(parts: &[Part]) -> usize {
@@ -256,6 +324,40 @@ fn summary(part: &ModelPart) -> Value {
         "smallest_angle": mesh.smallest_angle().map(f64::to_degrees),
         "raw_triangles": part.raw_triangles,
     })
+}
+
+/// The time that each phase has taken.
+struct Clock {
+    phase: Phase,
+    since: Instant,
+    seconds: [f64; Phase::ALL.len()],
+}
+
+impl Clock {
+    fn new() -> Self {
+        Self {
+            phase: Phase::default(),
+            since: Instant::now(),
+            seconds: Default::default(),
+        }
+    }
+
+    fn enter(&mut self, phase: Phase) {
+        let now = Instant::now();
+        self.seconds[self.phase as usize] += (now - self.since).as_secs_f64();
+        (self.since, self.phase) = (now, phase);
+    }
+
+    /// The seconds by the names of the phases.
+    fn stop(mut self) -> Value {
+        self.enter(self.phase);
+        let named = Phase::ALL.iter().zip(self.seconds);
+        Value::Object(
+            named
+                .map(|(phase, s)| (phase.name().into(), json!(s)))
+                .collect(),
+        )
+    }
 }
 
 /// A line with the progress, if a person is there to see it.

@@ -113,6 +113,38 @@ pub struct Variation {
     pub step: f64,
 }
 
+impl Variation {
+    /// Bounds on the sum of two functions.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            range: self.range.plus(other.range),
+            curvature: self.curvature + other.curvature,
+            third: self.third + other.third,
+            rough: self.rough + other.rough,
+            jump: self.jump + other.jump,
+            step: self.step + other.step,
+        }
+    }
+
+    /// Bounds on a function of which no more is known than this: its second derivative may jump, and its gradient too if it has
+    /// no curvature.
+    #[must_use]
+    pub fn rough(range: Enclosure) -> Self {
+        let is_smooth = range.curvature.is_finite();
+        let curvature = if is_smooth { range.curvature } else { 0.0 };
+        Self {
+            range,
+            curvature,
+            third: 0.0,
+            rough: curvature,
+            // The gradient is not longer than the slope anywhere.
+            jump: if is_smooth { 0.0 } else { 2.0 * range.slope },
+            step: 0.0,
+        }
+    }
+}
+
 /// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
 /// outward normal is `−∇f/|∇f|`.
 ///
@@ -163,17 +195,6 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// Bounds on the whole function in a ball, which must be within that of the part, if there is one: then only the terms of
     /// the part are looked at.
     fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
-        let range = self.enclose(ball);
-        let is_smooth = range.curvature.is_finite();
-        let curvature = if is_smooth { range.curvature } else { 0.0 };
-        Variation {
-            range,
-            curvature,
-            third: 0.0,
-            rough: curvature,
-            // The gradient is not longer than the slope anywhere.
-            jump: if is_smooth { 0.0 } else { 2.0 * range.slope },
-            step: 0.0,
-        }
+        Variation::rough(self.enclose(ball))
     }
 }

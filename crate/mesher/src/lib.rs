@@ -18,7 +18,7 @@
 //! let ball = Skeleton::Point { center: DVec3::ZERO };
 //! let ball: Sum = Primitive::new(ball, &shaping, None).into_iter().collect();
 //! let domain = box_of(ball.support().expect("it has no plane"));
-//! let mut report = |_fraction| ControlFlow::Continue(());
+//! let mut report = |_step| ControlFlow::Continue(());
 //! let options = Options::new(0.01);
 //! let surface = polygonize(&ball, &domain, &options, &mut Progress::new(&mut report))?;
 //! assert!(surface.error <= 0.01 && surface.undecided.is_empty());
@@ -36,9 +36,13 @@
 //! - `surface.rs` does all that for one function ([`polygonize`]), `model.rs` for a scene ([`mesh_scene`]) with the help of
 //!   `solids.rs` (hard shapes), `level.rs` (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
 //!
+//! [`Coating`] is another kind of mesh, which follows a skeleton that is dragged: `cages.rs` has its rays, `coating.rs` their ends.
+//!
 //! Results have the same bits everywhere, whatever the number of threads.
 
+mod cages;
 mod certify;
+mod coating;
 mod forest;
 mod improve;
 mod lattice;
@@ -54,6 +58,8 @@ mod space;
 mod surface;
 mod unite;
 
-pub use model::{Model, ModelPart, Tolerance, Wishes, mesh_scene};
-pub use options::{MeshError, Options, Progress};
+pub use cages::{Cage, Spoke};
+pub use coating::{Coat, Coating};
+pub use model::{CoatedBody, Model, ModelPart, Tolerance, Wishes, coat_scene, mesh_scene};
+pub use options::{MeshError, Options, Phase, Progress, Step};
 pub use surface::{SurfaceMesh, box_of, extent, polygonize};

@@ -1,7 +1,9 @@
 //! The meshes of a scene.
 
+use crate::cages::Cage;
+use crate::coating::{Coat, Coating};
 use crate::level::QuadricFunction;
-use crate::options::{MeshError, Options, Progress};
+use crate::options::{MeshError, Options, Phase, Progress};
 use crate::paint::Paint;
 use crate::solids::{Solid, tessellate};
 use crate::surface::{SurfaceMesh as Mesh, box_of, extent, polygonize};
@@ -147,6 +149,7 @@ pub fn mesh_scene(
             &mut progress,
         )?;
     }
+    let progress = &mut progress.part(0.0, 1.0).in_phase(Phase::Solids);
     progress.at(0.85)?;
     for body in 0..scene.bodies.len() as u32 {
         let elements = plan
@@ -170,6 +173,35 @@ pub fn mesh_scene(
     }
     progress.at(1.0)?;
     Ok(model)
+}
+
+/// The coating of a body's soft surface, see [`Coating`].
+#[derive(Clone, Debug, Default)]
+pub struct CoatedBody {
+    /// The body's name.
+    pub name: String,
+    /// The mesh, with normals and colours.
+    pub coat: Coat,
+}
+
+/// Coats the skeletons of all bodies of a scene. `coatings` has one for each body, with what was found for the last scene: it is made
+/// as long as it must be.
+#[must_use]
+pub fn coat_scene(scene: &Scene, bound: f64, coatings: &mut Vec<Coating>) -> Vec<CoatedBody> {
+    let surfaces = scene.surfaces();
+    coatings.resize_with(surfaces.len(), Coating::default);
+    let coated = surfaces.iter().zip(coatings).map(|(surface, coating)| {
+        let cages = Cage::of_surface(scene, surface);
+        let mut coat = coating.update(surface.function(), &cages, &|_| bound);
+        Paint::new(scene, surface).apply(&mut coat.mesh, 1);
+        CoatedBody {
+            name: name_of(scene, surface.body(), ""),
+            coat,
+        }
+    });
+    coated
+        .filter(|body| !body.coat.mesh.triangles.is_empty())
+        .collect()
 }
 
 /// What is to be meshed.
@@ -212,14 +244,14 @@ impl<'a> Plan<'a> {
         for surface in &soft {
             let domain = match surface.function().support() {
                 Some(ball) => {
-                    let domain = box_of(ball);
+                    let all = box_of(ball);
                     let hull = if ball.radius > 0.0 {
-                        extent(surface.function(), &domain, wishes.threads, progress)?
+                        extent(surface.function(), &all, wishes.threads, progress)?
                     } else {
                         None
                     };
                     finite = finite.union(&hull.unwrap_or(Aabb::EMPTY));
-                    hull.map(|_| domain)
+                    hull.map(|hull| grown(&hull, &all))
                 }
                 None => {
                     finite = finite.union(&skeletons(scene, surface));
@@ -280,6 +312,15 @@ impl<'a> Plan<'a> {
             limits,
             tolerance,
         })
+    }
+}
+
+/// A box that is a little larger, as far as another one reaches.
+fn grown(hull: &Aabb, within: &Aabb) -> Aabb {
+    let room = 0.05 * hull.size().max_element();
+    Aabb {
+        min: (hull.min - room).max(within.min),
+        max: (hull.max + room).min(within.max),
     }
 }
 

@@ -79,20 +79,61 @@ impl fmt::Display for MeshError {
 
 impl core::error::Error for MeshError {}
 
+/// What is being done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Phase {
+    /// The search for the places where there is a surface.
+    #[default]
+    Extent,
+    /// Refinement of cells until they prove the topology.
+    Cells,
+    /// Triangles, made fewer and better.
+    Triangles,
+    /// Hard shapes, and boolean unions.
+    Solids,
+}
+
+impl Phase {
+    /// All phases, in their order.
+    pub const ALL: [Self; 4] = [Self::Extent, Self::Cells, Self::Triangles, Self::Solids];
+
+    /// Its name in lower case.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Extent => "extent",
+            Self::Cells => "cells",
+            Self::Triangles => "triangles",
+            Self::Solids => "solids",
+        }
+    }
+}
+
+/// How far a computation has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// From 0 to 1, never less than before.
+    pub fraction: f32,
+    /// What is done next.
+    pub phase: Phase,
+}
+
 /// Progress of a long computation, with the right to end it.
 pub struct Progress<'a> {
-    report: &'a mut dyn FnMut(f32) -> ControlFlow<()>,
+    report: &'a mut dyn FnMut(Step) -> ControlFlow<()>,
     from: f32,
     to: f32,
+    phase: Phase,
 }
 
 impl<'a> Progress<'a> {
-    /// Progress that is reported as a fraction from 0 to 1; a break cancels.
-    pub fn new(report: &'a mut dyn FnMut(f32) -> ControlFlow<()>) -> Self {
+    /// Progress that is reported as steps; a break cancels.
+    pub fn new(report: &'a mut dyn FnMut(Step) -> ControlFlow<()>) -> Self {
         Self {
             report,
             from: 0.0,
             to: 1.0,
+            phase: Phase::default(),
         }
     }
 
@@ -103,7 +144,14 @@ impl<'a> Progress<'a> {
             from: self.from + from * span,
             to: self.from + to * span,
             report: self.report,
+            phase: self.phase,
         }
+    }
+
+    /// The same way, on which something else is done from now on.
+    pub fn in_phase(mut self, phase: Phase) -> Self {
+        self.phase = phase;
+        self
     }
 
     /// Reports the fraction done.
@@ -112,7 +160,8 @@ impl<'a> Progress<'a> {
     /// If the caller cancels.
     pub fn at(&mut self, fraction: f32) -> Result<(), MeshError> {
         let fraction = self.from + fraction.clamp(0.0, 1.0) * (self.to - self.from);
-        match (self.report)(fraction) {
+        let phase = self.phase;
+        match (self.report)(Step { fraction, phase }) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(MeshError::Cancelled),
         }

@@ -2,6 +2,9 @@
 
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
+use manifold_rust::linalg::Vec2;
+use manifold_rust::polygon::triangulate;
+use manifold_rust::types::Polygons;
 use mesh::{Aabb, TriangleMesh};
 use scene::Shape;
 
@@ -75,13 +78,13 @@ pub fn tessellate(shape: &Shape, radius: f64, tolerance: f64, limits: &Aabb) -> 
         }
         Shape::Function(ref function) => {
             let parts = function.draft();
-            let solids = parts
-                .iter()
-                .map(|part| tessellate(part, part.radius(), tolerance, limits));
-            Solid {
-                shells: solids.flat_map(|solid| solid.shells).collect(),
-                sheets: Vec::new(),
+            let mut all = Solid::default();
+            for part in &parts {
+                let own = tessellate(part, part.radius(), tolerance, limits);
+                all.shells.extend(own.shells);
+                all.sheets.extend(own.sheets);
             }
+            all
         }
         Shape::Quadric(_) => Solid::default(),
     }
@@ -299,62 +302,73 @@ fn curve(control: &[DVec3; 4], radius: f64, tolerance: f64) -> Solid {
     }
 }
 
+/// A flat polygon with holes, as triangles.
+pub struct Face {
+    /// Unit normal.
+    pub normal: DVec3,
+    /// The outer ring, which turns left around the normal, then the holes, which turn right.
+    pub rings: Vec<Vec<DVec3>>,
+    /// Triangles between the corners of all rings, counted in their order.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Face {
+    /// The face of an outer ring and holes; `None` if it has no area.
+    pub fn new(rings: &[Vec<DVec3>]) -> Option<Self> {
+        let outer = rings.first().filter(|ring| ring.len() >= 3)?;
+        let area = |ring: &[DVec3]| -> DVec3 {
+            let pairs = ring.windows(2);
+            pairs.map(|w| (w[0] - ring[0]).cross(w[1] - ring[0])).sum()
+        };
+        let z = area(outer).try_normalize()?;
+        let x = z.any_orthonormal_vector();
+        let y = z.cross(x);
+        let rings: Vec<Vec<DVec3>> = rings
+            .iter()
+            .enumerate()
+            .filter(|(_, ring)| ring.len() >= 3)
+            .map(|(i, ring)| {
+                let mut ring = ring.clone();
+                if (area(&ring).dot(z) > 0.0) != (i == 0) {
+                    ring.reverse();
+                }
+                ring
+            })
+            .collect();
+        let corners: Vec<DVec3> = rings.iter().flatten().copied().collect();
+        // This one uses every corner of a side, also of those that lie on one line, so that prisms are closed.
+        let flat = |p: &DVec3| Vec2::new((*p - outer[0]).dot(x), (*p - outer[0]).dot(y));
+        let polygons = rings.iter().map(|ring| ring.iter().map(flat).collect());
+        let polygons: Polygons = polygons.collect();
+        let triangles = triangulate(&polygons, -1.0, true);
+        let triangles = triangles.iter().map(|t| [t.x, t.y, t.z].map(|i| i as u32));
+        Some(Self {
+            normal: z,
+            triangles: triangles.collect(),
+            rings,
+        })
+    }
+}
+
 /// A polygon with holes; a prism of twice the radius if that is not 0.
 fn prism(rings: &[Vec<DVec3>], radius: f64) -> Solid {
-    let Some(outer) = rings.first().filter(|ring| ring.len() >= 3) else {
+    let Some(Face {
+        normal,
+        rings,
+        triangles: face,
+    }) = Face::new(rings)
+    else {
         return Solid::default();
     };
-    let area = |ring: &[DVec3]| -> DVec3 {
-        let pairs = ring.windows(2);
-        pairs.map(|w| (w[0] - ring[0]).cross(w[1] - ring[0])).sum()
-    };
-    let Some(z) = area(outer).try_normalize() else {
-        return Solid::default();
-    };
-    let x = z.any_orthonormal_vector();
-    let y = z.cross(x);
-    // The outer ring turns left, holes turn right.
-    let rings: Vec<Vec<DVec3>> = rings
-        .iter()
-        .enumerate()
-        .filter(|(_, ring)| ring.len() >= 3)
-        .map(|(i, ring)| {
-            let mut ring = ring.clone();
-            if (area(&ring).dot(z) > 0.0) != (i == 0) {
-                ring.reverse();
-            }
-            ring
-        })
-        .collect();
     let corners: Vec<DVec3> = rings.iter().flatten().copied().collect();
-    let flat: Vec<[f64; 2]> = corners
-        .iter()
-        .map(|p| [(*p - outer[0]).dot(x), (*p - outer[0]).dot(y)])
-        .collect();
-    let mut holes = Vec::new();
-    let mut start = 0;
-    for ring in &rings[..rings.len() - 1] {
-        start += ring.len();
-        holes.push(start);
-    }
-    let mut indices: Vec<usize> = Vec::new();
-    earcut::Earcut::new().earcut(flat, &holes, &mut indices);
     let mut mesh = TriangleMesh::default();
-    let face = indices.chunks_exact(3).map(|t| {
-        let t = [t[0], t[1], t[2]];
-        let [a, b, c] = t.map(|i| corners[i]);
-        let is_left = (b - a).cross(c - a).dot(z) > 0.0;
-        let [a, b, c] = t.map(|i| i as u32);
-        if is_left { [a, b, c] } else { [a, c, b] }
-    });
-    let face: Vec<[u32; 3]> = face.collect();
     if radius <= 0.0 {
         mesh.positions = corners;
         mesh.triangles = face;
         return Solid::open(mesh);
     }
     let count = corners.len() as u32;
-    let lift = z * radius;
+    let lift = normal * radius;
     mesh.positions.extend(corners.iter().map(|p| *p + lift));
     mesh.positions.extend(corners.iter().map(|p| *p - lift));
     mesh.triangles.extend(&face);

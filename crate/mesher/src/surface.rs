@@ -3,7 +3,7 @@
 use crate::forest::{Forest, NONE};
 use crate::improve::Improver;
 use crate::march::march;
-use crate::options::{MeshError, Options, Progress};
+use crate::options::{MeshError, Options, Phase, Progress};
 use crate::refine;
 use crate::space::Space;
 use field::{Ball, Implicit};
@@ -106,9 +106,10 @@ pub fn polygonize(
         [coarse, tolerance],
         max_cells,
         threads,
-        &mut progress.part(0.02, 0.4),
+        &mut progress.part(0.02, 0.4).in_phase(Phase::Cells),
     )
     .map_err(too_many)?;
+    let mut progress = progress.part(0.0, 1.0).in_phase(Phase::Triangles);
     progress.at(0.4)?;
     let raw = march(&space, &lattice, threads);
     drop(lattice);

@@ -54,7 +54,9 @@ impl MeshReading {
                 ToolEvent::Done(result) => {
                     let mesh = result.and_then(|output| match output {
                         Output::Mesh(mesh) => Ok(mesh),
-                        Output::Meshed(_) => Err("the worker has answered another question".into()),
+                        Output::Meshed(_) | Output::Coated(_) => {
+                            Err("the worker has answered another question".into())
+                        }
                     });
                     rats::keep_mesh(&self.files.remove(index).asset, mesh);
                     any_read = true;

@@ -1,6 +1,6 @@
 //! Running jobs.
 
-use crate::message::{Job, MeshFacts, MeshJob, Meshed, Output};
+use crate::message::{CoatJob, Coated, Job, MeshFacts, MeshJob, Meshed, Output};
 use core::ops::ControlFlow;
 use mesh::{Export, Part, TriangleMesh};
 
@@ -44,6 +44,23 @@ pub fn run(job: Job, progress: &mut Progress<'_>) -> Result<Output, String> {
             progress.report(0.9);
             Ok(Output::Mesh(mesh))
         }
+        Job::Coat(job) => {
+            let CoatJob {
+                scene,
+                bound,
+                mut coatings,
+            } = *job;
+            let is_sound = bound > 0.0 && bound.is_finite();
+            if !is_sound {
+                return Err("the bound must be a positive number".into());
+            }
+            let bodies = mesher::coat_scene(&scene, bound, &mut coatings);
+            let parts = bodies.into_iter().map(|body| (body.name, body.coat.mesh));
+            Ok(Output::Coated(Box::new(Coated {
+                parts: parts.collect(),
+                coatings,
+            })))
+        }
         Job::Mesh(job) => mesh_scene(*job, progress).map(|meshed| Output::Meshed(Box::new(meshed))),
     }
 }
@@ -60,8 +77,8 @@ fn mesh_scene(job: MeshJob, progress: &mut Progress<'_>) -> Result<Meshed, Strin
     if !is_sound {
         return Err("the size must be a positive number of millimetres".into());
     }
-    let mut report = |fraction: f32| {
-        progress.report(0.95 * fraction);
+    let mut report = |step: mesher::Step| {
+        progress.report(0.95 * step.fraction);
         ControlFlow::Continue(())
     };
     let model = mesher::mesh_scene(&scene, &wishes, &mut mesher::Progress::new(&mut report))
@@ -181,6 +198,28 @@ mod tests {
         assert_eq!(meshed.files[0].name, "ball.glb");
         let again = mesh::read("ball.glb", &meshed.files[0].bytes).unwrap();
         assert_eq!(again.triangles.len(), meshed.facts.triangles);
+    }
+
+    #[test]
+    fn skeletons_are_coated_from_the_last_coating() {
+        let coat = |coatings, radius| {
+            let job = CoatJob {
+                scene: ball(radius).scene,
+                bound: 0.02,
+                coatings,
+            };
+            match run(Job::Coat(Box::new(job)), &mut Progress::silent()) {
+                Ok(Output::Coated(coated)) => *coated,
+                other => panic!("{other:?}"),
+            }
+        };
+        let first = coat(Vec::new(), 1.0);
+        let second = coat(first.coatings, 1.01);
+        for (coated, radius) in [(first.parts, 1.0), (second.parts, 1.01)] {
+            assert_eq!(coated.len(), 1);
+            let far = |p: &glam::DVec3| (p.length() - radius).abs() < 0.01;
+            assert!(coated[0].1.positions.iter().all(far));
+        }
     }
 
     #[test]

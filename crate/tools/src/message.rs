@@ -1,7 +1,7 @@
 //! Messages between the page and the tools worker: plain data, packed as bytes.
 
 use mesh::{ExportedFile, Format, TriangleMesh};
-use mesher::Wishes;
+use mesher::{Coating, Wishes};
 use scene::Scene;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
@@ -19,6 +19,28 @@ pub enum Job {
     },
     /// Mesh a scene.
     Mesh(Box<MeshJob>),
+    /// Coat the skeletons of a scene.
+    Coat(Box<CoatJob>),
+}
+
+/// A scene whose skeletons are to be coated, while a hand drags them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CoatJob {
+    /// The scene.
+    pub scene: Scene,
+    /// Largest |f − T| in the middle of an edge.
+    pub bound: f64,
+    /// What the last job gave, to start from; empty at first.
+    pub coatings: Vec<Coating>,
+}
+
+/// The coatings of a scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Coated {
+    /// A mesh for each body with its name, in units of the scene.
+    pub parts: Vec<(String, TriangleMesh)>,
+    /// For the next job.
+    pub coatings: Vec<Coating>,
 }
 
 /// A scene to be meshed, and what is wanted of it.
@@ -81,6 +103,8 @@ pub enum Output {
     Mesh(TriangleMesh),
     /// Of [`Job::Mesh`].
     Meshed(Box<Meshed>),
+    /// Of [`Job::Coat`].
+    Coated(Box<Coated>),
 }
 
 /// A message to the worker. Jobs run one after the other, in the order of their messages; the page
