@@ -321,6 +321,7 @@ fn summary(part: &ModelPart) -> Value {
         "error": part.error,
         "undecided": part.undecided.len(),
         "unproved": part.unproved,
+        "crossings": part.crossings,
         "smallest_angle": mesh.smallest_angle().map(f64::to_degrees),
         "raw_triangles": part.raw_triangles,
     })

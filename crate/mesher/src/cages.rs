@@ -308,7 +308,7 @@ fn chains(lines: &[[Place; 2]]) -> Vec<(Vec<Place>, bool, [End; 2])> {
     }
     let mut is_used = vec![false; lines.len()];
     let mut chains = Vec::new();
-    let mut walk = |start: usize, first: usize, is_used: &mut Vec<bool>| {
+    let walk = |start: usize, first: usize, is_used: &mut Vec<bool>| {
         let mut places = Vec::new();
         let (mut node, mut line) = (start, first);
         loop {

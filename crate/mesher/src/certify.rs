@@ -175,6 +175,23 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
     None
 }
 
+/// Whether no triangle near the middle of this one can be proved, however small: the gradient may jump there by as much as its
+/// length.
+pub fn is_hopeless(space: &Space<'_>, corners: &[Vertex; 3], tolerance: f64) -> bool {
+    let center = corners.iter().map(|v| v.position).sum::<DVec3>() / 3.0;
+    let reach = Ball {
+        center,
+        radius: tolerance,
+    };
+    let part = space.part_for(reach);
+    let Variation { jump, rough, .. } = space.variation(part, reach);
+    let jet = space.jet(part, center);
+    let steep = DVec3::from_array(jet.gradient).length();
+    // Not so for NaN.
+    let may_be_proved = steep > jump + rough * tolerance;
+    !may_be_proved
+}
+
 /// The place of the surface on a segment between two points where the function, less the threshold, has other signs:
 /// as a share of the way, between `margin` and 1 − `margin`. By false position with the slopes that were met on the way.
 pub fn root(space: &Space<'_>, [a, b]: [DVec3; 2], [at_a, at_b]: [f64; 2], margin: f64) -> Vertex {

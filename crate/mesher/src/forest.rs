@@ -31,6 +31,8 @@ pub struct Bounds {
     pub off: f64,
     /// Largest distance between the level set of that interpolant and the surface in the cell; infinite if unknown.
     pub error: f64,
+    /// Whether smaller cells would prove no more: the gradient may jump by as much as its length.
+    pub is_stuck: bool,
 }
 
 impl Bounds {
@@ -39,6 +41,7 @@ impl Bounds {
         rest: f64::INFINITY,
         off: f64::INFINITY,
         error: f64::INFINITY,
+        is_stuck: false,
     };
 }
 

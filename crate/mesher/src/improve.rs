@@ -4,7 +4,7 @@
 //! Rounds: edits that do not touch each other are chosen in an order that depends on the mesh alone, planned on several
 //! threads, and applied one after the other.
 
-use crate::certify::{Vertex, distance, project};
+use crate::certify::{Vertex, distance, is_hopeless, project};
 use crate::march::Raw;
 use crate::options::{MeshError, Progress};
 use crate::parallel::map;
@@ -18,6 +18,10 @@ const FAIR: f64 = 0.42;
 const MOST_EDGES: usize = 9;
 /// Rounds in which triangles are divided or removed until all are near the surface.
 const SETTLE_ROUNDS: usize = 24;
+/// Rounds in which every edit is tried at the triangles that are left.
+const RESCUE_ROUNDS: usize = 8;
+/// Most triangles of such a round.
+const MOST_RESCUED: usize = 500;
 /// Sine of the smallest angle below which a triangle is not divided but removed.
 const THIN: f64 = 0.25;
 /// Most rounds of one kind of edit.
@@ -231,9 +235,19 @@ impl<'a> Improver<'a> {
 
     /// Proves triangles that are not yet proved to be near the surface; divides those that are too large, and removes flat ones.
     fn settle(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
+        let (mut least, mut stalled) = (usize::MAX, 0);
         for round in 0..SETTLE_ROUNDS {
             progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
             let far = self.unproved();
+            // All kinds of remedies have been tried without much success.
+            if far.len() < least - least / 20 {
+                (least, stalled) = (far.len(), 0);
+            } else {
+                stalled += 1;
+                if stalled == 8 {
+                    break;
+                }
+            }
             let mut edits: Vec<(f64, Edit)> = far
                 .into_iter()
                 .filter_map(|f| self.remedy(f, round))
@@ -245,11 +259,62 @@ impl<'a> Improver<'a> {
                 break;
             }
         }
+        for round in 0..RESCUE_ROUNDS {
+            progress.at(round as f32 / RESCUE_ROUNDS as f32)?;
+            if self.rescue() == 0 {
+                break;
+            }
+        }
         self.unproved();
         Ok(())
     }
 
-    /// The faces that are not proved to be within the tolerance, also after another attempt.
+    /// Tries every edit at each of the faces that are left, one after the other, until one helps. Returns how many were helped.
+    fn rescue(&mut self) -> usize {
+        let mut done = 0;
+        let far = self.unproved();
+        for f in far.into_iter().take(MOST_RESCUED) {
+            let is_left = self.mesh.has_face(f) && self.errors[f.index()] > self.tolerance as f32;
+            if !is_left {
+                continue;
+            }
+            let edges: Vec<HalfEdgeId> = self.mesh.face_half_edges(f).collect();
+            let twins: Vec<HalfEdgeId> = edges.iter().map(|h| self.mesh.twin(*h)).collect();
+            let merges = edges.iter().chain(&twins).map(|h| Edit::Merge(*h));
+            let flips = edges.iter().map(|h| Edit::Flip(*h));
+            let moves = self.corners(f).map(Edit::Move);
+            let splits = edges.iter().map(|h| Edit::Split(*h));
+            let edits: Vec<Edit> = merges.chain(flips).chain(moves).chain(splits).collect();
+            self.round += 1;
+            for edit in edits {
+                if !self.is_allowed(edit) {
+                    continue;
+                }
+                if let Some(plan) = self.plan(edit)
+                    && self.apply(edit, &plan)
+                {
+                    done += 1;
+                    break;
+                }
+            }
+        }
+        done
+    }
+
+    /// Whether an edit leaves the vertices of lids where they are.
+    fn is_allowed(&self, edit: Edit) -> bool {
+        let is_fixed = |v: VertexId| self.is_fixed[v.index()];
+        match edit {
+            Edit::Collapse(h) | Edit::Merge(h) => !is_fixed(self.mesh.origin(h)),
+            Edit::Move(v) => !is_fixed(v),
+            Edit::Flip(h) | Edit::Split(h) => {
+                let [a, b, c, d] = self.diamond(h).map(is_fixed);
+                !(a && b && (c || d))
+            }
+        }
+    }
+
+    /// The faces that are not proved to be within the tolerance, also after another attempt, but might be if they were others.
     fn unproved(&mut self) -> Vec<FaceId> {
         let tolerance = self.tolerance as f32;
         let faces = self.mesh.faces();
@@ -259,12 +324,17 @@ impl<'a> Improver<'a> {
         let this = &*self;
         let proved = map(self.threads, &far, |f| {
             let corners = this.corners(*f).map(|v| this.vertices[v.index()]);
-            distance(this.space, corners.each_ref(), this.tolerance)
+            let proved = distance(this.space, corners.each_ref(), this.tolerance);
+            (
+                proved,
+                proved.is_none() && is_hopeless(this.space, &corners, this.tolerance),
+            )
         });
         let mut unproved = Vec::new();
-        for (f, proved) in far.into_iter().zip(proved) {
+        for (f, (proved, is_hopeless)) in far.into_iter().zip(proved) {
             match proved {
                 Some(distance) => self.errors[f.index()] = distance as f32,
+                None if is_hopeless => {}
                 None => unproved.push(f),
             }
         }

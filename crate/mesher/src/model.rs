@@ -13,6 +13,9 @@ use mesh::{Aabb, Topology, TriangleMesh};
 use scene::{Element, Scene, Shape, Surface};
 use serde::{Deserialize, Serialize};
 
+/// Crossings of triangles with which a search for them ends.
+const MOST_CROSSINGS: usize = 100;
+
 /// How far the mesh may be from the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Tolerance {
@@ -91,6 +94,9 @@ pub struct ModelPart {
     pub unproved: usize,
     /// Triangles before they were made fewer.
     pub raw_triangles: usize,
+    /// Pairs of triangles that cut or touch each other, a hundred at most. Where all triangles are proved there are none; else the
+    /// mesh was searched.
+    pub crossings: usize,
 }
 
 impl Model {
@@ -412,6 +418,17 @@ fn soft_part(
         Err(MeshError::Nothing) => return Ok(()),
         Err(other) => return Err(other),
     };
+    let crossings = if unproved > 0 || is_cut {
+        mesh::self_intersections(&mesh, MOST_CROSSINGS).map_or(0, |found| found.pairs.len())
+    } else {
+        0
+    };
+    if crossings > 0 {
+        model.notes.push(format!(
+            "{name}: {crossings}{} pairs of triangles cut each other, near kinks or where the surface touches itself",
+            if crossings == MOST_CROSSINGS { " or more" } else { "" }
+        ));
+    }
     Paint::new(scene, surface).apply(&mut mesh, wishes.threads);
     model.evaluations += evaluations;
     if is_cut {
@@ -442,6 +459,7 @@ fn soft_part(
         undecided,
         unproved,
         raw_triangles,
+        crossings,
     });
     Ok(())
 }
@@ -519,6 +537,7 @@ fn hard_parts<'a>(
             undecided: Vec::new(),
             unproved: 0,
             raw_triangles: 0,
+            crossings: 0,
         });
     }
     Ok(())
@@ -628,6 +647,7 @@ fn unite(model: &mut Model) -> Result<(), MeshError> {
                 .collect(),
             unproved: closed.iter().map(|part| part.unproved).sum(),
             raw_triangles: closed.iter().map(|part| part.raw_triangles).sum(),
+            crossings: 0,
         });
     }
     model.parts.extend(open);

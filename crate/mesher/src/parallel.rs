@@ -4,9 +4,9 @@
 const FEW: usize = 64;
 
 /// Calls a pure function with each item, on so many threads, and returns the results in the order of the items. With one
-/// thread (as in wasm) none is started.
+/// thread, and always in wasm, none is started.
 pub fn map<T: Sync, R: Send>(threads: usize, items: &[T], f: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    if threads <= 1 || items.len() < FEW {
+    if threads <= 1 || items.len() < FEW || cfg!(target_arch = "wasm32") {
         return items.iter().map(f).collect();
     }
     // Several chunks a thread, as their costs differ.

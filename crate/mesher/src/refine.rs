@@ -26,6 +26,9 @@ const INTERPOLATION: f64 = 5.0 / 32.0;
 /// of the mesh is at a vertex of the lattice.
 pub const NUDGE: f64 = 0.1;
 
+/// Cells are not divided below so many tolerances where the gradient jumps.
+const KINKED: f64 = 4.0;
+
 /// What was found in a cell.
 struct Look {
     side: Side,
@@ -79,6 +82,7 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
         rest: if rest.is_nan() { f64::INFINITY } else { rest },
         off,
         error: f64::INFINITY,
+        is_stuck: jump >= steep && longest <= KINKED * fine,
     };
     // Not so for NaN.
     let is_steady = steep > STEADY * rest;
@@ -86,7 +90,7 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
         bounds.error = nudged / (steep - rest);
     }
     let wanted = side == Side::Crossing && !(is_steady && bounds.error <= tolerance);
-    let split = wanted && cell.level < forest.deepest;
+    let split = wanted && cell.level < forest.deepest && !bounds.is_stuck;
     Look {
         side,
         bounds,
@@ -189,6 +193,14 @@ pub fn refine(
         )?;
         look_beside(space, tolerances, threads);
         let crossing = crossing(&space.forest);
+        // Each becomes about ten triangles, which are there before they are made fewer.
+        if crossing.len() > max_cells / 2 {
+            return Err(MeshError::TooMany {
+                limit: 0,
+                fitting: fitting(&space.forest),
+            });
+        }
+        progress.at(fraction)?;
         lattice.extend(space, &crossing, tolerances[0], threads);
         let failing = map(threads, &crossing, |node| {
             failing(space, &lattice, *node, tolerances[0])
@@ -199,7 +211,7 @@ pub fn refine(
         let mut is_done = true;
         for node in failing {
             let cell = &mut space.forest.cells[node as usize];
-            if cell.level == space.forest.deepest {
+            if cell.level == space.forest.deepest || cell.bounds.is_stuck {
                 cell.undecided = true;
             } else if cell.child == NONE {
                 is_done = false;

@@ -335,7 +335,6 @@ impl Face {
                 ring
             })
             .collect();
-        let corners: Vec<DVec3> = rings.iter().flatten().copied().collect();
         // This one uses every corner of a side, also of those that lie on one line, so that prisms are closed.
         let flat = |p: &DVec3| Vec2::new((*p - outer[0]).dot(x), (*p - outer[0]).dot(y));
         let polygons = rings.iter().map(|ring| ring.iter().map(flat).collect());

@@ -24,7 +24,7 @@ pub struct SurfaceMesh {
     /// are proved, components of the surface may be missing there that are as small as a cell; the others have the topology of
     /// the mesh.
     pub undecided: Vec<DVec3>,
-    /// Edge length of these cells, and the least that cells may have.
+    /// The least edge length that cells may have.
     pub finest: f64,
     /// Leaves that the surface may cross.
     pub cells: usize,
@@ -155,8 +155,8 @@ pub fn polygonize(
     })
 }
 
-/// Cells are at least so large, in tolerances: smaller parts of a surface are found if triangles near them cannot be proved.
-const FINEST: f64 = 4.0;
+/// Cells are at least half so large, in tolerances. Parts of a surface that are thinner have their topology, too, as far as this goes.
+const FINEST: f64 = 0.25;
 
 /// Cells may be so many times as far from the surface as the result.
 const COARSE: f64 = 16.0;

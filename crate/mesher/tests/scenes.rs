@@ -3,15 +3,17 @@
 //! By default a small sample. `SINEW_MESHES=all` meshes all examples and 200 random scenes, `SINEW_MESHES=NAME` one example, and prints a
 //! line for each: `SINEW_MESHES=all cargo test --release -p mesher --test scenes -- --nocapture`.
 
-mod common;
 #[path = "../../tracer/tests/common/mod.rs"]
-mod numbers;
+mod common;
+#[path = "common/mod.rs"]
+mod judges;
 #[path = "../../tracer/tests/common/trials.rs"]
+#[allow(dead_code, reason = "the tracer's tests use the rest")]
 mod random;
 
-use common::{Distances, Random, crossings, manifold, on_surface};
-use field::{Implicit, Kernel};
+use field::Kernel;
 use glam::DVec3;
+use judges::{Distances, Random, crossings, manifold, on_surface};
 use mesh::{Topology, TriangleMesh, self_intersections};
 use mesher::{MeshError, Model, Progress, Tolerance, Wishes, mesh_scene};
 use random::{KINDS, Kind, Trial};
@@ -363,7 +365,6 @@ fn examples() {
         if !is_wanted {
             continue;
         }
-        let _ = quick;
         let result = judge(&load(&path), care);
         wrong += usize::from(told(&name, &result));
     }

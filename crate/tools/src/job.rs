@@ -98,6 +98,7 @@ fn mesh_scene(job: MeshJob, progress: &mut Progress<'_>) -> Result<Meshed, Strin
         facts.error = facts.error.max(part.error);
         facts.undecided += part.undecided.len();
         facts.unproved += part.unproved;
+        facts.crossings += part.crossings;
         if part.is_closed {
             let growth = millimetres * millimetres * millimetres;
             facts.volume += part.mesh.signed_volume() * growth;

@@ -92,6 +92,8 @@ pub struct MeshFacts {
     pub undecided: usize,
     /// Triangles whose distance is not proved.
     pub unproved: usize,
+    /// Pairs of triangles that cut each other.
+    pub crossings: usize,
     /// Sentences for the user.
     pub notes: Vec<String>,
 }

@@ -10,6 +10,7 @@ mod fields;
 mod fused;
 mod goal;
 mod memory;
+mod meshes;
 mod models;
 mod ours;
 mod peers;
@@ -47,6 +48,8 @@ pub enum Part {
     Memory,
     /// The formulas of the fields.
     Fields,
+    /// Meshes against another mesher.
+    Meshes,
 }
 
 /// Result of a part: its rows of the table of goals, and its section of the page.
@@ -141,6 +144,7 @@ fn title(part: Part) -> &'static str {
         Part::Profile => "Where the time goes",
         Part::Memory => "Memory",
         Part::Fields => "Fields",
+        Part::Meshes => "Meshes",
     }
 }
 
@@ -155,6 +159,7 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
         Part::Profile => profile::measure(),
         Part::Memory => memory::measure(),
         Part::Fields => fields::measure().map(|piece| (Vec::new(), piece)),
+        Part::Meshes => meshes::measure(),
     };
     (title(part), result)
 }
