@@ -193,9 +193,9 @@ fn two_way(function: &dyn Implicit, mesh: &TriangleMesh) -> f64 {
     }
     let mut farthest = 0.0_f64;
     for _ in 0..SAMPLES {
-        let i = areas
-            .partition_point(|area| *area < random() * all)
-            .min(areas.len() - 1);
+        let place = random() * all;
+        let i = areas.partition_point(|area| *area < place);
+        let i = i.min(areas.len() - 1);
         let [a, b, c] = mesh.corners(i);
         let (mut u, mut v) = (random(), random());
         if u + v > 1.0 {

@@ -129,7 +129,9 @@ impl Flesh {
         flesh.margin = flesh.samples.iter().map(|s| s.radius).fold(0.0, f64::max);
         flesh.look(&places);
         for index in 0..flesh.samples.len() {
-            let overlap = flesh.depth(index, &places).map_or(0.0, |(depth, _)| depth.max(0.0));
+            let overlap = flesh
+                .depth(index, &places)
+                .map_or(0.0, |(depth, _)| depth.max(0.0));
             flesh.samples[index].overlap = overlap;
         }
         Ok(flesh)
