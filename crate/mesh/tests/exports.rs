@@ -421,3 +421,33 @@ fn names_do_no_harm() {
         }
     }
 }
+
+#[test]
+fn three_mf_is_read_by_threemf2() {
+    use threemf2::package::ThreemfPackage;
+    use threemf2::package::query::get_mesh_objects;
+    let export = export();
+    let wanted = expected(&export);
+    let file = write(&export, Format::ThreeMf).remove(0);
+    let bytes = Cursor::new(file.bytes);
+    let package =
+        ThreemfPackage::from_reader_with_memory_optimized_deserializer(bytes, true).unwrap();
+    let mut corners = Vec::new();
+    let mut colored = [0, 0];
+    for (i, object) in get_mesh_objects(&package).enumerate() {
+        let vertices: Vec<DVec3> = object.view.vertices().map(DVec3::from_array).collect();
+        for triangle in object.view.triangles() {
+            corners.push(triangle.map(|v| vertices[v as usize]));
+        }
+        let own = object.view.triangles_data();
+        colored[i] = own.filter(|data| data.iter().any(Option::is_some)).count();
+    }
+    assert_eq!(corners.len(), wanted.len());
+    for (read, wanted) in corners.iter().zip(&wanted) {
+        for (a, b) in read.iter().zip(wanted) {
+            assert!(a.distance(*b) <= 1e-6 * b.length(), "{a} {b}");
+        }
+    }
+    let counts = [0, 1].map(|i| export.parts[i].mesh.triangles.len());
+    assert_eq!(colored, counts, "each triangle has its colour or material");
+}

@@ -1,5 +1,5 @@
-//! Jobs of the tools worker, which take long and draw nothing: reading a mesh from a file, fitting one to
-//! measured points.
+//! Jobs of the tools worker, which take long and draw nothing: reading a mesh from a file, meshing a scene, coating its
+//! skeletons, fitting a mesh to measured points.
 //!
 //! The page sends a [`Request`] with the job's number; the worker runs it with [`run`] and sends
 //! [`Answer`]s: progress, and in the end the result. A job is a function of its request alone, so
@@ -13,7 +13,9 @@
 //!     name: "triangle.obj".into(),
 //!     bytes: text.into(),
 //! };
-//! let Output::Mesh(mesh) = tools::run(job, &mut Progress::silent())? else { panic!() };
+//! let Output::Mesh(mesh) = tools::run(job, &mut Progress::silent())? else {
+//!     unreachable!()
+//! };
 //! assert_eq!(mesh.triangles, [[0, 1, 2]]);
 //! # Ok::<(), String>(())
 //! ```
@@ -25,4 +27,7 @@ mod job;
 pub mod message;
 
 pub use job::{Progress, run};
-pub use message::{Answer, Controls, FitJob, FitStep, Job, Output, Request};
+pub use message::{
+    Answer, CoatJob, Coated, Controls, FitJob, FitStep, Job, MeshFacts, MeshJob, Meshed, Output,
+    Request,
+};

@@ -11,6 +11,7 @@ mod fit;
 mod fused;
 mod goal;
 mod memory;
+mod meshes;
 mod models;
 mod ours;
 mod peers;
@@ -50,6 +51,8 @@ pub enum Part {
     Fields,
     /// Meshes fitted to measurements.
     Fit,
+    /// Meshes against another mesher.
+    Meshes,
 }
 
 /// Result of a part: its rows of the table of goals, and its section of the page.
@@ -145,6 +148,7 @@ fn title(part: Part) -> &'static str {
         Part::Memory => "Memory",
         Part::Fields => "Fields",
         Part::Fit => "Fitted meshes",
+        Part::Meshes => "Meshes",
     }
 }
 
@@ -160,6 +164,7 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
         Part::Memory => memory::measure(),
         Part::Fields => fields::measure().map(|piece| (Vec::new(), piece)),
         Part::Fit => fit::measure(),
+        Part::Meshes => meshes::measure(),
     };
     (title(part), result)
 }

@@ -1,0 +1,222 @@
+//! Scenes without a surface, or with one that is not regular: what is said of them.
+
+mod common;
+
+use common::assert_manifold;
+use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
+use glam::DVec3;
+use mesh::Topology;
+use mesher::{
+    MeshError, Model, Options, Progress, Tolerance, Wishes, box_of, mesh_scene, polygonize,
+};
+use scene::{Body, Element, Flesh, Scene, Shape};
+use std::ops::ControlFlow;
+
+fn meshed(scene: &Scene, wishes: &Wishes) -> Result<Model, MeshError> {
+    let mut report = |_| ControlFlow::Continue(());
+    mesh_scene(scene, wishes, &mut Progress::new(&mut report))
+}
+
+fn coarse() -> Wishes {
+    Wishes {
+        tolerance: Tolerance::Relative(0.01),
+        ..Wishes::default()
+    }
+}
+
+fn soft(shapes: impl IntoIterator<Item = Shape>) -> Scene {
+    let mut scene = Scene::default();
+    scene.flesh.push(Flesh {
+        blobbiness: -2.0,
+        radius: 0.3,
+        ..Flesh::default()
+    });
+    scene
+        .elements
+        .extend(shapes.into_iter().map(|shape| Element {
+            flesh: Some(0),
+            ..Element::new(shape)
+        }));
+    scene
+}
+
+fn sphere(center: DVec3, radius: f64) -> Shape {
+    Shape::Sphere { center, radius }
+}
+
+fn plane(radius: f64) -> Shape {
+    Shape::Plane {
+        point: DVec3::ZERO,
+        normal: DVec3::Y,
+        radius,
+    }
+}
+
+#[test]
+fn nothing_and_planes_alone_are_told_in_words() {
+    let nothing = meshed(&soft([]), &coarse()).unwrap_err();
+    assert!(nothing.to_string().contains("no surface"), "{nothing}");
+    for scene in [soft([plane(0.3)]), {
+        let mut scene = Scene::default();
+        scene.elements.push(Element::new(plane(0.0)));
+        scene
+    }] {
+        let error = meshed(&scene, &coarse()).unwrap_err();
+        assert_eq!(error, MeshError::Unbounded);
+        assert!(error.to_string().contains("box"), "{error}");
+    }
+    // Something finite beside says how far to go.
+    let model = meshed(&soft([plane(0.3), sphere(DVec3::Y, 0.5)]), &coarse()).unwrap();
+    assert!(
+        model.notes.iter().any(|note| note.contains("cut off")),
+        "{:?}",
+        model.notes
+    );
+    assert_manifold("slab", &model.parts[0].mesh);
+}
+
+#[test]
+fn hard_planes_are_cut_and_slabs_are_closed() {
+    for (radius, is_closed) in [(0.0, false), (0.2, true)] {
+        let mut scene = Scene::default();
+        scene.elements.push(Element::new(plane(radius)));
+        scene
+            .elements
+            .push(Element::new(sphere(DVec3::Y * 3.0, 1.0)));
+        scene.elements[0].body = 0;
+        scene.bodies.push(Body::default());
+        scene.elements[1].body = scene.bodies.len() as u32 - 1;
+        let model = meshed(&scene, &coarse()).unwrap();
+        assert!(
+            model.parts.iter().any(|part| part.is_closed == is_closed),
+            "{radius}"
+        );
+        for part in model.parts.iter().filter(|part| part.is_closed) {
+            assert_manifold(&part.name, &part.mesh);
+        }
+    }
+}
+
+#[test]
+fn polygons_with_corners_on_their_sides_make_closed_prisms() {
+    let corner = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+    let outer = vec![
+        corner(0.0, 0.0),
+        corner(1.0, 0.0),
+        corner(2.0, 0.0),
+        corner(2.0, 2.0),
+        corner(1.0, 2.0),
+        corner(0.0, 2.0),
+        corner(0.0, 1.0),
+    ];
+    let hole = vec![
+        corner(0.5, 0.5),
+        corner(1.0, 0.5),
+        corner(1.5, 0.5),
+        corner(1.0, 1.5),
+    ];
+    let mut scene = Scene::default();
+    scene.elements.push(Element::new(Shape::Polygon {
+        rings: vec![outer, hole],
+        radius: 0.1,
+    }));
+    let model = meshed(&scene, &coarse()).unwrap();
+    let part = &model.parts[0];
+    assert!(part.is_closed);
+    assert_manifold("prism", &part.mesh);
+    assert_eq!(Topology::of(&part.mesh).unwrap().genera, [1]);
+    assert!((part.mesh.signed_volume() - (4.0 - 0.5) * 0.2).abs() < 1e-12);
+}
+
+#[test]
+fn surfaces_that_touch_are_told() {
+    let shaping = Shaping {
+        kernel: Kernel::Gauss,
+        radius: 1.0,
+        blobbiness: -2.0,
+        blob_scale: BlobScale::Relative,
+        strength: 1.0,
+        influence: 1e-3,
+        taper: None,
+    };
+    let pair = |apart: f64| -> Sum {
+        let ball = |x: f64| {
+            let center = DVec3::new(x, 0.1, 0.2);
+            Primitive::new(Skeleton::Point { center }, &shaping, None)
+        };
+        [ball(-apart), ball(apart)].into_iter().flatten().collect()
+    };
+    // The distance at which both meet in a point, to the last bit.
+    let (mut near, mut far) = (0.5, 3.0);
+    while f64::midpoint(near, far) > near && f64::midpoint(near, far) < far {
+        let middle = f64::midpoint(near, far);
+        let value = pair(middle).jet(DVec3::new(0.0, 0.1, 0.2)).value;
+        *(if value > THRESHOLD {
+            &mut near
+        } else {
+            &mut far
+        }) = middle;
+    }
+    let sum = pair(near);
+    let mut report = |_| ControlFlow::Continue(());
+    let domain = box_of(sum.support().unwrap());
+    let options = Options::new(0.01);
+    let surface = polygonize(&sum, &domain, &options, &mut Progress::new(&mut report)).unwrap();
+    assert_manifold("touching", &surface.mesh);
+    assert!(
+        !surface.undecided.is_empty(),
+        "nothing can be proved at the point of contact"
+    );
+    let off = |p: &DVec3| p.distance(DVec3::new(0.0, 0.1, 0.2));
+    assert!(
+        surface.undecided.iter().all(|p| off(p) < 0.1),
+        "{:?}",
+        surface.undecided
+    );
+    // A hair apart or together it is proved.
+    for (apart, shells) in [(near * 0.99, 1), (far * 1.01, 2)] {
+        let sum = pair(apart);
+        let surface = polygonize(&sum, &domain, &options, &mut Progress::new(&mut report)).unwrap();
+        assert!(
+            surface.undecided.is_empty() && surface.unproved == 0,
+            "{apart}"
+        );
+        assert_eq!(Topology::of(&surface.mesh).unwrap().genera.len(), shells);
+    }
+}
+
+#[test]
+fn union_joins_bodies_and_outer_drops_cavities() {
+    let mut scene = soft([sphere(DVec3::ZERO, 1.0), sphere(DVec3::X * 1.2, 1.0)]);
+    let second = Body {
+        name: "second".into(),
+    };
+    scene.bodies.push(second);
+    scene.elements[1].body = 1;
+    let apart = meshed(&scene, &coarse()).unwrap();
+    assert_eq!(apart.parts.len(), 2);
+    let wishes = Wishes {
+        union: true,
+        ..coarse()
+    };
+    let joined = meshed(&scene, &wishes).unwrap();
+    assert_eq!(joined.parts.len(), 1);
+    assert_manifold("union", &joined.parts[0].mesh);
+    // Two balls less the lens that both share.
+    let (d, r) = (1.2, 1.0_f64);
+    let lens = core::f64::consts::PI * (4.0 * r + d) * (2.0 * r - d) * (2.0 * r - d) / 12.0;
+    let expected = 2.0 * 4.0 / 3.0 * core::f64::consts::PI - lens;
+    let volume = joined.parts[0].mesh.signed_volume();
+    assert!(
+        (volume / expected - 1.0).abs() < 0.02,
+        "{volume} {expected}"
+    );
+
+    let wishes = Wishes {
+        body: Some("second".into()),
+        ..coarse()
+    };
+    let one = meshed(&scene, &wishes).unwrap();
+    assert_eq!(one.parts.len(), 1);
+    assert_eq!(one.parts[0].name, "second");
+}
