@@ -196,12 +196,14 @@ fn the_thesis_s_models_have_its_numbers_of_elements() {
 
 const EXAMPLES: &[&str] = &[
     "agate-shell",
+    "blends",
     "coral-crab",
     "coral-tree",
     "cowrie",
     "diamond",
     "drops",
     "fireflies",
+    "flakes",
     "fog-stones",
     "generators",
     "glass-drops",
@@ -227,8 +229,11 @@ const EXAMPLES: &[&str] = &[
     "starfish-d",
     "starfish-e",
     "starfish-f",
+    "stem-flakes",
     "still-life",
+    "time-map",
     "touching",
     "tshape",
     "urchin-patterns",
+    "wrinkles",
 ];

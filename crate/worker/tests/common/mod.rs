@@ -21,12 +21,12 @@ macro_rules! examples {
 }
 
 /// Names and texts of the examples.
-pub const EXAMPLES: [(&str, &str); 36] = examples![
-    "agate-shell" "coral-crab" "coral-tree" "cowrie" "diamond" "drops" "fireflies" "fog-stones" "generators"
-    "glass-drops" "hermite-crab" "icicle" "octopus" "pebbles" "planets" "sea-urchin" "seahorse" "seaweed"
+pub const EXAMPLES: [(&str, &str); 41] = examples![
+    "agate-shell" "blends" "coral-crab" "coral-tree" "cowrie" "diamond" "drops" "fireflies" "flakes" "fog-stones"
+    "generators" "glass-drops" "hermite-crab" "icicle" "octopus" "pebbles" "planets" "sea-urchin" "seahorse" "seaweed"
     "shell-1" "shell-2" "shell-3" "snail" "sphereflake" "spinal-starecase" "squeeze" "starfish" "starfish-a"
-    "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "still-life" "touching" "tshape"
-    "urchin-patterns"
+    "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "stem-flakes" "still-life" "time-map" "touching"
+    "tshape" "urchin-patterns" "wrinkles"
 ];
 
 macro_rules! bench {
