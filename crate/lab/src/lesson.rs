@@ -20,6 +20,8 @@ pub enum Lesson {
     Superposition,
     /// Effect of the number of Hermite spans.
     Spans,
+    /// Textures that mix where flesh does.
+    Textures,
 }
 
 /// Start of a fragment that leads to a lesson.
@@ -27,7 +29,7 @@ const PREFIX: &str = "#lab";
 
 impl Lesson {
     /// All lessons, in the order of the list.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Kernels,
         Self::Convolution,
         Self::Slice,
@@ -36,6 +38,7 @@ impl Lesson {
         Self::Chart,
         Self::Superposition,
         Self::Spans,
+        Self::Textures,
     ];
 
     /// The word in its link.
@@ -50,6 +53,7 @@ impl Lesson {
             Self::Chart => "chart",
             Self::Superposition => "superposition",
             Self::Spans => "spans",
+            Self::Textures => "textures",
         }
     }
 
@@ -84,6 +88,7 @@ impl Lesson {
             Self::Chart => "The chart",
             Self::Superposition => "Superposition",
             Self::Spans => "How many spans?",
+            Self::Textures => "Textures over blends",
         }
     }
 }

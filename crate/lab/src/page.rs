@@ -164,6 +164,7 @@ fn short(lesson: Lesson) -> &'static str {
         Lesson::Grid => "Grid",
         Lesson::Chart => "Chart",
         Lesson::Spans => "Spans",
+        Lesson::Textures => "Textures",
         _ => lesson.title(),
     }
 }
@@ -300,6 +301,7 @@ fn lesson(
         Lesson::Chart => lab.chart.show(ui, &mut bench),
         Lesson::Superposition => lab.superposition.show(ui, &mut bench),
         Lesson::Spans => lab.spans.show(ui, &mut bench),
+        Lesson::Textures => lab.textures.show(ui, &mut bench),
     }
     ui.add_space(if narrow { 24.0 } else { 8.0 });
     if wanted {
@@ -312,6 +314,7 @@ fn lesson(
             Lesson::Chart => ("Chart", lab.chart.dataset()),
             Lesson::Superposition => ("Superposition", lab.superposition.dataset()),
             Lesson::Spans => ("Cross", lab.spans.dataset()),
+            Lesson::Textures => ("Textures", lab.textures.dataset()),
         };
         commands.push(Command::OpenText {
             name: name.to_owned(),

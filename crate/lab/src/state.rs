@@ -2,7 +2,7 @@
 
 use crate::lesson::Lesson;
 use crate::pictures::Pictures;
-use crate::{chart, convolution, grid, kernels, profiles, slice, spans, superposition};
+use crate::{chart, convolution, grid, kernels, profiles, slice, spans, superposition, textures};
 use pool::Pool;
 use serde::Serialize;
 use std::cell::RefCell;
@@ -46,6 +46,7 @@ pub struct Lab {
     pub(crate) chart: chart::Chart,
     pub(crate) superposition: superposition::Superposition,
     pub(crate) spans: spans::Spans,
+    pub(crate) textures: textures::Textures,
 }
 
 impl Lab {
@@ -67,6 +68,7 @@ impl Lab {
             chart: chart::Chart::default(),
             superposition: superposition::Superposition::default(),
             spans: spans::Spans::default(),
+            textures: textures::Textures::default(),
         }
     }
 

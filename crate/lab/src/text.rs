@@ -72,6 +72,13 @@ pub fn of(lesson: Lesson) -> Words {
                         where a ray runs along a bar, and four are better. The tracer here places spans \
                         by a proven bound on their error, so there is no number to choose.",
         },
+        Lesson::Textures => Words {
+            about: "patterns that dissolve into each other",
+            sentences: "Each element has its own map of u and v, so two balls that blend have two patterns. At \
+                        a point of the surface each is looked up for itself, and the results are mixed by the \
+                        shares of the field that the elements have there. A solid texture fills space and needs \
+                        no map, so it runs through both as through one block.",
+        },
     }
 }
 

@@ -140,7 +140,11 @@ impl Bust {
                     let along = (height - level) / high;
                     (-around * around - along * along).exp()
                 };
-                out * if at == 0.0 { bump(0.0) } else { bump(at) + bump(-at) }
+                out * if at == 0.0 {
+                    bump(0.0)
+                } else {
+                    bump(at) + bump(-at)
+                }
             })
             .sum();
         [

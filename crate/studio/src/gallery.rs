@@ -4,13 +4,11 @@ use crate::command::Command;
 use crate::storage::Entry;
 use crate::theme;
 use crate::thumbnail::Thumbnail;
-use crate::{examples, places, platform};
+use crate::{examples, places};
 use egui::{
-    Align2, Button, Color32, ColorImage, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense,
-    TextEdit, TextureHandle, TextureOptions, Ui, Vec2, vec2,
+    Align2, Button, Color32, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense, TextEdit, Ui,
+    Vec2, vec2,
 };
-use std::cell::RefCell;
-use std::rc::Rc;
 
 /// The gallery's thumbnails, fetched when it is first opened, and the works.
 #[derive(Default)]
