@@ -10,6 +10,7 @@ mod fields;
 mod fused;
 mod goal;
 mod memory;
+mod mirrors;
 mod models;
 mod ours;
 mod peers;
@@ -33,6 +34,8 @@ pub enum Part {
     Speed,
     /// Soft against hard models.
     Models,
+    /// Mirrors and glass against POV-Ray, and what a lens costs.
+    Mirrors,
     /// The tracer with fused multiply-adds against that of pictures.
     Fused,
     /// The tracer as wasm against native.
@@ -134,6 +137,7 @@ fn title(part: Part) -> &'static str {
     match part {
         Part::Speed => "The tracer, one thread",
         Part::Models => "Soft and hard models",
+        Part::Mirrors => "Mirrors and glass",
         Part::Fused => "With fused multiply-adds",
         Part::Wasm => "The tracer as wasm",
         Part::Browser => "The page in a browser",
@@ -148,6 +152,7 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
     let result = match part {
         Part::Speed => peers::measure(),
         Part::Models => models::measure(),
+        Part::Mirrors => mirrors::measure(),
         Part::Fused => fused::measure().map(|piece| (Vec::new(), piece)),
         Part::Wasm => wasm::measure(),
         Part::Browser => browser::measure(),
