@@ -98,6 +98,8 @@ pub fn all() -> Vec<Swatch> {
         // Sines take radians: as many waves around as the others have.
         let scale = if wave.name.starts_with(['s', 'c']) && !matches!(wave.name, "saw" | "step") {
             "12*pi"
+        } else if matches!(wave.name, "x" | "one") {
+            "1"
         } else {
             "6"
         };
@@ -115,7 +117,7 @@ pub fn all() -> Vec<Swatch> {
         ),
         (
             "spot",
-            "light 1 0.95 0.85 spot, position -3 5 4, direction 3 -5.4 -4, angle 15, edge 5",
+            "light 1 0.95 0.85 spot, position -3 5 4, direction 3 -5.4 -4, angle 9, edge 2",
         ),
         (
             "noshadow",

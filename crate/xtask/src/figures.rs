@@ -123,13 +123,10 @@ fn hardened(text: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Draws the pictures and writes the page.
+/// Draws the pictures that are older than their datasets, and writes the page.
 pub fn figures() -> Result<()> {
     let sinew = program()?;
     let folder = root().join("www/figures");
-    if folder.exists() {
-        std::fs::remove_dir_all(&folder)?;
-    }
     std::fs::create_dir_all(&folder)?;
     let scratch = target().join("figures");
     std::fs::create_dir_all(&scratch)?;
@@ -156,15 +153,25 @@ pub fn figures() -> Result<()> {
         page += "</div>\n</section>\n";
     }
     page += "</main>\n</html>\n";
+    for entry in std::fs::read_dir(&folder)? {
+        let path = entry?.path();
+        let name = path
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned());
+        if name.is_some_and(|name| !page.contains(&format!("figures/{name}\""))) {
+            std::fs::remove_file(path)?;
+        }
+    }
     std::fs::write(root().join("www/figures.html"), page)?;
     Ok(())
 }
 
-/// Draws a part if that has not been done, and writes its place on the page.
+/// Draws a part if its picture is not newer than its dataset, and writes its place on the page.
 fn show(page: &mut String, sinew: &Path, folder: &Path, scratch: &Path, part: &Part) -> Result<()> {
     let dataset = root()
         .join("www/examples")
         .join(format!("{}.rat", part.example));
+    let original = dataset.clone();
     let (name, text, link);
     if part.hard {
         name = format!("{}-offset", part.example);
@@ -179,7 +186,7 @@ fn show(page: &mut String, sinew: &Path, folder: &Path, scratch: &Path, part: &P
         link = format!("#example={name}");
     }
     let picture = folder.join(format!("{name}.png"));
-    if !picture.exists() {
+    if !is_newer(&picture, &original) {
         draw_into(sinew, &text, &picture, BOX)?;
     }
     let (info, _) = crate::examples::read_picture(&picture)?;
@@ -193,6 +200,12 @@ fn show(page: &mut String, sinew: &Path, folder: &Path, scratch: &Path, part: &P
         link = link.trim(),
     );
     Ok(())
+}
+
+/// Whether a file is there and newer than another.
+fn is_newer(file: &Path, than: &Path) -> bool {
+    let time = |path: &Path| path.metadata().and_then(|data| data.modified()).ok();
+    matches!((time(file), time(than)), (Some(file), Some(than)) if file > than)
 }
 
 const HEAD: &str = r#"<!doctype html>
