@@ -5,7 +5,7 @@ use crate::command::Command;
 use crate::places;
 use crate::session::Session;
 use assist::Tint;
-use egui::{Rect, Ui, UiBuilder, vec2};
+use egui::{Popup, Rect, Ui, UiBuilder, vec2};
 use rats::{HotValue, hot};
 
 /// Side of a square of colour, and the space between two.
@@ -20,6 +20,8 @@ pub struct Tints {
     /// The place and the text that they are of.
     of: Option<(Place, u64)>,
     tints: Vec<Tint>,
+    /// The place of the colour that is being chosen: what is written moves the caret, perhaps into another command.
+    anchor: Option<Place>,
     dragging: bool,
 }
 
@@ -33,6 +35,10 @@ impl Tints {
         row: Rect,
         commands: &mut Vec<Command>,
     ) {
+        if !Popup::is_any_open(ui.ctx()) {
+            self.anchor = None;
+        }
+        let place = self.anchor.unwrap_or(place);
         let key = (place, session.revision());
         if self.of != Some(key) {
             self.of = Some(key);
@@ -62,6 +68,10 @@ impl Tints {
             places::note(ui.ctx(), format!("tint {index}"), rect);
             if button.changed() {
                 dragging = ui.input(|input| input.pointer.any_down());
+                self.anchor = Some(Place {
+                    byte: tint.span.start,
+                    ..place
+                });
                 let colour = bytes.map(|byte| f32::from(byte) / 255.0);
                 commands.push(Command::Replace {
                     file: place.file,
