@@ -1,42 +1,12 @@
-// What the draft's shapes share: the camera, the box that covers an element on the screen,
-// the viewing ray in the element's own coordinates, and the shading of the point it meets.
+// What the draft's shapes share: the box that covers an element on the screen, and the viewing ray in the element's own
+// coordinates.
 //
-// A shape's file is appended to this one. It defines
+// This file follows view.wgsl, and a shape's file follows this one. It defines
 //     fn meet(ray: Ray, solid: Varying) -> Hit
 // which finds the nearest point of the shape in front of the eye.
 //
-// Lengths are in *draft units*: the scene is moved and scaled so that its middle is the origin and
-// its radius 1, whatever units the author chose. Every element has its own coordinates besides, in
-// which its size is about 1, so that neither tiny nor huge elements run out of f32's digits.
-
-struct Light {
-    // w = 1: where a point light stands. w = 0: the direction towards a distant light.
-    place: vec4f,
-    colour: vec4f,
-}
-
-struct View {
-    // Unit vector to the right in the picture; w: tangent of half the horizontal angle of view.
-    right: vec4f,
-    // Unit vector up in the picture; w: tangent of half the vertical angle of view.
-    up: vec4f,
-    // Unit vector into the picture; w: distance of the nearest depth that can be told apart.
-    forward: vec4f,
-    // The eye as a sum of two numbers: its f32 value, and what that leaves out; their w: where the
-    // middle of the picture lies, as tangents to the right and up.
-    eye_high: vec4f,
-    eye_low: vec4f,
-    // x, y: one over the number of samples across and down; z: gamma; w: how many lights count.
-    picture: vec4f,
-    lights: array<Light, 8>,
-}
-
-@group(0) @binding(0) var<uniform> view: View;
-// Three texels a material: ambient and shine, diffuse, specular.
-@group(0) @binding(1) var materials: texture_2d<f32>;
-
-// As in crate/preview/src/materials.rs.
-const MATERIALS_A_ROW: u32 = 512u;
+// Every element has its own coordinates, in which its size is about 1, so that neither tiny nor huge elements run out of
+// f32's digits.
 
 struct Instance {
     @location(0) origin_high: vec3f,
@@ -168,51 +138,9 @@ fn cover_picture(@builtin(vertex_index) index: u32, instance: Instance) -> Varyi
     return vary(instance, from_eye(instance), vec4f(corner, 0.5, 1.0));
 }
 
-// Colour of the point seen: Phong's model with all lights, without shadows. `seen` leads from the
-// eye to the point, `normal` is turned to the eye.
-fn phong(material: u32, seen: vec3f, normal: vec3f) -> vec3f {
-    let texel = vec2u((material % MATERIALS_A_ROW) * 3u, material / MATERIALS_A_ROW);
-    let ambient = textureLoad(materials, texel, 0);
-    let diffuse = textureLoad(materials, texel + vec2u(1u, 0u), 0).rgb;
-    let specular = textureLoad(materials, texel + vec2u(2u, 0u), 0).rgb;
-    let shine = ambient.w;
-    let place = view.eye_high.xyz + seen;
-    let mirrored = reflect(normalize(seen), normal);
-    var colour = ambient.rgb;
-    for (var i = 0u; i < 8u; i++) {
-        if f32(i) >= view.picture.w {
-            break;
-        }
-        let light = view.lights[i];
-        let way = light.place.xyz - light.place.w * place;
-        let towards = way / max(length(way), 1e-30);
-        let slope = dot(normal, towards);
-        if slope <= 0.0 {
-            continue;
-        }
-        // No highlight away from the mirror's side, even for an exponent of 0. (And pow of
-        // nothing is undefined on a GPU.)
-        let gleam = dot(mirrored, towards);
-        let highlight = select(0.0, pow(max(gleam, 1e-20), shine), gleam > 0.0);
-        colour += light.colour.rgb * (diffuse * slope + specular * highlight);
-    }
-    return colour;
-}
-
-struct Fragment {
-    @location(0) colour: vec4f,
-    @builtin(frag_depth) depth: f32,
-}
-
 @fragment
 fn draw(solid: Varying) -> Fragment {
-    // The ray of the projection that the tracer uses too: through the middle of the sample.
-    let across = vec2f(2.0, -2.0) * (solid.position.xy * view.picture.xy) + vec2f(-1.0, 1.0);
-    let gaze = normalize(
-        view.forward.xyz
-            + (across.x * view.right.w + view.eye_high.w) * view.right.xyz
-            + (across.y * view.up.w + view.eye_low.w) * view.up.xyz,
-    );
+    let gaze = gaze_at(solid.position.xy);
     var ray: Ray;
     ray.direction = unrotate(solid.rotation, gaze);
     ray.start = dot(solid.eye.xyz, ray.direction);
@@ -228,9 +156,8 @@ fn draw(solid: Varying) -> Fragment {
     let light = phong(solid.material, distance * gaze, normal);
 
     var out: Fragment;
-    out.colour = vec4f(pow(clamp(light, vec3f(0.0), vec3f(1.0)), vec3f(1.0 / view.picture.z)), 1.0);
-    // Nearer is larger. The quotient keeps f32's full relative precision at every distance.
-    out.depth = min(view.forward.w / max(distance * dot(gaze, view.forward.xyz), 1e-30), 1.0);
+    out.colour = written(foggy(light, gaze, distance));
+    out.depth = depth_at(distance, gaze);
     return out;
 }
 

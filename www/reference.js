@@ -3,12 +3,12 @@
 const search = document.getElementById('search');
 const none = document.getElementById('none');
 const folded = (text) => text.toLowerCase();
-const entries = [...document.querySelectorAll('section, .colours span, #functions + p + table tr')].map((element) => ({
+const entries = [...document.querySelectorAll('section, .colours span, .swatches figure, #functions + p + table tr')].map((element) => ({
   element,
   name: folded(element.id || element.textContent.trim()),
   text: folded(element.textContent),
 }));
-const titles = [...document.querySelectorAll('main > h1, main > h2, main > p:not(#none), main > nav, #functions + p + table, .colours')];
+const titles = [...document.querySelectorAll('main > h1, main > h2, main > p:not(#none), main > nav, #functions + p + table, .colours, .swatches')];
 
 function find() {
   const query = folded(search.value.trim());
@@ -22,7 +22,7 @@ function find() {
   }
   // Titles would stand alone above what is left.
   for (const title of titles) {
-    title.hidden = query !== '' && ![...title.children].some((child) => !child.hidden && child.matches('span, tbody'));
+    title.hidden = query !== '' && ![...title.children].some((child) => !child.hidden && child.matches('span, tbody, figure'));
   }
   none.hidden = shown > 0;
 }

@@ -1,4 +1,4 @@
-//! Writes the examples of the reference page that make a picture, each as NAME.rat, into a folder. `cargo xtask reference`, which draws
+//! Writes the texts of which the reference page shows pictures, each as NAME.rat, into a folder. `cargo xtask reference`, which draws
 //! their pictures, asks for them.
 
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ fn main() -> std::io::Result<()> {
         eprintln!("usage: reference_texts FOLDER");
         std::process::exit(2);
     };
-    for (name, text) in assist::manual::drawn_examples() {
+    for (name, text) in assist::manual::pictured() {
         std::fs::write(folder.join(format!("{name}.rat")), text)?;
     }
     Ok(())

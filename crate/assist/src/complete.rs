@@ -35,6 +35,8 @@ pub struct Completion {
     pub insert: String,
     /// Its colour, if it is one: red, green, blue.
     pub swatch: Option<[f32; 3]>,
+    /// The address of its picture beside the page, if it has one ([`swatches`](crate::swatches)).
+    pub picture: Option<&'static str>,
 }
 
 /// Kinds of completions.
@@ -127,6 +129,7 @@ impl Offers {
             detail: detail.into(),
             insert: text.to_owned(),
             swatch: None,
+            picture: None,
         });
     }
 
@@ -228,6 +231,7 @@ impl Offers {
                 detail: described(parameter),
                 insert: format!("{}=", parameter.name),
                 swatch: None,
+                picture: None,
             });
         }
     }
@@ -251,13 +255,22 @@ impl Offers {
                     format!("{after}: {}", option.meaning)
                 };
                 self.add(option.name, CompletionKind::Option, detail);
+                self.picture(here, option);
             }
         }
     }
 
-    fn words(&mut self, list: &'static [OptionSpec]) {
+    fn words(&mut self, here: &Here<'_>, list: &'static [OptionSpec]) {
         for word in list {
             self.add(word.name, CompletionKind::Word, word.meaning);
+            self.picture(here, word);
+        }
+    }
+
+    /// Gives the last one its picture.
+    fn picture(&mut self, here: &Here<'_>, word: &OptionSpec) {
+        if let (Some(spec), Some(last)) = (here.spec, self.items.last_mut()) {
+            last.picture = crate::swatches::picture(spec.name, word.name);
         }
     }
 
@@ -286,12 +299,12 @@ impl Offers {
                 self.add("on", CompletionKind::Word, "");
                 self.add("off", CompletionKind::Word, "");
             }
-            Kind::Word(list) => self.words(list),
-            Kind::Method if part == 1 || is_strength(here) => self.words(options::WAVES),
-            Kind::Method if part == 2 => self.words(options::MAPPINGS),
+            Kind::Word(list) => self.words(here, list),
+            Kind::Method if part == 1 || is_strength(here) => self.words(here, options::WAVES),
+            Kind::Method if part == 2 => self.words(here, options::MAPPINGS),
             Kind::Method => {
-                self.words(options::SOLIDS);
-                self.words(options::WAVES);
+                self.words(here, options::SOLIDS);
+                self.words(here, options::WAVES);
                 self.images();
                 self.colours();
             }
@@ -390,6 +403,7 @@ impl Offers {
                 detail: function.meaning.to_owned(),
                 insert: format!("{}(", function.name),
                 swatch: None,
+                picture: None,
             });
         }
     }
@@ -404,6 +418,7 @@ impl Offers {
                 detail,
                 insert: name.to_owned(),
                 swatch,
+                picture: None,
             });
         }
     }

@@ -6,6 +6,7 @@ use crate::index::{Here, Index, Place, SymbolKind};
 use crate::mend::mended;
 use crate::place;
 use crate::slots::{Slot, What};
+use crate::swatches;
 use rats::commands::{CommandSpec, Group, OptionSpec};
 use rats::lexer::TokenKind;
 use rats::{Project, colours, functions};
@@ -22,6 +23,8 @@ pub struct Card {
     pub lines: Vec<String>,
     /// Its colour, if it is one.
     pub swatch: Option<[f32; 3]>,
+    /// The address of its picture beside the page, if it has one ([`swatches`](crate::swatches)).
+    pub picture: Option<&'static str>,
     /// The command whose manual explains more.
     pub command: Option<&'static str>,
 }
@@ -65,6 +68,7 @@ pub fn hover(project: &Project, file: usize, byte: usize) -> Option<Card> {
             title: word.name.to_owned(),
             lines: vec![word.meaning.to_owned()],
             swatch: None,
+            picture: None,
             command: here.spec.map(|spec| spec.name),
         }),
         _ => None,
@@ -73,6 +77,13 @@ pub fn hover(project: &Project, file: usize, byte: usize) -> Option<Card> {
         .or_else(|| value(text, span, slot, byte))
         .map(|card| Card {
             command: card.command.or(here.spec.map(|spec| spec.name)),
+            picture: match (here.spec, &slot.what) {
+                (Some(spec), What::Option) => slot
+                    .option
+                    .and_then(|option| swatches::picture(spec.name, option.name)),
+                (Some(spec), What::Word(word)) => swatches::picture(spec.name, word.name),
+                _ => None,
+            },
             ..card
         })
 }
@@ -93,6 +104,7 @@ fn command(project: &Project, here: &Here<'_>) -> Option<Card> {
             title: synopsis(here.word, &here.grammar),
             lines,
             swatch: None,
+            picture: None,
             command: None,
         });
     }
@@ -124,6 +136,7 @@ fn command(project: &Project, here: &Here<'_>) -> Option<Card> {
         title: spec.synopsis(),
         lines,
         swatch: None,
+        picture: None,
         command: Some(spec.name),
     })
 }
@@ -163,6 +176,7 @@ fn option(span: &Range<usize>, option: &'static OptionSpec, here: &Here<'_>) -> 
         title: option.synopsis(),
         lines,
         swatch: None,
+        picture: None,
         command: here.spec.map(|spec| spec.name),
     }
 }
@@ -199,6 +213,7 @@ fn named(index: &Index<'_>, file: usize, byte: usize) -> Option<Card> {
         title: format!("{} `{}`", kind.word(), index.name(occurrence)),
         lines,
         swatch,
+        picture: None,
         command: None,
     })
 }
@@ -273,6 +288,7 @@ fn value(text: &str, span: &Range<usize>, slot: &Slot<'_>, byte: usize) -> Optio
             title,
             lines,
             swatch,
+            picture: None,
             command: None,
         })
     };

@@ -37,6 +37,8 @@ pub mod rename;
 mod resolve;
 pub mod signature;
 mod slots;
+pub mod swatches;
+mod tint;
 mod walk;
 
 pub use complete::{Completion, CompletionKind, Completions, complete};
@@ -48,3 +50,4 @@ pub use hover::{Card, hover};
 pub use index::{Index, Place, Symbol, SymbolKind};
 pub use rename::{rename, rename_file};
 pub use signature::{Signature, signature};
+pub use tint::{Tint, tints};

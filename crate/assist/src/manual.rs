@@ -2,6 +2,7 @@
 
 use crate::complete::hex;
 use crate::grammar::{Grammar, Param};
+use crate::swatches;
 use rats::commands::{self, CommandSpec, GROUPS, Group, Kind, OptionSpec};
 use rats::link::{self, Shared};
 use rats::{File, Project, colours, functions, manual};
@@ -27,6 +28,15 @@ pub fn page(command: &str) -> Option<String> {
 #[must_use]
 pub fn drawn_examples() -> Vec<(&'static str, String)> {
     commands::all().filter_map(drawn_example).collect()
+}
+
+/// All texts of which the reference page shows pictures, each with the name of its picture's file without extension.
+#[must_use]
+pub fn pictured() -> Vec<(String, String)> {
+    let examples = drawn_examples().into_iter();
+    let examples = examples.map(|(name, text)| (name.to_owned(), text));
+    let swatches = swatches::all().into_iter().map(|s| (s.name, s.text));
+    examples.chain(swatches).collect()
 }
 
 /// A command's example if it compiles without errors to a scene that holds something.
@@ -62,8 +72,7 @@ pub fn reference() -> String {
         }
         page += "</p>\n";
     }
-    page +=
-        "<p><a href=\"#functions\">Functions</a> <a href=\"#colours\">Colours</a></p>\n</nav>\n";
+    page += "<p><a href=\"#functions\">Functions</a> <a href=\"#textures\">Textures</a> <a href=\"#waves\">Waves</a> <a href=\"#lights\">Light and air</a> <a href=\"#colours\">Colours</a></p>\n</nav>\n";
     page += RULES;
     for (group, list) in GROUPS {
         let _ = writeln!(
@@ -76,6 +85,9 @@ pub fn reference() -> String {
         }
     }
     functions(&mut page);
+    swatches::section(&mut page, |swatch| {
+        fragment(&swatch.name, swatch.text.clone())
+    });
     colours(&mut page);
     page += "</main>\n</html>\n";
     page
@@ -90,6 +102,7 @@ const HEAD: &str = r#"<!doctype html>
 <script type="module" src="reference.js"></script>
 <header>
 <a href="./">Sinew</a>
+<a class="aside" href="figures.html">Figures</a>
 <input type="search" id="search" placeholder="Search" aria-label="Search commands, options and colours" autocomplete="off">
 </header>
 <main>
@@ -204,8 +217,20 @@ fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
 
 /// The fragment that opens a command's example in the page.
 fn link_to(spec: &CommandSpec) -> Option<String> {
+    encoded(project_of(spec))
+}
+
+/// The fragment that opens a text in the page.
+fn fragment(name: &str, text: String) -> Option<String> {
+    let name = format!("{name}.rat");
+    encoded(Project {
+        files: vec![File { name, text }],
+    })
+}
+
+fn encoded(project: Project) -> Option<String> {
     let shared = Shared {
-        project: project_of(spec),
+        project,
         camera: None,
     };
     link::encode(&shared).ok()

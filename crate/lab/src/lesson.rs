@@ -26,6 +26,8 @@ pub enum Lesson {
     Sculpting,
     /// Implicit meshes that fit points.
     Fitting,
+    /// Textures that mix where flesh does.
+    Textures,
 }
 
 /// Start of a fragment that leads to a lesson.
@@ -45,6 +47,7 @@ impl Lesson {
         Self::Contact,
         Self::Sculpting,
         Self::Fitting,
+        Self::Textures,
     ];
 
     /// The word in its link.
@@ -62,6 +65,7 @@ impl Lesson {
             Self::Contact => "contact",
             Self::Sculpting => "sculpting",
             Self::Fitting => "fitting",
+            Self::Textures => "textures",
         }
     }
 
@@ -99,6 +103,7 @@ impl Lesson {
             Self::Contact => "Drops that do not melt",
             Self::Sculpting => "Sculpting by strokes",
             Self::Fitting => "Balls or thin shells?",
+            Self::Textures => "Textures over blends",
         }
     }
 }

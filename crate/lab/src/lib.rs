@@ -52,6 +52,7 @@ pub mod spans;
 mod state;
 pub mod superposition;
 mod text;
+pub mod textures;
 mod tools;
 
 pub use command::Command;

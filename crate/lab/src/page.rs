@@ -167,6 +167,7 @@ fn short(lesson: Lesson) -> &'static str {
         Lesson::Contact => "Contact",
         Lesson::Sculpting => "Sculpting",
         Lesson::Fitting => "Fitting",
+        Lesson::Textures => "Textures",
         _ => lesson.title(),
     }
 }
@@ -306,6 +307,7 @@ fn lesson(
         Lesson::Contact => lab.contact.show(ui, &mut bench),
         Lesson::Sculpting => lab.sculpting.show(ui, &mut bench),
         Lesson::Fitting => lab.fitting.show(ui, &mut bench),
+        Lesson::Textures => lab.textures.show(ui, &mut bench),
     }
     ui.add_space(if narrow { 24.0 } else { 8.0 });
     if wanted && open == Lesson::Sculpting {
@@ -324,6 +326,7 @@ fn lesson(
             Lesson::Contact => ("Drops", lab.contact.dataset()),
             Lesson::Sculpting => return,
             Lesson::Fitting => ("Balls and shells", lab.fitting.dataset()),
+            Lesson::Textures => ("Textures", lab.textures.dataset()),
         };
         commands.push(Command::OpenText {
             name: name.to_owned(),

@@ -4,7 +4,7 @@ use crate::lesson::Lesson;
 use crate::pictures::Pictures;
 use crate::{
     chart, contact, convolution, fitting, grid, kernels, profiles, sculpting, slice, spans,
-    superposition,
+    superposition, textures,
 };
 use pool::Pool;
 use serde::Serialize;
@@ -52,6 +52,7 @@ pub struct Lab {
     pub(crate) contact: contact::Contact,
     pub(crate) sculpting: sculpting::Sculpting,
     pub(crate) fitting: fitting::Fitting,
+    pub(crate) textures: textures::Textures,
 }
 
 impl Lab {
@@ -76,6 +77,7 @@ impl Lab {
             contact: contact::Contact::default(),
             sculpting: sculpting::Sculpting::default(),
             fitting: fitting::Fitting::default(),
+            textures: textures::Textures::default(),
         }
     }
 

@@ -94,6 +94,13 @@ pub fn of(lesson: Lesson) -> Words {
                         points, and the mesh follows its surface. Balls are as thick as facets are large, \
                         so the mesh ends where it should not; shells are as thin as you like.",
         },
+        Lesson::Textures => Words {
+            about: "patterns that dissolve into each other",
+            sentences: "Each element has its own map of u and v, so two balls that blend have two patterns. At \
+                        a point of the surface each is looked up for itself, and the results are mixed by the \
+                        shares of the field that the elements have there. A solid texture fills space and needs \
+                        no map, so it runs through both as through one block.",
+        },
     }
 }
 

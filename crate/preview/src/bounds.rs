@@ -43,6 +43,22 @@ impl Bounds {
             })
     }
 
+    /// The least height of a scene's elements along a direction; of a scene without any that have an end, that of the middle
+    /// of what its camera looks at.
+    pub(crate) fn lowest(scene: &Scene, up: DVec3) -> f64 {
+        let lows = scene
+            .elements
+            .iter()
+            .flat_map(|element| boxes(scene, element))
+            .map(|(low, high)| (low * up).min(high * up).element_sum());
+        let lowest = lows.fold(f64::INFINITY, f64::min);
+        if lowest.is_finite() {
+            lowest
+        } else {
+            scene.camera.target.dot(up)
+        }
+    }
+
     fn usable(&self) -> bool {
         self.center.is_finite() && self.radius.is_normal() && self.radius < 1e150
     }

@@ -7,8 +7,9 @@ use crate::materials;
 use crate::pipelines::Pipelines;
 use crate::solid::{Kind, Solid};
 use crate::targets::{Sampling, Targets};
-use crate::view::{Lights, Tone, View};
-use scene::{Camera, Scene, Shape};
+use crate::view::{Air, Lights, Tone, View};
+use glam::DVec3;
+use scene::{Camera, Ground, Scene, Shape};
 
 /// Elements that the draft takes; of more, the first ones are drawn.
 pub const MAX_ELEMENTS: usize = 200_000;
@@ -38,6 +39,7 @@ pub struct Draft {
     units: Units,
     lights: Lights,
     tone: Tone,
+    air: Air,
     sampling: Sampling,
     targets: Option<Targets>,
     generation: u64,
@@ -58,6 +60,7 @@ impl Draft {
             units,
             lights: Lights::new(&[], units).0,
             tone: Tone::of(&empty),
+            air: Air::new(&empty, units, 0.0),
             sampling: Sampling::default(),
             targets: None,
             generation: 0,
@@ -78,6 +81,13 @@ impl Draft {
         self.units = Bounds::of(scene).units();
         let (lights, lights_left_out) = Lights::new(&scene.lights, self.units);
         self.lights = lights;
+        let lowest = match scene.ground {
+            Some(Ground { height: None, .. }) => {
+                Bounds::lowest(scene, scene.up.normalize_or(DVec3::Y))
+            }
+            _ => 0.0,
+        };
+        self.air = Air::new(scene, self.units, lowest);
 
         let mut drawn = Drawn {
             lights_left_out,
@@ -150,6 +160,7 @@ impl Draft {
             self.units,
             self.tone,
             &self.lights,
+            self.air,
         );
         queue.write_buffer(&self.pipelines.view, 0, bytemuck::bytes_of(&view));
         let tone = [self.tone.gamma, 0.0, 0.0, 0.0];
@@ -214,6 +225,10 @@ impl Draft {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, &self.bindings, &[]);
+        if !self.air.is_plain() {
+            pass.set_pipeline(&self.pipelines.backdrop);
+            pass.draw(0..3, 0..1);
+        }
         for (kind, instances) in Kind::ALL.into_iter().zip(&self.instances) {
             pass.set_pipeline(&self.pipelines.elements[kind as usize]);
             instances.draw(&mut pass, kind.cover().1);

@@ -7,7 +7,8 @@
 //! that pass through each other meet in the right curve, and nothing is prepared when the text
 //! changes but a list of numbers. The draft and the tracer share the projection
 //! ([`scene::Camera::projection`]) and Phong's model, so the traced picture falls into place over
-//! the draft. The draft has no blending of soft elements and no shadows.
+//! the draft. Spots, sky, fog, gradients, ground and filmic tone are drawn, a texture as its mean colour. The draft has no
+//! blending of soft elements, no shadows, mirrors and glass.
 //!
 //! [`Draft`] draws; [`orbit`] moves a camera with the pointer, or to where it sees everything.
 //!

@@ -1,9 +1,11 @@
 //! The materials' colours, as a texture that the shaders look them up in. A texture, because a
 //! scene may have thousands of materials and WebGL2 has no storage buffers.
 
+use glam::DVec3;
 use scene::{Finish, Rgb, Scene};
+use texture::{Method, Target};
 
-/// Materials in a row of the texture; as in `shaders/element.wgsl`. Three texels each: 1536 wide,
+/// Materials in a row of the texture; as in `shaders/view.wgsl`. Three texels each: 1536 wide,
 /// less than the 2048 that every device can do.
 const MATERIALS_A_ROW: usize = 512;
 const TEXELS: usize = 3;
@@ -18,8 +20,9 @@ pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) 
     let mut texels = vec![[0.0f32; 4]; rows * MATERIALS_A_ROW * TEXELS];
     let all = scene.finishes[..kept].iter().chain([&fallback]);
     for (texel, material) in texels.chunks_exact_mut(TEXELS).zip(all) {
-        texel[0] = with(material.ambient, finite(material.shine).max(0.0));
-        texel[1] = with(material.diffuse, 0.0);
+        let [ambient, diffuse] = worn(material);
+        texel[0] = with(ambient, finite(material.shine).max(0.0));
+        texel[1] = with(diffuse, 0.0);
         texel[2] = with(material.specular, 0.0);
     }
     let size = wgpu::Extent3d {
@@ -51,6 +54,43 @@ pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) 
         view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
         count: kept,
     }
+}
+
+/// The ambient and diffuse colours of a material under its textures: each pattern counts as if it were half its lowest and half
+/// its highest value everywhere, which is what the draft shows of it. What is all mirror or glass would be black: it gets that
+/// share as a grey.
+fn worn(material: &Finish) -> [Rgb; 2] {
+    let mut colours = [material.ambient, material.diffuse];
+    for layer in &material.layers {
+        let targets: &[usize] = match layer.target {
+            Target::Ambient => &[0],
+            Target::Diffuse => &[1],
+            Target::Pigment => &[0, 1],
+            _ => continue,
+        };
+        let middle = match layer.method {
+            Method::Colour(colour) => colour,
+            _ => DVec3::splat(0.5),
+        };
+        let [low, high] = layer.bounds;
+        let value = (layer.times * (low + (high - low) * middle)).as_vec3();
+        for &target in targets {
+            let old = colours[target];
+            // An ambient light that is replaced keeps its share of the colour.
+            let scale = if layer.replace && target == 1 {
+                [1.0; 3]
+            } else {
+                old
+            };
+            colours[target] = [0, 1, 2].map(|i| scale[i] * value[i]);
+        }
+    }
+    let [ambient, diffuse] = colours;
+    let through = [0, 1, 2].map(|i| material.reflective[i] + material.transparent[i]);
+    [
+        ambient,
+        [0, 1, 2].map(|i| diffuse[i].max(0.35 * through[i].min(1.0))),
+    ]
 }
 
 /// The uploaded materials.

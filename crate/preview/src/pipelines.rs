@@ -26,6 +26,7 @@ impl Kind {
         macro_rules! element {
             ($name:literal) => {
                 concat!(
+                    include_str!("../../../shaders/view.wgsl"),
                     include_str!("../../../shaders/element.wgsl"),
                     include_str!(concat!("../../../shaders/", $name))
                 )
@@ -54,6 +55,8 @@ impl Kind {
 /// Pipelines and buffers that live as long as the device.
 pub(crate) struct Pipelines {
     pub(crate) elements: [wgpu::RenderPipeline; Kind::COUNT],
+    /// Draws what is behind the elements.
+    pub(crate) backdrop: wgpu::RenderPipeline,
     pub(crate) resolve: wgpu::RenderPipeline,
     /// Holds one [`View`].
     pub(crate) view: wgpu::Buffer,
@@ -79,6 +82,7 @@ impl Pipelines {
         );
         Self {
             elements: Kind::ALL.map(|kind| element_pipeline(device, kind, &element_layout)),
+            backdrop: backdrop_pipeline(device, &element_layout),
             resolve: resolve_pipeline(device, &resolve_layout),
             view: uniform_buffer(device, "view", size_of::<View>()),
             tone: uniform_buffer(device, "tone", 16),
@@ -204,6 +208,35 @@ fn element_pipeline(
             format: DEPTH,
             depth_write_enabled: Some(true),
             depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+    )
+}
+
+fn backdrop_pipeline(
+    device: &wgpu::Device,
+    bindings: &wgpu::BindGroupLayout,
+) -> wgpu::RenderPipeline {
+    pipeline(
+        device,
+        Stages {
+            label: "backdrop",
+            code: concat!(
+                include_str!("../../../shaders/view.wgsl"),
+                include_str!("../../../shaders/backdrop.wgsl")
+            ),
+            vertex: "cover",
+            fragment: "draw",
+        },
+        bindings,
+        &[],
+        None,
+        // It is drawn first, over nothing.
+        Some(wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),

@@ -4,7 +4,7 @@ use crate::instance::Units;
 use crate::materials::finite;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
-use scene::{Camera, Light, LightKind, Scene};
+use scene::{Background, Camera, Light, LightKind, Scene, Tone as Tonemap};
 
 /// Lights that the draft can take. Of more, the strongest count.
 pub const MAX_LIGHTS: usize = 8;
@@ -44,9 +44,10 @@ impl Tone {
 struct PackedLight {
     place: [f32; 4],
     colour: [f32; 4],
+    aim: [f32; 4],
 }
 
-/// The uniform `view` of `shaders/element.wgsl`.
+/// The uniform `view` of `shaders/view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct View {
@@ -57,6 +58,7 @@ pub(crate) struct View {
     eye_low: [f32; 4],
     picture: [f32; 4],
     lights: [PackedLight; MAX_LIGHTS],
+    air: Air,
 }
 
 impl View {
@@ -69,6 +71,7 @@ impl View {
         units: Units,
         tone: Tone,
         lights: &Lights,
+        air: Air,
     ) -> Self {
         let projection = camera.projection(frame[0], frame[1]);
         let axes = projection.world_from_view;
@@ -90,6 +93,7 @@ impl View {
                 lights.count as f32,
             ],
             lights: lights.packed,
+            air,
         }
     }
 }
@@ -119,12 +123,105 @@ impl Lights {
                 }
             };
             let [red, green, blue] = light.colour.map(finite);
+            // The angle at which a spot's light ends and that over which it fades, both in radians.
+            let (aim, fade) = match light.kind {
+                LightKind::Spot {
+                    direction,
+                    angle,
+                    edge,
+                    ..
+                } => {
+                    let [x, y, z] = direction.normalize_or_zero().as_vec3().to_array();
+                    let [angle, edge] =
+                        [angle, edge].map(|degrees| finite(degrees.to_radians() as f32));
+                    ([x, y, z, angle], edge)
+                }
+                _ => ([0.0; 4], 0.0),
+            };
             *slot = PackedLight {
                 place: [place[0], place[1], place[2], w],
-                colour: [red, green, blue, 0.0],
+                colour: [red, green, blue, fade],
+                aim,
             };
         }
         let count = order.len().min(MAX_LIGHTS);
         (Self { packed, count }, order.len() - count)
+    }
+}
+
+/// Colours of a background that the draft can take. Of more, the first ones and the last count.
+const MAX_COLOURS: usize = 4;
+
+/// What is around the elements: the end of the uniform `view`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct Air {
+    zenith: [f32; 4],
+    background: [[f32; 4]; MAX_COLOURS],
+    fog: [f32; 4],
+    ground: [f32; 4],
+    sky: [f32; 4],
+    horizon: [f32; 4],
+    levels: [f32; 4],
+}
+
+impl Air {
+    /// The air of a scene. `lowest` is the least height of its elements along its direction up.
+    pub(crate) fn new(scene: &Scene, units: Units, lowest: f64) -> Self {
+        let up = scene.up.normalize_or(DVec3::Y);
+        let with = |colour: scene::Rgb, w: f32| {
+            let [red, green, blue] = colour.map(finite);
+            [red, green, blue, w]
+        };
+        let level = |height: f64| finite(((height - units.center.dot(up)) / units.radius) as f32);
+        let inverse = |length: f64| {
+            let share = (units.radius / length) as f32;
+            if share.is_finite() {
+                share.max(0.0)
+            } else {
+                0.0
+            }
+        };
+        let colours = match &scene.background {
+            Background::Gradient(colours) if !colours.is_empty() => colours.clone(),
+            other => vec![other.mean()],
+        };
+        let count = colours.len().min(MAX_COLOURS);
+        let mut background = [[0.0; 4]; MAX_COLOURS];
+        for (to, colour) in background.iter_mut().zip(&colours) {
+            *to = with(*colour, 0.0);
+        }
+        if let Some(last) = colours.last() {
+            background[count - 1] = with(*last, 0.0);
+        }
+        let [x, y, z] = up.as_vec3().to_array();
+        let ground = scene.ground.map(|ground| ground.height.unwrap_or(lowest));
+        let fog = scene.fog.filter(|fog| fog.distance > 0.0);
+        let thins = fog.and_then(|fog| fog.height);
+        let is_filmic = scene.settings.tone == Tonemap::Filmic;
+        Self {
+            zenith: [x, y, z, count as f32],
+            background,
+            fog: fog.map_or([0.0; 4], |fog| with(fog.colour, inverse(fog.distance))),
+            ground: scene
+                .ground
+                .map_or([0.0; 4], |ground| with(ground.colour, 1.0)),
+            sky: scene.sky.map_or([0.0; 4], |sky| with(sky.colour, 1.0)),
+            horizon: scene.sky.map_or([0.0; 4], |sky| with(sky.horizon, 0.0)),
+            levels: [
+                ground.map_or(0.0, level),
+                level(0.0),
+                thins.map_or(0.0, inverse),
+                f32::from(u8::from(is_filmic)),
+            ],
+        }
+    }
+
+    /// Whether all of what is behind the elements has one colour, which needs no pass of its own.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.zenith[3] <= 1.0
+            && self.ground[3] == 0.0
+            && self.fog[3] == 0.0
+            && self.levels[3] == 0.0
     }
 }

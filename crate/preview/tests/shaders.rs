@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The code of each pipeline, put together as the crate does: the shapes' files are continuations
-/// of `element.wgsl`.
+/// of `element.wgsl`, and all but the last pass begin with `view.wgsl`.
 fn programs() -> BTreeMap<String, String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shaders");
     let mut files: BTreeMap<String, String> = std::fs::read_dir(&folder)
@@ -19,10 +19,13 @@ fn programs() -> BTreeMap<String, String> {
             (name, text)
         })
         .collect();
+    let view = files.remove("view.wgsl").expect("view.wgsl");
     let element = files.remove("element.wgsl").expect("element.wgsl");
     for (name, text) in &mut files {
-        if name != "resolve.wgsl" {
-            *text = format!("{element}{text}");
+        match name.as_str() {
+            "resolve.wgsl" => {}
+            "backdrop.wgsl" => *text = format!("{view}{text}"),
+            _ => *text = format!("{view}{element}{text}"),
         }
     }
     files
@@ -36,6 +39,7 @@ fn shaders_are_valid_and_translate_to_webgl2() {
         names,
         [
             "arc.wgsl",
+            "backdrop.wgsl",
             "cylinder.wgsl",
             "patch.wgsl",
             "plane.wgsl",

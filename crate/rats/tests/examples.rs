@@ -196,6 +196,7 @@ fn the_thesis_s_models_have_its_numbers_of_elements() {
 
 const EXAMPLES: &[&str] = &[
     "agate-shell",
+    "blends",
     "coral-crab",
     "coral-tree",
     "cowrie",
@@ -203,6 +204,7 @@ const EXAMPLES: &[&str] = &[
     "drops",
     "falling",
     "fireflies",
+    "flakes",
     "floppy-ears",
     "fog-stones",
     "folds",
@@ -233,8 +235,11 @@ const EXAMPLES: &[&str] = &[
     "starfish-d",
     "starfish-e",
     "starfish-f",
+    "stem-flakes",
     "still-life",
+    "time-map",
     "touching",
     "tshape",
     "urchin-patterns",
+    "wrinkles",
 ];

@@ -19,7 +19,7 @@ use crate::reading::MeshReading;
 use crate::recording::{Saving, VideoFormat};
 use crate::render::{Phase, Renderer};
 use crate::report::Shared;
-use crate::request::{Answer, Requests};
+use crate::request::{Answer, Request, Requests};
 use crate::settings::Settings;
 use crate::sliders::Sliders;
 use crate::storage::Shelf;
@@ -176,10 +176,18 @@ impl App {
         platform::set_troubled(true);
         let hash = platform::hash();
         let lesson = Lesson::of_hash(&hash);
-        // A link to a lesson carries no work.
-        let carried = if lesson.is_some() { "" } else { &hash };
+        // A link to a lesson or to an example carries no work.
+        let to_example = crate::examples::of_hash(&hash).is_some();
+        let carried = if lesson.is_some() || to_example {
+            ""
+        } else {
+            &hash
+        };
         let (work, trouble) = Work::start(parts.shelf.clone(), carried, calm);
         parts.requests.attach(ctx);
+        if to_example {
+            parts.requests.ask(Request::HashChanged);
+        }
         ctx.set_fonts(fonts::definitions());
         ctx.add_plugin(Keyboard::default());
         let settings: Settings = parts.shelf.borrow().settings();

@@ -8,6 +8,7 @@ mod hover;
 mod place;
 mod rename;
 mod signature;
+mod tint;
 
 use crate::code::Colouring;
 use crate::command::Command;
@@ -46,6 +47,7 @@ pub struct Editor {
     completions: completion::Popup,
     hover: hover::Hover,
     signature: signature::Line,
+    tints: tint::Tints,
     rename: Option<rename::Rename>,
     /// Whether a letter was typed in the last frame, which may open the completions.
     typed: bool,
@@ -144,6 +146,11 @@ impl Editor {
                 let focused = ui.memory(|memory| memory.has_focus(id()));
                 if let (Some((caret, place)), true, true) = (caret, focused, hints) {
                     self.signature.show(ui, session, place, self.line, caret);
+                }
+                if let Some((caret, place)) = caret {
+                    let right = ui.max_rect().right() - 10.0;
+                    let row = Rect::from_x_y_ranges(caret.left()..=right, caret.y_range());
+                    self.tints.show(ui, session, place, row, commands);
                 }
                 caret
             })

@@ -47,6 +47,19 @@ impl Example {
     }
 }
 
+/// The file name, without its extension, of the example that a fragment leads to, as in `#example=cowrie`; `None` if it leads to none.
+#[must_use]
+pub fn of_hash(hash: &str) -> Option<&str> {
+    hash.strip_prefix("#example=")
+}
+
+/// The place in [`ALL`] of the example with this file name, without its extension.
+#[must_use]
+pub fn find(stem: &str) -> Option<usize> {
+    let is = |example: &Example| example.name.strip_suffix(".rat") == Some(stem);
+    ALL.iter().position(is)
+}
+
 macro_rules! example {
     ($group:ident, $title:literal, $about:literal, $name:literal $(, $file:literal)*) => {
         Example {
@@ -85,7 +98,7 @@ const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 47] = [
+pub const ALL: [Example; 54] = [
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -100,6 +113,10 @@ pub const ALL: [Example; 47] = [
     example!(GROWN, "Spinal Starecase", "36 legs, wound like a stair", "spinal-starecase"),
     example!(GROWN, "Sphereflake", "balls on balls, by recursion", "sphereflake"),
     example!(GROWN, "Generators", "six commands, a line each", "generators"),
+    example!(GROWN, "Flakes on stems", "Gaussian balls on Cauchy bows", "stem-flakes"),
+    example!(GROWN, "Four flakes", "10, 91, 820 and 7,381 balls", "flakes"),
+    example!(GROWN, "A queen grows old", "1,242 triangles, smooth and wrinkled", "queen", "queen.obj"),
+    example!(GROWN, "Elder", "3,422 triangles and what age does to them", "elder", "elder.obj"),
     example!(GROWN, "Three heads", "a coarse mesh, as balls and as shells", "heads", "head.obj"),
     example!(MATTER, "Glass drops", "water, a mirror ball and a board", "glass-drops"),
     example!(MATTER, "Diamond", "a gem that takes light apart", "diamond"),
@@ -127,12 +144,15 @@ pub const ALL: [Example; 47] = [
     sculpted!("Triceratops", "it was a cylinder", "triceratops"),
     example!(FIRST, "T-shape", "two bars that melt together", "tshape"),
     example!(FIRST, "Icicle", "a first little dataset", "icicle"),
+    example!(FIRST, "Blends", "an anchor, a star and a serpent", "blends"),
+    example!(FIRST, "Wrinkles", "how the seahorse got them, step by step", "wrinkles"),
     example!(STARFISH, "Starfish A", "seven arcs, the bare skeleton", "starfish-a"),
     example!(STARFISH, "Starfish B", "soft flesh on the skeleton", "starfish-b"),
     example!(STARFISH, "Starfish C", "very fat: a wide kernel", "starfish-c"),
     example!(STARFISH, "Starfish D", "fleshy arms, firm joints", "starfish-d"),
     example!(STARFISH, "Starfish E", "skinny, webs between the arms", "starfish-e"),
     example!(STARFISH, "Starfish F", "skinny and crisp", "starfish-f"),
+    example!(STARFISH, "What it costs", "the same six, white where most work is done", "time-map"),
 ];
 
 /// Text of a new work.
@@ -208,6 +228,16 @@ mod tests {
             let largest = thumbnail.size[0].max(thumbnail.size[1]);
             assert!(largest >= 200, "{}", example.title);
         }
+    }
+
+    #[test]
+    fn links_lead_to_examples() {
+        let found = |hash: &str| of_hash(hash).map(find);
+        assert_eq!(found("#example=cowrie"), Some(Some(0)));
+        assert_eq!(found("#example=no-such"), Some(None));
+        assert_eq!(found("#example"), None);
+        assert_eq!(found("#lab=kernels"), None);
+        assert_eq!(found("#AXicq1YqzVSyUkrLz1eyMjIw"), None);
     }
 
     #[test]

@@ -3,13 +3,12 @@
 use crate::command::Command;
 use crate::storage::Entry;
 use crate::theme;
-use crate::{examples, places, platform};
+use crate::thumbnail::Thumbnail;
+use crate::{examples, places};
 use egui::{
-    Align2, Button, Color32, ColorImage, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense,
-    TextEdit, TextureHandle, TextureOptions, Ui, Vec2, vec2,
+    Align2, Button, Color32, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense, TextEdit, Ui,
+    Vec2, vec2,
 };
-use std::cell::RefCell;
-use std::rc::Rc;
 
 /// The gallery's thumbnails, fetched when it is first opened, and the works.
 #[derive(Default)]
@@ -21,47 +20,6 @@ pub struct Gallery {
     entries: Vec<Entry>,
     /// The work whose deletion waits for a second click.
     doomed: Option<String>,
-}
-
-/// The picture of an example on its way.
-enum Thumbnail {
-    /// Asked for.
-    Coming(Rc<RefCell<Option<Vec<u8>>>>),
-    /// Here, with the colour of its background.
-    Here(TextureHandle, Color32),
-    /// It came, but is no picture.
-    Broken,
-}
-
-impl Thumbnail {
-    fn fetch(ui: &Ui, path: &'static str) -> Self {
-        let inbox = Rc::new(RefCell::new(None));
-        let (letter, ctx) = (inbox.clone(), ui.ctx().clone());
-        // One that does not come leaves its card without a picture.
-        platform::fetch(path, move |bytes| {
-            *letter.borrow_mut() = bytes;
-            ctx.request_repaint();
-        });
-        Self::Coming(inbox)
-    }
-
-    fn arrive(&mut self, ui: &Ui) {
-        let Self::Coming(inbox) = self else { return };
-        let Some(bytes) = inbox.borrow_mut().take() else {
-            return;
-        };
-        *self = Self::show(ui, &bytes).unwrap_or(Self::Broken);
-    }
-
-    fn show(ui: &Ui, bytes: &[u8]) -> Option<Self> {
-        let image = examples::decode(bytes)?;
-        let size = image.size.map(|side| side as usize);
-        let pixels = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
-        // A corner of the picture shows its background.
-        let background = *pixels.pixels.first()?;
-        let texture = ui.load_texture("thumbnail", pixels, TextureOptions::LINEAR);
-        Some(Self::Here(texture, background))
-    }
 }
 
 impl Gallery {

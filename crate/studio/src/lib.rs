@@ -67,6 +67,7 @@ pub mod sliders;
 pub mod software;
 pub mod status;
 pub mod storage;
+mod thumbnail;
 pub mod timeline;
 pub mod tray;
 pub mod view;

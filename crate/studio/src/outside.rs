@@ -1,11 +1,12 @@
 //! Between the app and what is outside its window: serving requests, and telling how things are.
 
 use crate::app::App;
+use crate::command::Command;
 use crate::notice::Notice;
 use crate::render::pass_label;
 use crate::report;
 use crate::request::Request;
-use crate::{places, platform};
+use crate::{examples, places, platform};
 use egui::Context;
 use lab::Lesson;
 use std::rc::Rc;
@@ -21,7 +22,7 @@ impl App {
         match request {
             Request::Ready(answer) => answers.push(answer),
             Request::Finished(answer) => self.finished.push(answer),
-            Request::HashChanged => self.follow(ctx),
+            Request::HashChanged => self.follow(ctx, now),
             Request::Load(project, answer) => {
                 let result = self.work.load(project);
                 if result.is_ok() {
@@ -50,9 +51,9 @@ impl App {
         }
     }
 
-    /// Goes where the fragment of the address now leads: to a lesson, to a shared work, or back to
-    /// the editor.
-    fn follow(&mut self, ctx: &Context) {
+    /// Goes where the fragment of the address now leads: to a lesson, to an example, to a shared work, or
+    /// back to the editor.
+    fn follow(&mut self, ctx: &Context, now: f64) {
         let hash = platform::hash();
         if let Some(lesson) = Lesson::of_hash(&hash) {
             self.lab.open(lesson, "");
@@ -60,6 +61,16 @@ impl App {
             return;
         }
         self.lab.close();
+        if let Some(name) = examples::of_hash(&hash) {
+            match examples::find(name) {
+                Some(index) => self.carry_out(ctx, Command::OpenExample(index), now),
+                None => {
+                    let text = format!("There is no example “{name}”. Your work stays open.");
+                    self.notice = Some(Notice::trouble(text));
+                }
+            }
+            return;
+        }
         match self.work.open_link(&hash) {
             Ok(true) => {
                 self.opened(ctx);

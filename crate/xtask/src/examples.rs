@@ -19,6 +19,15 @@ pub fn sinew() -> Result<PathBuf> {
         .with_extension(std::env::consts::EXE_EXTENSION))
 }
 
+/// The program `sinew` that draws pictures: built for speed, or the one that the variable `SINEW` of the environment names, as each
+/// build draws the same.
+pub fn program() -> Result<PathBuf> {
+    match std::env::var_os("SINEW") {
+        Some(path) => Ok(PathBuf::from(path)),
+        None => sinew(),
+    }
+}
+
 /// The same built in another way.
 pub fn sinew_built(build: Build) -> Result<PathBuf> {
     let mut cargo = cargo(&["build", "--release", "--package", "cli"]);
@@ -43,42 +52,48 @@ pub fn datasets() -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Draws every dataset.
-pub fn draw() -> Result<()> {
-    let sinew = sinew()?;
-    for dataset in datasets()? {
-        let path = dataset.to_string_lossy();
-        let scene = crate::shell::read(&mut command(&sinew, &["scene", &path]))
-            .with_context(|| format!("{path} has errors; see: sinew check {path}"))?;
-        let scene: serde_json::Value = serde_json::from_str(&scene)?;
-        let side = |i: usize| {
-            scene["settings"]["frame"][i]
-                .as_f64()
-                .filter(|side| *side > 0.0)
-        };
-        let (Some(width), Some(height)) = (side(0), side(1)) else {
-            bail!("sinew scene {path} tells no frame size");
-        };
-        let scale = (BOX[0] / width).min(BOX[1] / height);
-        let [width, height] = [width, height].map(|side| (scale * side).round().max(1.0));
-        let picture = dataset.with_extension("png");
-        run(&mut command(
-            &sinew,
-            &[
-                "render",
-                &path,
-                "-o",
-                &picture.to_string_lossy(),
-                "-r",
-                &width.to_string(),
-                &height.to_string(),
-                "-s",
-                "4",
-            ],
-        ))?;
-        reduce(&picture).with_context(|| picture.display().to_string())?;
+/// Draws the thumbnails of all datasets, or of those named without their extension.
+pub fn draw(names: &[String]) -> Result<()> {
+    let sinew = program()?;
+    let all = datasets()?;
+    let stem = |path: &PathBuf| {
+        path.file_stem()
+            .map(|stem| stem.to_string_lossy().into_owned())
+    };
+    if let Some(name) = names
+        .iter()
+        .find(|name| !all.iter().any(|path| stem(path).as_ref() == Some(name)))
+    {
+        bail!("there is no www/examples/{name}.rat");
+    }
+    for dataset in all {
+        if names.is_empty() || stem(&dataset).is_some_and(|stem| names.contains(&stem)) {
+            draw_into(&sinew, &dataset, &dataset.with_extension("png"), BOX)?;
+        }
     }
     Ok(())
+}
+
+/// Draws a dataset to a PNG file with a palette, as large as fits into a box of pixels.
+pub fn draw_into(sinew: &Path, dataset: &Path, picture: &Path, within: [f64; 2]) -> Result<()> {
+    let path = dataset.to_string_lossy();
+    let scene = crate::shell::read(&mut command(sinew, &["scene", &path]))
+        .with_context(|| format!("{path} has errors; see: sinew check {path}"))?;
+    let scene: serde_json::Value = serde_json::from_str(&scene)?;
+    let side = |i: usize| {
+        scene["settings"]["frame"][i]
+            .as_f64()
+            .filter(|side| *side > 0.0)
+    };
+    let (Some(width), Some(height)) = (side(0), side(1)) else {
+        bail!("sinew scene {path} tells no frame size");
+    };
+    let scale = (within[0] / width).min(within[1] / height);
+    let [width, height] = [width, height].map(|side| (scale * side).round().max(1.0).to_string());
+    let to = picture.to_string_lossy();
+    let size = ["-r", &width, &height, "-s", "4"];
+    run(command(sinew, &["render", &path, "-o", &to]).args(size))?;
+    reduce(picture).with_context(|| picture.display().to_string())
 }
 
 /// The size of the pictures in the reference page.
@@ -86,7 +101,7 @@ const REFERENCE: [u32; 2] = [240, 180];
 
 /// Writes the reference page and draws the pictures of its examples.
 pub fn reference() -> Result<()> {
-    let sinew = sinew()?;
+    let sinew = program()?;
     let folder = root().join("www/reference");
     if folder.exists() {
         std::fs::remove_dir_all(&folder)?;

@@ -8,6 +8,7 @@ mod bench;
 mod check;
 mod dist;
 mod examples;
+mod figures;
 mod fuzz;
 mod packages;
 mod page;
@@ -58,7 +59,12 @@ enum Command {
         part: Option<bench::Part>,
     },
     /// Draw the thumbnails of the examples, www/examples/*.png, with our own renderer.
-    Examples,
+    Examples {
+        /// Only these: names of files without their extension.
+        names: Vec<String>,
+    },
+    /// Write the page of the thesis's figures, www/figures.html, and draw its pictures.
+    Figures,
     /// Write the reference page, www/reference.html, and draw the pictures of its examples.
     Reference,
     /// Renew tests/pins.txt, the hashes that pictures are held to, after a change of the pictures that is meant, and show
@@ -73,7 +79,8 @@ fn main() -> ExitCode {
         Command::Test { part, filter } => check::test(part, filter),
         Command::Fuzz { minutes } => fuzz::fuzz(minutes),
         Command::Bench { part } => bench::bench(part),
-        Command::Examples => examples::draw(),
+        Command::Examples { names } => examples::draw(&names),
+        Command::Figures => figures::figures(),
         Command::Reference => examples::reference(),
         Command::Pins => pins::renew(),
     };

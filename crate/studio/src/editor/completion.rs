@@ -7,6 +7,7 @@
 use super::place::{self, Place};
 use crate::session::Session;
 use crate::theme::{self, Palette};
+use crate::thumbnail::Thumbnails;
 use assist::{Completion, CompletionKind, Completions};
 use egui::{
     Align2, Area, Color32, FontId, Frame, Key, Modifiers, Order, Rect, Role, Sense, Ui, WidgetInfo,
@@ -28,6 +29,9 @@ fn rows(style: &egui::Style) -> (usize, f32) {
     }
 }
 
+/// The size of the picture of what is selected.
+const PICTURE: egui::Vec2 = vec2(128.0, 96.0);
+
 /// The list and where it belongs.
 #[derive(Default)]
 pub struct Popup {
@@ -42,6 +46,7 @@ pub struct Popup {
     wanted: Option<(Place, f64, bool)>,
     /// How long making the last list took, seconds.
     cost: f64,
+    pictures: Thumbnails,
 }
 
 /// Effect of the keys.
@@ -201,7 +206,13 @@ impl Popup {
             .min(items.len() - rows);
         let screen = ui.ctx().content_rect();
         let width = 380.0_f32.min(screen.width() - 16.0);
-        let height = rows as f32 * row_height + 36.0;
+        // Room for pictures stays while the selection moves through the list.
+        let pictures = if items.iter().any(|item| item.picture.is_some()) {
+            PICTURE.y + 8.0
+        } else {
+            0.0
+        };
+        let height = rows as f32 * row_height + 36.0 + pictures;
         let below = caret.bottom() + 4.0;
         let top = if below + height <= screen.bottom() {
             below
@@ -226,6 +237,10 @@ impl Popup {
                     }
                 }
                 if let Some(item) = items.get(self.selected) {
+                    if let Some(path) = item.picture {
+                        ui.add_space(4.0);
+                        self.pictures.show(ui, path, PICTURE);
+                    }
                     let told = format!(
                         "{}, {} of {}: {}",
                         item.text,

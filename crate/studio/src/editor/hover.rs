@@ -3,6 +3,7 @@
 use super::place::Place;
 use crate::marks::Marks;
 use crate::session::Session;
+use crate::thumbnail::Thumbnails;
 use crate::{problems, theme};
 use assist::Card;
 use egui::{Color32, Id, Response, RichText, Ui, vec2};
@@ -21,6 +22,7 @@ pub struct Hover {
     revision: u64,
     still: bool,
     pointer: Option<egui::Pos2>,
+    pictures: Thumbnails,
 }
 
 impl Hover {
@@ -85,7 +87,7 @@ impl Hover {
                 message(ui, session, index);
             }
             if let Some(card) = card {
-                show_card(ui, card);
+                show_card(ui, card, &mut self.pictures);
             }
         });
     }
@@ -107,7 +109,7 @@ fn message(ui: &mut Ui, session: &Session, index: usize) {
     }
 }
 
-fn show_card(ui: &mut Ui, card: &Card) {
+fn show_card(ui: &mut Ui, card: &Card, pictures: &mut Thumbnails) {
     let palette = theme::palette(ui.visuals());
     ui.horizontal(|ui| {
         if let Some(swatch) = card.swatch {
@@ -122,6 +124,9 @@ fn show_card(ui: &mut Ui, card: &Card) {
             .color(palette.command);
         ui.add(egui::Label::new(title).wrap());
     });
+    if let Some(path) = card.picture {
+        pictures.show(ui, path, vec2(160.0, 120.0));
+    }
     for line in card.lines.iter().take(12) {
         let text = RichText::new(line).size(12.5).color(palette.text);
         ui.add(egui::Label::new(text).wrap());

@@ -12,6 +12,7 @@ mod fused;
 mod goal;
 mod memory;
 mod meshes;
+mod mirrors;
 mod models;
 mod ours;
 mod peers;
@@ -35,6 +36,8 @@ pub enum Part {
     Speed,
     /// Soft against hard models.
     Models,
+    /// Mirrors and glass against POV-Ray, and what a lens costs.
+    Mirrors,
     /// The tracer with fused multiply-adds against that of pictures.
     Fused,
     /// The tracer as wasm against native.
@@ -140,6 +143,7 @@ fn title(part: Part) -> &'static str {
     match part {
         Part::Speed => "The tracer, one thread",
         Part::Models => "Soft and hard models",
+        Part::Mirrors => "Mirrors and glass",
         Part::Fused => "With fused multiply-adds",
         Part::Wasm => "The tracer as wasm",
         Part::Browser => "The page in a browser",
@@ -156,6 +160,7 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
     let result = match part {
         Part::Speed => peers::measure(),
         Part::Models => models::measure(),
+        Part::Mirrors => mirrors::measure(),
         Part::Fused => fused::measure().map(|piece| (Vec::new(), piece)),
         Part::Wasm => wasm::measure(),
         Part::Browser => browser::measure(),
