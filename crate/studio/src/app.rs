@@ -14,6 +14,7 @@ use crate::hands::Hands;
 use crate::help::Help;
 use crate::keyboard::Keyboard;
 use crate::notice::Notice;
+use crate::pencil::Pencil;
 use crate::reading::MeshReading;
 use crate::recording::{Saving, VideoFormat};
 use crate::render::{Phase, Renderer};
@@ -103,6 +104,7 @@ pub struct App {
     pub(crate) asset_view: AssetView,
     pub(crate) sliders: Sliders,
     pub(crate) hands: Hands,
+    pub(crate) pencil: Pencil,
     pub(crate) gallery: Gallery,
     pub(crate) help: Help,
     pub(crate) player: Player,
@@ -198,6 +200,7 @@ impl App {
             asset_view: AssetView::default(),
             sliders: Sliders::default(),
             hands: Hands::default(),
+            pencil: Pencil::default(),
             gallery: Gallery::default(),
             help: Help::default(),
             player: Player::default(),
@@ -410,6 +413,7 @@ impl App {
         self.sliders.clear();
         self.tray.clear();
         self.hands.clear();
+        self.pencil.clear();
         self.renderer.clear();
         self.notice = None;
         self.dialog = None;

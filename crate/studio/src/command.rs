@@ -3,6 +3,7 @@
 
 use crate::asset::Asset;
 use crate::film::Playback;
+use crate::pencil::Tool;
 use crate::recording::Kind;
 use crate::settings::Show;
 use crate::{examples, size, theme};
@@ -84,6 +85,10 @@ pub enum Command {
     Cancel,
     /// Trace the picture again.
     Again,
+    /// Take a tool for drawing in hand, or lay it down.
+    SetTool(Option<Tool>),
+    /// Begin an empty work to draw on.
+    DrawNew,
     /// Draft, picture, or both in turn.
     SetShow(Show),
     /// Another picture size.

@@ -60,6 +60,7 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
     });
     window.add_event_listener_with_callback("keydown", keys.as_ref().unchecked_ref())?;
     keys.forget();
+    platform::watch_pens();
     // A page that goes out of sight may never come back; phones end it without another word.
     for event in ["pagehide", "visibilitychange"] {
         let shelf = parts.shelf.clone();

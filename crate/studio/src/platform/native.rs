@@ -25,6 +25,12 @@ pub fn now(ctx: &egui::Context) -> f64 {
 /// Says whether each frame keeps the tracer waiting.
 pub fn set_frames_dear(_dear: bool) {}
 
+/// Pressure of the pen that touches the page now.
+#[must_use]
+pub fn pressure() -> Option<f32> {
+    None
+}
+
 /// Milliseconds since 1970.
 #[must_use]
 pub fn unix_time() -> f64 {
