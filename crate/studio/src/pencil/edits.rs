@@ -11,8 +11,10 @@ use scene::Rgb;
 use skeleton::Node;
 use sketch::{Limb, Sample, Start, Stroke};
 
-/// Thickness of a stroke at its free end, in shares of that at its root.
+/// Thickness of a long stroke at its free end, in shares of that at its root. A short one is a head or a paw, and as thick all along.
 const TIP: f64 = 0.6;
+/// Lengths in radii of strokes that are short and long in that sense.
+const SHORT: [f64; 2] = [3.5, 9.0];
 /// Thickness of the ends of a stroke that begins in the air, in shares of that of its middle.
 const ENDS: f64 = 0.75;
 /// Radius at no and at full pressure of a pen, in shares of the brush's.
@@ -204,7 +206,8 @@ impl Begin {
         let away = marks
             .iter()
             .position(|mark| start.distance(pos2(mark.at[0], mark.at[1])) >= leave);
-        for mark in &marks[away.unwrap_or(marks.len())..] {
+        // A short stub is its last point.
+        for mark in &marks[away.unwrap_or(marks.len() - 1)..] {
             if let Some(place) = self.on_plane(sight, pos2(mark.at[0], mark.at[1])) {
                 points.push((place, mark.pressure));
             }
@@ -214,13 +217,15 @@ impl Begin {
             along.push(along[along.len() - 1] + pair[0].0.distance(pair[1].0));
         }
         let length = along[along.len() - 1].max(f64::MIN_POSITIVE);
+        let long = (length / self.radius.max(f64::MIN_POSITIVE) - SHORT[0]) / (SHORT[1] - SHORT[0]);
+        let tip = 1.0 + (TIP - 1.0) * long.clamp(0.0, 1.0);
         let sample = |((position, pressure), along): (&(DVec3, Option<f32>), &f64)| {
             let share = along / length;
             let thick = match pressure {
                 Some(pressure) => {
                     PRESSED[0] + (PRESSED[1] - PRESSED[0]) * f64::from(pressure.clamp(0.0, 1.0))
                 }
-                None if self.place.is_some() => 1.0 + (TIP - 1.0) * share,
+                None if self.place.is_some() => 1.0 + (tip - 1.0) * share,
                 None => ENDS + (1.0 - ENDS) * libm::sin(share * std::f64::consts::PI),
             };
             Sample {

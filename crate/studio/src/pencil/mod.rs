@@ -53,18 +53,20 @@ impl Tool {
     }
 }
 
-/// Thickness of strokes, points of the screen: least and most.
+/// Thickness of strokes, points of a picture 640 points wide: least and most.
 pub const THICKNESS: [f32; 2] = [3.0, 60.0];
 /// By how much thicker the first stroke of a page is.
-const BODY: f32 = 1.7;
+const BODY: f32 = 2.2;
 
 /// The tool in hand, and what is being done with it.
 pub struct Pencil {
     tool: Option<Tool>,
     /// Whether strokes are mirrored.
     pub mirror: bool,
-    /// Radius of strokes, points of the screen.
+    /// Radius of strokes, points of a picture 640 points wide.
     pub thickness: f32,
+    /// Points of the screen for one of those.
+    scale: f32,
     /// Index of the colour of strokes; `None`: that of what they grow from.
     pub colour: Option<usize>,
     /// The skeletons of a revision and frame of the film.
@@ -110,7 +112,8 @@ impl Default for Pencil {
         Self {
             tool: None,
             mirror: true,
-            thickness: 15.0,
+            thickness: 14.0,
+            scale: 1.0,
             colour: None,
             all: Vec::new(),
             made: None,
@@ -173,7 +176,7 @@ impl Pencil {
     fn brush(&self, touch: bool) -> Brush {
         let is_first = self.all.iter().all(|drawn| drawn.block.is_none());
         Brush {
-            radius: self.thickness * if is_first { BODY } else { 1.0 },
+            radius: self.scale * self.thickness * if is_first { BODY } else { 1.0 },
             mirror: self.mirror,
             colour: self.colour.map(|index| page::COLOURS[index].1),
             touch,
@@ -191,6 +194,7 @@ impl Pencil {
     ) {
         let Some(tool) = self.tool else { return };
         let session = around.session;
+        self.scale = (rect.width() / 640.0).clamp(0.5, 2.0);
         if !session.is_compiled() || session.errors() > 0 || rect.width() < 1.0 {
             self.drop_gesture(commands);
             if session.is_compiled() && session.errors() > 0 {

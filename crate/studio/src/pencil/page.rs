@@ -19,9 +19,9 @@ pub const COLOURS: [(&str, Rgb); 8] = [
 #[must_use]
 pub fn fresh(high: bool) -> String {
     let (frame, eye, angles) = if high {
-        ("480 600", "9.4 2.2 3.2", "40 48")
+        ("480 600", "9.4 2.2 3.2", "39.2 48")
     } else {
-        ("640 480", "8.2 1.9 2.8", "46 36")
+        ("640 480", "8.2 1.9 2.8", "46.8 36")
     };
     let skin = surface(COLOURS[0].1, true);
     format!(
