@@ -225,7 +225,10 @@ pub fn insert(
     };
     Some(applied(
         text,
-        vec![(place..place, 0.0, format!(" {name}")), (last..last, 1.0, added)],
+        vec![
+            (place..place, 0.0, format!(" {name}")),
+            (last..last, 1.0, added),
+        ],
     ))
 }
 
@@ -326,11 +329,7 @@ pub fn cut(
         }
     }
     // The curves that fall off keep their numbers while lines are added behind them.
-    edits.push(at_end(
-        text,
-        &block,
-        added.replace('\n', end_of_line(text)),
-    ));
+    edits.push(at_end(text, &block, added.replace('\n', end_of_line(text))));
     let changed = applied(text, edits);
     let end = (span.end + changed.len()).checked_sub(text.len())?;
     let span = span.start..end;

@@ -31,7 +31,8 @@ mod stroke;
 
 pub use block::{Block, CurveText, NodeText};
 pub use edit::{
-    Limb, Start, create, cut, extend, free_name, insert, remove, remove_curve, widen, without_commands,
+    Limb, Start, create, cut, extend, free_name, insert, remove, remove_curve, widen,
+    without_commands,
 };
 pub use fit::{MOST_NODES, Sample, fit};
 pub use stroke::{Mark, Stroke};

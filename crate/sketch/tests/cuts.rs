@@ -95,7 +95,10 @@ fn around(text: &str, span: &Range<usize>) -> (String, String) {
 fn changed(before: &str, which: usize, after: &str) -> Skeleton {
     let (span, _) = skeletons(before)[which].clone();
     let (head, tail) = around(before, &span);
-    assert!(after.starts_with(&head) && after.ends_with(&tail), "{after}");
+    assert!(
+        after.starts_with(&head) && after.ends_with(&tail),
+        "{after}"
+    );
     let bare = after.replace("\r\n", "");
     assert!(!bare.contains('\r'), "{after:?}");
     if before.contains("\r\n") {
@@ -111,7 +114,11 @@ fn each_way_of_writing_is_read_as_the_compiler_reads_it() {
         let block = Block::read(&text, span.clone()).unwrap();
         assert_eq!(block.nodes.len(), skeleton.nodes.len());
         for (names, along) in block.curves.iter().zip(&skeleton.curves) {
-            let names: Vec<_> = names.names.iter().map(|(name, _)| block.node(name)).collect();
+            let names: Vec<_> = names
+                .names
+                .iter()
+                .map(|(name, _)| block.node(name))
+                .collect();
             let along: Vec<_> = along.iter().map(|node| Some(*node)).collect();
             assert_eq!(names, along);
         }
@@ -165,7 +172,16 @@ fn a_ring_is_opened_by_a_cut_and_the_last_curve_takes_the_command_along() {
     let left = changed(text, 0, &opened);
     assert_eq!(left.curves, [vec![0, 1], vec![2, 0]]);
     let (span, skeleton) = skeletons(&opened)[0].clone();
-    let opened = cut(&opened, span, &skeleton, 0, 0, &node(0.2, 0.0, 0.0, 0.5), 0.01).unwrap();
+    let opened = cut(
+        &opened,
+        span,
+        &skeleton,
+        0,
+        0,
+        &node(0.2, 0.0, 0.0, 0.5),
+        0.01,
+    )
+    .unwrap();
     let left = skeletons(&opened)[0].1.clone();
     assert_eq!(left.curves.len(), 1);
     let (span, _) = skeletons(&opened)[0].clone();
@@ -204,10 +220,17 @@ fn curves_and_nodes_are_taken_away_and_come() {
             node: node(2.0 * share, 0.0, 0.0, 0.4),
         };
         // Two branches from one piece stand in their order, however they come.
-        let limbs = [limb(between(0.75)), limb(between(0.25)), limb(Start::Node(3))];
+        let limbs = [
+            limb(between(0.75)),
+            limb(between(0.25)),
+            limb(Start::Node(3)),
+        ];
         let more = extend(&text, span, &limbs, 0.01).unwrap();
         let left = changed(&text, which, &more);
-        let body: Vec<f64> = left.curves[0].iter().map(|i| left.nodes[*i].position.x).collect();
+        let body: Vec<f64> = left.curves[0]
+            .iter()
+            .map(|i| left.nodes[*i].position.x)
+            .collect();
         assert_eq!(body, [0.0, 0.5, 1.5, 2.0, 5.0], "{more}");
         assert_eq!((left.curves.len(), left.nodes.len()), (5, 13), "{more}");
         assert_eq!(left.curves[1].len(), 4);
@@ -254,7 +277,10 @@ fn texts_with_mistakes_are_left_or_changed_but_never_lost() {
         }
     }
     assert_eq!(without_commands("ä", &[0..1]), None);
-    assert_eq!(without_commands("a\r\nb # c\r\nd", &[3..4]).unwrap(), "a\r\nd");
+    assert_eq!(
+        without_commands("a\r\nb # c\r\nd", &[3..4]).unwrap(),
+        "a\r\nd"
+    );
 }
 
 #[test]

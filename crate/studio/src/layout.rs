@@ -10,8 +10,8 @@ use crate::settings::Show;
 use crate::theme::{self, STRIP};
 use crate::view::{self, Grasp, Scenery};
 use crate::{
-    bar, download, files, intake, notice, pencil, places, platform, problems, screen, size, sliders,
-    status, timeline, tray,
+    bar, download, files, intake, notice, pencil, places, platform, problems, screen, size,
+    sliders, status, timeline, tray,
 };
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,

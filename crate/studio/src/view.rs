@@ -211,7 +211,8 @@ fn gesture(
         }
     } else if response.dragged() && response.drag_delta() != Vec2::ZERO {
         let (across, down) = share(response.drag_delta());
-        let (shift, space) = ui.input(|input| (input.modifiers.shift, input.key_down(egui::Key::Space)));
+        let (shift, space) =
+            ui.input(|input| (input.modifiers.shift, input.key_down(egui::Key::Space)));
         let first = response.dragged_by(PointerButton::Primary);
         let second = response.dragged_by(PointerButton::Secondary);
         let pans = if grasp.draws {

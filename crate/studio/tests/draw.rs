@@ -46,8 +46,16 @@ fn stroke(window: &mut Window, places: &[(f32, f32)]) {
 /// The skeletons that a text makes.
 fn skeletons(text: &str) -> Vec<Skeleton> {
     let compiled = rats::compile(&rats::Project::single(text));
-    assert!(compiled.diagnostics.is_empty(), "{:?}\n{text}", compiled.diagnostics);
-    let shapes = compiled.scene.elements.into_iter().map(|element| element.shape);
+    assert!(
+        compiled.diagnostics.is_empty(),
+        "{:?}\n{text}",
+        compiled.diagnostics
+    );
+    let shapes = compiled
+        .scene
+        .elements
+        .into_iter()
+        .map(|element| element.shape);
     let skeleton = |shape| match shape {
         Shape::Function(function) => match function.form {
             Form::Skeleton(curves) => Some(curves.skeleton.clone()),
@@ -71,7 +79,10 @@ fn strokes_become_a_body_and_limbs_in_pairs() {
     let skeleton = &skeletons(&text)[0];
     assert_eq!(skeleton.curves.len(), 1, "{text}");
     // On the mirror, though the eye looks from aside.
-    assert!(skeleton.nodes.iter().all(|node| node.position.x == 0.0), "{text}");
+    assert!(
+        skeleton.nodes.iter().all(|node| node.position.x == 0.0),
+        "{text}"
+    );
     let body = skeleton.nodes.len();
     stroke(&mut window, &[(0.45, 0.52), (0.44, 0.7)]);
     let text = window.text();
@@ -104,7 +115,10 @@ fn a_stroke_from_an_end_goes_on_and_one_that_ends_on_flesh_grows_from_there() {
     let skeleton = &skeletons(&text)[0];
     assert_eq!(skeleton.curves.len(), 1, "{text}");
     assert!(skeleton.nodes.len() > count);
-    assert!(skeleton.nodes.iter().all(|node| node.position.x == 0.0), "{text}");
+    assert!(
+        skeleton.nodes.iter().all(|node| node.position.x == 0.0),
+        "{text}"
+    );
     // From the foot to the body, and not in pairs.
     let pairs = window.place("draw mirror").center();
     window.click(pairs);
@@ -112,7 +126,10 @@ fn a_stroke_from_an_end_goes_on_and_one_that_ends_on_flesh_grows_from_there() {
     let text = window.text();
     let skeleton = &skeletons(&text)[0];
     assert_eq!(skeleton.curves.len(), 2, "{text}");
-    assert!(skeleton.curves[0].contains(&skeleton.curves[1][0]), "{text}");
+    assert!(
+        skeleton.curves[0].contains(&skeleton.curves[1][0]),
+        "{text}"
+    );
 }
 
 #[test]
@@ -132,7 +149,10 @@ fn nodes_are_moved_widened_and_bent() {
     window.drag(node, node + vec2(-30.0, 12.0));
     let text = window.text();
     let now = window.place(&names[0]).center();
-    assert!((now - node - vec2(-30.0, 12.0)).length() < 2.5, "{now} {node}");
+    assert!(
+        (now - node - vec2(-30.0, 12.0)).length() < 2.5,
+        "{now} {node}"
+    );
     let moved = skeletons(&text)[0].clone();
     assert_eq!(moved.nodes[0].position.x, 0.0, "{text}");
     assert_ne!(moved.nodes[0].position, before.nodes[0].position);
@@ -151,13 +171,22 @@ fn nodes_are_moved_widened_and_bent() {
     });
     window.steps(12);
     let wide = skeletons(&window.text())[0].clone();
-    assert!(wide.nodes[0].radius > 1.2 * before.nodes[0].radius, "{}", window.text());
+    assert!(
+        wide.nodes[0].radius > 1.2 * before.nodes[0].radius,
+        "{}",
+        window.text()
+    );
     assert_eq!(window.parts.outbox.borrow().camera.eye, eye);
     // A limb that is pulled gets a node.
     let middle = at(&window, 0.5, 0.5);
     window.drag(middle, middle + vec2(0.0, -40.0));
     let bent = skeletons(&window.text())[0].clone();
-    assert_eq!(bent.nodes.len(), before.nodes.len() + 1, "{}", window.text());
+    assert_eq!(
+        bent.nodes.len(),
+        before.nodes.len() + 1,
+        "{}",
+        window.text()
+    );
     let new = bent.nodes[bent.nodes.len() - 1].position;
     assert!(new.y > before.nodes[0].position.y + 0.1, "{new}");
     window.key(Modifiers::COMMAND, Key::Z);
@@ -214,7 +243,9 @@ fn the_right_button_turns_and_a_tap_makes_beads() {
     press(&window, from, true);
     window.steps(1);
     for step in 1..6 {
-        window.harness.event(Event::PointerMoved(from + vec2(10.0 * step as f32, 0.0)));
+        window
+            .harness
+            .event(Event::PointerMoved(from + vec2(10.0 * step as f32, 0.0)));
         window.steps(1);
     }
     press(&window, from + vec2(50.0, 0.0), false);
@@ -249,7 +280,9 @@ fn two_fingers_turn_and_give_up_the_stroke() {
     window.press(a, true);
     touch(&window, 1, egui::TouchPhase::Start, a);
     window.steps(1);
-    window.harness.event(Event::PointerMoved(a + vec2(0.0, 20.0)));
+    window
+        .harness
+        .event(Event::PointerMoved(a + vec2(0.0, 20.0)));
     touch(&window, 1, egui::TouchPhase::Move, a + vec2(0.0, 20.0));
     window.steps(1);
     touch(&window, 2, egui::TouchPhase::Start, b);

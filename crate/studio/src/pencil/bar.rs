@@ -22,9 +22,7 @@ pub fn start(ui: &mut Ui, picture: Rect, commands: &mut Vec<Command>) {
     }
     let place = Rect::from_min_size(picture.left_bottom() + vec2(12.0, -12.0 - size.y), size);
     let response = ui.interact(place, ui.scope_id().with("begin drawing"), Sense::click());
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Button, true, "Draw a creature")
-    });
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Draw a creature"));
     places::note(ui.ctx(), "draw", place);
     let painter = ui.painter();
     let round = CornerRadius::same(20);
@@ -40,7 +38,12 @@ pub fn start(ui: &mut Ui, picture: Rect, commands: &mut Vec<Command>) {
     };
     painter.rect_filled(place, round, fill);
     let ink = Stroke::new(1.7, palette.on_accent);
-    icon::paint(painter, Icon::Pencil, place.left_center() + vec2(24.0, 0.0), ink);
+    icon::paint(
+        painter,
+        Icon::Pencil,
+        place.left_center() + vec2(24.0, 0.0),
+        ink,
+    );
     painter.text(
         place.left_center() + vec2(39.0, 0.0),
         egui::Align2::LEFT_CENTER,
@@ -68,8 +71,18 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         ui.add_space(if narrow { 4.0 } else { 12.0 });
         for (own, sign, text, tip) in [
             (Tool::Draw, Icon::Pencil, "Draw", "A stroke becomes a limb"),
-            (Tool::Move, Icon::Move, "Move", "Drag dots, bend limbs, make them thicker or thinner"),
-            (Tool::Cut, Icon::Scissors, "Cut", "Cut limbs off, take dots, limbs and eyes away"),
+            (
+                Tool::Move,
+                Icon::Move,
+                "Move",
+                "Drag dots, bend limbs, make them thicker or thinner",
+            ),
+            (
+                Tool::Cut,
+                Icon::Scissors,
+                "Cut",
+                "Cut limbs off, take dots, limbs and eyes away",
+            ),
         ] {
             let button = labelled(ui, sign, text, tool == Some(own)).on_hover_text(tip);
             places::note(ui.ctx(), format!("tool {}", own.id()), button.rect);
@@ -88,14 +101,17 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         let dot = colour.rect.center_top() + vec2(0.0, 20.0);
         if let Some(index) = pencil.colour {
             let [r, g, b] = page::COLOURS[index].1.map(|c| (c * 255.0) as u8);
-            ui.painter().circle_filled(dot, 8.0, Color32::from_rgb(r, g, b));
-            ui.painter().circle_stroke(dot, 8.0, Stroke::new(1.2, Color32::WHITE));
+            ui.painter()
+                .circle_filled(dot, 8.0, Color32::from_rgb(r, g, b));
+            ui.painter()
+                .circle_stroke(dot, 8.0, Stroke::new(1.2, Color32::WHITE));
         }
         places::note(ui.ctx(), "draw colour", colour.rect);
         Popup::menu(&colour).show(|ui| colours(ui, &mut pencil.colour));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(if narrow { 4.0 } else { 12.0 });
-            let done = labelled(ui, Icon::Done, "Done", false).on_hover_text("Lay the pencil down (D)");
+            let done =
+                labelled(ui, Icon::Done, "Done", false).on_hover_text("Lay the pencil down (D)");
             places::note(ui.ctx(), "draw done", done.rect);
             if done.clicked() {
                 commands.push(Command::SetTool(None));
@@ -127,7 +143,11 @@ fn thickness(ui: &mut Ui, value: &mut f32) {
         wedge.right_top(),
         wedge.right_bottom(),
     ];
-    ui.painter().add(egui::Shape::convex_polygon(shape, palette.button, Stroke::NONE));
+    ui.painter().add(egui::Shape::convex_polygon(
+        shape,
+        palette.button,
+        Stroke::NONE,
+    ));
     let place = Rect::from_center_size(wedge.center(), vec2(width, 26.0));
     let builder = egui::UiBuilder::new().max_rect(place);
     let mut inner = ui.new_child(builder.layout(Layout::left_to_right(Align::Center)));
@@ -161,9 +181,7 @@ fn labelled(ui: &mut Ui, sign: Icon, text: &str, chosen: bool) -> Response {
         56.0
     };
     let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT - 8.0), Sense::click());
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::Button, true, chosen, text)
-    });
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, chosen, text));
     let palette = theme::palette(ui.visuals());
     let fill = if chosen {
         palette.accent
@@ -172,8 +190,13 @@ fn labelled(ui: &mut Ui, sign: Icon, text: &str, chosen: bool) -> Response {
     } else {
         Color32::TRANSPARENT
     };
-    let ink = if chosen { palette.on_accent } else { palette.text };
-    ui.painter().rect_filled(rect, f32::from(theme::ROUND), fill);
+    let ink = if chosen {
+        palette.on_accent
+    } else {
+        palette.text
+    };
+    ui.painter()
+        .rect_filled(rect, f32::from(theme::ROUND), fill);
     icon::paint(
         ui.painter(),
         sign,
@@ -189,28 +212,40 @@ fn colours(ui: &mut Ui, chosen: &mut Option<usize>) {
     ui.set_width(196.0);
     ui.label("Colour of the next stroke");
     let side = 44.0;
-    egui::Grid::new("draw colours").spacing(Vec2::splat(4.0)).show(ui, |ui| {
-        for (index, (name, colour)) in page::COLOURS.iter().enumerate() {
-            let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click());
-            response.widget_info(|| {
-                egui::WidgetInfo::selected(egui::Role::Button, true, *chosen == Some(index), *name)
-            });
-            places::note(ui.ctx(), format!("draw colour {name}"), rect);
-            let [r, g, b] = colour.map(|c| (c * 255.0) as u8);
-            ui.painter().circle_filled(rect.center(), 17.0, Color32::from_rgb(r, g, b));
-            if *chosen == Some(index) || response.hovered() {
-                let palette = theme::palette(ui.visuals());
-                ui.painter().circle_stroke(rect.center(), 19.5, Stroke::new(2.0, palette.accent));
+    egui::Grid::new("draw colours")
+        .spacing(Vec2::splat(4.0))
+        .show(ui, |ui| {
+            for (index, (name, colour)) in page::COLOURS.iter().enumerate() {
+                let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click());
+                response.widget_info(|| {
+                    egui::WidgetInfo::selected(
+                        egui::Role::Button,
+                        true,
+                        *chosen == Some(index),
+                        *name,
+                    )
+                });
+                places::note(ui.ctx(), format!("draw colour {name}"), rect);
+                let [r, g, b] = colour.map(|c| (c * 255.0) as u8);
+                ui.painter()
+                    .circle_filled(rect.center(), 17.0, Color32::from_rgb(r, g, b));
+                if *chosen == Some(index) || response.hovered() {
+                    let palette = theme::palette(ui.visuals());
+                    ui.painter().circle_stroke(
+                        rect.center(),
+                        19.5,
+                        Stroke::new(2.0, palette.accent),
+                    );
+                }
+                if response.on_hover_text(*name).clicked() {
+                    *chosen = Some(index);
+                    ui.close();
+                }
+                if index % 4 == 3 {
+                    ui.end_row();
+                }
             }
-            if response.on_hover_text(*name).clicked() {
-                *chosen = Some(index);
-                ui.close();
-            }
-            if index % 4 == 3 {
-                ui.end_row();
-            }
-        }
-    });
+        });
     let same = ui.selectable_label(chosen.is_none(), "As what it grows from");
     places::note(ui.ctx(), "draw colour same", same.rect);
     if same.clicked() {

@@ -95,7 +95,11 @@ pub fn begin(
     meets: impl FnOnce() -> Option<DVec3>,
 ) -> Begin {
     let ahead = -sight.projection.world_from_view.z_axis;
-    let (end_reach, extra) = if brush.touch { (20.0, 8.0) } else { (12.0, 4.0) };
+    let (end_reach, extra) = if brush.touch {
+        (20.0, 8.0)
+    } else {
+        (12.0, 4.0)
+    };
     let end = node_at(all, sight, at, end_reach, true);
     let spot = if end.is_none() {
         spot_at(all, sight, at, extra)
@@ -408,7 +412,13 @@ fn twin_start(drawn: &Drawn, index: usize, start: &Start, begin: &Begin) -> Opti
 
 /// The text with a bead on the flesh, and its mirrored one.
 #[must_use]
-pub fn bead(project: &Project, begin: &Begin, at: DVec3, colour: Rgb, point: f64) -> Option<Change> {
+pub fn bead(
+    project: &Project,
+    begin: &Begin,
+    at: DVec3,
+    colour: Rgb,
+    point: f64,
+) -> Option<Change> {
     let radius = 0.6 * begin.radius;
     let texts = || project.files.iter().map(|file| file.text.as_str());
     let (mut text, material) =
@@ -445,16 +455,15 @@ fn number(x: f64, grain: f64) -> String {
 ///
 /// # Errors
 /// Says why the change cannot be made: the compiler's message.
-pub fn checked(session: &Session, change: Change) -> Result<(Change, Project, rats::Compiled), String> {
+pub fn checked(
+    session: &Session,
+    change: Change,
+) -> Result<(Change, Project, rats::Compiled), String> {
     let mut project = session.project().clone();
     if let Some(file) = project.files.get_mut(change.file) {
         file.text.clone_from(&change.text);
     }
-    let compiled = rats::compile_at(
-        &project,
-        session.assets(),
-        f64::from(session.film_frame()),
-    );
+    let compiled = rats::compile_at(&project, session.assets(), f64::from(session.film_frame()));
     let errors = |diagnostics: &[rats::Diagnostic]| {
         let is_error = |d: &&rats::Diagnostic| d.severity == rats::Severity::Error;
         diagnostics.iter().filter(is_error).count()
@@ -462,7 +471,10 @@ pub fn checked(session: &Session, change: Change) -> Result<(Change, Project, ra
     if errors(&compiled.diagnostics) > errors(session.diagnostics()) {
         let new = compiled.diagnostics.iter().find(|d| {
             d.severity == rats::Severity::Error
-                && session.diagnostics().iter().all(|old| old.message != d.message)
+                && session
+                    .diagnostics()
+                    .iter()
+                    .all(|old| old.message != d.message)
         });
         let why = new.map_or("the text would have a mistake", |d| &d.message);
         return Err(format!("This cannot be drawn here: {why}."));
@@ -482,7 +494,9 @@ pub fn twice(
     let (first, project, compiled) = checked(session, change)?;
     let all = Drawn::all(&project, &compiled);
     match again(&project, &all).filter(|second| second.file == first.file) {
-        Some(second) => checked(session, second.clone()).map(|(change, ..)| change).or(Ok(first)),
+        Some(second) => checked(session, second.clone())
+            .map(|(change, ..)| change)
+            .or(Ok(first)),
         None => Ok(first),
     }
 }

@@ -63,7 +63,9 @@ pub fn twin(drawn: &Drawn, node: usize) -> Option<usize> {
     if is_flat(drawn, node) {
         return None;
     }
-    drawn.node_near(there, 0.15 * own.radius).filter(|other| *other != node)
+    drawn
+        .node_near(there, 0.15 * own.radius)
+        .filter(|other| *other != node)
 }
 
 fn is_flat(drawn: &Drawn, node: usize) -> bool {

@@ -198,7 +198,11 @@ impl Pencil {
         if !session.is_compiled() || session.errors() > 0 || rect.width() < 1.0 {
             self.drop_gesture(commands);
             if session.is_compiled() && session.errors() > 0 {
-                paint::hint(ui, rect, "The text has a mistake: undo, or mend it, to go on drawing");
+                paint::hint(
+                    ui,
+                    rect,
+                    "The text has a mistake: undo, or mend it, to go on drawing",
+                );
             }
             return;
         }
@@ -245,7 +249,11 @@ impl Pencil {
                     } else {
                         format!("node {}/{index}", node.name)
                     };
-                    places::note(ui.ctx(), name, Rect::from_center_size(at, egui::Vec2::splat(20.0)));
+                    places::note(
+                        ui.ctx(),
+                        name,
+                        Rect::from_center_size(at, egui::Vec2::splat(20.0)),
+                    );
                 }
             }
         }
@@ -303,10 +311,16 @@ impl Pencil {
             return;
         }
         if self.takes_wheel() && self.gesture.is_none() {
-            let scroll = ui.input(|input| input.smooth_scroll_delta().y + 400.0 * (input.zoom_delta() - 1.0));
+            let scroll = ui
+                .input(|input| input.smooth_scroll_delta().y + 400.0 * (input.zoom_delta() - 1.0));
             if scroll != 0.0 {
                 self.chosen = self.over;
-                self.widen(sight, around, libm::exp(f64::from(scroll) / 400.0), commands);
+                self.widen(
+                    sight,
+                    around,
+                    libm::exp(f64::from(scroll) / 400.0),
+                    commands,
+                );
             }
         }
         let notice = places::all(ui.ctx()).get("notice").copied();
@@ -315,7 +329,10 @@ impl Pencil {
                 && !around.covered
                 && !space
                 && !notice.is_some_and(|notice| notice.contains(at))
-                && ui.ctx().layer_id_at(at).is_none_or(|layer| layer == ui.layer_id())
+                && ui
+                    .ctx()
+                    .layer_id_at(at)
+                    .is_none_or(|layer| layer == ui.layer_id())
                 && !egui::Popup::is_any_open(ui.ctx())
         };
         let mut moved = None;
@@ -421,9 +438,14 @@ impl Pencil {
     fn drag(&mut self, sight: &Sight, around: &Around<'_>, at: Pos2, commands: &mut Vec<Command>) {
         match &mut self.gesture {
             Some(Gesture::Grip(grip)) => {
-                if let Some(why) =
-                    grip.drag(&self.all, &mut self.grip, around.session, sight, at, commands)
-                {
+                if let Some(why) = grip.drag(
+                    &self.all,
+                    &mut self.grip,
+                    around.session,
+                    sight,
+                    at,
+                    commands,
+                ) {
                     commands.push(Command::Tell(why));
                     self.drop_gesture(commands);
                 }
@@ -459,9 +481,14 @@ impl Pencil {
         let text = session.text(drawn.file);
         let grain = 0.5 * sight.point(spot.place) / drawn.growth.max(f64::MIN_POSITIVE);
         let node = drawn.node_of(&spot);
-        let Some(text) =
-            sketch::insert(text, drawn.span.clone(), spot.curve, spot.span, &node, grain)
-        else {
+        let Some(text) = sketch::insert(
+            text,
+            drawn.span.clone(),
+            spot.curve,
+            spot.span,
+            &node,
+            grain,
+        ) else {
             return;
         };
         let change = Change {
@@ -478,7 +505,10 @@ impl Pencil {
                 });
                 let all = Drawn::all(&project, &compiled);
                 let found = (spot.drawn, number);
-                if all.get(found.0).is_some_and(|drawn| number < drawn.knobs.len()) {
+                if all
+                    .get(found.0)
+                    .is_some_and(|drawn| number < drawn.knobs.len())
+                {
                     self.chosen = Some(found);
                     self.gesture = Some(Gesture::Grip(Grip::new(&all, found, self.mirror, from)));
                 }
@@ -487,7 +517,13 @@ impl Pencil {
         }
     }
 
-    fn release(&mut self, sight: &Sight, around: &Around<'_>, at: Pos2, commands: &mut Vec<Command>) {
+    fn release(
+        &mut self,
+        sight: &Sight,
+        around: &Around<'_>,
+        at: Pos2,
+        commands: &mut Vec<Command>,
+    ) {
         let session = around.session;
         let still = if around.touch { 10.0 } else { 5.0 };
         match self.gesture.take() {
@@ -523,7 +559,9 @@ impl Pencil {
         begin: &Begin,
     ) -> Option<Result<Change, String>> {
         let hit = self.met(session, sight, at)?;
-        let colour = self.colour.map_or(page::COLOURS[7].1, |index| page::COLOURS[index].1);
+        let colour = self
+            .colour
+            .map_or(page::COLOURS[7].1, |index| page::COLOURS[index].1);
         let mut begin = *begin;
         begin.pair = self.mirror;
         begin.radius = f64::from(self.brush(touch).radius) * sight.point(hit.position);
@@ -548,7 +586,14 @@ impl Pencil {
         let (begin, stroke) = edits::turned(&self.all, sight, &brush, begin, stroke, home);
         let samples = begin.samples(sight, &stroke);
         let point = sight.point(begin.plane.0);
-        let change = edits::draw(session.project(), &self.all, &begin, &samples, &brush, point)?;
+        let change = edits::draw(
+            session.project(),
+            &self.all,
+            &begin,
+            &samples,
+            &brush,
+            point,
+        )?;
         Some(edits::checked(session, change).map(|(change, ..)| change))
     }
 
@@ -636,7 +681,12 @@ impl Pencil {
             file: drawn.file,
             text,
         };
-        let other = self.mirrored(index, drawn.to_world.transform_point3(drawn.skeleton.nodes[node].position));
+        let other = self.mirrored(
+            index,
+            drawn
+                .to_world
+                .transform_point3(drawn.skeleton.nodes[node].position),
+        );
         let radius = drawn.skeleton.nodes[node].radius;
         self.chosen = None;
         let result = edits::twice(session, change, |project, all| {
@@ -657,7 +707,11 @@ impl Pencil {
 
     /// Cuts the limb that a stroke crosses, and its mirrored one.
     fn cut(&self, session: &Session, sight: &Sight, stroke: &Stroke, commands: &mut Vec<Command>) {
-        let line: Vec<Pos2> = stroke.marks().iter().map(|m| pos2(m.at[0], m.at[1])).collect();
+        let line: Vec<Pos2> = stroke
+            .marks()
+            .iter()
+            .map(|m| pos2(m.at[0], m.at[1]))
+            .collect();
         let Some(spot) = crossing(&self.all, sight, &line) else {
             return;
         };
@@ -666,7 +720,15 @@ impl Pencil {
             let grain = 0.5 * point / drawn.growth.max(f64::MIN_POSITIVE);
             let end = drawn.node_of(spot);
             let span = drawn.span.clone();
-            sketch::cut(text, span, &drawn.skeleton, spot.curve, spot.span, &end, grain)
+            sketch::cut(
+                text,
+                span,
+                &drawn.skeleton,
+                spot.curve,
+                spot.span,
+                &end,
+                grain,
+            )
         };
         let drawn = &self.all[spot.drawn];
         let Some(text) = cut(drawn, session.text(drawn.file), &spot) else {
@@ -699,12 +761,24 @@ impl Pencil {
     }
 
     /// Makes the chosen node thicker by a factor, and its mirrored one.
-    fn widen(&mut self, sight: &Sight, around: &Around<'_>, factor: f64, commands: &mut Vec<Command>) {
+    fn widen(
+        &mut self,
+        sight: &Sight,
+        around: &Around<'_>,
+        factor: f64,
+        commands: &mut Vec<Command>,
+    ) {
         let Some((index, node)) = self.chosen else {
             return;
         };
-        let factor = if factor.is_finite() { factor.clamp(0.2, 5.0) } else { 1.0 };
-        let Some(drawn) = self.all.get(index) else { return };
+        let factor = if factor.is_finite() {
+            factor.clamp(0.2, 5.0)
+        } else {
+            1.0
+        };
+        let Some(drawn) = self.all.get(index) else {
+            return;
+        };
         let mut nodes = vec![node];
         if self.mirror {
             nodes.extend(grip::twin(drawn, node));
@@ -809,7 +883,13 @@ impl Pencil {
     }
 
     /// What a gesture would do now.
-    fn hint(&self, tool: Tool, sight: &Sight, at: Option<Pos2>, around: &Around<'_>) -> &'static str {
+    fn hint(
+        &self,
+        tool: Tool,
+        sight: &Sight,
+        at: Option<Pos2>,
+        around: &Around<'_>,
+    ) -> &'static str {
         let is_empty = self.all.iter().all(|drawn| drawn.block.is_none());
         match (&self.gesture, tool) {
             (Some(Gesture::Stroke(_, begin)), _) if begin.pair => {
@@ -846,9 +926,13 @@ impl Pencil {
         }
         match (tool, around.touch) {
             _ if is_empty => "Nothing is drawn yet: take Draw",
-            (Tool::Move, true) if self.chosen.is_some() => "Pinch: thicker or thinner · drag the dot: move it",
+            (Tool::Move, true) if self.chosen.is_some() => {
+                "Pinch: thicker or thinner · drag the dot: move it"
+            }
             (Tool::Move, true) => "Drag a dot, or bend a limb · two fingers turn",
-            (Tool::Move, false) if self.over.is_some() => "Drag: move it · wheel: thicker or thinner",
+            (Tool::Move, false) if self.over.is_some() => {
+                "Drag: move it · wheel: thicker or thinner"
+            }
             (Tool::Move, false) => "Drag a dot, or bend a limb · right button turns",
             (_, true) => "Cut across a limb · tap a dot, a limb or an eye: it goes",
             (_, false) => "Cut across a limb · click a dot, a limb or an eye: it goes",

@@ -44,7 +44,12 @@ pub fn tube(painter: &Painter, sight: &Sight, samples: &[Sample], colour: Rgb, a
         })
         .collect();
     // From the rim to the lit line along the middle.
-    for (share, off, light) in [(1.0, 0.0, 0.55), (0.8, 0.08, 0.85), (0.5, 0.2, 1.1), (0.2, 0.3, 1.35)] {
+    for (share, off, light) in [
+        (1.0, 0.0, 0.55),
+        (0.8, 0.08, 0.85),
+        (0.5, 0.2, 1.1),
+        (0.2, 0.3, 1.35),
+    ] {
         ribbon(painter, &seen, share, off, shade(colour, light, alpha));
     }
 }
@@ -65,7 +70,12 @@ fn ribbon(painter: &Painter, seen: &[(Pos2, f32)], share: f32, off: f32, colour:
         }
         let across = along.normalized().rot90();
         let first = mesh.vertices.len() as u32;
-        for corner in [a + across * r, a - across * r, b + across * s, b - across * s] {
+        for corner in [
+            a + across * r,
+            a - across * r,
+            b + across * s,
+            b - across * s,
+        ] {
             mesh.colored_vertex(corner, colour);
         }
         mesh.add_triangle(first, first + 1, first + 2);
@@ -139,7 +149,12 @@ pub fn bones(
         } else {
             LIT
         };
-        painter.circle(at, size, fill, Stroke::new(1.8, Color32::from_black_alpha(170)));
+        painter.circle(
+            at,
+            size,
+            fill,
+            Stroke::new(1.8, Color32::from_black_alpha(170)),
+        );
     }
 }
 
@@ -149,14 +164,29 @@ pub fn rim(painter: &Painter, center: Pos2, rim: Pos2) {
     for (width, colour) in [(3.0, Color32::from_black_alpha(100)), (1.4, Color32::WHITE)] {
         painter.circle_stroke(center, radius, Stroke::new(width, colour));
     }
-    painter.circle(rim, 5.0, Color32::WHITE, Stroke::new(1.8, Color32::from_black_alpha(170)));
+    painter.circle(
+        rim,
+        5.0,
+        Color32::WHITE,
+        Stroke::new(1.8, Color32::from_black_alpha(170)),
+    );
 }
 
 /// The line of a cut.
 pub fn knife(painter: &Painter, stroke: &sketch::Stroke) {
-    let line: Vec<Pos2> = stroke.marks().iter().map(|m| pos2(m.at[0], m.at[1])).collect();
-    painter.add(PathShape::line(line.clone(), Stroke::new(4.0, Color32::from_black_alpha(120))));
-    painter.add(PathShape::line(line, Stroke::new(1.8, Color32::from_rgb(255, 110, 90))));
+    let line: Vec<Pos2> = stroke
+        .marks()
+        .iter()
+        .map(|m| pos2(m.at[0], m.at[1]))
+        .collect();
+    painter.add(PathShape::line(
+        line.clone(),
+        Stroke::new(4.0, Color32::from_black_alpha(120)),
+    ));
+    painter.add(PathShape::line(
+        line,
+        Stroke::new(1.8, Color32::from_rgb(255, 110, 90)),
+    ));
 }
 
 /// The brush at the pointer.
