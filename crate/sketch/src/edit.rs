@@ -238,7 +238,7 @@ pub fn insert(
 pub fn remove_curve(text: &str, span: Range<usize>, curve: usize) -> Option<String> {
     let block = Block::read(text, span.clone())?;
     block.curves.get(curve)?;
-    Some(without_curves(text, span, &block, &[curve]))
+    Some(without_curves(text, span, &block, &[curve], &[]))
 }
 
 /// Cuts a curve between its node of number `between` and the next one: what hangs on the shorter side falls off, with all
@@ -334,7 +334,8 @@ pub fn cut(
     let end = (span.end + changed.len()).checked_sub(text.len())?;
     let span = span.start..end;
     let block = Block::read(&changed, span.clone())?;
-    Some(without_curves(&changed, span, &block, &gone))
+    let along: Vec<&String> = names.iter().map(|(name, _)| name).collect();
+    Some(without_curves(&changed, span, &block, &gone, &along))
 }
 
 /// The nodes that hang together with a node when the piece of a curve behind its node `between` is not there.
@@ -371,8 +372,15 @@ fn length(skeleton: &Skeleton, nodes: &[bool]) -> f64 {
         .sum()
 }
 
-/// A text without some curves of a block, and without nodes that no curve is left for. Nodes that no curve went along before stay.
-fn without_curves(text: &str, span: Range<usize>, block: &Block, gone: &[usize]) -> String {
+/// A text without some curves of a block, and without their nodes and others that no curve is left for. Nodes that no curve went along
+/// before stay.
+fn without_curves(
+    text: &str,
+    span: Range<usize>,
+    block: &Block,
+    gone: &[usize],
+    others: &[&String],
+) -> String {
     let stays = |index: &usize| !gone.contains(index);
     if !(0..block.curves.len()).any(|index| stays(&index)) {
         return without(text, &[span]);
@@ -380,7 +388,8 @@ fn without_curves(text: &str, span: Range<usize>, block: &Block, gone: &[usize])
     let names = |curve: &usize| block.curves[*curve].names.iter().map(|(name, _)| name);
     let all: Vec<usize> = (0..block.curves.len()).collect();
     let used: Vec<&String> = all.iter().filter(|i| stays(i)).flat_map(names).collect();
-    let dropped: Vec<&String> = gone.iter().flat_map(names).collect();
+    let mut dropped: Vec<&String> = gone.iter().flat_map(names).collect();
+    dropped.extend(others);
     let nodes = block
         .nodes
         .iter()
