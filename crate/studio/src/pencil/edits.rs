@@ -158,7 +158,9 @@ pub fn begin(
                 through = to_world.transform_point3(inside);
             }
         }
-        let mut begin = made(root, Some(place), through, brush.mirror, false);
+        // Seen from the side, both stay as far from the mirror all along.
+        let along = brush.mirror && faces;
+        let mut begin = made(root, Some(place), through, brush.mirror, along);
         if drawn.block.is_none() {
             begin.root = Root::Free;
         }
