@@ -291,7 +291,9 @@ impl App {
             session.set_camera(None);
             let text = page::fresh(self.is_high(ctx));
             self.carry_out(ctx, Command::Step { file: 0, text }, now);
-        } else if self.work.origin != work::Origin::Own && !Pencil::has_skeleton(session) {
+        } else if matches!(self.work.origin, work::Origin::Example | work::Origin::Link)
+            && !Pencil::has_skeleton(session)
+        {
             self.carry_out(ctx, Command::DrawNew, now);
         }
     }
