@@ -2,7 +2,7 @@
 //! written.
 
 use crate::block::Block;
-use skeleton::Node;
+use skeleton::{Node, Skeleton};
 use std::fmt::Write;
 use std::ops::Range;
 
@@ -19,6 +19,8 @@ pub enum Start {
         curve: usize,
         /// The new node comes behind the curve's node of this number.
         span: usize,
+        /// How far from that node to the next one, 0 … 1: the order of several new nodes there.
+        share: f64,
         /// The new node.
         node: Node,
     },
@@ -35,8 +37,8 @@ pub struct Limb {
     pub nodes: Vec<Node>,
 }
 
-/// A replacement of a piece of the text.
-type Edit = (Range<usize>, String);
+/// A replacement of a piece of the text, and its order among those at the same place.
+type Edit = (Range<usize>, f64, String);
 
 /// Adds curves to the skeleton whose command is at `span`. `grain` is a length that counts for little, to which
 /// coordinates are rounded. `None` if there is no such skeleton, node or curve.
@@ -45,6 +47,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
     let block = Block::read(text, span)?;
     let mut names = Names::of(&block);
     let indent = indent(text, &block);
+    let end_of_line = end_of_line(text);
     let mut added = String::new();
     let mut edits: Vec<Edit> = Vec::new();
     let mut before: Option<String> = None;
@@ -53,11 +56,16 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
             Start::Free => None,
             Start::Same => Some(before.clone()?),
             Start::Node(index) => Some(block.nodes.get(*index)?.name.clone()),
-            Start::Between { curve, span, node } => {
+            Start::Between {
+                curve,
+                span,
+                share,
+                node,
+            } => {
                 let name = names.next();
                 line(&mut added, &indent, &name, node, grain);
                 let (_, behind) = block.curves.get(*curve)?.names.get(*span)?;
-                edits.push((behind.end..behind.end, format!(" {name}")));
+                edits.push((behind.end..behind.end, *share, format!(" {name}")));
                 Some(name)
             }
         };
@@ -71,7 +79,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
             _ => None,
         };
         // Two new curves that begin at one end branch there.
-        let goes_on = end.filter(|(place, _)| edits.iter().all(|(range, _)| range != place));
+        let goes_on = end.filter(|(place, _)| edits.iter().all(|(range, ..)| range != place));
         if let Some((place, is_last)) = goes_on {
             let along = if is_last {
                 own.iter().fold(String::new(), |all, name| all + " " + name)
@@ -80,7 +88,8 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
                     .rev()
                     .fold(String::new(), |all, name| all + name + " ")
             };
-            edits.push((place, along));
+            // Behind new nodes of the same place.
+            edits.push((place, 2.0, along));
         } else {
             let along = start.iter().chain(&own).cloned().collect::<Vec<_>>();
             if along.len() < 2 {
@@ -90,7 +99,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
         }
         before = Some(first);
     }
-    edits.push(at_end(text, &block, added));
+    edits.push(at_end(text, &block, added.replace('\n', end_of_line)));
     Some(applied(text, edits))
 }
 
@@ -103,16 +112,20 @@ pub fn create(
     limbs: &[Limb],
     grain: f64,
 ) -> Option<String> {
+    let end_of_line = end_of_line(text);
     let mut text = text.to_owned();
     if !text.is_empty() && !text.ends_with('\n') {
-        text.push('\n');
+        text.push_str(end_of_line);
     }
     if !text.is_empty() {
-        text.push('\n');
+        text.push_str(end_of_line);
     }
     let start = text.len();
-    let _ = write!(text, "skeleton {material}, {name} {{\n}}\n");
-    let end = text.len() - 1;
+    let _ = write!(
+        text,
+        "skeleton {material}, {name} {{{end_of_line}}}{end_of_line}"
+    );
+    let end = text.len() - end_of_line.len();
     let text = extend(&text, start..end, limbs, grain)?;
     let block = Block::read(&text, start..text.len())?;
     (!block.curves.is_empty()).then_some(text)
@@ -178,7 +191,244 @@ pub fn widen(
         Some(range) => (range.clone(), number),
         None => (node.span.end..node.span.end, format!(" radius {number}")),
     };
-    Some(applied(text, vec![edit]))
+    let (range, with) = edit;
+    Some(applied(text, vec![(range, 0.0, with)]))
+}
+
+/// Gives a curve a new node behind its node of number `behind`. It becomes the block's last one. `None` if there is no such place.
+#[must_use]
+pub fn insert(
+    text: &str,
+    span: Range<usize>,
+    curve: usize,
+    behind: usize,
+    node: &Node,
+    grain: f64,
+) -> Option<String> {
+    let block = Block::read(text, span)?;
+    let names = &block.curves.get(curve)?.names;
+    // Behind the last one there is no curve.
+    names.get(behind + 1)?;
+    let place = names[behind].1.end;
+    let name = Names::of(&block).next();
+    let last = block.nodes.last()?.span.end;
+    let mut added = String::new();
+    line(&mut added, &indent(text, &block), &name, node, grain);
+    let added = format!("{}{}", end_of_line(text), added.trim_end());
+    // A remark behind the last node stays on its line.
+    let rest = &text[last..];
+    let remark = rest.lines().next().unwrap_or_default();
+    let last = if remark.trim_start().starts_with('#') {
+        last + remark.len()
+    } else {
+        last
+    };
+    Some(applied(
+        text,
+        vec![
+            (place..place, 0.0, format!(" {name}")),
+            (last..last, 1.0, added),
+        ],
+    ))
+}
+
+/// Takes a curve away, and nodes that no other curve goes along. Without a curve the whole command goes. `None` if there is no
+/// such curve.
+#[must_use]
+pub fn remove_curve(text: &str, span: Range<usize>, curve: usize) -> Option<String> {
+    let block = Block::read(text, span.clone())?;
+    block.curves.get(curve)?;
+    Some(without_curves(text, span, &block, &[curve], &[]))
+}
+
+/// Cuts a curve between its node of number `between` and the next one: what hangs on the shorter side falls off, with all
+/// curves that lead nowhere else. The other side ends at `end`; where its last node is nearer to the cut than the radius there, it
+/// ends at that node. If both sides still hang together another way, the curve only gets a gap there. Without a curve the whole
+/// command goes.
+///
+/// `skeleton` is what the text makes. `None` if it does not belong to the text, or there is no such curve.
+#[must_use]
+pub fn cut(
+    text: &str,
+    span: Range<usize>,
+    skeleton: &Skeleton,
+    curve: usize,
+    between: usize,
+    end: &Node,
+    grain: f64,
+) -> Option<String> {
+    let block = Block::read(text, span.clone())?;
+    let same = block.nodes.len() == skeleton.nodes.len()
+        && block.curves.len() == skeleton.curves.len()
+        && block.curves.iter().zip(&skeleton.curves).all(|(a, b)| {
+            a.names.len() == b.len()
+                && a.names
+                    .iter()
+                    .zip(b)
+                    .all(|((name, _), node)| block.node(name) == Some(*node))
+        });
+    let along = skeleton.curves.get(curve).filter(|_| same)?;
+    let (before, behind) = (*along.get(between)?, *along.get(between + 1)?);
+    let sides = [before, behind].map(|node| side(skeleton, curve, between, node));
+    let names = &block.curves[curve].names;
+    let joined = sides[0][behind];
+    let lengths = sides.each_ref().map(|side| length(skeleton, side));
+    let near = |node: usize| skeleton.nodes[node].position.distance(end.position);
+    let first_stays = lengths[0] + near(before) >= lengths[1] + near(behind);
+    let mut added = String::new();
+    let mut edits: Vec<Edit> = Vec::new();
+    let mut gone: Vec<usize> = Vec::new();
+    if joined {
+        // Pieces of a single node are nothing.
+        let parts = [&names[..=between], &names[between + 1..]];
+        let parts = parts.map(|part| part.iter().map(|(name, _)| name.as_str()));
+        let long: Vec<String> = parts
+            .into_iter()
+            .map(|part| part.collect::<Vec<_>>())
+            .filter(|part| part.len() > 1)
+            .map(|part| part.join(" "))
+            .collect();
+        match long.as_slice() {
+            [] => gone.push(curve),
+            [first, others @ ..] => {
+                let all = names[0].1.start..names[names.len() - 1].1.end;
+                edits.push((all, 0.0, first.clone()));
+                for other in others {
+                    let _ = writeln!(added, "{}curve {other}", indent(text, &block));
+                }
+            }
+        }
+    } else {
+        let (stays, falls) = if first_stays { (0, 1) } else { (1, 0) };
+        let kept = if first_stays {
+            &names[..=between]
+        } else {
+            &names[between + 1..]
+        };
+        let last = if first_stays { before } else { behind };
+        let falls_off = |along: &Vec<usize>| along.iter().all(|node| sides[falls][*node]);
+        let others = skeleton.curves.iter().enumerate();
+        gone.extend(
+            others
+                .filter(|(i, along)| *i != curve && falls_off(along))
+                .map(|(i, _)| i),
+        );
+        debug_assert!(!sides[stays][if first_stays { behind } else { before }]);
+        let ends_there = near(last) <= end.radius.max(grain);
+        if ends_there && kept.len() < 2 {
+            gone.push(curve);
+        } else {
+            let mut kept: Vec<String> = kept.iter().map(|(name, _)| name.clone()).collect();
+            if !ends_there {
+                let name = Names::of(&block).next();
+                line(&mut added, &indent(text, &block), &name, end, grain);
+                kept.insert(if first_stays { kept.len() } else { 0 }, name);
+            }
+            let all = names[0].1.start..names[names.len() - 1].1.end;
+            edits.push((all, 0.0, kept.join(" ")));
+        }
+    }
+    // The curves that fall off keep their numbers while lines are added behind them.
+    edits.push(at_end(text, &block, added.replace('\n', end_of_line(text))));
+    let changed = applied(text, edits);
+    let end = (span.end + changed.len()).checked_sub(text.len())?;
+    let span = span.start..end;
+    let block = Block::read(&changed, span.clone())?;
+    let along: Vec<&String> = names.iter().map(|(name, _)| name).collect();
+    Some(without_curves(&changed, span, &block, &gone, &along))
+}
+
+/// The nodes that hang together with a node when the piece of a curve behind its node `between` is not there.
+fn side(skeleton: &Skeleton, curve: usize, between: usize, from: usize) -> Vec<bool> {
+    let mut next: Vec<Vec<usize>> = vec![Vec::new(); skeleton.nodes.len()];
+    for (number, along) in skeleton.curves.iter().enumerate() {
+        for (i, ends) in along.windows(2).enumerate() {
+            if (number, i) != (curve, between) {
+                next[ends[0]].push(ends[1]);
+                next[ends[1]].push(ends[0]);
+            }
+        }
+    }
+    let mut reached = vec![false; next.len()];
+    reached[from] = true;
+    let mut waiting = vec![from];
+    while let Some(node) = waiting.pop() {
+        for &other in &next[node] {
+            if !std::mem::replace(&mut reached[other], true) {
+                waiting.push(other);
+            }
+        }
+    }
+    reached
+}
+
+/// The length of the control polygons between some nodes.
+fn length(skeleton: &Skeleton, nodes: &[bool]) -> f64 {
+    let place = |node: usize| skeleton.nodes[node].position;
+    let pieces = skeleton.curves.iter().flat_map(|along| along.windows(2));
+    pieces
+        .filter(|ends| nodes[ends[0]] && nodes[ends[1]])
+        .map(|ends| place(ends[0]).distance(place(ends[1])))
+        .sum()
+}
+
+/// A text without some curves of a block, and without their nodes and others that no curve is left for. Nodes that no curve went along
+/// before stay.
+fn without_curves(
+    text: &str,
+    span: Range<usize>,
+    block: &Block,
+    gone: &[usize],
+    others: &[&String],
+) -> String {
+    let stays = |index: &usize| !gone.contains(index);
+    if !(0..block.curves.len()).any(|index| stays(&index)) {
+        return without(text, &[span]);
+    }
+    let names = |curve: &usize| block.curves[*curve].names.iter().map(|(name, _)| name);
+    let all: Vec<usize> = (0..block.curves.len()).collect();
+    let used: Vec<&String> = all.iter().filter(|i| stays(i)).flat_map(names).collect();
+    let mut dropped: Vec<&String> = gone.iter().flat_map(names).collect();
+    dropped.extend(others);
+    let nodes = block
+        .nodes
+        .iter()
+        .filter(|node| dropped.contains(&&node.name) && !used.contains(&&node.name));
+    let mut removed: Vec<Range<usize>> = nodes.map(|node| node.span.clone()).collect();
+    removed.extend(gone.iter().map(|index| block.curves[*index].span.clone()));
+    without(text, &removed)
+}
+
+/// A text without some commands: each at its byte range.
+#[must_use]
+pub fn without_commands(text: &str, spans: &[Range<usize>]) -> Option<String> {
+    let inside = |span: &Range<usize>| text.get(span.clone()).is_some();
+    spans.iter().all(inside).then(|| without(text, spans))
+}
+
+/// A word that does not stand in any of the texts: `stem`, or `stem` with a number.
+#[must_use]
+pub fn free_name<'a>(texts: impl IntoIterator<Item = &'a str>, stem: &str) -> String {
+    let mut taken: Vec<String> = Vec::new();
+    for text in texts {
+        // A number or a sign behind the stem would only make a name longer.
+        let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+        let like = words.filter(|word| {
+            word.get(..stem.len())
+                .is_some_and(|start| start.eq_ignore_ascii_case(stem))
+        });
+        taken.extend(like.map(str::to_ascii_lowercase));
+    }
+    let is_free = |name: &String| !taken.contains(&name.to_ascii_lowercase());
+    let first = Some(stem.to_owned()).filter(is_free);
+    first
+        .or_else(|| (2..).map(|i| format!("{stem}{i}")).find(is_free))
+        .unwrap_or_default()
+}
+
+/// The ends of a text's lines.
+fn end_of_line(text: &str) -> &'static str {
+    if text.contains("\r\n") { "\r\n" } else { "\n" }
 }
 
 /// The place where a node's only curve ends or begins with it, and whether it ends there.
@@ -265,9 +515,12 @@ fn indent(text: &str, block: &Block) -> String {
 fn at_end(text: &str, block: &Block, lines: String) -> Edit {
     let start = text[..block.close].rfind('\n').map_or(0, |end| end + 1);
     if text[start..block.close].trim().is_empty() {
-        (start..start, lines)
+        (start..start, 0.0, lines)
+    } else if lines.is_empty() {
+        (block.close..block.close, 0.0, lines)
     } else {
-        (block.close..block.close, format!("\n{lines}"))
+        let line = end_of_line(text);
+        (block.close..block.close, 0.0, format!("{line}{lines}"))
     }
 }
 
@@ -279,28 +532,35 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
         let place = start..start + line.len();
         start = place.end;
         let inside = |at: &usize| ranges.iter().any(|range| range.contains(at));
-        let is_touched = (place.start..place.end - 1).any(|at| inside(&at));
+        let is_touched = ranges
+            .iter()
+            .any(|range| range.start < place.end && place.start < range.end);
         if !is_touched {
             kept.push_str(line);
             continue;
         }
-        let rest = line
+        let content = line.trim_end_matches(['\n', '\r']);
+        let end = &line[content.len()..];
+        let rest = content
             .char_indices()
-            .filter(|(at, c)| *c == '\n' || !inside(&(place.start + at)));
+            .filter(|(at, _)| !inside(&(place.start + at)));
         let rest: String = rest.map(|(_, c)| c).collect();
         let left = rest.trim_start();
         if !left.is_empty() && !left.starts_with('#') {
             kept.push_str(rest.trim_end());
-            kept.push_str(if rest.ends_with('\n') { "\n" } else { "" });
+            kept.push_str(end);
         }
     }
     kept
 }
 
 fn applied(text: &str, mut edits: Vec<Edit>) -> String {
-    edits.sort_by_key(|(range, _)| range.start);
+    edits.sort_by(|a, b| {
+        let place = |edit: &Edit| edit.0.start;
+        place(a).cmp(&place(b)).then(a.1.total_cmp(&b.1))
+    });
     let mut text = text.to_owned();
-    for (range, with) in edits.into_iter().rev() {
+    for (range, _, with) in edits.into_iter().rev() {
         text.replace_range(range, &with);
     }
     text

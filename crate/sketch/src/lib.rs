@@ -1,7 +1,7 @@
 //! Strokes of a hand as curves of few nodes, and the text of a skeleton that is made of them.
 //!
-//! [`fit()`] smooths a stroke, [`create`] and [`extend`] write it into a text, [`remove`] and [`widen`] change
-//! single nodes.
+//! A [`Stroke`] gathers what a hand draws on the screen, [`fit()`] smooths it, [`create`] and [`extend`] write it into a text;
+//! [`remove`], [`remove_curve`], [`cut`] and [`widen`] change what is there.
 //!
 //! ```
 //! use glam::DVec3;
@@ -27,7 +27,12 @@
 mod block;
 mod edit;
 mod fit;
+mod stroke;
 
 pub use block::{Block, CurveText, NodeText};
-pub use edit::{Limb, Start, create, extend, remove, widen};
+pub use edit::{
+    Limb, Start, create, cut, extend, free_name, insert, remove, remove_curve, widen,
+    without_commands,
+};
 pub use fit::{MOST_NODES, Sample, fit};
+pub use stroke::{Mark, Stroke};

@@ -90,6 +90,7 @@ fn a_limb_goes_on_or_branches() {
     let middle = Start::Between {
         curve: 0,
         span: 1,
+        share: 0.5,
         node: node(2.0, 0.0),
     };
     let text = added(&[limb(middle), limb(Start::Same)]);

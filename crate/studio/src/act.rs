@@ -4,6 +4,7 @@ use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::intake::Taken;
 use crate::notice::Notice;
+use crate::pencil::{Pencil, Tool, page};
 use crate::project_file::{self, Project};
 use crate::tray::item::Item;
 use crate::{asset, examples, picture, platform, share, work};
@@ -40,6 +41,14 @@ impl App {
         }
         if self.dialog.is_some() && pressed(Modifiers::NONE, Key::Escape) {
             commands.push(Command::Close);
+        }
+        let types = ctx.egui_wants_keyboard_input();
+        if self.dialog.is_none() && !types && pressed(Modifiers::NONE, Key::D) {
+            let tool = match self.pencil.tool() {
+                None => Some(Tool::Draw),
+                Some(_) => None,
+            };
+            commands.push(Command::SetTool(tool));
         }
     }
 
@@ -119,6 +128,7 @@ impl App {
             | Command::OpenSaved(_)
             | Command::OpenText { .. }
             | Command::New
+            | Command::DrawNew
             | Command::GoBack
             | Command::Rename(_)
             | Command::Delete(_) => self.carry_out_on_works(ctx, command, now),
@@ -136,6 +146,7 @@ impl App {
             }
             Command::GrowFlesh { name, flesh, edge } => self.grow_flesh(&name, flesh, edge, now),
             Command::CloseSculpt => self.close_sculpt(),
+            Command::SetTool(tool) => self.take_tool(ctx, tool, now),
             Command::Enable => {
                 self.notice = None;
                 session.enable();
@@ -274,6 +285,12 @@ impl App {
                 let result = self.work.open_new();
                 self.opened_or(ctx, result);
             }
+            Command::DrawNew => {
+                let text = page::fresh(self.is_high(ctx));
+                let result = self.work.open_page(text);
+                self.opened_or(ctx, result);
+                self.pencil.take(Some(Tool::Draw));
+            }
             Command::GoBack => {
                 if let Some(id) = self.work.before().map(str::to_owned) {
                     platform::set_hash("");
@@ -288,6 +305,33 @@ impl App {
             }
             _ => {}
         }
+    }
+
+    /// Takes a tool for drawing in hand. What begins on a page with nothing of one's own to draw on begins on an empty one.
+    fn take_tool(&mut self, ctx: &Context, tool: Option<Tool>, now: f64) {
+        let begins = tool.is_some() && self.pencil.tool().is_none();
+        self.pencil.take(tool);
+        self.hands.let_go();
+        if !begins || !self.work.session.is_compiled() {
+            return;
+        }
+        let session = &mut self.work.session;
+        let is_one = session.project().files.len() == 1 && session.assets().is_empty();
+        if is_one && page::is_empty(session.text(0)) {
+            session.set_camera(None);
+            let text = page::fresh(self.is_high(ctx));
+            self.carry_out(ctx, Command::Step { file: 0, text }, now);
+        } else if matches!(self.work.origin, work::Origin::Example | work::Origin::Link)
+            && !Pencil::has_skeleton(session)
+        {
+            self.carry_out(ctx, Command::DrawNew, now);
+        }
+    }
+
+    /// Whether a picture to draw on has more height than width.
+    fn is_high(&self, ctx: &Context) -> bool {
+        let size = ctx.content_rect().size();
+        size.y > size.x
     }
 
     /// Shows a notice if an edit was refused.

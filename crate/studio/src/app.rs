@@ -15,6 +15,7 @@ use crate::hands::Hands;
 use crate::help::Help;
 use crate::keyboard::Keyboard;
 use crate::notice::Notice;
+use crate::pencil::Pencil;
 use crate::reading::MeshReading;
 use crate::recording::{Saving, VideoFormat};
 use crate::render::{Phase, Renderer};
@@ -109,6 +110,7 @@ pub struct App {
     pub(crate) asset_view: AssetView,
     pub(crate) sliders: Sliders,
     pub(crate) hands: Hands,
+    pub(crate) pencil: Pencil,
     pub(crate) gallery: Gallery,
     pub(crate) help: Help,
     pub(crate) player: Player,
@@ -218,6 +220,7 @@ impl App {
             asset_view: AssetView::default(),
             sliders: Sliders::default(),
             hands: Hands::default(),
+            pencil: Pencil::default(),
             gallery: Gallery::default(),
             help: Help::default(),
             player: Player::default(),
@@ -437,6 +440,7 @@ impl App {
         self.tray.clear();
         self.fitting.forget();
         self.hands.clear();
+        self.pencil.clear();
         self.renderer.clear();
         self.notice = None;
         self.dialog = None;

@@ -3,6 +3,7 @@
 
 use crate::asset::Asset;
 use crate::film::Playback;
+use crate::pencil::Tool;
 use crate::recording::Kind;
 use crate::settings::Show;
 use crate::{examples, size, theme};
@@ -90,6 +91,10 @@ pub enum Command {
     StartFit,
     /// End the fit.
     StopFit,
+    /// Take a tool for drawing in hand, or lay it down.
+    SetTool(Option<Tool>),
+    /// Begin an empty work to draw on.
+    DrawNew,
     /// Draft, picture, or both in turn.
     SetShow(Show),
     /// Another picture size.

@@ -69,6 +69,7 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
         window.add_event_listener_with_callback_and_bool(event, pen, true)?;
     }
     pen.forget();
+    platform::watch_pens();
     // A page that goes out of sight may never come back; phones end it without another word.
     for event in ["pagehide", "visibilitychange"] {
         let shelf = parts.shelf.clone();

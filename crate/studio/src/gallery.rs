@@ -46,6 +46,13 @@ impl Gallery {
                 {
                     commands.push(Command::New);
                 }
+                if ui
+                    .button("Draw")
+                    .on_hover_text("An empty page to draw a creature on")
+                    .clicked()
+                {
+                    commands.push(Command::DrawNew);
+                }
             });
         });
         ui.add_space(4.0);

@@ -24,7 +24,7 @@
 //! `diagnostics` (each `{severity, message, file, span, line, column, hint, related, command}`), `hot`
 //! (names of the sliders), `assets` (names of the images and meshes), `reading` (name of the mesh that is being read, or null), `fit` (`{running, iteration, residual, points, said}` of the panel that fits meshes, or null),
 //! `frame` (of an animated work, else
-//! null), `backend` (`"webgpu"`, `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`,
+//! null), `drawing` (the tool for drawing that is in hand: `"draw"`, `"move"`, `"cut"`, or null), `backend` (`"webgpu"`, `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`,
 //! `timings` (seconds: `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays,
 //! fieldEvaluations}`), `revision` (rises with each change of the text), `name`, `saved` (whether all
 //! changes are in the browser's storage).
@@ -38,7 +38,7 @@
 //! `sinew.debug` is for tests of the page itself and may change at any time: `killWorker(i)`
 //! (whether there was such a worker),
 //! `rects()` (`{name: {x, y, w, h}}` of widgets in CSS pixels: `editor`, `picture`, `share`,
-//! `examples`, `undo`, `sliders`, `slider NAME`, `problems`, `status`, `notice`, `dialog`, …),
+//! `examples`, `undo`, `draw`, `tool draw`, `node NAME`, `sliders`, `slider NAME`, `problems`, `status`, `notice`, `dialog`, …),
 //! `pictureSize(w, h)`, which fixes the size of the traced picture (without arguments: back to what
 //! the user chose), and `panic()`, which stops the program as a mistake in it would.
 

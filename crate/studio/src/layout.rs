@@ -8,10 +8,10 @@ use crate::icon::{self, Icon};
 use crate::render::Phase;
 use crate::settings::Show;
 use crate::theme::{self, STRIP};
-use crate::view::{self, Scenery};
+use crate::view::{self, Grasp, Scenery};
 use crate::{
-    bar, download, files, fit_panel, intake, notice, places, platform, problems, screen, size,
-    sliders, status, timeline, tray,
+    bar, download, files, fit_panel, intake, notice, pencil, places, platform, problems, screen,
+    size, sliders, status, timeline, tray,
 };
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
@@ -335,7 +335,19 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         let builder = UiBuilder::new().max_rect(strip).id_salt("timeline");
         timeline::show(app, &mut ui.new_child(builder), commands);
     }
-    if app.tray.is_used() && has_tray(place, narrow) {
+    let draws = app.pencil.tool().is_some();
+    if draws {
+        let strip = Rect::from_min_max(
+            pos2(place.left(), place.bottom() - pencil::bar::HEIGHT),
+            place.max,
+        );
+        place.max.y = strip.top();
+        ui.painter().rect_filled(strip, 0.0, palette.panel);
+        let line = Stroke::new(1.0, palette.line);
+        ui.painter().hline(strip.x_range(), strip.top(), line);
+        let builder = UiBuilder::new().max_rect(strip).id_salt("pencil");
+        pencil::bar::show(app, &mut ui.new_child(builder), commands);
+    } else if app.tray.is_used() && has_tray(place, narrow) {
         let height = tray::strip::height(narrow, app.tray.folded);
         let strip = Rect::from_min_max(pos2(place.left(), place.bottom() - height), place.max);
         place.max.y = strip.top();
@@ -377,6 +389,11 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         now,
         hint: !app.settings.turned,
         round: if narrow { 0.0 } else { 5.0 },
+        grasp: Grasp {
+            draws,
+            wheel: app.pencil.takes_wheel(),
+            pinch: app.pencil.takes_pinch(),
+        },
     };
     let picture = view::show(ui, rect, &scenery, commands);
     let around = Around {
@@ -391,7 +408,22 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         let painter = ui.painter().with_clip_rect(rect);
         fit_panel::points(&app.fitting, &painter, &sight, rect);
     }
-    app.hands.show(ui, rect, &picture, &around, commands);
+    if draws {
+        let fresh = app.renderer.texture();
+        let fresh = fresh.is_some_and(|(_, generation)| generation == session.generation());
+        let around = pencil::Around {
+            session,
+            covered: app.dialog.is_some(),
+            late: draft.is_none() && !fresh,
+            touch: app.touch == Some(true),
+        };
+        app.pencil.show(ui, rect, &picture, &around, commands);
+    } else {
+        app.hands.show(ui, rect, &picture, &around, commands);
+        if session.enabled() && !app.dialog.is_some() {
+            pencil::bar::start(ui, rect, commands);
+        }
+    }
     if let Some(notice) = &app.notice {
         notice::show(ui, place, notice, commands);
     }
@@ -404,6 +436,10 @@ fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let [w, h] = app.work.session.frame().map(|side| side as f32);
     // With the keyboard up there is little room; the text then matters more.
     let share = if all.height() < 420.0 { 0.34 } else { 0.46 };
+    if app.pencil.tool().is_some() {
+        stage(app, ui, all, commands);
+        return;
+    }
     let mut height = (all.width() * h / w).min(all.height() * share).max(80.0);
     if app.tray.is_used() && all.height() >= 420.0 {
         height += tray::strip::height(true, false);

@@ -47,6 +47,7 @@ pub mod marks;
 pub mod notice;
 mod outside;
 pub mod pad;
+pub mod pencil;
 pub mod picture;
 pub mod platform;
 pub mod problems;

@@ -117,6 +117,7 @@ impl App {
         state.saved = !self.parts.shelf.borrow().is_dirty();
         state.reading = self.reading.current().map(|(name, _)| name.to_owned());
         state.fit = self.fitting.report();
+        state.drawing = self.pencil.tool().map(crate::pencil::Tool::id);
         state.frame = session.is_animated().then(|| session.film_frame());
         let text = (session.revision(), session.is_compiled());
         if self.reported != Some(text) {

@@ -50,6 +50,8 @@ pub struct Report {
     pub fit: Option<Fit>,
     /// The frame on show of an animated work.
     pub frame: Option<u32>,
+    /// The tool for drawing that is in hand: `draw`, `move` or `cut`.
+    pub drawing: Option<&'static str>,
     /// Rises when the text changes.
     pub revision: u64,
     /// Name of the open work.

@@ -38,6 +38,19 @@ pub struct Scenery<'a> {
     pub hint: bool,
     /// Radius of the corners.
     pub round: f32,
+    /// What the pointer does beside moving the camera.
+    pub grasp: Grasp,
+}
+
+/// What the pointer does beside moving the camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Grasp {
+    /// The first button and a single finger draw; other buttons, the space bar and two fingers turn.
+    pub draws: bool,
+    /// The wheel does something else.
+    pub wheel: bool,
+    /// Two fingers that spread do something else.
+    pub pinch: bool,
 }
 
 /// The largest rectangle of the frame's proportions in the middle of a place. It lies on whole pixels of the screen, and a
@@ -103,6 +116,7 @@ pub fn show(
         now,
         hint,
         round,
+        grasp,
     } = *scenery;
     let palette = theme::palette(ui.visuals());
     let painter = ui.painter().clone();
@@ -138,7 +152,7 @@ pub fn show(
     response
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture of the model"));
     let camera = session.camera();
-    if let Some(moved) = gesture(ui, &response, rect, camera) {
+    if let Some(moved) = gesture(ui, &response, rect, camera, grasp) {
         commands.push(Command::SetCamera(Some(moved)));
     }
     let response =
@@ -147,7 +161,7 @@ pub fn show(
         } else {
             CursorIcon::Grab
         });
-    if hint && response.hovered() && !response.dragged() {
+    if hint && !grasp.draws && response.hovered() && !response.dragged() {
         let text = "drag to turn · shift-drag to move · scroll to zoom · click a shape to edit it";
         let at = rect.center_bottom() - vec2(0.0, 16.0);
         let font = egui::FontId::proportional(12.5);
@@ -171,7 +185,13 @@ fn background(session: &Session) -> Color32 {
 }
 
 /// The camera after this frame's dragging, scrolling and pinching, if it moved.
-fn gesture(ui: &Ui, response: &Response, rect: Rect, camera: Camera) -> Option<Camera> {
+fn gesture(
+    ui: &Ui,
+    response: &Response,
+    rect: Rect,
+    camera: Camera,
+    grasp: Grasp,
+) -> Option<Camera> {
     let size = rect.size().max(Vec2::splat(1.0));
     let share = |moved: Vec2| (f64::from(moved.x / size.x), f64::from(moved.y / size.y));
     let pixels = [size.x as u32, size.y as u32];
@@ -180,14 +200,29 @@ fn gesture(ui: &Ui, response: &Response, rect: Rect, camera: Camera) -> Option<C
     if let Some(touch) = touch {
         if rect.contains(touch.center_pos) {
             let (across, down) = share(touch.translation_delta);
-            new = orbit::pan(new, across, down, pixels);
-            new = orbit::zoom(new, 1.0 / f64::from(touch.zoom_delta));
+            new = if grasp.draws && touch.num_touches == 2 {
+                orbit::orbit(new, across, down)
+            } else {
+                orbit::pan(new, across, down, pixels)
+            };
+            if !grasp.pinch {
+                new = orbit::zoom(new, 1.0 / f64::from(touch.zoom_delta));
+            }
         }
     } else if response.dragged() && response.drag_delta() != Vec2::ZERO {
         let (across, down) = share(response.drag_delta());
-        let pans =
-            !response.dragged_by(PointerButton::Primary) || ui.input(|input| input.modifiers.shift);
-        new = if pans {
+        let (shift, space) =
+            ui.input(|input| (input.modifiers.shift, input.key_down(egui::Key::Space)));
+        let first = response.dragged_by(PointerButton::Primary);
+        let second = response.dragged_by(PointerButton::Secondary);
+        let pans = if grasp.draws {
+            shift || !(first || second)
+        } else {
+            shift || !first
+        };
+        new = if grasp.draws && first && !space && !shift {
+            new
+        } else if pans {
             orbit::pan(new, across, down, pixels)
         } else {
             orbit::orbit(new, across, down)
@@ -197,7 +232,7 @@ fn gesture(ui: &Ui, response: &Response, rect: Rect, camera: Camera) -> Option<C
         let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
         // A notch of a wheel (100 or 120 points) comes nearer by an eighth.
         let factor = libm::exp(-f64::from(scroll) / 800.0) / f64::from(pinch);
-        if factor != 1.0 {
+        if factor != 1.0 && !grasp.wheel {
             new = orbit::zoom(new, factor);
         }
     }

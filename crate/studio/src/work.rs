@@ -147,6 +147,20 @@ impl Work {
         Ok(())
     }
 
+    /// Opens an empty page to draw on.
+    ///
+    /// # Errors
+    /// If the open work cannot be written; then it stays open.
+    pub fn open_page(&mut self, text: String) -> Result<(), String> {
+        self.leave()?;
+        let file = File {
+            name: String::from("drawing.rat"),
+            text,
+        };
+        self.begin_project(String::from("Drawing"), Project { files: vec![file] });
+        Ok(())
+    }
+
     /// Opens a work from the shelf.
     ///
     /// # Errors

@@ -42,6 +42,18 @@ pub enum Icon {
     Up,
     /// An angle that points down.
     Down,
+    /// A pencil: draw.
+    Pencil,
+    /// Arrows to four sides: move.
+    Move,
+    /// Scissors: cut.
+    Scissors,
+    /// Two halves beside a line: mirror.
+    Mirror,
+    /// A drop: colour.
+    Drop,
+    /// A check mark.
+    Done,
 }
 
 /// A square button; `name` is its tooltip and its name for screen readers.
@@ -195,6 +207,57 @@ pub fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
             line(&[(-5.0, 4.0), (0.0, -5.0), (5.0, 4.0), (-5.0, 4.0)]);
             line(&[(-2.5, -0.5), (2.5, -0.5), (0.0, 4.0), (-2.5, -0.5)]);
         }
+        Icon::Pencil => {
+            line(&[
+                (-6.5, 6.5),
+                (-5.0, 1.5),
+                (3.5, -7.0),
+                (7.0, -3.5),
+                (-1.5, 5.0),
+                (-6.5, 6.5),
+            ]);
+            line(&[(1.5, -5.0), (5.0, -1.5)]);
+        }
+        Icon::Move => {
+            line(&[(-7.0, 0.0), (7.0, 0.0)]);
+            line(&[(0.0, -7.0), (0.0, 7.0)]);
+            for side in [-1.0, 1.0] {
+                line(&[(side * 4.5, -2.5), (side * 7.0, 0.0), (side * 4.5, 2.5)]);
+                line(&[(-2.5, side * 4.5), (0.0, side * 7.0), (2.5, side * 4.5)]);
+            }
+        }
+        Icon::Scissors => {
+            line(&[(-5.5, -7.0), (3.2, 3.0)]);
+            line(&[(5.5, -7.0), (-3.2, 3.0)]);
+            for x in [-4.4, 4.4] {
+                painter.circle_stroke(at + vec2(x, 5.0), 2.4, stroke);
+            }
+        }
+        Icon::Mirror => {
+            for y in [-6.5, -2.2, 2.2, 6.5] {
+                line(&[(0.0, y - 0.9), (0.0, y + 0.9)]);
+            }
+            for side in [-1.0, 1.0] {
+                line(&[
+                    (side * 3.0, -4.5),
+                    (side * 7.5, 4.5),
+                    (side * 3.0, 4.5),
+                    (side * 3.0, -4.5),
+                ]);
+            }
+        }
+        Icon::Drop => {
+            let round = (0..=16).map(|step| {
+                let angle = (-30.0 + 240.0 * step as f64 / 16.0).to_radians();
+                let (sine, cosine) = (libm::sin(angle) as f32, libm::cos(angle) as f32);
+                (4.8 * cosine, 2.0 + 4.8 * sine)
+            });
+            let mut path = vec![(0.0, -7.5)];
+            path.extend(round);
+            path.push((0.0, -7.5));
+            line(&path);
+        }
+        Icon::Done => line(&[(-6.0, 0.5), (-1.8, 5.0), (6.5, -5.0)]),
         Icon::Up => line(&[(-5.0, 2.5), (0.0, -2.5), (5.0, 2.5)]),
         Icon::Down => line(&[(-5.0, -2.5), (0.0, 2.5), (5.0, -2.5)]),
         Icon::Close => {

@@ -44,6 +44,34 @@ pub fn set_frames_dear(dear: bool) {
     crate::frames::dear(dear);
 }
 
+thread_local! {
+    /// Pressure of the pen that touches the page.
+    static PRESSURE: std::cell::Cell<Option<f32>> = const { std::cell::Cell::new(None) };
+}
+
+/// Pressure of the pen that touches the page now, 0 … 1; `None` for a mouse or a finger.
+#[must_use]
+pub fn pressure() -> Option<f32> {
+    PRESSURE.get()
+}
+
+/// Listens to pens from now on. Where the browser does not tell, strokes have an even thickness.
+pub fn watch_pens() {
+    let listen = Closure::<dyn Fn(web_sys::PointerEvent)>::new(|event: web_sys::PointerEvent| {
+        let is_pen = event.pointer_type() == "pen" && event.pressure() > 0.0;
+        PRESSURE.set(is_pen.then(|| event.pressure()));
+    });
+    for name in ["pointerdown", "pointermove"] {
+        // Before the canvas has it.
+        let _ = window().add_event_listener_with_callback_and_bool(
+            name,
+            listen.as_ref().unchecked_ref(),
+            true,
+        );
+    }
+    listen.forget();
+}
+
 /// Milliseconds since 1970.
 #[must_use]
 pub fn unix_time() -> f64 {

@@ -1,0 +1,458 @@
+//! The skeletons of the compiled text, as things in the picture that a hand draws on.
+
+use crate::hands::Sight;
+use egui::{Pos2, Vec2};
+use glam::{DAffine3, DVec3};
+use rats::{Compiled, Project};
+use scene::{Form, Shape};
+use skeleton::{Node, Scheme, Skeleton};
+use sketch::Block;
+use std::ops::Range;
+
+/// Skeletons that are looked at, at most: a loop may make thousands.
+const MOST: usize = 200;
+
+/// A `skeleton` command of the text. Places are in the world, unless they are the skeleton's own.
+pub struct Drawn {
+    /// Index of its element.
+    pub element: usize,
+    /// Index of its file.
+    pub file: usize,
+    /// Bytes of its command.
+    pub span: Range<usize>,
+    /// The command's block; `None` if drawing cannot change it, as a loop or an instance made it.
+    pub block: Option<Block>,
+    /// Nodes and curves in coordinates of its own.
+    pub skeleton: Skeleton,
+    /// From those to the world.
+    pub to_world: DAffine3,
+    /// By how much radii grow on the way.
+    pub growth: f64,
+    /// The colour of its material.
+    pub colour: scene::Rgb,
+    /// Where each node is taken hold of: on its curve where that can be, and by how much the node moves for that place to move by 1.
+    pub knobs: Vec<(DVec3, f64)>,
+    /// The refined curves' points with their radii.
+    points: Vec<(DVec3, f64)>,
+    pieces: Vec<Piece>,
+    /// How often curves meet each node: 1 at a free end.
+    meetings: Vec<usize>,
+}
+
+/// A piece of a refined curve.
+struct Piece {
+    /// Indices of its points.
+    ends: [usize; 2],
+    curve: usize,
+    span: usize,
+    /// Where between the two nodes its ends are, 0 … 1.
+    shares: [f64; 2],
+}
+
+/// A place on a skeleton.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    /// The skeleton's index.
+    pub drawn: usize,
+    /// The curve.
+    pub curve: usize,
+    /// Between its node of this number and the next.
+    pub span: usize,
+    /// How far between them, 0 … 1.
+    pub share: f64,
+    /// The place on the curve.
+    pub place: DVec3,
+    /// The radius there.
+    pub radius: f64,
+    /// Where the flesh around it is seen, if it is.
+    pub surface: DVec3,
+    /// How many points of the screen the curve is from the pointer.
+    pub off: f32,
+}
+
+impl Drawn {
+    /// All of a compiled text.
+    #[must_use]
+    pub fn all(project: &Project, compiled: &Compiled) -> Vec<Self> {
+        let scene = &compiled.scene;
+        let elements = scene.elements.iter().zip(&compiled.placements).enumerate();
+        let mut all: Vec<Self> = Vec::new();
+        for (element, (shape, placement)) in elements {
+            let Shape::Function(function) = &shape.shape else {
+                continue;
+            };
+            let Form::Skeleton(curves) = &function.form else {
+                continue;
+            };
+            let Some(polyline) = curves.polyline() else {
+                continue;
+            };
+            if all.len() >= MOST {
+                break;
+            }
+            let origin = shape.origin;
+            let (file, span) = (
+                origin.file as usize,
+                origin.start as usize..origin.end as usize,
+            );
+            let text = project.files.get(file).map_or("", |file| &file.text);
+            let block = Block::read(text, span.clone())
+                .filter(|block| !placement.repeated && is_of(block, &curves.skeleton));
+            let to_world = function.to_world;
+            let growth = placement.growth;
+            let place = |p: DVec3| to_world.transform_point3(p);
+            let points: Vec<_> = polyline
+                .vertices
+                .iter()
+                .map(|v| (place(v.position), v.radius * growth))
+                .collect();
+            let mut pieces: Vec<Piece> = Vec::new();
+            let mut start = 0;
+            let segments = &polyline.segments;
+            while start < segments.len() {
+                let same = |s: &&skeleton::Segment| {
+                    (s.curve, s.span) == (segments[start].curve, segments[start].span)
+                };
+                let count = segments[start..].iter().take_while(same).count();
+                for (i, segment) in segments[start..start + count].iter().enumerate() {
+                    pieces.push(Piece {
+                        ends: segment.ends,
+                        curve: segment.curve,
+                        span: segment.span,
+                        shares: [i, i + 1].map(|i| i as f64 / count as f64),
+                    });
+                }
+                start += count;
+            }
+            let mut meetings = vec![0; curves.skeleton.nodes.len()];
+            for along in &curves.skeleton.curves {
+                for ends in along.windows(2) {
+                    meetings[ends[0]] += 1;
+                    meetings[ends[1]] += 1;
+                }
+            }
+            let colour = scene
+                .finishes
+                .get(shape.finish as usize)
+                .map_or([0.5; 3], |finish| finish.diffuse);
+            let mut drawn = Self {
+                element,
+                file,
+                span,
+                block,
+                skeleton: curves.skeleton.clone(),
+                to_world,
+                growth,
+                colour,
+                knobs: Vec::new(),
+                points,
+                pieces,
+                meetings,
+            };
+            drawn.knobs = drawn.knobs_of(curves.scheme);
+            all.push(drawn);
+        }
+        all
+    }
+
+    fn knobs_of(&self, scheme: Scheme) -> Vec<(DVec3, f64)> {
+        let nodes = &self.skeleton.nodes;
+        let mut knobs: Vec<_> = nodes
+            .iter()
+            .map(|node| (self.to_world.transform_point3(node.position), 1.0))
+            .collect();
+        if scheme != Scheme::Cubic {
+            return knobs;
+        }
+        // A node within a curve attracts it: the limit's point there is (a + 4b + c) / 6.
+        for (number, along) in self.skeleton.curves.iter().enumerate() {
+            for (i, &node) in along.iter().enumerate().take(along.len() - 1).skip(1) {
+                let is_alone = self.meetings[node] == 2;
+                let piece = self
+                    .pieces
+                    .iter()
+                    .find(|piece| (piece.curve, piece.span) == (number, i));
+                if let Some(piece) = piece.filter(|_| is_alone) {
+                    knobs[node] = (self.points[piece.ends[0]].0, 1.5);
+                }
+            }
+        }
+        knobs
+    }
+
+    /// Whether a node is the free end of a curve.
+    #[must_use]
+    pub fn is_end(&self, node: usize) -> bool {
+        self.meetings[node] == 1
+    }
+
+    /// A node's radius in the world.
+    #[must_use]
+    pub fn radius(&self, node: usize) -> f64 {
+        self.skeleton.nodes[node].radius * self.growth
+    }
+
+    /// The refined curves' pieces, each as two points with their radii.
+    pub fn limbs(&self) -> impl Iterator<Item = [(DVec3, f64); 2]> + '_ {
+        self.pieces
+            .iter()
+            .map(|piece| piece.ends.map(|end| self.points[end]))
+    }
+
+    /// The refined curves' pieces of one curve.
+    pub fn limbs_of(&self, curve: usize) -> impl Iterator<Item = [(DVec3, f64); 2]> + '_ {
+        self.pieces
+            .iter()
+            .filter(move |piece| piece.curve == curve)
+            .map(|piece| piece.ends.map(|end| self.points[end]))
+    }
+
+    /// The middle of all points.
+    #[must_use]
+    pub fn middle(&self) -> DVec3 {
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for (point, _) in &self.points {
+            (low, high) = (low.min(*point), high.max(*point));
+        }
+        if low.is_finite() && high.is_finite() {
+            0.5 * (low + high)
+        } else {
+            DVec3::ZERO
+        }
+    }
+
+    /// In coordinates of its own.
+    #[must_use]
+    pub fn own(&self, place: DVec3) -> DVec3 {
+        self.to_world.inverse().transform_point3(place)
+    }
+
+    /// The node that is within `reach` of a place of its own coordinates, the nearest one.
+    #[must_use]
+    pub fn node_near(&self, own: DVec3, reach: f64) -> Option<usize> {
+        let nodes = self.skeleton.nodes.iter().enumerate();
+        let near = nodes.map(|(i, node)| (node.position.distance(own), i));
+        near.filter(|(distance, _)| *distance <= reach)
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, i)| i)
+    }
+
+    /// The place of the curves nearest to one in the world, if it is within `reach`.
+    #[must_use]
+    pub fn spot_near(&self, index: usize, place: DVec3, reach: f64) -> Option<Spot> {
+        let mut best: Option<(f64, Spot)> = None;
+        for piece in &self.pieces {
+            let [(a, r), (b, s)] = piece.ends.map(|end| self.points[end]);
+            let along = b - a;
+            let square = along.length_squared();
+            let t = if square > 0.0 {
+                ((place - a).dot(along) / square).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+            let on = a + along * t;
+            let distance = on.distance(place);
+            if distance <= reach && best.as_ref().is_none_or(|(least, _)| distance < *least) {
+                let spot = Spot {
+                    drawn: index,
+                    curve: piece.curve,
+                    span: piece.span,
+                    share: piece.shares[0] + (piece.shares[1] - piece.shares[0]) * t,
+                    place: on,
+                    radius: r + (s - r) * t,
+                    surface: on,
+                    off: 0.0,
+                };
+                best = Some((distance, spot));
+            }
+        }
+        best.map(|(_, spot)| spot)
+    }
+
+    /// The node at a spot, if the spot is as good as at one.
+    #[must_use]
+    pub fn node_at_spot(&self, spot: &Spot) -> Option<usize> {
+        let along = self.skeleton.curves.get(spot.curve)?;
+        let ends = [*along.get(spot.span)?, *along.get(spot.span + 1)?];
+        let node = if spot.share < 0.5 { ends[0] } else { ends[1] };
+        let (knob, factor) = self.knobs[node];
+        // A node beside its curve would pull the curve to where it branches.
+        let beside = self
+            .to_world
+            .transform_point3(self.skeleton.nodes[node].position)
+            .distance(knob);
+        let near = knob.distance(spot.place) <= 0.6 * spot.radius;
+        (near && (factor == 1.0 || beside < 0.25 * spot.radius)).then_some(node)
+    }
+
+    /// A node at a spot, in coordinates of its own.
+    #[must_use]
+    pub fn node_of(&self, spot: &Spot) -> Node {
+        Node {
+            position: self.own(spot.place),
+            radius: spot.radius / self.growth.max(f64::MIN_POSITIVE),
+        }
+    }
+}
+
+/// Whether a block is the one that made a skeleton.
+fn is_of(block: &Block, skeleton: &Skeleton) -> bool {
+    block.nodes.len() == skeleton.nodes.len() && block.curves.len() == skeleton.curves.len()
+}
+
+/// The knob within `reach` points of a place of the screen: skeleton and node. With `ends` free ends only, each of which reaches at
+/// least as far as half of its flesh.
+#[must_use]
+pub fn node_at(
+    all: &[Drawn],
+    sight: &Sight,
+    at: Pos2,
+    reach: f32,
+    ends: bool,
+) -> Option<(usize, usize)> {
+    let mut best: Option<(f32, (usize, usize))> = None;
+    for (index, drawn) in all.iter().enumerate() {
+        if drawn.block.is_none() {
+            continue;
+        }
+        for (node, (knob, _)) in drawn.knobs.iter().enumerate() {
+            if ends && !drawn.is_end(node) {
+                continue;
+            }
+            let Some(seen) = sight.screen(*knob) else {
+                continue;
+            };
+            let flesh = (drawn.radius(node) / sight.point(*knob)) as f32;
+            let reach = if ends { reach.max(0.5 * flesh) } else { reach };
+            let distance = seen.distance(at);
+            if distance <= reach && best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, (index, node)));
+            }
+        }
+    }
+    best.map(|(_, found)| found)
+}
+
+/// The place of a curve whose flesh is seen at a place of the screen, the nearest to the eye, or that is at most `extra` points beside
+/// it.
+#[must_use]
+pub fn spot_at(all: &[Drawn], sight: &Sight, at: Pos2, extra: f32) -> Option<Spot> {
+    let mut best: Option<((bool, f64), Spot)> = None;
+    for (index, drawn) in all.iter().enumerate() {
+        for piece in &drawn.pieces {
+            let [(a, r), (b, s)] = piece.ends.map(|end| drawn.points[end]);
+            let (Some(p), Some(q)) = (sight.screen(a), sight.screen(b)) else {
+                continue;
+            };
+            let (t, off) = nearest(p, q, at);
+            let t = f64::from(t);
+            let place = a + (b - a) * t;
+            let radius = r + (s - r) * t;
+            let point = sight.point(place);
+            let flesh = (radius / point) as f32;
+            if off > flesh + extra {
+                continue;
+            }
+            let is_inside = off <= flesh;
+            // On the ball around the curve's place.
+            let bulge = f64::from((flesh * flesh - off * off).max(0.0).sqrt()) * point;
+            let depth = sight.depth(place) - bulge;
+            let rank = (
+                !is_inside,
+                if is_inside {
+                    depth
+                } else {
+                    f64::from(off - flesh)
+                },
+            );
+            if best
+                .as_ref()
+                .is_none_or(|(least, _)| (rank.0, rank.1) < (least.0, least.1))
+            {
+                let ray = sight.direction(at);
+                let axis = -sight.projection.world_from_view.z_axis;
+                let surface =
+                    sight.projection.eye + ray * (depth / ray.dot(axis).max(1e-6)).max(0.0);
+                let spot = Spot {
+                    drawn: index,
+                    curve: piece.curve,
+                    span: piece.span,
+                    share: piece.shares[0] + (piece.shares[1] - piece.shares[0]) * t,
+                    place,
+                    radius,
+                    surface,
+                    off,
+                };
+                best = Some((rank, spot));
+            }
+        }
+    }
+    best.map(|(_, spot)| spot)
+}
+
+/// Where a line that is drawn across the screen first crosses a curve that drawing can change.
+#[must_use]
+pub fn crossing(all: &[Drawn], sight: &Sight, line: &[Pos2]) -> Option<Spot> {
+    for ends in line.windows(2) {
+        let mut best: Option<(f64, Spot)> = None;
+        for (index, drawn) in all.iter().enumerate() {
+            if drawn.block.is_none() {
+                continue;
+            }
+            for piece in &drawn.pieces {
+                let [(a, r), (b, s)] = piece.ends.map(|end| drawn.points[end]);
+                let (Some(p), Some(q)) = (sight.screen(a), sight.screen(b)) else {
+                    continue;
+                };
+                let Some(t) = crossed(p, q, ends[0], ends[1]) else {
+                    continue;
+                };
+                let t = f64::from(t);
+                let place = a + (b - a) * t;
+                let depth = sight.depth(place);
+                if best.as_ref().is_none_or(|(least, _)| depth < *least) {
+                    let spot = Spot {
+                        drawn: index,
+                        curve: piece.curve,
+                        span: piece.span,
+                        share: piece.shares[0] + (piece.shares[1] - piece.shares[0]) * t,
+                        place,
+                        radius: r + (s - r) * t,
+                        surface: place,
+                        off: 0.0,
+                    };
+                    best = Some((depth, spot));
+                }
+            }
+        }
+        if let Some((_, spot)) = best {
+            return Some(spot);
+        }
+    }
+    None
+}
+
+/// Where on a line a point is nearest, 0 … 1, and how far away it is.
+fn nearest(p: Pos2, q: Pos2, at: Pos2) -> (f32, f32) {
+    let along = q - p;
+    let square = along.length_sq();
+    let t = if square > 0.0 {
+        ((at - p).dot(along) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (t, at.distance(p + along * t))
+}
+
+/// Where on the line from p to q the one from a to b crosses it, 0 … 1.
+fn crossed(p: Pos2, q: Pos2, a: Pos2, b: Pos2) -> Option<f32> {
+    let cross = |u: Vec2, v: Vec2| u.x * v.y - u.y * v.x;
+    let (along, other) = (q - p, b - a);
+    let slope = cross(along, other);
+    if slope == 0.0 {
+        return None;
+    }
+    let t = cross(a - p, other) / slope;
+    let u = cross(a - p, along) / slope;
+    ((0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u)).then_some(t)
+}

@@ -1,0 +1,504 @@
+//! From gestures to texts: where a stroke begins, which way it goes through space, and what it writes.
+
+use super::drawn::{Drawn, Spot, node_at, spot_at};
+use super::page;
+use crate::hands::Sight;
+use crate::session::Session;
+use egui::{Pos2, pos2};
+use glam::{DAffine3, DVec3};
+use rats::Project;
+use scene::Rgb;
+use skeleton::Node;
+use sketch::{Limb, Sample, Start, Stroke};
+
+/// Thickness of a long stroke at its free end, in shares of that at its root. A short one is a head or a paw, and as thick all along.
+const TIP: f64 = 0.6;
+/// Lengths in radii of strokes that are short and long in that sense.
+const SHORT: [f64; 2] = [3.5, 9.0];
+/// Thickness of the ends of a stroke that begins in the air, in shares of that of its middle.
+const ENDS: f64 = 0.75;
+/// Radius at no and at full pressure of a pen, in shares of the brush's.
+const PRESSED: [f64; 2] = [0.3, 1.5];
+/// Least cosine of the angle between the line of sight and the mirror's normal at which strokes are drawn on the mirror itself.
+const FACING: f64 = 0.6;
+
+/// What strokes are drawn with.
+#[derive(Clone, Copy, Debug)]
+pub struct Brush {
+    /// Radius, points of the screen.
+    pub radius: f32,
+    /// Whether strokes are mirrored at x = 0 of the model.
+    pub mirror: bool,
+    /// The colour; `None`: that of what a stroke grows from.
+    pub colour: Option<Rgb>,
+    /// Whether fingers are likely.
+    pub touch: bool,
+}
+
+/// A new text of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// The file's index.
+    pub file: usize,
+    /// Its text.
+    pub text: String,
+}
+
+/// What a stroke grows from.
+#[derive(Clone, Copy, Debug)]
+pub enum Root {
+    /// Nothing: it begins in the air, or on a shape that is no skeleton.
+    Free,
+    /// A node: index of the skeleton, of the node.
+    Node(usize, usize),
+    /// A place of a curve.
+    Spot(Spot),
+}
+
+/// Where a stroke begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Begin {
+    /// What it grows from.
+    pub root: Root,
+    /// Where its curve begins, if it grows from something.
+    pub place: Option<DVec3>,
+    /// A point of the plane that it is drawn on, and its normal.
+    pub plane: (DVec3, DVec3),
+    /// Radius of the brush there.
+    pub radius: f64,
+    /// Whether the mirrored stroke is drawn as well.
+    pub pair: bool,
+    /// From the model's own coordinates, in which the mirror is x = 0, to the world.
+    pub to_world: DAffine3,
+}
+
+/// The skeleton that a stroke from nowhere belongs to: the last one that drawing can change, of the brush's colour if it has one.
+#[must_use]
+pub fn target(all: &[Drawn], colour: Option<Rgb>) -> Option<usize> {
+    let fits = |drawn: &Drawn| drawn.block.is_some() && is_colour(drawn.colour, colour);
+    all.iter().rposition(fits)
+}
+
+fn is_colour(own: Rgb, wanted: Option<Rgb>) -> bool {
+    wanted.is_none_or(|wanted| own.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 2e-3))
+}
+
+/// Where a stroke begins that is put down at a place of the screen. `meets` says where a ray from the eye meets shapes that are no
+/// skeletons; `home` is the depth of strokes on an empty page.
+#[must_use]
+pub fn begin(
+    all: &[Drawn],
+    sight: &Sight,
+    at: Pos2,
+    brush: &Brush,
+    home: DVec3,
+    meets: impl FnOnce() -> Option<DVec3>,
+) -> Begin {
+    let ahead = -sight.projection.world_from_view.z_axis;
+    let (end_reach, extra) = if brush.touch {
+        (20.0, 8.0)
+    } else {
+        (12.0, 4.0)
+    };
+    let end = node_at(all, sight, at, end_reach, true);
+    let spot = if end.is_none() {
+        spot_at(all, sight, at, extra)
+    } else {
+        None
+    };
+    let model = end
+        .map(|(drawn, _)| drawn)
+        .or(spot.map(|spot| spot.drawn))
+        .or_else(|| target(all, brush.colour).or_else(|| target(all, None)));
+    let (to_world, growth) = model.map_or((DAffine3::IDENTITY, 1.0), |index| {
+        (all[index].to_world, all[index].growth)
+    });
+    let own = |place: DVec3| to_world.inverse().transform_point3(place);
+    let mirror = to_world.matrix3.inverse().transpose() * DVec3::X;
+    let mirror = mirror.try_normalize().unwrap_or(DVec3::X);
+    let faces = mirror.dot(ahead).abs() >= FACING;
+    let radius = |place: DVec3| f64::from(brush.radius) * sight.point(place);
+    let is_middle = |place: DVec3| own(place).x.abs() * growth <= 0.2 * radius(place);
+    let made = |root, place: Option<DVec3>, through: DVec3, pair, on_mirror: bool| Begin {
+        root,
+        place,
+        plane: (through, if on_mirror { mirror } else { -ahead }),
+        radius: radius(through),
+        pair,
+        to_world,
+    };
+    if let Some((index, node)) = end {
+        let place = all[index].knobs[node].0;
+        let flat = brush.mirror && faces && is_middle(place);
+        let root = Root::Node(index, node);
+        return made(root, Some(place), place, brush.mirror && !flat, flat);
+    }
+    if let Some(spot) = spot {
+        let drawn = &all[spot.drawn];
+        let root = match drawn.node_at_spot(&spot) {
+            Some(node) => Root::Node(spot.drawn, node),
+            None => Root::Spot(spot),
+        };
+        let place = match root {
+            Root::Node(index, node) => all[index].knobs[node].0,
+            _ => spot.place,
+        };
+        // Within the flesh, but towards the eye, so that limbs of both sides stand apart.
+        let mut through = spot.place.lerp(spot.surface, 0.6);
+        if brush.mirror && faces {
+            let least = (1.1 * radius(through) / growth).max(1e-9);
+            let mut inside = own(through);
+            if inside.x.abs() < least {
+                let side = if inside.x.abs() > 0.2 * least {
+                    inside.x
+                } else {
+                    own(sight.projection.eye).x
+                };
+                inside.x = least.copysign(side);
+                through = to_world.transform_point3(inside);
+            }
+        }
+        // Seen from the side, both stay as far from the mirror all along.
+        let along = brush.mirror && faces;
+        let mut begin = made(root, Some(place), through, brush.mirror, along);
+        if drawn.block.is_none() {
+            begin.root = Root::Free;
+        }
+        return begin;
+    }
+    if let Some(met) = meets() {
+        let inside = met + ahead * (0.4 * radius(met));
+        return made(Root::Free, Some(inside), inside, brush.mirror, false);
+    }
+    let middle = model.map_or(home, |index| all[index].middle());
+    let flat = brush.mirror && faces;
+    let mut through = middle;
+    if flat {
+        let mut inside = own(middle);
+        inside.x = 0.0;
+        through = to_world.transform_point3(inside);
+    }
+    made(Root::Free, None, through, brush.mirror && !flat, flat)
+}
+
+impl Begin {
+    /// Where a ray through a place of the screen meets the plane that the stroke is drawn on.
+    #[must_use]
+    pub fn on_plane(&self, sight: &Sight, at: Pos2) -> Option<DVec3> {
+        let (through, normal) = self.plane;
+        let ray = sight.direction(at);
+        let eye = sight.projection.eye;
+        let slope = ray.dot(normal);
+        let t = (through - eye).dot(normal) / slope;
+        let far = 30.0 * eye.distance(through);
+        let place = eye + ray * t;
+        (slope.abs() > 0.05 && t > 0.0 && t < far && place.is_finite()).then_some(place)
+    }
+
+    /// The stroke in space, in the world.
+    #[must_use]
+    pub fn samples(&self, sight: &Sight, stroke: &Stroke) -> Vec<Sample> {
+        let marks = stroke.marks();
+        let start = marks[0].at;
+        let start = pos2(start[0], start[1]);
+        let mut points: Vec<(DVec3, Option<f32>)> = Vec::with_capacity(marks.len() + 1);
+        let mut leave = 0.0;
+        if let Some(place) = self.place {
+            points.push((place, marks[0].pressure));
+            // The hand is put down beside the curve, and goes away from it.
+            let seen = sight.screen(place);
+            leave = seen.map_or(0.0, |seen| seen.distance(start).clamp(4.0, 40.0));
+        }
+        let away = marks
+            .iter()
+            .position(|mark| start.distance(pos2(mark.at[0], mark.at[1])) >= leave);
+        // A short stub is its last point.
+        for mark in &marks[away.unwrap_or(marks.len() - 1)..] {
+            if let Some(place) = self.on_plane(sight, pos2(mark.at[0], mark.at[1])) {
+                points.push((place, mark.pressure));
+            }
+        }
+        let mut along = vec![0.0];
+        for pair in points.windows(2) {
+            along.push(along[along.len() - 1] + pair[0].0.distance(pair[1].0));
+        }
+        let length = along[along.len() - 1].max(f64::MIN_POSITIVE);
+        let long = (length / self.radius.max(f64::MIN_POSITIVE) - SHORT[0]) / (SHORT[1] - SHORT[0]);
+        let tip = 1.0 + (TIP - 1.0) * long.clamp(0.0, 1.0);
+        let sample = |((position, pressure), along): (&(DVec3, Option<f32>), &f64)| {
+            let share = along / length;
+            let thick = match pressure {
+                Some(pressure) => {
+                    PRESSED[0] + (PRESSED[1] - PRESSED[0]) * f64::from(pressure.clamp(0.0, 1.0))
+                }
+                None if self.place.is_some() => 1.0 + (tip - 1.0) * share,
+                None => ENDS + (1.0 - ENDS) * libm::sin(share * std::f64::consts::PI),
+            };
+            Sample {
+                position: *position,
+                radius: self.radius * thick,
+            }
+        };
+        points.iter().zip(&along).map(sample).collect()
+    }
+
+    /// The mirrored place.
+    #[must_use]
+    pub fn mirrored(&self, place: DVec3) -> DVec3 {
+        let own = self.to_world.inverse().transform_point3(place);
+        self.to_world
+            .transform_point3(own * DVec3::new(-1.0, 1.0, 1.0))
+    }
+}
+
+/// Turns a stroke round that begins in the air and ends on flesh: it grows from there. Gives how it begins then.
+#[must_use]
+pub fn turned(
+    all: &[Drawn],
+    sight: &Sight,
+    brush: &Brush,
+    begin: Begin,
+    stroke: &Stroke,
+    home: DVec3,
+) -> (Begin, Stroke) {
+    if begin.place.is_some() {
+        return (begin, stroke.clone());
+    }
+    let last = stroke.marks()[stroke.marks().len() - 1].at;
+    let other = self::begin(all, sight, pos2(last[0], last[1]), brush, home, || None);
+    if other.place.is_some() {
+        (other, stroke.reversed())
+    } else {
+        (begin, stroke.clone())
+    }
+}
+
+/// The text with a new curve along samples of the world, and its mirrored one. `point` is the length of a point of the screen there.
+/// `None` if the stroke is too short.
+#[must_use]
+pub fn draw(
+    project: &Project,
+    all: &[Drawn],
+    begin: &Begin,
+    samples: &[Sample],
+    brush: &Brush,
+    point: f64,
+) -> Option<Change> {
+    // A skeleton of another colour is another one.
+    let rooted = match begin.root {
+        Root::Node(index, _) => Some(index),
+        Root::Spot(spot) => Some(spot.drawn),
+        Root::Free => None,
+    };
+    let rooted = rooted.filter(|index| is_colour(all[*index].colour, brush.colour));
+    let into = rooted.or_else(|| target(all, brush.colour));
+    let (to_world, growth) = match into {
+        Some(index) => (all[index].to_world, all[index].growth),
+        None => (DAffine3::IDENTITY, 1.0),
+    };
+    let inverse = to_world.inverse();
+    let growth = growth.max(f64::MIN_POSITIVE);
+    let own: Vec<Sample> = samples
+        .iter()
+        .map(|sample| Sample {
+            position: inverse.transform_point3(sample.position),
+            radius: sample.radius / growth,
+        })
+        .collect();
+    let unit = point / growth;
+    let shake = if brush.touch { 5.0 } else { 3.0 };
+    let nodes = sketch::fit(&own, shake * unit)?;
+    let mirrored = |nodes: &[Node]| -> Vec<Node> {
+        let flip = |node: &Node| Node {
+            position: node.position * DVec3::new(-1.0, 1.0, 1.0),
+            ..*node
+        };
+        nodes.iter().map(flip).collect()
+    };
+    let mut limbs = Vec::new();
+    let start = rooted.map(|index| (index, start_at(&all[index], begin)));
+    match start {
+        Some((index, Some(start))) => {
+            let drawn = &all[index];
+            let twin = begin.pair.then(|| twin_start(drawn, index, &start, begin));
+            limbs.push(Limb {
+                start,
+                nodes: nodes[1..].to_vec(),
+            });
+            match twin {
+                Some(Some(start)) => limbs.push(Limb {
+                    start,
+                    nodes: mirrored(&nodes[1..]),
+                }),
+                Some(None) => limbs.push(Limb {
+                    start: Start::Free,
+                    nodes: mirrored(&nodes),
+                }),
+                None => {}
+            }
+        }
+        _ => {
+            limbs.push(Limb {
+                start: Start::Free,
+                nodes: nodes.clone(),
+            });
+            if begin.pair {
+                limbs.push(Limb {
+                    start: Start::Free,
+                    nodes: mirrored(&nodes),
+                });
+            }
+        }
+    }
+    let grain = 0.5 * unit;
+    if let Some(index) = into {
+        let drawn = &all[index];
+        let text = &project.files.get(drawn.file)?.text;
+        let text = sketch::extend(text, drawn.span.clone(), &limbs, grain)?;
+        return Some(Change {
+            file: drawn.file,
+            text,
+        });
+    }
+    let texts = || project.files.iter().map(|file| file.text.as_str());
+    let colour = brush.colour.unwrap_or(page::COLOURS[0].1);
+    let (text, material) = page::with_surface(&project.files.first()?.text, texts, colour, true);
+    let name = sketch::free_name(texts(), "DRAWING");
+    let text = sketch::create(&text, &material, &name, &limbs, grain)?;
+    Some(Change { file: 0, text })
+}
+
+/// The beginning of a curve that grows from a skeleton.
+fn start_at(drawn: &Drawn, begin: &Begin) -> Option<Start> {
+    drawn.block.as_ref()?;
+    match begin.root {
+        Root::Free => None,
+        Root::Node(_, node) => Some(Start::Node(node)),
+        Root::Spot(spot) => Some(Start::Between {
+            curve: spot.curve,
+            span: spot.span,
+            share: spot.share,
+            node: drawn.node_of(&spot),
+        }),
+    }
+}
+
+/// Where the mirrored curve begins; `None` if nothing is there.
+fn twin_start(drawn: &Drawn, index: usize, start: &Start, begin: &Begin) -> Option<Start> {
+    let place = begin.place?;
+    let own = drawn.own(place);
+    let radius = match start {
+        Start::Node(node) => drawn.skeleton.nodes[*node].radius,
+        Start::Between { node, .. } => node.radius,
+        _ => return None,
+    };
+    if own.x.abs() <= 0.35 * radius {
+        return Some(Start::Same);
+    }
+    let there = own * DVec3::new(-1.0, 1.0, 1.0);
+    if let Some(node) = drawn.node_near(there, 0.3 * radius) {
+        return Some(Start::Node(node));
+    }
+    let place = drawn.to_world.transform_point3(there);
+    let spot = drawn.spot_near(index, place, 1.5 * radius * drawn.growth)?;
+    Some(match drawn.node_at_spot(&spot) {
+        Some(node) => Start::Node(node),
+        None => Start::Between {
+            curve: spot.curve,
+            span: spot.span,
+            share: spot.share,
+            node: drawn.node_of(&spot),
+        },
+    })
+}
+
+/// The text with a bead on the flesh, and its mirrored one.
+#[must_use]
+pub fn bead(
+    project: &Project,
+    begin: &Begin,
+    at: DVec3,
+    colour: Rgb,
+    point: f64,
+) -> Option<Change> {
+    let radius = 0.6 * begin.radius;
+    let texts = || project.files.iter().map(|file| file.text.as_str());
+    let (mut text, material) =
+        page::with_surface(&project.files.first()?.text, texts, colour, false);
+    if !text.ends_with('\n') {
+        text.push('\n');
+    }
+    let mut centers = vec![at];
+    let other = begin.mirrored(at);
+    if begin.pair && other.distance(at) > radius {
+        centers.push(other);
+    }
+    for center in centers {
+        let [x, y, z] = center.to_array().map(|x| number(x, 0.5 * point));
+        let radius = number(radius, 0.1 * point);
+        text += &format!("sphere {material} {radius}, <{x} {y} {z}>\n");
+    }
+    Some(Change { file: 0, text })
+}
+
+/// A number without the digits that are below a tenth of the grain.
+fn number(x: f64, grain: f64) -> String {
+    let decimals = (-libm::floor(libm::log10(grain.max(1e-9)))).clamp(0.0, 9.0) as usize;
+    let text = format!("{x:.decimals$}");
+    let short = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
+    };
+    if short == "-0" { "0" } else { short }.to_owned()
+}
+
+/// Whether a change makes no new mistakes; else what is wrong with it.
+///
+/// # Errors
+/// Says why the change cannot be made: the compiler's message.
+pub fn checked(
+    session: &Session,
+    change: Change,
+) -> Result<(Change, Project, rats::Compiled), String> {
+    let mut project = session.project().clone();
+    if let Some(file) = project.files.get_mut(change.file) {
+        file.text.clone_from(&change.text);
+    }
+    let compiled = rats::compile_at(&project, session.assets(), f64::from(session.film_frame()));
+    let errors = |diagnostics: &[rats::Diagnostic]| {
+        let is_error = |d: &&rats::Diagnostic| d.severity == rats::Severity::Error;
+        diagnostics.iter().filter(is_error).count()
+    };
+    if errors(&compiled.diagnostics) > errors(session.diagnostics()) {
+        let new = compiled.diagnostics.iter().find(|d| {
+            d.severity == rats::Severity::Error
+                && session
+                    .diagnostics()
+                    .iter()
+                    .all(|old| old.message != d.message)
+        });
+        let why = new.map_or("the text would have a mistake", |d| &d.message);
+        return Err(format!("This cannot be drawn here: {why}."));
+    }
+    Ok((change, project, compiled))
+}
+
+/// Makes a change, and then what is the same on the other side of the mirror, in one step. `again` gets the skeletons after the first.
+///
+/// # Errors
+/// As [`checked`].
+pub fn twice(
+    session: &Session,
+    change: Change,
+    again: impl FnOnce(&Project, &[Drawn]) -> Option<Change>,
+) -> Result<Change, String> {
+    let (first, project, compiled) = checked(session, change)?;
+    let all = Drawn::all(&project, &compiled);
+    match again(&project, &all).filter(|second| second.file == first.file) {
+        Some(second) => checked(session, second.clone())
+            .map(|(change, ..)| change)
+            .or(Ok(first)),
+        None => Ok(first),
+    }
+}

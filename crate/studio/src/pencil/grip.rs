@@ -1,0 +1,208 @@
+//! A node that is held: it follows the hand, and so does its mirrored one.
+
+use super::drawn::Drawn;
+use crate::command::Command;
+use crate::hands::Sight;
+use crate::session::Session;
+use assist::handles::{self, Editable, Handle, Kind};
+use egui::Pos2;
+use glam::DVec3;
+
+/// The handles of an element of a revision and frame of the film.
+#[derive(Default)]
+pub struct Handles {
+    made: Option<(u64, u32, usize)>,
+    all: Vec<Handle>,
+}
+
+impl Handles {
+    fn of(&mut self, session: &Session, sight: &Sight, element: usize) -> &[Handle] {
+        let key = (session.revision(), session.film_frame(), element);
+        if self.made != Some(key) {
+            self.all = handles::handles(
+                session.project(),
+                session.assets(),
+                session.film_frame(),
+                session.compiled(),
+                element,
+                &sight.projection.world_from_view,
+            );
+            self.made = Some(key);
+        }
+        &self.all
+    }
+}
+
+/// The handle of a skeleton's node, and that of its radius if it has one of its own.
+fn of_node(all: &[Handle], node: usize) -> Option<(&Handle, Option<&Handle>)> {
+    let is_point = |handle: &&Handle| handle.kind == Kind::Point;
+    let mut points = all.iter().enumerate().filter(|(_, h)| is_point(h));
+    let (index, point) = points.nth(node)?;
+    let radius = all.get(index + 1).filter(|next| next.kind == Kind::Length);
+    let radius = radius.filter(|radius| !radius.label.contains("material"));
+    Some((point, radius))
+}
+
+/// A node in the hand.
+pub struct Grip {
+    drawn: usize,
+    node: usize,
+    twin: Option<usize>,
+    /// Whether it stays on the mirror.
+    flat: bool,
+    /// Where it is wanted, world.
+    target: DVec3,
+    at: Pos2,
+}
+
+/// The node on the other side of the mirror x = 0.
+#[must_use]
+pub fn twin(drawn: &Drawn, node: usize) -> Option<usize> {
+    let own = drawn.skeleton.nodes[node];
+    let there = own.position * DVec3::new(-1.0, 1.0, 1.0);
+    if is_flat(drawn, node) {
+        return None;
+    }
+    drawn
+        .node_near(there, 0.15 * own.radius)
+        .filter(|other| *other != node)
+}
+
+fn is_flat(drawn: &Drawn, node: usize) -> bool {
+    let own = drawn.skeleton.nodes[node];
+    own.position.x.abs() <= 0.05 * own.radius
+}
+
+impl Grip {
+    /// Takes hold of a node.
+    #[must_use]
+    pub fn new(all: &[Drawn], (index, node): (usize, usize), mirror: bool, at: Pos2) -> Self {
+        let drawn = &all[index];
+        let place = drawn.skeleton.nodes[node].position;
+        Self {
+            drawn: index,
+            node,
+            twin: if mirror { twin(drawn, node) } else { None },
+            flat: mirror && is_flat(drawn, node),
+            target: drawn.to_world.transform_point3(place),
+            at,
+        }
+    }
+
+    /// Moves it with the pointer. Says why, if it cannot be moved.
+    pub fn drag(
+        &mut self,
+        all: &[Drawn],
+        handles: &mut Handles,
+        session: &Session,
+        sight: &Sight,
+        at: Pos2,
+        commands: &mut Vec<Command>,
+    ) -> Option<String> {
+        let drawn = all.get(self.drawn)?;
+        let factor = drawn.knobs.get(self.node)?.1 as f32;
+        let by = (at - self.at) * factor;
+        if by == egui::Vec2::ZERO {
+            return None;
+        }
+        self.at = at;
+        self.target = sight.moved(self.target, by, false);
+        if self.flat {
+            let mut own = drawn.own(self.target);
+            own.x = 0.0;
+            self.target = drawn.to_world.transform_point3(own);
+        }
+        let own = drawn.own(self.target);
+        let other = drawn
+            .to_world
+            .transform_point3(own * DVec3::new(-1.0, 1.0, 1.0));
+        let handles = handles.of(session, sight, drawn.element);
+        let grain = 0.5 * sight.point(self.target);
+        let (point, _) = of_node(handles, self.node)?;
+        if let Editable::Fixed { why } = &point.edit {
+            return Some(format!("This node stays: it {why}."));
+        }
+        let mut edits = handles::drag(point, self.target, grain);
+        if let Some(twin) = self.twin.and_then(|twin| of_node(handles, twin)) {
+            add_apart(&mut edits, handles::drag(twin.0, other, grain));
+        }
+        replace(edits, commands);
+        None
+    }
+}
+
+/// Makes nodes thicker by a factor. Says why, if one cannot be.
+pub fn widen(
+    drawn: &Drawn,
+    nodes: &[usize],
+    handles: &mut Handles,
+    session: &Session,
+    sight: &Sight,
+    factor: f64,
+    commands: &mut Vec<Command>,
+) -> Option<String> {
+    let handles = handles.of(session, sight, drawn.element);
+    let mut edits = Vec::new();
+    for &node in nodes {
+        let (point, radius) = of_node(handles, node)?;
+        let now = drawn.radius(node);
+        // A radius of 0 would stay there for ever.
+        let wanted = (now * factor).max(0.5 * sight.point(point.place));
+        let grain = 0.01 * wanted;
+        match radius {
+            Some(radius) => {
+                if let Editable::Fixed { why } = &radius.edit {
+                    return Some(format!("This radius stays: it {why}."));
+                }
+                let out = (radius.place - point.place).try_normalize()?;
+                let to = point.place + out * wanted;
+                add_apart(&mut edits, handles::drag(radius, to, grain));
+            }
+            None => {
+                let growth = drawn.growth.max(f64::MIN_POSITIVE);
+                let text = session.text(drawn.file);
+                let new = sketch::widen(
+                    text,
+                    drawn.span.clone(),
+                    node,
+                    wanted / growth,
+                    grain / growth,
+                )?;
+                // The mirrored one follows at the next turn, when its number stands in the text.
+                commands.push(Command::SetText {
+                    file: drawn.file,
+                    text: new,
+                });
+                return None;
+            }
+        }
+    }
+    replace(edits, commands);
+    None
+}
+
+/// Adds changes of other places.
+fn add_apart(edits: &mut Vec<assist::Edit>, more: Vec<assist::Edit>) {
+    for edit in more {
+        let meets = |other: &assist::Edit| {
+            other.file == edit.file
+                && other.span.start < edit.span.end
+                && edit.span.start < other.span.end
+        };
+        if !edits.iter().any(meets) {
+            edits.push(edit);
+        }
+    }
+}
+
+/// From the last to the first, so that no place in the text moves under another.
+fn replace(mut edits: Vec<assist::Edit>, commands: &mut Vec<Command>) {
+    edits.sort_by_key(|edit| (edit.file, edit.span.start));
+    for edit in edits.into_iter().rev() {
+        commands.push(Command::Replace {
+            file: edit.file,
+            range: edit.span,
+            with: edit.text,
+        });
+    }
+}

@@ -1,0 +1,964 @@
+//! Drawing creatures on the picture: strokes become curves of a skeleton, with flesh around them.
+//!
+//! Nothing is kept here that the text does not say: each gesture changes the text, in one undo step. [`drawn`] finds the text's
+//! skeletons in the picture, [`edits`] makes texts of gestures, [`page`] is the page that drawing begins with, [`paint`] shows what
+//! the hand does, [`bar`] is the strip with the tools.
+
+pub mod bar;
+mod drawn;
+mod edits;
+mod grip;
+pub mod page;
+mod paint;
+
+pub use drawn::Drawn;
+
+use crate::command::Command;
+use crate::hands::Sight;
+use crate::session::Session;
+use crate::{places, platform};
+use drawn::{Spot, crossing, node_at, spot_at};
+use edits::{Begin, Brush, Change, Root};
+use egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui, pos2};
+use glam::DVec3;
+use grip::Grip;
+use scene::Shape;
+use sketch::{Mark, Stroke};
+use tracer::Picker;
+
+/// What the hand does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tool {
+    /// Strokes become limbs.
+    #[default]
+    Draw,
+    /// Nodes are moved, and made thicker or thinner.
+    Move,
+    /// Limbs are cut, nodes and curves taken away.
+    Cut,
+}
+
+impl Tool {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Draw, Self::Move, Self::Cut];
+
+    /// Its name in the page handle's status.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Draw => "draw",
+            Self::Move => "move",
+            Self::Cut => "cut",
+        }
+    }
+}
+
+/// Thickness of strokes, points of a picture 640 points wide: least and most.
+pub const THICKNESS: [f32; 2] = [3.0, 60.0];
+/// By how much thicker the first stroke of a page is.
+const BODY: f32 = 2.2;
+
+/// The tool in hand, and what is being done with it.
+pub struct Pencil {
+    tool: Option<Tool>,
+    /// Whether strokes are mirrored.
+    pub mirror: bool,
+    /// Radius of strokes, points of a picture 640 points wide.
+    pub thickness: f32,
+    /// Points of the screen for one of those.
+    scale: f32,
+    /// Index of the colour of strokes; `None`: that of what they grow from.
+    pub colour: Option<usize>,
+    /// The skeletons of a revision and frame of the film.
+    all: Vec<Drawn>,
+    made: Option<(u64, u32)>,
+    gesture: Option<Gesture>,
+    /// The node that was touched last: skeleton and node.
+    chosen: Option<(usize, usize)>,
+    /// The node under the pointer.
+    over: Option<(usize, usize)>,
+    /// The scene of a revision and frame of the film, ready for rays.
+    picker: Option<((u64, u32), Picker)>,
+    grip: grip::Handles,
+}
+
+enum Gesture {
+    /// A limb is being drawn.
+    Stroke(Stroke, Begin),
+    /// A cut is being made.
+    Cut(Stroke),
+    /// A node is held.
+    Grip(Grip),
+    /// A curve is pressed, and gets a node if the hand moves.
+    Bend(Pos2, Spot),
+    /// The radius of a node is held.
+    Rim,
+}
+
+/// Surroundings of the tool.
+pub struct Around<'a> {
+    /// The user's work.
+    pub session: &'a Session,
+    /// Whether something lies over the page.
+    pub covered: bool,
+    /// Whether the picture on show is of an older scene: neither a draft nor a traced picture of this one.
+    pub late: bool,
+    /// Whether fingers are likely.
+    pub touch: bool,
+}
+
+impl Default for Pencil {
+    fn default() -> Self {
+        Self {
+            tool: None,
+            mirror: true,
+            thickness: 14.0,
+            scale: 1.0,
+            colour: None,
+            all: Vec::new(),
+            made: None,
+            gesture: None,
+            chosen: None,
+            over: None,
+            picker: None,
+            grip: grip::Handles::default(),
+        }
+    }
+}
+
+impl Pencil {
+    /// The tool in hand; `None` while nothing is drawn.
+    #[must_use]
+    pub fn tool(&self) -> Option<Tool> {
+        self.tool
+    }
+
+    /// Takes a tool in hand, or lays it down.
+    pub fn take(&mut self, tool: Option<Tool>) {
+        self.tool = tool;
+        self.gesture = None;
+        self.over = None;
+        if tool != Some(Tool::Move) {
+            self.chosen = None;
+        }
+    }
+
+    /// Another work is open.
+    pub fn clear(&mut self) {
+        *self = Self {
+            tool: self.tool,
+            mirror: self.mirror,
+            thickness: self.thickness,
+            colour: self.colour,
+            ..Self::default()
+        };
+    }
+
+    /// Whether the wheel makes a node thicker, in place of coming nearer.
+    #[must_use]
+    pub fn takes_wheel(&self) -> bool {
+        self.tool == Some(Tool::Move) && self.over.is_some()
+    }
+
+    /// Whether two fingers make a node thicker.
+    #[must_use]
+    pub fn takes_pinch(&self) -> bool {
+        self.tool == Some(Tool::Move) && self.chosen.is_some()
+    }
+
+    /// Whether the text has a skeleton that can be drawn on.
+    #[must_use]
+    pub fn has_skeleton(session: &Session) -> bool {
+        let all = Drawn::all(session.project(), session.compiled());
+        all.iter().any(|drawn| drawn.block.is_some())
+    }
+
+    fn brush(&self, touch: bool) -> Brush {
+        let is_first = self.all.iter().all(|drawn| drawn.block.is_none());
+        Brush {
+            radius: self.scale * self.thickness * if is_first { BODY } else { 1.0 },
+            mirror: self.mirror,
+            colour: self.colour.map(|index| page::COLOURS[index].1),
+            touch,
+        }
+    }
+
+    /// Takes what is done to the picture in `rect`, and shows what it does. `picture` is what the picture itself answered.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        picture: &Response,
+        around: &Around<'_>,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some(tool) = self.tool else { return };
+        let session = around.session;
+        self.scale = (rect.width() / 640.0).clamp(0.5, 2.0);
+        if !session.is_compiled() || session.errors() > 0 || rect.width() < 1.0 {
+            self.drop_gesture(commands);
+            if session.is_compiled() && session.errors() > 0 {
+                paint::hint(
+                    ui,
+                    rect,
+                    "The text has a mistake: undo, or mend it, to go on drawing",
+                );
+            }
+            return;
+        }
+        let key = (session.revision(), session.film_frame());
+        if self.made != Some(key) {
+            self.made = Some(key);
+            self.all = Drawn::all(session.project(), session.compiled());
+            let there = |found: &(usize, usize)| {
+                let drawn = self.all.get(found.0);
+                drawn.is_some_and(|drawn| found.1 < drawn.knobs.len() && drawn.block.is_some())
+            };
+            self.chosen = self.chosen.filter(there);
+        }
+        let sight = Sight::new(&session.camera(), rect);
+        self.listen(ui, rect, &sight, around, commands);
+        let at = picture.hover_pos().filter(|_| !around.covered);
+        let reach = if around.touch { 22.0 } else { 11.0 };
+        self.over = at.and_then(|at| node_at(&self.all, &sight, at, reach, false));
+        self.keys(ui, around, commands);
+        self.note(ui, rect, &sight);
+        let painter = ui.painter().with_clip_rect(rect);
+        self.paint(&painter, &sight, at, around, tool);
+        let text = self.hint(tool, &sight, at, around);
+        paint::hint(ui, rect, text);
+        if at.is_some() && self.gesture.is_none() {
+            let cursor = match tool {
+                Tool::Draw => CursorIcon::Crosshair,
+                Tool::Move if self.over.is_some() => CursorIcon::Grab,
+                Tool::Move => CursorIcon::Default,
+                Tool::Cut => CursorIcon::Crosshair,
+            };
+            ui.ctx().set_cursor_icon(cursor);
+        }
+    }
+
+    /// Names the places of nodes for tests and scripts.
+    fn note(&self, ui: &Ui, rect: Rect, sight: &Sight) {
+        for (index, drawn) in self.all.iter().enumerate() {
+            let Some(block) = &drawn.block else { continue };
+            for (node, (knob, _)) in block.nodes.iter().zip(&drawn.knobs) {
+                if let Some(at) = sight.screen(*knob).filter(|at| rect.contains(*at)) {
+                    let name = if index == 0 {
+                        format!("node {}", node.name)
+                    } else {
+                        format!("node {}/{index}", node.name)
+                    };
+                    places::note(
+                        ui.ctx(),
+                        name,
+                        Rect::from_center_size(at, egui::Vec2::splat(20.0)),
+                    );
+                }
+            }
+        }
+    }
+
+    fn keys(&mut self, ui: &Ui, around: &Around<'_>, commands: &mut Vec<Command>) {
+        if around.covered || ui.ctx().egui_wants_keyboard_input() {
+            return;
+        }
+        let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+        if pressed(Key::OpenBracket) {
+            self.thickness = (self.thickness / 1.15).max(THICKNESS[0]);
+        }
+        if pressed(Key::CloseBracket) {
+            self.thickness = (self.thickness * 1.15).min(THICKNESS[1]);
+        }
+        if pressed(Key::Escape) {
+            if self.gesture.is_some() {
+                self.drop_gesture(commands);
+            } else if self.chosen.is_some() {
+                self.chosen = None;
+            } else {
+                commands.push(Command::SetTool(None));
+            }
+        }
+        if let Some((index, node)) = self.chosen
+            && (pressed(Key::Delete) || pressed(Key::Backspace))
+        {
+            self.take_away(around.session, index, node, commands);
+        }
+    }
+
+    /// Gives up what is being done.
+    fn drop_gesture(&mut self, commands: &mut Vec<Command>) {
+        if let Some(Gesture::Grip(_) | Gesture::Rim) = self.gesture.take() {
+            commands.push(Command::Release);
+        }
+    }
+
+    /// Follows the pointer, through all that it did since the last frame.
+    fn listen(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        sight: &Sight,
+        around: &Around<'_>,
+        commands: &mut Vec<Command>,
+    ) {
+        let (touch, space) = ui.input(|input| (input.multi_touch(), input.key_down(Key::Space)));
+        if let Some(touch) = touch {
+            self.drop_gesture(commands);
+            if self.takes_pinch() && touch.zoom_delta != 1.0 {
+                self.widen(sight, around, f64::from(touch.zoom_delta), commands);
+            }
+            return;
+        }
+        if self.takes_wheel() && self.gesture.is_none() {
+            let scroll = ui
+                .input(|input| input.smooth_scroll_delta().y + 400.0 * (input.zoom_delta() - 1.0));
+            if scroll != 0.0 {
+                self.chosen = self.over;
+                self.widen(
+                    sight,
+                    around,
+                    libm::exp(f64::from(scroll) / 400.0),
+                    commands,
+                );
+            }
+        }
+        let notice = places::all(ui.ctx()).get("notice").copied();
+        let free = |at: Pos2| {
+            rect.contains(at)
+                && !around.covered
+                && !space
+                && !notice.is_some_and(|notice| notice.contains(at))
+                && ui
+                    .ctx()
+                    .layer_id_at(at)
+                    .is_none_or(|layer| layer == ui.layer_id())
+                && !egui::Popup::is_any_open(ui.ctx())
+        };
+        let mut moved = None;
+        for event in ui.input(|input| input.events.clone()) {
+            match event {
+                Event::PointerButton {
+                    pos,
+                    button: PointerButton::Primary,
+                    pressed: true,
+                    modifiers,
+                } if free(pos) && !modifiers.shift => {
+                    ui.memory_mut(|memory| {
+                        if let Some(focused) = memory.focused() {
+                            memory.surrender_focus(focused);
+                        }
+                    });
+                    self.press(sight, around, pos, commands);
+                }
+                Event::PointerMoved(at) => {
+                    if let Some(Gesture::Stroke(stroke, _) | Gesture::Cut(stroke)) =
+                        &mut self.gesture
+                    {
+                        stroke.push(mark(at));
+                    }
+                    moved = Some(at);
+                }
+                Event::PointerButton {
+                    pos,
+                    button: PointerButton::Primary,
+                    pressed: false,
+                    ..
+                } if self.gesture.is_some() => {
+                    if let Some(at) = moved.take() {
+                        self.drag(sight, around, at, commands);
+                    }
+                    self.release(sight, around, pos, commands);
+                }
+                _ => {}
+            }
+        }
+        if let Some(at) = moved {
+            self.drag(sight, around, at, commands);
+        }
+        // Released outside the window.
+        if self.gesture.is_some() && !ui.input(|input| input.pointer.any_down()) {
+            self.drop_gesture(commands);
+        }
+    }
+
+    fn press(&mut self, sight: &Sight, around: &Around<'_>, at: Pos2, commands: &mut Vec<Command>) {
+        let session = around.session;
+        match self.tool {
+            Some(Tool::Draw) => {
+                let begin = self.begin(session, sight, at, around.touch);
+                self.gesture = Some(Gesture::Stroke(Stroke::begin(mark(at)), begin));
+            }
+            Some(Tool::Cut) => self.gesture = Some(Gesture::Cut(Stroke::begin(mark(at)))),
+            Some(Tool::Move) => {
+                let reach = if around.touch { 22.0 } else { 11.0 };
+                let rim = self.rim(sight).filter(|rim| rim.1.distance(at) <= reach);
+                if let Some(found) = node_at(&self.all, sight, at, reach, false) {
+                    self.chosen = Some(found);
+                    let grip = Grip::new(&self.all, found, self.mirror, at);
+                    self.gesture = Some(Gesture::Grip(grip));
+                    commands.push(Command::Hold);
+                } else if rim.is_some() {
+                    self.gesture = Some(Gesture::Rim);
+                    commands.push(Command::Hold);
+                } else {
+                    self.chosen = None;
+                    let spot = spot_at(&self.all, sight, at, 4.0);
+                    let spot = spot.filter(|spot| self.all[spot.drawn].block.is_some());
+                    self.gesture = spot.map(|spot| Gesture::Bend(at, spot));
+                }
+            }
+            None => {}
+        }
+    }
+
+    fn begin(&mut self, session: &Session, sight: &Sight, at: Pos2, touch: bool) -> Begin {
+        let brush = self.brush(touch);
+        let home = session.camera().target;
+        let all = std::mem::take(&mut self.all);
+        let begin = edits::begin(&all, sight, at, &brush, home, || {
+            let is_skeleton = |element: u32| all.iter().any(|d| d.element == element as usize);
+            let hit = self.met(session, sight, at)?;
+            (!hit.element.is_some_and(is_skeleton)).then_some(hit.position)
+        });
+        self.all = all;
+        begin
+    }
+
+    /// Where a place of the screen is on what is seen there.
+    fn met(&mut self, session: &Session, sight: &Sight, at: Pos2) -> Option<tracer::Hit> {
+        let key = (session.revision(), session.film_frame());
+        if self.picker.as_ref().is_none_or(|(made, _)| *made != key) {
+            self.picker = Some((key, Picker::new(&session.compiled().scene)));
+        }
+        let (_, picker) = self.picker.as_ref()?;
+        picker.pick(sight.projection.eye, sight.direction(at))
+    }
+
+    fn drag(&mut self, sight: &Sight, around: &Around<'_>, at: Pos2, commands: &mut Vec<Command>) {
+        match &mut self.gesture {
+            Some(Gesture::Grip(grip)) => {
+                if let Some(why) = grip.drag(
+                    &self.all,
+                    &mut self.grip,
+                    around.session,
+                    sight,
+                    at,
+                    commands,
+                ) {
+                    commands.push(Command::Tell(why));
+                    self.drop_gesture(commands);
+                }
+            }
+            Some(Gesture::Bend(from, spot)) if from.distance(at) > 4.0 => {
+                let (from, spot) = (*from, *spot);
+                self.bend(around.session, sight, from, spot, commands);
+            }
+            Some(Gesture::Rim) => {
+                let Some((center, rim)) = self.rim(sight) else {
+                    return;
+                };
+                let (now, wanted) = (center.distance(rim), center.distance(at));
+                if wanted > 1.0 && now > 0.0 {
+                    self.widen(sight, around, f64::from(wanted / now), commands);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Gives a curve a node, and takes hold of it.
+    fn bend(
+        &mut self,
+        session: &Session,
+        sight: &Sight,
+        from: Pos2,
+        spot: Spot,
+        commands: &mut Vec<Command>,
+    ) {
+        self.gesture = None;
+        let drawn = &self.all[spot.drawn];
+        let text = session.text(drawn.file);
+        let grain = 0.5 * sight.point(spot.place) / drawn.growth.max(f64::MIN_POSITIVE);
+        let node = drawn.node_of(&spot);
+        let Some(text) = sketch::insert(
+            text,
+            drawn.span.clone(),
+            spot.curve,
+            spot.span,
+            &node,
+            grain,
+        ) else {
+            return;
+        };
+        let change = Change {
+            file: drawn.file,
+            text,
+        };
+        let number = drawn.knobs.len();
+        match edits::checked(session, change) {
+            Ok((change, project, compiled)) => {
+                commands.push(Command::Hold);
+                commands.push(Command::SetText {
+                    file: change.file,
+                    text: change.text,
+                });
+                let all = Drawn::all(&project, &compiled);
+                let found = (spot.drawn, number);
+                if all
+                    .get(found.0)
+                    .is_some_and(|drawn| number < drawn.knobs.len())
+                {
+                    self.chosen = Some(found);
+                    self.gesture = Some(Gesture::Grip(Grip::new(&all, found, self.mirror, from)));
+                }
+            }
+            Err(why) => commands.push(Command::Tell(why)),
+        }
+    }
+
+    fn release(
+        &mut self,
+        sight: &Sight,
+        around: &Around<'_>,
+        at: Pos2,
+        commands: &mut Vec<Command>,
+    ) {
+        let session = around.session;
+        let still = if around.touch { 10.0 } else { 5.0 };
+        match self.gesture.take() {
+            Some(Gesture::Stroke(mut stroke, begin)) => {
+                stroke.push(mark(at));
+                let result = if stroke.reach() < still {
+                    self.tap(session, sight, around.touch, at, &begin)
+                } else {
+                    self.limb(session, sight, around.touch, &stroke, begin)
+                };
+                step(result, commands);
+            }
+            Some(Gesture::Cut(mut stroke)) => {
+                stroke.push(mark(at));
+                if stroke.reach() < still {
+                    self.erase(session, sight, around.touch, at, commands);
+                } else {
+                    self.cut(session, sight, &stroke, commands);
+                }
+            }
+            Some(Gesture::Grip(_) | Gesture::Rim) => commands.push(Command::Release),
+            Some(Gesture::Bend(..)) | None => {}
+        }
+    }
+
+    /// A bead where the picture was tapped.
+    fn tap(
+        &mut self,
+        session: &Session,
+        sight: &Sight,
+        touch: bool,
+        at: Pos2,
+        begin: &Begin,
+    ) -> Option<Result<Change, String>> {
+        let hit = self.met(session, sight, at)?;
+        let colour = self
+            .colour
+            .map_or(page::COLOURS[7].1, |index| page::COLOURS[index].1);
+        let mut begin = *begin;
+        begin.pair = self.mirror;
+        begin.radius = f64::from(self.brush(touch).radius) * sight.point(hit.position);
+        let point = sight.point(hit.position);
+        // Half sunk in.
+        let center = hit.position - hit.normal * (0.15 * begin.radius);
+        let change = edits::bead(session.project(), &begin, center, colour, point)?;
+        Some(edits::checked(session, change).map(|(change, ..)| change))
+    }
+
+    /// A limb along a stroke.
+    fn limb(
+        &self,
+        session: &Session,
+        sight: &Sight,
+        touch: bool,
+        stroke: &Stroke,
+        begin: Begin,
+    ) -> Option<Result<Change, String>> {
+        let brush = self.brush(touch);
+        let home = session.camera().target;
+        let (begin, stroke) = edits::turned(&self.all, sight, &brush, begin, stroke, home);
+        let samples = begin.samples(sight, &stroke);
+        let point = sight.point(begin.plane.0);
+        let change = edits::draw(
+            session.project(),
+            &self.all,
+            &begin,
+            &samples,
+            &brush,
+            point,
+        )?;
+        Some(edits::checked(session, change).map(|(change, ..)| change))
+    }
+
+    /// Takes away what is tapped: a node, a curve or a bead.
+    fn erase(
+        &mut self,
+        session: &Session,
+        sight: &Sight,
+        touch: bool,
+        at: Pos2,
+        commands: &mut Vec<Command>,
+    ) {
+        let reach = if touch { 20.0 } else { 9.0 };
+        if let Some(hit) = self.met(session, sight, at)
+            && let Some(element) = hit.element
+        {
+            let scene = &session.compiled().scene;
+            let element = element as usize;
+            let shape = &scene.elements[element];
+            let alone = !session.compiled().placements[element].repeated;
+            if matches!(shape.shape, Shape::Sphere { .. }) && alone {
+                let origin = shape.origin;
+                let (file, span) = (
+                    origin.file as usize,
+                    origin.start as usize..origin.end as usize,
+                );
+                let text = sketch::without_commands(session.text(file), &[span]);
+                let change = text.map(|text| Change { file, text });
+                step(
+                    change.map(|change| edits::checked(session, change).map(|(c, ..)| c)),
+                    commands,
+                );
+                return;
+            }
+        }
+        if let Some((index, node)) = node_at(&self.all, sight, at, reach, false) {
+            self.take_away(session, index, node, commands);
+            return;
+        }
+        let Some(spot) = spot_at(&self.all, sight, at, 4.0) else {
+            return;
+        };
+        let drawn = &self.all[spot.drawn];
+        if drawn.block.is_none() {
+            let why = "This limb is made by a loop or a copy: change it in the text.";
+            commands.push(Command::Tell(String::from(why)));
+            return;
+        }
+        let text = session.text(drawn.file);
+        let Some(text) = sketch::remove_curve(text, drawn.span.clone(), spot.curve) else {
+            return;
+        };
+        let change = Change {
+            file: drawn.file,
+            text,
+        };
+        let other = self.mirrored(spot.drawn, spot.place);
+        let radius = spot.radius;
+        let result = edits::twice(session, change, |project, all| {
+            let (index, spot) = near(all, other?, 0.6 * radius)?;
+            let drawn = &all[index];
+            let text = &project.files[drawn.file].text;
+            Some(Change {
+                file: drawn.file,
+                text: sketch::remove_curve(text, drawn.span.clone(), spot.curve)?,
+            })
+        });
+        step(Some(result), commands);
+    }
+
+    /// Takes a node away, and its mirrored one.
+    fn take_away(
+        &mut self,
+        session: &Session,
+        index: usize,
+        node: usize,
+        commands: &mut Vec<Command>,
+    ) {
+        let drawn = &self.all[index];
+        let text = session.text(drawn.file);
+        let Some(text) = sketch::remove(text, drawn.span.clone(), node) else {
+            return;
+        };
+        let change = Change {
+            file: drawn.file,
+            text,
+        };
+        let other = self.mirrored(
+            index,
+            drawn
+                .to_world
+                .transform_point3(drawn.skeleton.nodes[node].position),
+        );
+        let radius = drawn.skeleton.nodes[node].radius;
+        self.chosen = None;
+        let result = edits::twice(session, change, |project, all| {
+            let other = other?;
+            let found = all.iter().find_map(|drawn| {
+                drawn.block.as_ref()?;
+                Some((drawn, drawn.node_near(drawn.own(other), 0.3 * radius)?))
+            });
+            let (drawn, node) = found?;
+            let text = &project.files[drawn.file].text;
+            Some(Change {
+                file: drawn.file,
+                text: sketch::remove(text, drawn.span.clone(), node)?,
+            })
+        });
+        step(Some(result), commands);
+    }
+
+    /// Cuts the limb that a stroke crosses, and its mirrored one.
+    fn cut(&self, session: &Session, sight: &Sight, stroke: &Stroke, commands: &mut Vec<Command>) {
+        let line: Vec<Pos2> = stroke
+            .marks()
+            .iter()
+            .map(|m| pos2(m.at[0], m.at[1]))
+            .collect();
+        let Some(spot) = crossing(&self.all, sight, &line) else {
+            return;
+        };
+        let point = sight.point(spot.place);
+        let cut = |drawn: &Drawn, text: &str, spot: &Spot| {
+            let grain = 0.5 * point / drawn.growth.max(f64::MIN_POSITIVE);
+            let end = drawn.node_of(spot);
+            let span = drawn.span.clone();
+            sketch::cut(
+                text,
+                span,
+                &drawn.skeleton,
+                spot.curve,
+                spot.span,
+                &end,
+                grain,
+            )
+        };
+        let drawn = &self.all[spot.drawn];
+        let Some(text) = cut(drawn, session.text(drawn.file), &spot) else {
+            return;
+        };
+        let change = Change {
+            file: drawn.file,
+            text,
+        };
+        let other = self.mirrored(spot.drawn, spot.place);
+        let result = edits::twice(session, change, |project, all| {
+            let (index, spot) = near(all, other?, 0.6 * spot.radius)?;
+            let drawn = &all[index];
+            Some(Change {
+                file: drawn.file,
+                text: cut(drawn, &project.files[drawn.file].text, &spot)?,
+            })
+        });
+        step(Some(result), commands);
+    }
+
+    /// The place on the other side of the mirror, if strokes are mirrored and it is another one.
+    fn mirrored(&self, index: usize, place: DVec3) -> Option<DVec3> {
+        let drawn = &self.all[index];
+        let own = drawn.own(place);
+        let other = own * DVec3::new(-1.0, 1.0, 1.0);
+        let least = 1e-3 * drawn.middle().distance(place).max(1e-6);
+        let apart = self.mirror && own.x.abs() > least;
+        apart.then(|| drawn.to_world.transform_point3(other))
+    }
+
+    /// Makes the chosen node thicker by a factor, and its mirrored one.
+    fn widen(
+        &mut self,
+        sight: &Sight,
+        around: &Around<'_>,
+        factor: f64,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some((index, node)) = self.chosen else {
+            return;
+        };
+        let factor = if factor.is_finite() {
+            factor.clamp(0.2, 5.0)
+        } else {
+            1.0
+        };
+        let Some(drawn) = self.all.get(index) else {
+            return;
+        };
+        let mut nodes = vec![node];
+        if self.mirror {
+            nodes.extend(grip::twin(drawn, node));
+        }
+        let why = grip::widen(
+            drawn,
+            &nodes,
+            &mut self.grip,
+            around.session,
+            sight,
+            factor,
+            commands,
+        );
+        if let Some(why) = why {
+            commands.push(Command::Tell(why));
+        }
+    }
+
+    /// The chosen node's place on the screen, and where its radius is taken hold of.
+    fn rim(&self, sight: &Sight) -> Option<(Pos2, Pos2)> {
+        let (index, node) = self.chosen?;
+        let drawn = self.all.get(index)?;
+        let knob = drawn.knobs.get(node)?.0;
+        let center = sight.screen(knob)?;
+        let radius = (drawn.radius(node) / sight.point(knob)) as f32;
+        let out = egui::vec2(0.8, 0.6) * radius.max(1.0);
+        Some((center, center + out))
+    }
+
+    fn paint(
+        &self,
+        painter: &egui::Painter,
+        sight: &Sight,
+        at: Option<Pos2>,
+        around: &Around<'_>,
+        tool: Tool,
+    ) {
+        let stroke = match &self.gesture {
+            Some(Gesture::Stroke(stroke, begin)) => Some((stroke, begin)),
+            _ => None,
+        };
+        if around.late {
+            for drawn in &self.all {
+                paint::flesh(painter, sight, drawn);
+            }
+        }
+        let limb = stroke.map(|(stroke, begin)| {
+            let samples = begin.samples(sight, stroke);
+            let colour = self.stroke_colour(begin);
+            (samples, *begin, colour)
+        });
+        if let Some((samples, begin, colour)) = &limb {
+            if begin.pair {
+                let other = |sample: &sketch::Sample| sketch::Sample {
+                    position: begin.mirrored(sample.position),
+                    ..*sample
+                };
+                let other: Vec<_> = samples.iter().map(other).collect();
+                paint::tube(painter, sight, &other, *colour, 0.55);
+            }
+            paint::tube(painter, sight, samples, *colour, 0.9);
+        }
+        for (index, drawn) in self.all.iter().enumerate() {
+            paint::bones(painter, sight, drawn, tool, |node| {
+                if self.chosen == Some((index, node)) {
+                    paint::Light::Chosen
+                } else if self.over == Some((index, node)) && self.gesture.is_none() {
+                    paint::Light::Over
+                } else {
+                    paint::Light::Plain
+                }
+            });
+        }
+        if tool == Tool::Move
+            && let Some((center, rim)) = self.rim(sight)
+        {
+            paint::rim(painter, center, rim);
+        }
+        if let Some(Gesture::Cut(stroke)) = &self.gesture {
+            paint::knife(painter, stroke);
+        }
+        if tool == Tool::Draw
+            && self.gesture.is_none()
+            && !around.touch
+            && let Some(at) = at
+        {
+            paint::brush(painter, at, self.brush(false).radius);
+        }
+    }
+
+    fn stroke_colour(&self, begin: &Begin) -> scene::Rgb {
+        let own = match begin.root {
+            Root::Node(index, _) => Some(index),
+            Root::Spot(spot) => Some(spot.drawn),
+            Root::Free => edits::target(&self.all, None),
+        };
+        match (self.colour, own) {
+            (Some(index), _) => page::COLOURS[index].1,
+            (None, Some(index)) => self.all[index].colour,
+            (None, None) => page::COLOURS[0].1,
+        }
+    }
+
+    /// What a gesture would do now.
+    fn hint(
+        &self,
+        tool: Tool,
+        sight: &Sight,
+        at: Option<Pos2>,
+        around: &Around<'_>,
+    ) -> &'static str {
+        let is_empty = self.all.iter().all(|drawn| drawn.block.is_none());
+        match (&self.gesture, tool) {
+            (Some(Gesture::Stroke(_, begin)), _) if begin.pair => {
+                return "A pair: the other one grows on the other side";
+            }
+            (Some(Gesture::Stroke(..)), _) => return "Let go, and it becomes a limb",
+            (Some(Gesture::Cut(_)), _) => return "Across a limb: what is beyond falls off",
+            (Some(Gesture::Rim), _) => return "Away from the dot: thicker",
+            (Some(_), _) => return "Let go where it should stay",
+            (None, _) => {}
+        }
+        if tool == Tool::Draw {
+            if is_empty && self.all.is_empty() {
+                return "Draw a line: it becomes the body";
+            }
+            if let Some(at) = at.filter(|_| !around.touch) {
+                if node_at(&self.all, sight, at, 12.0, true).is_some() {
+                    return "Draw: the limb goes on from its end";
+                }
+                if spot_at(&self.all, sight, at, 4.0).is_some() {
+                    return if self.mirror {
+                        "Draw: a pair of limbs grows here · click: a pair of beads"
+                    } else {
+                        "Draw: a limb grows here · click: a bead"
+                    };
+                }
+                return "Draw from the flesh: a limb · right button turns · wheel zooms";
+            }
+            return if around.touch {
+                "Draw from the flesh: a limb · tap it: an eye · two fingers turn"
+            } else {
+                "Draw from the flesh: a limb · right button turns"
+            };
+        }
+        match (tool, around.touch) {
+            _ if is_empty => "Nothing is drawn yet: take Draw",
+            (Tool::Move, true) if self.chosen.is_some() => {
+                "Pinch: thicker or thinner · drag the dot: move it"
+            }
+            (Tool::Move, true) => "Drag a dot, or bend a limb · two fingers turn",
+            (Tool::Move, false) if self.over.is_some() => {
+                "Drag: move it · wheel: thicker or thinner"
+            }
+            (Tool::Move, false) => "Drag a dot, or bend a limb · right button turns",
+            (_, true) => "Cut across a limb · tap a dot, a limb or an eye: it goes",
+            (_, false) => "Cut across a limb · click a dot, a limb or an eye: it goes",
+        }
+    }
+}
+
+/// The place of the skeletons that drawing can change, nearest to one in the world.
+fn near(all: &[Drawn], place: DVec3, reach: f64) -> Option<(usize, Spot)> {
+    all.iter().enumerate().find_map(|(index, drawn)| {
+        drawn.block.as_ref()?;
+        Some((index, drawn.spot_near(index, place, reach)?))
+    })
+}
+
+fn step(result: Option<Result<Change, String>>, commands: &mut Vec<Command>) {
+    match result {
+        Some(Ok(Change { file, text })) => commands.push(Command::Step { file, text }),
+        Some(Err(why)) => commands.push(Command::Tell(why)),
+        None => {}
+    }
+}
+
+fn mark(at: Pos2) -> Mark {
+    Mark {
+        at: [at.x, at.y],
+        pressure: platform::pressure(),
+    }
+}

@@ -1,0 +1,91 @@
+//! The page that drawing begins with, and the materials of strokes.
+
+use scene::Rgb;
+
+/// The colours to draw with, and their names.
+pub const COLOURS: [(&str, Rgb); 8] = [
+    ("Apricot", [0.86, 0.52, 0.3]),
+    ("Brick", [0.66, 0.22, 0.16]),
+    ("Sand", [0.85, 0.74, 0.54]),
+    ("Leaf", [0.36, 0.55, 0.27]),
+    ("Water", [0.22, 0.45, 0.62]),
+    ("Plum", [0.46, 0.28, 0.5]),
+    ("Snow", [0.9, 0.9, 0.88]),
+    ("Night", [0.07, 0.07, 0.09]),
+];
+
+/// The text of an empty page to draw on: seen from the side, so that what is drawn in pairs lies to the left and right of it. `high`:
+/// for a place that is higher than wide.
+#[must_use]
+pub fn fresh(high: bool) -> String {
+    let (frame, eye, angles) = if high {
+        ("480 600", "9.4 2.2 3.2", "39.2 48")
+    } else {
+        ("640 480", "8.2 1.9 2.8", "46.8 36")
+    };
+    let skin = surface(COLOURS[0].1, true);
+    format!(
+        "\
+# Drawn by hand. The strokes are the curves of the skeleton at the end.
+eyep {eye}
+vrp 0 0.1 0
+vup 0 1 0
+fov {angles}
+framesize {frame}
+sample 2
+
+background <0.78 0.86 0.92> to <0.93 0.93 0.90>
+light <1 0.96 0.9>, position 7 9 3
+light <0.3 0.34 0.4>, position 2 4 -9
+ground <0.72 0.70 0.62>, height -1.5
+
+surface Skin, {skin}
+"
+    )
+}
+
+/// The fields of a material: soft, or hard and shining.
+fn surface(colour: Rgb, soft: bool) -> String {
+    let [r, g, b] = colour;
+    if soft {
+        format!(
+            "kernel cauchy, diffuse <{r} {g} {b}>, specular Gray40, shine 30, radius 0.2, blobbiness -2"
+        )
+    } else {
+        format!("diffuse <{r} {g} {b}>, specular White, shine 90")
+    }
+}
+
+/// A text that has a material of a colour, and its name: one that is written just so, or a new one at the end.
+pub fn with_surface<'a, T: Iterator<Item = &'a str>>(
+    text: &str,
+    texts: impl Fn() -> T,
+    colour: Rgb,
+    soft: bool,
+) -> (String, String) {
+    let fields = surface(colour, soft);
+    let known = text.lines().find_map(|line| {
+        let name = line.strip_prefix("surface ")?.strip_suffix(&fields)?;
+        name.strip_suffix(", ")
+    });
+    if let Some(name) = known {
+        return (text.to_owned(), name.to_owned());
+    }
+    let named = COLOURS.iter().find(|(_, rgb)| *rgb == colour);
+    let stem = named.map_or("Colour", |(name, _)| name);
+    let stem = format!("{stem}{}", if soft { "Skin" } else { "Bead" });
+    let name = sketch::free_name(texts(), &stem);
+    let line = if text.contains("\r\n") { "\r\n" } else { "\n" };
+    let mut text = text.to_owned();
+    if !text.is_empty() && !text.ends_with('\n') {
+        text += line;
+    }
+    text += &format!("surface {name}, {fields}{line}");
+    (text, name)
+}
+
+/// Whether a text is an empty page: nothing, or what a new work begins with.
+#[must_use]
+pub fn is_empty(text: &str) -> bool {
+    text.trim().is_empty() || text.trim() == crate::examples::BLANK.trim()
+}

@@ -1,0 +1,184 @@
+// An animal with four legs, a head and a tail, drawn by mouse and by finger, as someone would who has read nothing.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { example, launch } from './page.mjs';
+
+let browser;
+before(async () => {
+  browser = await launch('webgl2');
+});
+after(() => browser?.close());
+
+/** Points along a stroke through a few places, as shares of the picture. */
+function through(places, steps = 10) {
+  const points = [];
+  for (let i = 0; i + 1 < places.length; i++) {
+    for (let k = 0; k < steps; k++) {
+      const at = (j) => places[Math.min(Math.max(j, 0), places.length - 1)];
+      const [a, b, c, d] = [at(i - 1), at(i), at(i + 1), at(i + 2)];
+      const t = k / steps;
+      points.push([0, 1].map((x) => {
+        const [p, q, r, s] = [a, b, c, d].map((place) => place[x]);
+        return 0.5 * (2 * q + (r - p) * t + (2 * p - 5 * q + 4 * r - s) * t * t + (3 * q - p - 3 * r + s) * t ** 3);
+      }));
+    }
+  }
+  points.push(places[places.length - 1]);
+  return points;
+}
+
+/** A hand with a mouse or a finger on an open page. */
+class Hand {
+  gestures = 0;
+
+  constructor(sinew, touch) {
+    this.sinew = sinew;
+    this.touch = touch;
+  }
+
+  static async on(sinew, touch) {
+    const hand = new Hand(sinew, touch);
+    if (touch) hand.session = await sinew.page.context().newCDPSession(sinew.page);
+    return hand;
+  }
+
+  async at([x, y]) {
+    const picture = await this.sinew.place('picture');
+    return [picture.x + x * picture.w, picture.y + y * picture.h];
+  }
+
+  /** A stroke through places of the picture, shares of its width and height. */
+  async stroke(...places) {
+    const points = [];
+    for (const point of through(places)) points.push(await this.at(point));
+    await this.along(points);
+  }
+
+  /** A stroke through places of the screen. */
+  async along(points) {
+    const { revision } = await this.sinew.status();
+    this.gestures += 1;
+    if (this.touch) {
+      const send = (type, touches) =>
+        this.session.send('Input.dispatchTouchEvent', {
+          type,
+          touchPoints: touches.map(([x, y], id) => ({ x, y, id })),
+        });
+      await send('touchStart', [points[0]]);
+      for (const point of points.slice(1)) await send('touchMove', [point]);
+      await send('touchEnd', []);
+    } else {
+      const { mouse } = this.sinew.page;
+      await mouse.move(...points[0]);
+      await mouse.down();
+      for (const point of points.slice(1)) await mouse.move(...point);
+      await mouse.up();
+    }
+    return this.sinew.until((status) => status.revision > revision || this.mayDoNothing, 20_000);
+  }
+
+  async tap(place) {
+    await this.along([await this.at(place)]);
+  }
+
+  /** Presses a widget. */
+  async press(name) {
+    const { x, y, w, h } = await this.sinew.place(name);
+    if (this.touch) await this.sinew.page.touchscreen.tap(x + w / 2, y + h / 2);
+    else await this.sinew.page.mouse.click(x + w / 2, y + h / 2);
+  }
+}
+
+const DESKTOP = { viewport: { width: 1200, height: 760 } };
+const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+
+for (const [size, options] of [['desktop', DESKTOP], ['phone', PHONE]]) {
+  test(`an animal is drawn, ${size}`, async () => {
+    const sinew = await browser.open(options);
+    const touch = size === 'phone';
+    const hand = await Hand.on(sinew, touch);
+    let shot = 0;
+    const keep = () => sinew.keep(`draw ${size} ${String(++shot).padStart(2, '0')}`);
+    await sinew.until(({ phase }) => phase !== 'idle');
+    await keep();
+    await hand.press('draw');
+    await sinew.until(({ drawing }) => drawing === 'draw');
+    await sinew.page.waitForTimeout(1500);
+    await keep();
+    const settle = async () => {
+      await sinew.page.waitForTimeout(400);
+      await keep();
+    };
+    // Body, neck, head.
+    await hand.stroke([0.34, 0.46], [0.5, 0.43], [0.65, 0.45]);
+    await settle();
+    await hand.stroke([0.65, 0.45], [0.7, 0.4], [0.73, 0.31]);
+    await settle();
+    await hand.stroke([0.73, 0.31], [0.76, 0.31], [0.81, 0.335]);
+    await settle();
+    // Legs in pairs.
+    await hand.stroke([0.62, 0.5], [0.63, 0.62], [0.615, 0.76]);
+    await settle();
+    await hand.stroke([0.38, 0.5], [0.35, 0.6], [0.375, 0.76]);
+    await settle();
+    // Tail, ears, eyes.
+    await hand.stroke([0.34, 0.46], [0.27, 0.42], [0.23, 0.3], [0.19, 0.24]);
+    await settle();
+    await hand.stroke([0.735, 0.29], [0.725, 0.25], [0.72, 0.21]);
+    await settle();
+    await hand.tap([0.772, 0.3]);
+    await settle();
+    console.log(await sinew.text());
+    await sinew.finished();
+    await keep();
+    assert.deepEqual(sinew.troubles, []);
+    await sinew.close();
+  });
+}
+
+/** Has the page note how long each of its frames takes, milliseconds of its own thread. */
+const clock = (page) =>
+  page.addInitScript(() => {
+    const ask = window.requestAnimationFrame.bind(window);
+    window.frames_ = [];
+    window.requestAnimationFrame = (draw) =>
+      ask((time) => {
+        const begun = performance.now();
+        draw(time);
+        window.frames_.push(performance.now() - begun);
+      });
+  });
+
+test('a node of the snail is dragged, and the flesh follows', async () => {
+  const sinew = await browser.open({ ...DESKTOP, before: clock });
+  const hand = await Hand.on(sinew, false);
+  const { mouse } = sinew.page;
+  const median = (times) => [...times].sort((a, b) => a - b)[Math.floor(times.length / 2)];
+  /** Moves the pointer so often, a frame each, and gives the frames' median. */
+  const move = async ([x, y], count) => {
+    await sinew.page.evaluate(() => (window.frames_ = []));
+    for (let i = 1; i <= count; i++) {
+      await mouse.move(x + 30 * Math.sin(i / 4), y - 20 * Math.sin(i / 3));
+      await sinew.page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
+    }
+    return median(await sinew.page.evaluate(() => window.frames_.filter((time) => time > 0.3)));
+  };
+  await sinew.load('');
+  await hand.press('draw');
+  await sinew.until(({ drawing }) => drawing === 'draw');
+  const empty = await move(await hand.at([0.5, 0.5]), 30);
+  await sinew.load(await example('snail'));
+  await hand.press('tool move');
+  const { x, y, w, h } = await sinew.place('node HEAD/1');
+  const { revision } = await sinew.status();
+  await mouse.move(x + w / 2, y + h / 2);
+  await mouse.down();
+  const held = await move([x + w / 2, y + h / 2], 30);
+  await mouse.up();
+  const { revision: after } = await sinew.status();
+  assert.ok(after >= revision + 10, 'the text follows the hand');
+  console.log(`a frame while a node is dragged: ${held.toFixed(1)} ms, on the empty page ${empty.toFixed(1)} ms`);
+  await sinew.keep('draw snail');
+  assert.deepEqual(sinew.troubles, []);
+  await sinew.close();
+});
