@@ -9,6 +9,7 @@ mod check;
 mod classic;
 mod files;
 mod fmt;
+mod meshes;
 mod probe;
 mod render;
 mod report;
@@ -42,6 +43,8 @@ enum Command {
     Render(render::Render),
     /// Trace a dataset whose variables change with the frames to an animation
     Animate(animate::Animate),
+    /// Mesh a dataset's surfaces, for printers and other programs
+    Mesh(meshes::Mesh),
     /// Evaluate the field at points, or intersect rays with the surface
     Probe(probe::Probe),
     /// Carry out the strokes of a sculpture and write its mesh
@@ -94,6 +97,7 @@ fn run() -> Outcome {
         Command::Animate(command) => command.run(),
         Command::Sculpt(command) => command.run(),
         Command::Fmt(command) => command.run(),
+        Command::Mesh(command) => command.run(),
         Command::Probe(command) => command.run(),
         Command::Scene(command) => command.run(),
         Command::Share(command) => command.run(),

@@ -1,6 +1,6 @@
 //! A function deformed by those that its surface touches.
 use crate::Bulge;
-use field::{Ball, Enclosure, Implicit, Jet, Real, THRESHOLD};
+use field::{Ball, Enclosure, Implicit, Jet, Part, Real, THRESHOLD, Variation};
 use glam::DVec3;
 use std::sync::Arc;
 use wide::f32x8;
@@ -48,30 +48,7 @@ impl Squashed {
 
     /// Value and gradient, given those of a function in the same precision.
     fn combined<R: Real>(&self, jet: impl Fn(&dyn Implicit) -> Jet<R>) -> Jet<R> {
-        let own = jet(&*self.own);
-        let Some((first, others)) = self.partners.split_first() else {
-            return own;
-        };
-        let deformed = |partner: &Partner| {
-            let field = jet(&*partner.function);
-            let (value, slope) = partner.bulge.jet(field.value);
-            (field.value, value, field.gradient.map(|g| slope * g))
-        };
-        let mut largest = deformed(first);
-        for partner in others {
-            let other = deformed(partner);
-            let more = largest.0.lt(other.0);
-            let pick = |a: R, b: R| R::select(more, a, b);
-            largest = (
-                pick(other.0, largest.0),
-                pick(other.1, largest.1),
-                core::array::from_fn(|i| pick(other.2[i], largest.2[i])),
-            );
-        }
-        own.plus(Jet {
-            value: largest.1,
-            gradient: largest.2,
-        })
+        pressed(jet(&*self.own), self.partners.iter(), jet)
     }
 
     /// Bounds on the deformation in a ball; `None` if there is none.
@@ -124,6 +101,37 @@ impl Squashed {
     }
 }
 
+/// Value and gradient of a function with the bulge of the largest of some partners.
+fn pressed<'a, R: Real>(
+    own: Jet<R>,
+    mut partners: impl Iterator<Item = &'a Partner>,
+    jet: impl Fn(&dyn Implicit) -> Jet<R>,
+) -> Jet<R> {
+    let deformed = |partner: &Partner| {
+        let field = jet(&*partner.function);
+        let (value, slope) = partner.bulge.jet(field.value);
+        (field.value, value, field.gradient.map(|g| slope * g))
+    };
+    let Some(first) = partners.next() else {
+        return own;
+    };
+    let mut largest = deformed(first);
+    for partner in partners {
+        let other = deformed(partner);
+        let more = largest.0.lt(other.0);
+        let pick = |a: R, b: R| R::select(more, a, b);
+        largest = (
+            pick(other.0, largest.0),
+            pick(other.1, largest.1),
+            core::array::from_fn(|i| pick(other.2[i], largest.2[i])),
+        );
+    }
+    own.plus(Jet {
+        value: largest.1,
+        gradient: largest.2,
+    })
+}
+
 /// The product of two bounds, of which 0 stays 0 whatever the other is.
 fn bounded(factor: f64, bound: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { factor * bound }
@@ -157,6 +165,36 @@ impl Implicit for Squashed {
             Some(deformation) => own
                 .plus(deformation)
                 .about(&self.jet(ball.center), ball.radius),
+        }
+    }
+
+    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: f64) -> Option<Part> {
+        self.own.narrow(ball, among, slack)
+    }
+
+    fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {
+        // Outside the reach of all nothing changes, and partners out of reach are not the largest where something does.
+        let is_near = |partner: &&Partner| {
+            let is_far = |ball: Ball| ball.center.distance(point) > ball.radius;
+            !partner.reach.is_some_and(is_far)
+        };
+        let near = self.partners.iter().filter(is_near);
+        pressed(self.own.jet_of(part, point), near, |f| f.jet(point))
+    }
+
+    fn variation(&self, part: Option<&Part>, ball: Ball) -> Variation {
+        let own = self.own.variation(part, ball);
+        if own.range.value[1] + self.height < THRESHOLD {
+            // As in `enclose`.
+            return Variation::rough(Enclosure {
+                value: [f64::NEG_INFINITY, own.range.value[1] + self.height],
+                slope: f64::INFINITY,
+                curvature: f64::INFINITY,
+            });
+        }
+        match self.deformation(ball) {
+            None => own,
+            Some(deformation) => own.plus(Variation::rough(deformation)),
         }
     }
 

@@ -1,4 +1,5 @@
 //! Sums of functions: shapes of different kinds that blend.
+use crate::implicit::{self, Variation};
 use crate::{Ball, Enclosure, Implicit, Jet, Sum};
 use glam::DVec3;
 use std::sync::Arc;
@@ -72,6 +73,30 @@ impl Implicit for Blend {
         self.parts.iter().fold(self.sum.enclose(ball), |all, part| {
             all.plus(part.function.enclose(ball))
         })
+    }
+
+    fn narrow(
+        &self,
+        ball: Ball,
+        among: Option<&implicit::Part>,
+        slack: f64,
+    ) -> Option<implicit::Part> {
+        self.sum.narrow(ball, among, slack)
+    }
+
+    fn jet_of(&self, part: &implicit::Part, point: DVec3) -> Jet<f64> {
+        let sum = self.sum.jet_of(part, point);
+        let functions = self.parts.iter().map(|part| part.function.jet(point));
+        functions.fold(sum, Jet::plus)
+    }
+
+    fn variation(&self, part: Option<&implicit::Part>, ball: Ball) -> Variation {
+        let sum = self.sum.variation(part, ball);
+        let functions = self
+            .parts
+            .iter()
+            .map(|part| part.function.variation(None, ball));
+        functions.fold(sum, Variation::plus)
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {

@@ -358,6 +358,37 @@ impl Bound {
         self.derivative(near, 2) + wave
     }
 
+    /// Returns a bound on the third derivative of f along any line in the ball, where the profile, if any, is smooth; infinite if
+    /// the second derivative may jump there.
+    #[must_use]
+    pub fn third(&self, near: Nearness) -> f64 {
+        let is_outside = self.kernel.is_compact() && near.distance * self.width >= 1.0;
+        let own = if is_outside {
+            return 0.0;
+        } else if self.kernel.smoothness() >= 2 {
+            self.derivative(near, 3)
+        } else if near.within {
+            let scale = self.finest * self.finest * self.finest;
+            self.whole * envelope::inside(self.kernel)[0] * scale
+        } else {
+            f64::INFINITY
+        };
+        if self.ripple.is_none() {
+            return own;
+        }
+        let [first, second, third, _] = self.factor(near);
+        own + 3.0 * self.derivative(near, 2) * first
+            + 3.0 * self.derivative(near, 1) * second
+            + self.magnitude(near) * third
+    }
+
+    /// Returns a bound on the jump of the gradient of f at a [kink](crate::kinks) of the profile.
+    #[must_use]
+    pub fn jump(&self, near: Nearness) -> f64 {
+        let [first, ..] = self.factor(near);
+        2.0 * self.magnitude(near) * first
+    }
+
     /// Returns bounds on the first to fourth derivative of the profile's factor, over its size; 0 without a profile.
     fn factor(&self, near: Nearness) -> [f64; 4] {
         let of = |ripple: &Ripple| ripple.derivatives(near.axis_distance);
@@ -438,6 +469,37 @@ impl Bound {
         // Infinity times 0 is NaN: no bound.
         let least = |a: f64, b: f64| if a < b || b.is_nan() { a } else { b };
         least(self.whole * point, self.endless * endless)
+    }
+
+    /// Returns a bound from below on f in a ball, ≥ 0: 0 but for kernels with a pole on a point or a curve, near which the field
+    /// is much larger than its slope tells. Kernels fall with distance, so that the part of a curve within a length l of the
+    /// nearest point gives l·h(d + l) or more.
+    #[must_use]
+    pub fn least(&self, center: DVec3, radius: f64) -> f64 {
+        let is_plain = self.width == self.finest && self.ripple.is_none() && !self.negative;
+        // Of these the distance is known exactly.
+        let is_line = matches!(
+            self.place,
+            Place::Point(_) | Place::Segment { .. } | Place::Arc(_)
+        );
+        if !(self.kernel.has_pole() && is_plain && is_line) {
+            return 0.0;
+        }
+        let distance = self.place.nearness(center, 0.0).distance + radius;
+        let at = |more: f64| self.kernel.value((distance + more) * self.width);
+        if self.dimension == 0 {
+            return self.whole * at(0.0);
+        }
+        // One way from the nearest point there is half of the curve at least.
+        let half = 0.5 * self.size.sqrt() / self.finest;
+        let density = self.whole / (2.0 * half);
+        let (mut from, mut sum) = (0.0, 0.0);
+        let mut to = distance.min(half);
+        while from < half && to > from {
+            sum += (to - from) * at(to);
+            (from, to) = (to, (2.0 * to).min(half));
+        }
+        density * sum
     }
 
     /// Returns a distance from the skeleton beyond which `|f|` is at most `share`.

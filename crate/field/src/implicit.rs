@@ -85,6 +85,66 @@ impl Enclosure {
     }
 }
 
+/// The terms of a function that matter in a ball, and bounds on all others there; made by [`Implicit::narrow`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// The ball.
+    pub ball: Ball,
+    /// Numbers of the terms, in ascending order.
+    pub terms: Vec<u32>,
+    /// Bounds on the sum of the others in the ball.
+    pub rest: Enclosure,
+}
+
+/// Proven bounds on a function in a ball, up to the third derivative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variation {
+    /// Bounds up to the second derivative. Its values need not be narrowed by [`Enclosure::about`].
+    pub range: Enclosure,
+    /// The largest size of the second derivative along any line, between kinks.
+    pub curvature: f64,
+    /// The largest size of the third derivative along any line, of the terms whose second derivative is continuous in the ball.
+    pub third: f64,
+    /// The largest size of the second derivative along any line, of all other terms, between kinks.
+    pub rough: f64,
+    /// The sum of the jumps of the gradient at kinks in the ball.
+    pub jump: f64,
+    /// The sum of the jumps of the value in the ball; the derivatives are then those on either side.
+    pub step: f64,
+}
+
+impl Variation {
+    /// Bounds on the sum of two functions.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            range: self.range.plus(other.range),
+            curvature: self.curvature + other.curvature,
+            third: self.third + other.third,
+            rough: self.rough + other.rough,
+            jump: self.jump + other.jump,
+            step: self.step + other.step,
+        }
+    }
+
+    /// Bounds on a function of which no more is known than this: its second derivative may jump, and its gradient too if it has
+    /// no curvature.
+    #[must_use]
+    pub fn rough(range: Enclosure) -> Self {
+        let is_smooth = range.curvature.is_finite();
+        let curvature = if is_smooth { range.curvature } else { 0.0 };
+        Self {
+            range,
+            curvature,
+            third: 0.0,
+            rough: curvature,
+            // The gradient is not longer than the slope anywhere.
+            jump: if is_smooth { 0.0 } else { 2.0 * range.slope },
+            step: 0.0,
+        }
+    }
+}
+
 /// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
 /// outward normal is `−∇f/|∇f|`.
 ///
@@ -118,5 +178,23 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
             return None;
         }
         self.support()
+    }
+
+    /// The terms that matter in a ball, chosen among those of a part whose ball contains it, or of all. What is left out is below
+    /// `slack` in all, and so are its slope and curvature times the ball's radius and its square. `None` if the function has no
+    /// such terms, or hardly any can be left out.
+    fn narrow(&self, _ball: Ball, _among: Option<&Part>, _slack: f64) -> Option<Part> {
+        None
+    }
+
+    /// Value and gradient of the terms of a part, at a point of its ball.
+    fn jet_of(&self, _part: &Part, point: DVec3) -> Jet<f64> {
+        self.jet(point)
+    }
+
+    /// Bounds on the whole function in a ball, which must be within that of the part, if there is one: then only the terms of
+    /// the part are looked at.
+    fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
+        Variation::rough(self.enclose(ball))
     }
 }

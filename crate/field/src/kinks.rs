@@ -13,6 +13,8 @@ pub struct Kink {
     pub normal: DVec3,
     /// Whether the profile itself may jump there, not only its slope.
     pub jumps: bool,
+    /// Of an arc, the direction in which the half of the plane lies, seen from the point, that has the kink; else 0.
+    toward: DVec3,
 }
 
 /// Largest number of kinks of one wave along a bone; further ones are left out.
@@ -24,13 +26,15 @@ impl Kink {
             point,
             normal: normal.normalize_or_zero(),
             jumps,
+            toward: DVec3::ZERO,
         }
     }
 
-    /// Whether a ball meets the plane.
+    /// Whether a ball meets the plane, or of an arc that half of it which has the kink.
     #[must_use]
     pub fn cuts(&self, center: DVec3, radius: f64) -> bool {
-        (center - self.point).dot(self.normal).abs() <= radius
+        let from = center - self.point;
+        from.dot(self.normal).abs() <= radius && from.dot(self.toward) >= -radius
     }
 
     /// Parameter at which a ray crosses the plane; infinite or NaN if it is parallel to it.
@@ -84,7 +88,10 @@ pub fn of(primitive: &Primitive) -> Vec<Kink> {
                 .unwrap_or_else(|| x.any_orthonormal_vector());
             let mut at = |azimuth: f64, jumps: bool| {
                 let (sine, cosine) = libm::sincos(azimuth);
-                kinks.push(Kink::new(*center, y * cosine - x * sine, jumps));
+                kinks.push(Kink {
+                    toward: x * cosine + y * sine,
+                    ..Kink::new(*center, y * cosine - x * sine, jumps)
+                });
             };
             // In the middle of the gap the parameter jumps from end to end.
             at(0.5 * angle + core::f64::consts::PI, true);

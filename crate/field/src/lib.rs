@@ -97,7 +97,7 @@ pub use blob_chain::ChainBlob;
 pub use bound::Bound;
 pub use cut::Cut;
 pub use exponentials::Exponentials;
-pub use implicit::{Ball, Enclosure, Implicit};
+pub use implicit::{Ball, Enclosure, Implicit, Part, Variation};
 pub use kernel::{Derivatives, Kernel};
 pub use kinks::Kink;
 pub use placed::Placed;

@@ -1,4 +1,5 @@
 //! The sum of primitives: the field of a convolution surface.
+use crate::implicit::{Part, Variation};
 use crate::kinks::{self, Kink};
 use crate::{Ball, Bound, Enclosure, Implicit, Jet, Primitive, Real, THRESHOLD};
 use glam::DVec3;
@@ -39,6 +40,32 @@ pub struct Sum {
 struct Known {
     bound: Bound,
     kinks: Vec<Kink>,
+}
+
+impl Known {
+    /// Bounds in a ball.
+    fn enclose(&self, Ball { center, radius }: Ball) -> Enclosure {
+        let Self { bound, kinks } = self;
+        let near = bound.nearness(center, radius);
+        let magnitude = bound.magnitude(near);
+        let cut = kinks.iter().filter(|kink| kink.cuts(center, radius));
+        let [kinked, jumps] = cut.fold([false, false], |[_, jumps], kink| {
+            [true, jumps | kink.jumps]
+        });
+        let unless = |broken: bool, bound: f64| if broken { f64::INFINITY } else { bound };
+        Enclosure {
+            value: [
+                if bound.carves() {
+                    -magnitude
+                } else {
+                    bound.least(center, radius)
+                },
+                if bound.adds() { magnitude } else { 0.0 },
+            ],
+            slope: unless(jumps, bound.slope(near)),
+            curvature: unless(kinked, bound.curvature(near)),
+        }
+    }
 }
 
 impl Sum {
@@ -117,26 +144,90 @@ impl Implicit for Sum {
         self.sum(points)
     }
 
-    fn enclose(&self, Ball { center, radius }: Ball) -> Enclosure {
-        let mut all = Enclosure::ZERO;
-        for Known { bound, kinks } in self.known() {
-            let near = bound.nearness(center, radius);
-            let magnitude = bound.magnitude(near);
-            let cut = kinks.iter().filter(|kink| kink.cuts(center, radius));
-            let [kinked, jumps] = cut.fold([false, false], |[_, jumps], kink| {
-                [true, jumps | kink.jumps]
-            });
-            let unless = |broken: bool, bound: f64| if broken { f64::INFINITY } else { bound };
-            all = all.plus(Enclosure {
-                value: [
-                    if bound.carves() { -magnitude } else { 0.0 },
-                    if bound.adds() { magnitude } else { 0.0 },
-                ],
-                slope: unless(jumps, bound.slope(near)),
-                curvature: unless(kinked, bound.curvature(near)),
-            });
+    fn enclose(&self, ball: Ball) -> Enclosure {
+        let known = self.known().iter();
+        let all = known.fold(Enclosure::ZERO, |all, known| all.plus(known.enclose(ball)));
+        all.about(&self.jet(ball.center), ball.radius)
+    }
+
+    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: f64) -> Option<Part> {
+        let known = self.known();
+        let each = slack / known.len() as f64;
+        let mut part = Part {
+            ball,
+            terms: Vec::new(),
+            rest: among.map_or(Enclosure::ZERO, |among| among.rest),
+        };
+        let mut choose = |i: u32| {
+            let bounds = known[i as usize].enclose(ball);
+            let size = bounds.value[1].max(-bounds.value[0]);
+            let changes = [
+                size,
+                bounds.slope * ball.radius,
+                bounds.curvature * ball.radius * ball.radius,
+            ];
+            // Not so for NaN.
+            if changes.iter().all(|change| *change <= each) {
+                part.rest = part.rest.plus(bounds);
+            } else {
+                part.terms.push(i);
+            }
+        };
+        let before = match among {
+            Some(among) => {
+                among.terms.iter().copied().for_each(&mut choose);
+                among.terms.len()
+            }
+            None => {
+                (0..known.len() as u32).for_each(&mut choose);
+                known.len()
+            }
+        };
+        (4 * part.terms.len() <= 3 * before).then_some(part)
+    }
+
+    fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {
+        let terms = part.terms.iter().map(|i| &self.primitives[*i as usize]);
+        sum(terms, point.to_array())
+    }
+
+    fn variation(&self, part: Option<&Part>, ball: Ball) -> Variation {
+        let known = self.known();
+        let mut all = Variation {
+            range: part.map_or(Enclosure::ZERO, |part| part.rest),
+            curvature: part.map_or(0.0, |part| part.rest.curvature),
+            third: 0.0,
+            rough: part.map_or(0.0, |part| part.rest.curvature),
+            jump: 0.0,
+            step: 0.0,
+        };
+        let mut add = |known: &Known| {
+            let range = known.enclose(ball);
+            all.range = all.range.plus(range);
+            let near = known.bound.nearness(ball.center, ball.radius);
+            if range.curvature.is_finite() {
+                let third = known.bound.third(near);
+                all.curvature += range.curvature;
+                if third.is_finite() {
+                    all.third += third;
+                } else {
+                    all.rough += range.curvature;
+                }
+            } else {
+                let curvature = known.bound.curvature(near);
+                all.curvature += curvature;
+                all.rough += curvature;
+                all.jump += known.bound.jump(near).min(2.0 * range.slope);
+                if !range.slope.is_finite() {
+                    all.step += range.value[1] - range.value[0];
+                }
+            }
+        };
+        match part {
+            Some(part) => part.terms.iter().for_each(|i| add(&known[*i as usize])),
+            None => known.iter().for_each(add),
         }
-        all.about(&self.jet(center), radius)
+        all
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {

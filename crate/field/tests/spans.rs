@@ -69,6 +69,7 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
     let mut random = Random::new(31);
     let (mut tightest, mut tightest_span) = (0.0_f64, 0.0_f64);
     let (mut tightest_slope, mut tightest_turn) = (0.0_f64, 0.0_f64);
+    let mut tightest_bend = 0.0_f64;
     // Those that taper take long to prepare.
     let count = if dress == Dress::Tapered { 8 } else { 120 };
     for _ in 0..count {
@@ -122,6 +123,27 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
                 "{turned} > {allowed} on {h}: {primitive:?} {center}"
             );
             tightest_turn = tightest_turn.max(turned / allowed);
+            // On a chord the slope is off its linear interpolant by an eighth of the third derivative times its square.
+            let bent = slope_at(0.5 * h) - 0.5 * (slope_at(0.3 * h) + slope_at(0.7 * h));
+            let allowed = 0.125 * (0.4 * h) * (0.4 * h) * bound.third(near);
+            assert!(
+                bent.abs() <= allowed * (1.0 + 1e-6) + 1e-6 * steepest + tolerance,
+                "{bent} > {allowed} on {h}: {primitive:?} {center}"
+            );
+            if allowed.is_finite() && allowed > 1e-4 * steepest {
+                tightest_bend = tightest_bend.max(bent.abs() / allowed);
+            }
+            let least = bound.least(center, radius);
+            assert!(
+                value >= least * (1.0 - 1e-9) - rounding,
+                "{value} < {least}: {primitive:?} {p}"
+            );
+            let far = center - way * radius;
+            let value = primitive.value(far.to_array()).abs();
+            assert!(
+                value >= least * (1.0 - 1e-9) - rounding,
+                "{value} < {least}: {primitive:?} {far}"
+            );
             // Rounding in f64, and of cells that are integrated numerically.
             let noise = 1e-9 * magnitude + rounding;
             assert!(
@@ -144,6 +166,10 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
         "{kind:?} {dress:?}: {tightest} {tightest_span} {tightest_slope}"
     );
     assert!(tightest_turn > least, "{kind:?} {dress:?}: {tightest_turn}");
+    assert!(
+        tightest_bend <= 1.0 && tightest_bend > 0.1 * least,
+        "{kind:?} {dress:?}: {tightest_bend}"
+    );
 }
 
 tests! {

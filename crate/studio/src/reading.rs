@@ -52,7 +52,12 @@ impl MeshReading {
             match event {
                 ToolEvent::Progress(fraction) => self.files[index].fraction = fraction,
                 ToolEvent::Done(result) => {
-                    let mesh = result.map(|Output::Mesh(mesh)| mesh);
+                    let mesh = result.and_then(|output| match output {
+                        Output::Mesh(mesh) => Ok(mesh),
+                        Output::Meshed(_) | Output::Coated(_) => {
+                            Err("the worker has answered another question".into())
+                        }
+                    });
                     rats::keep_mesh(&self.files.remove(index).asset, mesh);
                     any_read = true;
                 }

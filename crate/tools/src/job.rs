@@ -1,6 +1,8 @@
 //! Running jobs.
 
-use crate::message::{Job, Output};
+use crate::message::{CoatJob, Coated, Job, MeshFacts, MeshJob, Meshed, Output};
+use core::ops::ControlFlow;
+use mesh::{Export, Part, TriangleMesh};
 
 /// Progress of a running job.
 pub struct Progress<'a> {
@@ -42,7 +44,91 @@ pub fn run(job: Job, progress: &mut Progress<'_>) -> Result<Output, String> {
             progress.report(0.9);
             Ok(Output::Mesh(mesh))
         }
+        Job::Coat(job) => {
+            let CoatJob {
+                scene,
+                bound,
+                mut coatings,
+            } = *job;
+            let is_sound = bound > 0.0 && bound.is_finite();
+            if !is_sound {
+                return Err("the bound must be a positive number".into());
+            }
+            let bodies = mesher::coat_scene(&scene, bound, &mut coatings);
+            let parts = bodies.into_iter().map(|body| (body.name, body.coat.mesh));
+            Ok(Output::Coated(Box::new(Coated {
+                parts: parts.collect(),
+                coatings,
+            })))
+        }
+        Job::Mesh(job) => mesh_scene(*job, progress).map(|meshed| Output::Meshed(Box::new(meshed))),
     }
+}
+
+fn mesh_scene(job: MeshJob, progress: &mut Progress<'_>) -> Result<Meshed, String> {
+    let MeshJob {
+        scene,
+        wishes,
+        format,
+        name,
+        size,
+    } = job;
+    let is_sound = size > 0.0 && size.is_finite();
+    if !is_sound {
+        return Err("the size must be a positive number of millimetres".into());
+    }
+    let mut report = |step: mesher::Step| {
+        progress.report(0.95 * step.fraction);
+        ControlFlow::Continue(())
+    };
+    let model = mesher::mesh_scene(&scene, &wishes, &mut mesher::Progress::new(&mut report))
+        .map_err(|error| error.to_string())?;
+    let sides = model.bounds().size();
+    let millimetres = size / sides.max_element();
+    let mut facts = MeshFacts {
+        sides: (sides * millimetres).to_array(),
+        tolerance: model.tolerance,
+        is_closed: model.parts.iter().all(|part| part.is_closed),
+        notes: model.notes,
+        ..MeshFacts::default()
+    };
+    for part in &model.parts {
+        facts.triangles += part.mesh.triangles.len();
+        facts.vertices += part.mesh.positions.len();
+        facts.error = facts.error.max(part.error);
+        facts.undecided += part.undecided.len();
+        facts.unproved += part.unproved;
+        if part.is_closed {
+            let growth = millimetres * millimetres * millimetres;
+            facts.volume += part.mesh.signed_volume() * growth;
+            facts.shells += mesh::Topology::of(&part.mesh).map_or(0, |t| t.genera.len());
+        }
+    }
+    let parts = model.parts.into_iter().map(|part| (part.name, part.mesh));
+    let parts: Vec<(String, TriangleMesh)> = parts.collect();
+    let files = match format {
+        None => Vec::new(),
+        Some(format) => {
+            let export = Export {
+                name,
+                parts: parts
+                    .iter()
+                    .map(|(name, mesh)| Part {
+                        name: name.clone(),
+                        mesh: mesh.clone(),
+                    })
+                    .collect(),
+                millimetres,
+            };
+            export.write(format).map_err(|error| error.to_string())?
+        }
+    };
+    progress.report(1.0);
+    Ok(Meshed {
+        files,
+        parts,
+        facts,
+    })
 }
 
 #[cfg(test)]
@@ -69,6 +155,79 @@ mod tests {
         let direct = mesh::read("a.obj", SQUARE.as_bytes()).unwrap();
         assert_eq!(data, direct);
         assert!(fractions.is_sorted() && fractions[0] == 0.0);
+    }
+
+    fn ball(radius: f64) -> MeshJob {
+        let mut scene = scene::Scene::default();
+        scene.flesh.push(scene::Flesh {
+            blobbiness: -2.0,
+            ..scene::Flesh::default()
+        });
+        let center = glam::DVec3::ZERO;
+        scene.elements.push(scene::Element {
+            flesh: Some(0),
+            ..scene::Element::new(scene::Shape::Sphere { center, radius })
+        });
+        MeshJob {
+            scene,
+            wishes: mesher::Wishes::default(),
+            format: Some(mesh::Format::Glb),
+            name: "ball".into(),
+            size: 50.0,
+        }
+    }
+
+    #[test]
+    fn scene_becomes_a_file_in_millimetres() {
+        let mut fractions = Vec::new();
+        let mut report = |fraction| fractions.push(fraction);
+        let job = Job::Mesh(Box::new(ball(3.0)));
+        let output = run(job, &mut Progress::new(&mut report));
+        let Ok(Output::Meshed(meshed)) = output else {
+            panic!("{output:?}");
+        };
+        assert!(fractions.is_sorted());
+        let MeshFacts { volume, sides, .. } = meshed.facts;
+        let whole = core::f64::consts::PI / 6.0 * 50.0 * 50.0 * 50.0;
+        assert!((volume / whole - 1.0).abs() < 0.01, "{volume} {whole}");
+        assert!(
+            sides.iter().all(|side| (side - 50.0).abs() < 0.5),
+            "{sides:?}"
+        );
+        assert!(meshed.facts.is_closed && meshed.facts.shells == 1 && meshed.facts.unproved == 0);
+        assert_eq!(meshed.files[0].name, "ball.glb");
+        let again = mesh::read("ball.glb", &meshed.files[0].bytes).unwrap();
+        assert_eq!(again.triangles.len(), meshed.facts.triangles);
+    }
+
+    #[test]
+    fn skeletons_are_coated_from_the_last_coating() {
+        let coat = |coatings, radius| {
+            let job = CoatJob {
+                scene: ball(radius).scene,
+                bound: 0.02,
+                coatings,
+            };
+            match run(Job::Coat(Box::new(job)), &mut Progress::silent()) {
+                Ok(Output::Coated(coated)) => *coated,
+                other => panic!("{other:?}"),
+            }
+        };
+        let first = coat(Vec::new(), 1.0);
+        let second = coat(first.coatings, 1.01);
+        for (coated, radius) in [(first.parts, 1.0), (second.parts, 1.01)] {
+            assert_eq!(coated.len(), 1);
+            let far = |p: &glam::DVec3| (p.length() - radius).abs() < 0.01;
+            assert!(coated[0].1.positions.iter().all(far));
+        }
+    }
+
+    #[test]
+    fn scene_without_a_surface_gives_a_sentence() {
+        let mut job = ball(1.0);
+        job.scene.elements.clear();
+        let message = run(Job::Mesh(Box::new(job)), &mut Progress::silent()).unwrap_err();
+        assert!(message.contains("no surface"), "{message}");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Jobs of the tools worker, which take long and draw nothing: today reading a mesh from a file.
+//! Jobs of the tools worker, which take long and draw nothing: reading a mesh from a file, meshing a scene, and coating its skeletons.
 //!
 //! The page sends a [`Request`] with the job's number; the worker runs it with [`run`] and sends
 //! [`Answer`]s: progress, and in the end the result. A job is a function of its request alone, so
@@ -12,7 +12,9 @@
 //!     name: "triangle.obj".into(),
 //!     bytes: text.into(),
 //! };
-//! let Output::Mesh(mesh) = tools::run(job, &mut Progress::silent())?;
+//! let Output::Mesh(mesh) = tools::run(job, &mut Progress::silent())? else {
+//!     unreachable!()
+//! };
 //! assert_eq!(mesh.triangles, [[0, 1, 2]]);
 //! # Ok::<(), String>(())
 //! ```
@@ -23,4 +25,4 @@ mod job;
 pub mod message;
 
 pub use job::{Progress, run};
-pub use message::{Answer, Job, Output, Request};
+pub use message::{Answer, CoatJob, Coated, Job, MeshFacts, MeshJob, Meshed, Output, Request};

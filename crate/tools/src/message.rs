@@ -1,6 +1,8 @@
 //! Messages between the page and the tools worker: plain data, packed as bytes.
 
-use mesh::TriangleMesh;
+use mesh::{ExportedFile, Format, TriangleMesh};
+use mesher::{Coating, Wishes};
+use scene::Scene;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 /// Work for the tools worker.
@@ -15,6 +17,83 @@ pub enum Job {
         #[serde(with = "serde_bytes")]
         bytes: Vec<u8>,
     },
+    /// Mesh a scene.
+    Mesh(Box<MeshJob>),
+    /// Coat the skeletons of a scene.
+    Coat(Box<CoatJob>),
+}
+
+/// A scene whose skeletons are to be coated, while a hand drags them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CoatJob {
+    /// The scene.
+    pub scene: Scene,
+    /// Largest |f − T| in the middle of an edge.
+    pub bound: f64,
+    /// What the last job gave, to start from; empty at first.
+    pub coatings: Vec<Coating>,
+}
+
+/// The coatings of a scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Coated {
+    /// A mesh for each body with its name, in units of the scene.
+    pub parts: Vec<(String, TriangleMesh)>,
+    /// For the next job.
+    pub coatings: Vec<Coating>,
+}
+
+/// A scene to be meshed, and what is wanted of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeshJob {
+    /// The scene.
+    pub scene: Scene,
+    /// Tolerance, union and the like.
+    pub wishes: Wishes,
+    /// Format of the file; `None` if only the preview is wanted.
+    pub format: Option<Format>,
+    /// Name of the file without its ending.
+    pub name: String,
+    /// Length of the model's longest side in the file, millimetres.
+    pub size: f64,
+}
+
+/// A scene's mesh as files and for the eye.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Meshed {
+    /// The files: one, or two for OBJ with materials; none if no format was wanted.
+    pub files: Vec<ExportedFile>,
+    /// The parts with their names, in units of the scene.
+    pub parts: Vec<(String, TriangleMesh)>,
+    /// Facts of all parts together.
+    pub facts: MeshFacts,
+}
+
+/// Facts of a mesh.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MeshFacts {
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Whether all parts are closed.
+    pub is_closed: bool,
+    /// Connected shells of the closed parts.
+    pub shells: usize,
+    /// Volume of the closed parts, cubic millimetres; parts that overlap count twice.
+    pub volume: f64,
+    /// Lengths of the box's sides, millimetres.
+    pub sides: [f64; 3],
+    /// Tolerance that was asked for, in units of the scene.
+    pub tolerance: f64,
+    /// Largest proved distance between mesh and surface, in units of the scene.
+    pub error: f64,
+    /// Cells in which the topology is not proved.
+    pub undecided: usize,
+    /// Triangles whose distance is not proved.
+    pub unproved: usize,
+    /// Sentences for the user.
+    pub notes: Vec<String>,
 }
 
 /// Result of a [`Job`].
@@ -22,6 +101,10 @@ pub enum Job {
 pub enum Output {
     /// Of [`Job::ReadMesh`].
     Mesh(TriangleMesh),
+    /// Of [`Job::Mesh`].
+    Meshed(Box<Meshed>),
+    /// Of [`Job::Coat`].
+    Coated(Box<Coated>),
 }
 
 /// A message to the worker. Jobs run one after the other, in the order of their messages; the page

@@ -1,6 +1,7 @@
 //! Exports: meshes with names and materials, to be written.
 
 use crate::triangle_mesh::TriangleMesh;
+use serde::{Deserialize, Serialize};
 
 /// Meshes to be written to a file, with their size.
 ///
@@ -54,7 +55,7 @@ pub struct Part {
 }
 
 /// A file format that can be written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Format {
     /// Binary glTF: parts, groups, normals, colours, materials; metres.
     Glb,
@@ -69,7 +70,7 @@ pub enum Format {
 }
 
 /// A file as bytes.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ExportedFile {
     /// Name with ending.
     pub name: String,

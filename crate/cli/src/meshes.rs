@@ -1,0 +1,391 @@
+//! `sinew mesh`: a dataset's surfaces as triangles in a file.
+
+use crate::{Outcome, files, report, whole};
+use clap::Args;
+use mesh::{Export, Format, Level, Part, Topology, TriangleMesh};
+use mesher::{Model, ModelPart, Phase, Progress, Step, Tolerance, Wishes, coat_scene, mesh_scene};
+use serde_json::{Value, json};
+use std::io::{IsTerminal, Write};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Fewest triangles of a level of detail.
+const LEAST: usize = 64;
+
+/// `sinew mesh FILE -o OUT.{glb,3mf,stl,obj,ply} …`.
+#[derive(Args)]
+pub struct Mesh {
+    /// The dataset
+    file: PathBuf,
+    /// The file to write; its ending tells the format: glb, 3mf, stl, obj or ply
+    #[arg(short, long)]
+    output: PathBuf,
+    /// Largest distance between mesh and surface, in the dataset's unit
+    #[arg(long, value_name = "E", conflicts_with = "relative")]
+    tolerance: Option<f64>,
+    /// The same as a share of the diagonal of the model's box
+    #[arg(long, value_name = "R", default_value_t = 1e-3)]
+    relative: f64,
+    /// Length of the model's longest side in the file, millimetres
+    #[arg(long, value_name = "MM", default_value_t = 100.0)]
+    size: f64,
+    /// What is infinite is cut off by the box of all finite elements, times this
+    #[arg(long = "box", value_name = "S", default_value_t = 2.0)]
+    box_scale: f64,
+    /// Join all closed parts to one by a boolean union
+    #[arg(long)]
+    union: bool,
+    /// Leave out cavities, which nobody sees from outside
+    #[arg(long)]
+    outer: bool,
+    /// Only the body of this name
+    #[arg(long, value_name = "NAME")]
+    body: Option<String>,
+    /// Write so many coarser levels of detail beside, as NAME-1, NAME-2 …: each has a quarter of the triangles
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    lod: usize,
+    /// Instead of a mesh within a tolerance a quick coating of the soft elements' skeletons: closed shells that overlap, whose
+    /// edges are split where the field in their middle is off its threshold by more than B
+    #[arg(long, value_name = "B", conflicts_with_all = ["tolerance", "relative", "union", "outer", "body", "lod"])]
+    coat: Option<f64>,
+    /// Threads; default: as many as the machine has cores
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Print what is known of the mesh as JSON on the standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl Mesh {
+    /// Meshes the scene and writes the files. With errors in the dataset the mesh is made of what could be understood, and the
+    /// result is false.
+    pub fn run(&self) -> Outcome {
+        let name = self.output.to_string_lossy();
+        let format = Format::of_name(&name).ok_or_else(|| {
+            format!("{name}: the name must end in .glb, .3mf, .stl, .obj or .ply")
+        })?;
+        let is_sound = self.size > 0.0 && self.size.is_finite();
+        if !is_sound {
+            return Err("--size must be a positive number of millimetres".into());
+        }
+        if self.threads == Some(0) {
+            return Err("--threads takes 1 or more".into());
+        }
+        let loaded = files::load(&self.file)?;
+        let clean = report::to_stderr(&loaded);
+        if let Some(bound) = self.coat {
+            return self.coat(&loaded, format, bound).map(|()| clean);
+        }
+        let available = || std::thread::available_parallelism().map_or(1, usize::from);
+        let wishes = Wishes {
+            tolerance: self
+                .tolerance
+                .map_or(Tolerance::Relative(self.relative), Tolerance::Absolute),
+            box_scale: self.box_scale,
+            body: self.body.clone(),
+            union: self.union,
+            outer: self.outer,
+            threads: self.threads.unwrap_or_else(available).clamp(1, 256),
+            ..Wishes::default()
+        };
+        let start = Instant::now();
+        let mut progress = Bar::new();
+        let mut clock = Clock::new();
+        let mut show = |step: Step| {
+            clock.enter(step.phase);
+            progress.show(step.fraction)
+        };
+        let model = mesh_scene(
+            &loaded.compiled.scene,
+            &wishes,
+            &mut Progress::new(&mut show),
+        );
+        progress.clear();
+        let model = model.map_err(|error| format!("{}: {error}", self.file.display()))?;
+        let mesh_seconds = start.elapsed().as_secs_f64();
+        let phases = clock.stop();
+
+        let start = Instant::now();
+        let longest = model.bounds().size().max_element();
+        let levels = self.levels(&model)?;
+        let lod_seconds = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let stem = self.output.with_extension("");
+        let mut written = Vec::new();
+        for (i, parts) in levels.iter().enumerate() {
+            let path = if i == 0 {
+                stem.clone()
+            } else {
+                PathBuf::from(format!("{}-{i}", stem.display()))
+            };
+            written.extend(write(&path, format, &parts.0, self.size / longest)?);
+        }
+        let write_seconds = start.elapsed().as_secs_f64();
+        for note in &model.notes {
+            eprintln!("{note}");
+        }
+        if self.json {
+            let summary = json!({
+                "tolerance": model.tolerance,
+                "millimetres": self.size / longest,
+                "evaluations": model.evaluations,
+                "parts": model.parts.iter().map(summary).collect::<Vec<_>>(),
+                "levels": levels[1..].iter().map(|(parts, error)| json!({
+                    "triangles": count(parts),
+                    "error": error,
+                })).collect::<Vec<_>>(),
+                "files": sizes(&written),
+                "threads": wishes.threads,
+                "seconds": {
+                    "compile": loaded.compile_seconds,
+                    "mesh": mesh_seconds,
+                    "phases": phases,
+                    "levels": lod_seconds,
+                    "write": write_seconds,
+                },
+            });
+            println!("{summary}");
+        } else {
+            eprintln!(
+                "{}: {} triangles within {:.2e}, {:.2} s on {} threads",
+                self.output.display(),
+                count(&levels[0].0),
+                model
+                    .parts
+                    .iter()
+                    .map(|part| part.error)
+                    .fold(0.0, f64::max),
+                mesh_seconds,
+                wishes.threads,
+            );
+        }
+        Ok(clean)
+    }
+
+    /// Writes a coating of the skeletons.
+    fn coat(&self, loaded: &files::Loaded, format: Format, bound: f64) -> Result<(), String> {
+        let is_sound = bound > 0.0 && bound.is_finite();
+        if !is_sound {
+            return Err("--coat takes a positive number".into());
+        }
+        let start = Instant::now();
+        let bodies = coat_scene(&loaded.compiled.scene, bound, &mut Vec::new());
+        let seconds = start.elapsed().as_secs_f64();
+        if bodies.is_empty() {
+            return Err(format!(
+                "{}: there is no skeleton to coat: nothing is soft",
+                self.file.display()
+            ));
+        }
+        let parts = bodies.iter().map(|body| Part {
+            name: body.name.clone(),
+            mesh: body.coat.mesh.clone(),
+        });
+        let parts: Vec<Part> = parts.collect();
+        let all = parts.iter().fold(mesh::Aabb::EMPTY, |all, part| {
+            all.union(&part.mesh.bounds())
+        });
+        let millimetres = self.size / all.size().max_element();
+        let written = write(&self.output.with_extension(""), format, &parts, millimetres)?;
+        let evaluations: u64 = bodies.iter().map(|body| body.coat.evaluations).sum();
+        if self.json {
+            let summary = json!({
+                "bound": bound,
+                "millimetres": millimetres,
+                "evaluations": evaluations,
+                "parts": bodies.iter().map(|body| json!({
+                    "name": body.name,
+                    "vertices": body.coat.mesh.positions.len(),
+                    "triangles": body.coat.mesh.triangles.len(),
+                    "buried": body.coat.buried,
+                    "excess": body.coat.excess,
+                })).collect::<Vec<_>>(),
+                "files": sizes(&written),
+                "seconds": { "compile": loaded.compile_seconds, "mesh": seconds },
+            });
+            println!("{summary}");
+        } else {
+            eprintln!(
+                "{}: {} triangles, {evaluations} evaluations, {seconds:.3} s",
+                self.output.display(),
+                count(&parts),
+            );
+        }
+        Ok(())
+    }
+
+    /// The meshes of the file, and of those of coarser levels with their distances from the first.
+    fn levels(&self, model: &Model) -> Result<Vec<(Vec<Part>, f64)>, String> {
+        let part = |name: &str, mesh: &TriangleMesh| Part {
+            name: name.into(),
+            mesh: mesh.clone(),
+        };
+        let first = model.parts.iter().map(|p| part(&p.name, &p.mesh)).collect();
+        let mut levels = vec![(first, 0.0)];
+        if self.lod == 0 {
+            return Ok(levels);
+        }
+        let coarser = |p: &ModelPart| -> Result<Vec<Level>, String> {
+            if !p.is_closed {
+                return Ok(Vec::new());
+            }
+            mesh::levels_of_detail(&p.mesh, LEAST).map_err(|error| error.to_string())
+        };
+        let coarser: Vec<Vec<Level>> = model.parts.iter().map(coarser).collect::<Result<_, _>>()?;
+        for i in 0..self.lod {
+            let mut error = 0.0_f64;
+            let parts = model.parts.iter().zip(&coarser).map(|(p, levels)| {
+                // The coarsest there is.
+                match levels.get(i).or(levels.last()) {
+                    Some(level) => {
+                        error = error.max(level.error);
+                        let mut mesh = level.mesh.clone();
+                        mesh.groups = whole_group(&p.mesh, &mesh);
+                        part(&p.name, &mesh)
+                    }
+                    None => part(&p.name, &p.mesh),
+                }
+            });
+            let parts = parts.collect();
+            levels.push((parts, error));
+        }
+        Ok(levels)
+    }
+}
+
+/// The material of a mesh that has one only, for a coarser one.
+fn whole_group(from: &TriangleMesh, to: &TriangleMesh) -> Vec<mesh::Group> {
+    let [group] = &from.groups[..] else {
+        return Vec::new();
+    };
+    vec![mesh::Group {
+        triangles: 0..to.triangles.len() as u32,
+        ..group.clone()
+    }]
+}
+
+/// The names of files with their sizes.
+fn sizes(written: &[(String, usize)]) -> Vec<Value> {
+    let size = |(path, bytes): &(String, usize)| json!({ "name": path, "bytes": bytes });
+    written.iter().map(size).collect()
+}
+
+fn count(parts: &[Part]) -> usize {
+    parts.iter().map(|part| part.mesh.triangles.len()).sum()
+}
+
+/// Writes the files of a format, and returns their paths with their sizes.
+fn write(
+    stem: &Path,
+    format: Format,
+    parts: &[Part],
+    millimetres: f64,
+) -> Result<Vec<(String, usize)>, String> {
+    let name = stem.file_name().unwrap_or_default().to_string_lossy();
+    let export = Export {
+        name: name.into_owned(),
+        parts: parts.to_vec(),
+        millimetres,
+    };
+    let files = export.write(format).map_err(|error| error.to_string())?;
+    let mut written = Vec::new();
+    for file in files {
+        let path = stem.with_file_name(&file.name);
+        whole::write(&path, |out| {
+            out.write_all(&file.bytes)
+                .map_err(|error| error.to_string())
+        })?;
+        written.push((path.display().to_string(), file.bytes.len()));
+    }
+    Ok(written)
+}
+
+/// What is known of a part.
+fn summary(part: &ModelPart) -> Value {
+    let mesh = &part.mesh;
+    let topology = Topology::of(mesh).ok();
+    let bounds = mesh.bounds();
+    let volume = part.is_closed.then(|| mesh.signed_volume());
+    json!({
+        "name": part.name,
+        "closed": part.is_closed,
+        "vertices": mesh.positions.len(),
+        "triangles": mesh.triangles.len(),
+        "shells": topology.as_ref().map(|topology| topology.genera.len()),
+        "genus": topology.as_ref().map(|topology| topology.genera.clone()),
+        "manifold": topology.as_ref().map(|topology| topology.repairs.is_none()),
+        "volume": volume,
+        "area": mesh.area(),
+        "box": [bounds.min, bounds.max],
+        "error": part.error,
+        "undecided": part.undecided.len(),
+        "unproved": part.unproved,
+        "smallest_angle": mesh.smallest_angle().map(f64::to_degrees),
+        "raw_triangles": part.raw_triangles,
+    })
+}
+
+/// The time that each phase has taken.
+struct Clock {
+    phase: Phase,
+    since: Instant,
+    seconds: [f64; Phase::ALL.len()],
+}
+
+impl Clock {
+    fn new() -> Self {
+        Self {
+            phase: Phase::default(),
+            since: Instant::now(),
+            seconds: Default::default(),
+        }
+    }
+
+    fn enter(&mut self, phase: Phase) {
+        let now = Instant::now();
+        self.seconds[self.phase as usize] += (now - self.since).as_secs_f64();
+        (self.since, self.phase) = (now, phase);
+    }
+
+    /// The seconds by the names of the phases.
+    fn stop(mut self) -> Value {
+        self.enter(self.phase);
+        let named = Phase::ALL.iter().zip(self.seconds);
+        Value::Object(
+            named
+                .map(|(phase, s)| (phase.name().into(), json!(s)))
+                .collect(),
+        )
+    }
+}
+
+/// A line with the progress, if a person is there to see it.
+struct Bar {
+    shown: Option<u32>,
+    is_seen: bool,
+}
+
+impl Bar {
+    fn new() -> Self {
+        Self {
+            shown: None,
+            is_seen: std::io::stderr().is_terminal(),
+        }
+    }
+
+    fn show(&mut self, fraction: f32) -> ControlFlow<()> {
+        let percent = (100.0 * fraction) as u32;
+        if self.is_seen && self.shown != Some(percent) {
+            eprint!("\r{percent} %");
+            self.shown = Some(percent);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn clear(&self) {
+        if self.shown.is_some() {
+            eprint!("\r     \r");
+        }
+    }
+}

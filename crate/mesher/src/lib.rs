@@ -1,0 +1,65 @@
+//! Closed triangle meshes of implicit surfaces and scenes, within a proven tolerance.
+//!
+//! ```
+//! use core::ops::ControlFlow;
+//! use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
+//! use glam::DVec3;
+//! use mesher::{Options, Progress, box_of, polygonize};
+//!
+//! let shaping = Shaping {
+//!     kernel: Kernel::Gauss,
+//!     radius: 1.0,
+//!     blobbiness: -2.0,
+//!     blob_scale: BlobScale::Relative,
+//!     strength: 1.0,
+//!     influence: 1e-3,
+//!     taper: None,
+//! };
+//! let ball = Skeleton::Point { center: DVec3::ZERO };
+//! let ball: Sum = Primitive::new(ball, &shaping, None).into_iter().collect();
+//! let domain = box_of(ball.support().expect("it has no plane"));
+//! let mut report = |_step| ControlFlow::Continue(());
+//! let options = Options::new(0.01);
+//! let surface = polygonize(&ball, &domain, &options, &mut Progress::new(&mut report))?;
+//! assert!(surface.error <= 0.01 && surface.undecided.is_empty());
+//! let volume = surface.mesh.signed_volume();
+//! assert!((volume - 4.0 / 3.0 * core::f64::consts::PI).abs() < 0.1);
+//! # Ok::<(), mesher::MeshError>(())
+//! ```
+//!
+//! The way of a mesh, a file each:
+//! - `forest.rs` cuts a box into cubic cells of balanced sizes; `lattice.rs` fills them with tetrahedra that fit together;
+//! - `refine.rs` splits cells until each proves, by bounds on the function's derivatives, that the linear interpolant has
+//!   the topology of the surface; `space.rs` evaluates the function by the terms that matter in a place;
+//! - `march.rs` makes triangles of the interpolant's level set, and lids where a box cuts it off;
+//! - `improve.rs` makes them fewer and better, as long as `certify.rs` proves each to be within the tolerance;
+//! - `surface.rs` does all that for one function ([`polygonize`]), `model.rs` for a scene ([`mesh_scene`]) with the help of
+//!   `solids.rs` (hard shapes), `level.rs` (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
+//!
+//! [`Coating`] is another kind of mesh, which follows a skeleton that is dragged: `cages.rs` has its rays, `coating.rs` their ends.
+//!
+//! Results have the same bits everywhere, whatever the number of threads.
+
+mod cages;
+mod certify;
+mod coating;
+mod forest;
+mod improve;
+mod lattice;
+mod level;
+mod march;
+mod model;
+mod options;
+mod paint;
+mod parallel;
+mod refine;
+mod solids;
+mod space;
+mod surface;
+mod unite;
+
+pub use cages::{Cage, Spoke};
+pub use coating::{Coat, Coating};
+pub use model::{CoatedBody, Model, ModelPart, Tolerance, Wishes, coat_scene, mesh_scene};
+pub use options::{MeshError, Options, Phase, Progress, Step};
+pub use surface::{SurfaceMesh, box_of, extent, polygonize};

@@ -1,0 +1,198 @@
+//! Colours and materials of meshes.
+
+use crate::parallel::map;
+use glam::DVec3;
+use mesh::{Group, Material, TriangleMesh, roughness_from_phong};
+use scene::{Finish, Scene, Surface};
+use std::collections::BTreeMap;
+
+/// The material of a finish.
+fn material(finish: &Finish) -> Material {
+    Material {
+        name: finish.name.clone(),
+        color: finish
+            .diffuse
+            .map(|c| if c > 0.0 { c.min(1.0) } else { 0.0 }),
+        roughness: roughness_from_phong(f64::from(finish.shine)),
+    }
+}
+
+/// The colours of a soft surface: those of its elements, mixed by their shares.
+pub struct Paint<'a> {
+    surface: &'a Surface,
+    /// The material of each primitive.
+    of: Vec<u32>,
+    materials: Vec<Material>,
+}
+
+impl<'a> Paint<'a> {
+    /// The colours of a surface.
+    pub fn new(scene: &Scene, surface: &'a Surface) -> Self {
+        let mut numbers = BTreeMap::new();
+        let mut materials = Vec::new();
+        let of = surface.element().iter().map(|element| {
+            let finish = scene.elements[*element as usize].finish;
+            *numbers.entry(finish).or_insert_with(|| {
+                materials.push(material(&scene.finishes[finish as usize]));
+                materials.len() as u32 - 1
+            })
+        });
+        Self {
+            of: of.collect(),
+            materials,
+            surface,
+        }
+    }
+
+    /// Gives a mesh one group with the material that most primitives have, and vertex colours if there are several materials.
+    pub fn apply(&self, mesh: &mut TriangleMesh, threads: usize) {
+        let mut counts = vec![0; self.materials.len()];
+        self.of.iter().for_each(|i| counts[*i as usize] += 1);
+        // The first of the most frequent ones.
+        let most = (0..counts.len()).rev().max_by_key(|i| counts[*i]);
+        mesh.groups = vec![Group {
+            name: String::new(),
+            material: most.map(|i| self.materials[i].clone()),
+            triangles: 0..mesh.triangles.len() as u32,
+        }];
+        if self.materials.len() > 1 {
+            mesh.colors = Some(map(threads, &mesh.positions, |p| self.color(*p)));
+        }
+    }
+
+    fn color(&self, point: DVec3) -> [f32; 3] {
+        let mut shares = Vec::new();
+        self.surface.function().shares(point, &mut shares);
+        let total: f64 = shares.iter().map(|(_, share)| share).sum();
+        let mut color = [0.0; 3];
+        for (i, share) in shares {
+            let own = self.materials[self.of[i as usize] as usize].color;
+            for (sum, own) in color.iter_mut().zip(own) {
+                *sum += f64::from(own) * share / total;
+            }
+        }
+        color.map(|c| c as f32)
+    }
+}
+
+/// Meshes of hard elements, sorted by finish.
+#[derive(Default)]
+pub struct Parts {
+    of_finish: BTreeMap<u32, Vec<TriangleMesh>>,
+}
+
+impl Parts {
+    /// Adds a mesh.
+    pub fn add(&mut self, mesh: &TriangleMesh, finish: u32) {
+        self.of_finish.entry(finish).or_default().push(mesh.clone());
+    }
+
+    /// One mesh with a group for each finish. If asked, vertices at the same place become one; their normals are added up.
+    pub fn mesh(self, scene: &Scene, is_welded: bool) -> TriangleMesh {
+        let mut all = TriangleMesh::default();
+        let mut normals = Vec::new();
+        let mut places = BTreeMap::new();
+        for (finish, meshes) in self.of_finish {
+            let start = all.triangles.len() as u32;
+            for mesh in meshes {
+                let mut add = |i: usize| {
+                    let position = mesh.positions[i];
+                    let normal = mesh.normals.as_ref().map_or(DVec3::ZERO, |n| n[i]);
+                    let next = all.positions.len() as u32;
+                    // −0 is 0.
+                    let key = (position + 0.0).to_array().map(f64::to_bits);
+                    let place = if is_welded {
+                        *places.entry(key).or_insert(next)
+                    } else {
+                        next
+                    };
+                    if place == next {
+                        all.positions.push(position);
+                        normals.push(DVec3::ZERO);
+                    }
+                    normals[place as usize] += normal;
+                    place
+                };
+                let numbers: Vec<u32> = (0..mesh.positions.len()).map(&mut add).collect();
+                let triangles = mesh
+                    .triangles
+                    .iter()
+                    .map(|t| t.map(|i| numbers[i as usize]));
+                // Without those that welding has made flat.
+                all.triangles
+                    .extend(triangles.filter(|[a, b, c]| a != b && b != c && c != a));
+            }
+            let finish = &scene.finishes[finish as usize];
+            all.groups.push(Group {
+                name: finish.name.clone(),
+                material: Some(material(finish)),
+                triangles: start..all.triangles.len() as u32,
+            });
+        }
+        if normals.iter().any(|normal| *normal != DVec3::ZERO) {
+            all.normals = Some(normals);
+        }
+        all
+    }
+}
+
+/// The connected parts of a mesh, with its vertex colours or the colours of its materials.
+pub fn shells(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
+    let mut colors = mesh.colors.clone();
+    if colors.is_none() {
+        let mut of = vec![[1.0; 3]; mesh.positions.len()];
+        for group in &mesh.groups {
+            let range = group.triangles.start as usize..group.triangles.end as usize;
+            for i in mesh.triangles[range].as_flattened() {
+                of[*i as usize] = group.material.as_ref().map_or([1.0; 3], |m| m.color);
+            }
+        }
+        colors = Some(of);
+    }
+    let roots = roots(mesh);
+    let mut number = BTreeMap::new();
+    let mut shells: Vec<(TriangleMesh, BTreeMap<u32, u32>)> = Vec::new();
+    for triangle in &mesh.triangles {
+        let own = *number
+            .entry(roots[triangle[0] as usize])
+            .or_insert_with(|| {
+                shells.push((TriangleMesh::default(), BTreeMap::new()));
+                shells.len() - 1
+            });
+        let (shell, places) = &mut shells[own];
+        let corners = triangle.map(|i| {
+            *places.entry(i).or_insert_with(|| {
+                let from = i as usize;
+                shell.positions.push(mesh.positions[from]);
+                if let Some(normals) = &mesh.normals {
+                    shell.normals.get_or_insert_default().push(normals[from]);
+                }
+                if let Some(colors) = &colors {
+                    shell.colors.get_or_insert_default().push(colors[from]);
+                }
+                shell.positions.len() as u32 - 1
+            })
+        });
+        shell.triangles.push(corners);
+    }
+    shells.into_iter().map(|(shell, _)| shell).collect()
+}
+
+/// For each vertex the lowest number of one in the same connected part.
+pub fn roots(mesh: &TriangleMesh) -> Vec<u32> {
+    let mut root: Vec<u32> = (0..mesh.positions.len() as u32).collect();
+    fn find(root: &mut [u32], mut i: u32) -> u32 {
+        while root[i as usize] != i {
+            root[i as usize] = root[root[i as usize] as usize];
+            i = root[i as usize];
+        }
+        i
+    }
+    for [a, b, c] in &mesh.triangles {
+        for other in [*b, *c] {
+            let [one, other] = [find(&mut root, *a), find(&mut root, other)];
+            root[one.max(other) as usize] = one.min(other);
+        }
+    }
+    (0..root.len() as u32).map(|i| find(&mut root, i)).collect()
+}

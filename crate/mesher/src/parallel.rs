@@ -1,0 +1,39 @@
+//! A map over a slice by several threads, with the same result for any number of them.
+
+/// Items below which no threads are started.
+const FEW: usize = 64;
+
+/// Calls a pure function with each item, on so many threads, and returns the results in the order of the items. With one
+/// thread (as in wasm) none is started.
+pub fn map<T: Sync, R: Send>(threads: usize, items: &[T], f: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    if threads <= 1 || items.len() < FEW {
+        return items.iter().map(f).collect();
+    }
+    // Several chunks a thread, as their costs differ.
+    let size = items.len().div_ceil(threads * 8).max(1);
+    let chunks: Vec<&[T]> = items.chunks(size).collect();
+    let next = std::sync::atomic::AtomicUsize::new(0);
+    let work = || {
+        let mut done = Vec::new();
+        loop {
+            let i = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            let Some(chunk) = chunks.get(i) else {
+                return done;
+            };
+            done.push((i, chunk.iter().map(&f).collect::<Vec<R>>()));
+        }
+    };
+    let mut parts = std::thread::scope(|scope| {
+        let workers: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let mut parts = work();
+        for worker in workers {
+            match worker.join() {
+                Ok(part) => parts.extend(part),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        parts
+    });
+    parts.sort_by_key(|(i, _)| *i);
+    parts.into_iter().flat_map(|(_, part)| part).collect()
+}

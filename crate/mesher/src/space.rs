@@ -1,0 +1,109 @@
+//! A function with its terms sorted by place, so that evaluations cost what is nearby.
+
+use core::sync::atomic::{AtomicU64, Ordering};
+use field::{Ball, Implicit, Jet, Part, Variation};
+use glam::DVec3;
+
+use crate::forest::{Cell, Forest, NONE};
+
+/// Bound on the sum of terms that are left out at a place, in units of the threshold.
+pub const SLACK: f64 = 1e-7;
+
+/// Parts with fewer terms are not divided further.
+const FEW_TERMS: usize = 4;
+
+/// A part, and that of a larger ball which it was chosen from.
+#[derive(Debug)]
+struct Nested {
+    part: Part,
+    parent: u32,
+}
+
+/// A function in a forest of cells.
+#[derive(Debug)]
+pub struct Space<'a> {
+    /// The function.
+    pub function: &'a dyn Implicit,
+    /// The cells.
+    pub forest: Forest,
+    parts: Vec<Nested>,
+    evaluations: AtomicU64,
+}
+
+impl<'a> Space<'a> {
+    /// A function in a forest of which nothing is known yet.
+    pub fn new(function: &'a dyn Implicit, forest: Forest) -> Self {
+        Self {
+            function,
+            forest,
+            parts: Vec::new(),
+            evaluations: AtomicU64::new(0),
+        }
+    }
+
+    fn part(&self, part: u32) -> Option<&Part> {
+        self.parts.get(part as usize).map(|nested| &nested.part)
+    }
+
+    /// Value and gradient at a point of the ball of a part.
+    pub fn jet(&self, part: u32, point: DVec3) -> Jet<f64> {
+        self.evaluations.fetch_add(1, Ordering::Relaxed);
+        match self.part(part) {
+            Some(part) => self.function.jet_of(part, point),
+            None => self.function.jet(point),
+        }
+    }
+
+    /// Bounds in a ball within that of a part.
+    pub fn variation(&self, part: u32, ball: Ball) -> Variation {
+        self.evaluations.fetch_add(1, Ordering::Relaxed);
+        self.function.variation(self.part(part), ball)
+    }
+
+    /// Number of evaluations of values and bounds.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations.load(Ordering::Relaxed)
+    }
+
+    /// A smaller part for the children of a cell; `None` if that of the cell will do.
+    pub fn narrow(&self, cell: &Cell) -> Option<Part> {
+        let part = self.part(cell.part);
+        if part.is_some_and(|part| part.terms.len() <= FEW_TERMS) {
+            return None;
+        }
+        let ball = Ball {
+            center: self.forest.center(cell),
+            // Vertices move and triangles reach beyond a cell.
+            radius: self.forest.size(cell.level).length(),
+        };
+        self.function.narrow(ball, part, SLACK)
+    }
+
+    /// Adds a part, chosen from another one.
+    pub fn add(&mut self, part: Part, parent: u32) -> u32 {
+        self.parts.push(Nested { part, parent });
+        self.parts.len() as u32 - 1
+    }
+
+    /// The smallest part known that serves a ball.
+    pub fn part_for(&self, ball: Ball) -> u32 {
+        let leaf = self.forest.leaf_at(ball.center);
+        let mut part = self.forest.cells[leaf as usize].part;
+        while let Some(Nested { part: own, parent }) = self.parts.get(part as usize) {
+            if own.ball.center.distance(ball.center) + ball.radius <= own.ball.radius {
+                return part;
+            }
+            part = *parent;
+        }
+        NONE
+    }
+
+    /// Value and gradient anywhere.
+    pub fn jet_at(&self, point: DVec3) -> Jet<f64> {
+        let ball = Ball {
+            center: point,
+            radius: 0.0,
+        };
+        self.jet(self.part_for(ball), point)
+    }
+}

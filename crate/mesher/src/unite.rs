@@ -1,0 +1,113 @@
+//! Boolean unions and convex hulls, by `manifold-rust`.
+
+use crate::options::MeshError;
+use glam::DVec3;
+use manifold_rust::manifold::Manifold;
+use manifold_rust::types::{Error, MeshGL64, OpType};
+use mesh::TriangleMesh;
+
+/// Numbers of a vertex: position, normal, colour.
+const PROPERTIES: usize = 9;
+
+fn manifold(mesh: &TriangleMesh) -> Result<Manifold, MeshError> {
+    let mut properties = Vec::with_capacity(mesh.positions.len() * PROPERTIES);
+    for (i, position) in mesh.positions.iter().enumerate() {
+        properties.extend(position.to_array());
+        let normal = mesh
+            .normals
+            .as_ref()
+            .map_or(DVec3::ZERO, |normals| normals[i]);
+        properties.extend(normal.to_array());
+        let color = mesh.colors.as_ref().map_or([1.0; 3], |colors| colors[i]);
+        properties.extend(color.map(f64::from));
+    }
+    let manifold = Manifold::from_mesh_gl64(&MeshGL64 {
+        num_prop: PROPERTIES as u64,
+        vert_properties: properties,
+        tri_verts: mesh
+            .triangles
+            .as_flattened()
+            .iter()
+            .map(|i| u64::from(*i))
+            .collect(),
+        ..MeshGL64::default()
+    });
+    match manifold.status() {
+        Error::NoError => Ok(manifold),
+        other => Err(MeshError::Failed(format!(
+            "the meshes cannot be united: {other:?}"
+        ))),
+    }
+}
+
+/// The union of closed meshes, with colours and normals; where two surfaces meet, normals are 0.
+///
+/// # Errors
+/// If one is no closed manifold.
+pub fn union(meshes: &[TriangleMesh]) -> Result<TriangleMesh, MeshError> {
+    let manifolds = meshes.iter().map(manifold).collect::<Result<Vec<_>, _>>()?;
+    let united = Manifold::batch_boolean(&manifolds, OpType::Add);
+    if !matches!(united.status(), Error::NoError) {
+        return Err(MeshError::Failed(format!(
+            "the meshes cannot be united: {:?}",
+            united.status()
+        )));
+    }
+    let gl = united.get_mesh_gl64(-1);
+    let count = gl.num_prop as usize;
+    let vertices: Vec<&[f64]> = gl.vert_properties.chunks_exact(count).collect();
+    // Vertices that were doubled because their properties differ are joined again.
+    let mut first: Vec<u32> = (0..vertices.len() as u32).collect();
+    for (from, to) in gl.merge_from_vert.iter().zip(&gl.merge_to_vert) {
+        first[*from as usize] = *to as u32;
+    }
+    let mut place = vec![u32::MAX; vertices.len()];
+    let mut mesh = TriangleMesh::default();
+    let (mut normals, mut colors) = (Vec::new(), Vec::new());
+    for (i, vertex) in vertices.iter().enumerate() {
+        let own = first[i] as usize;
+        let normal = match vertex.get(3..6) {
+            Some([x, y, z]) => DVec3::new(*x, *y, *z).normalize_or_zero(),
+            _ => DVec3::ZERO,
+        };
+        if place[own] == u32::MAX {
+            place[own] = mesh.positions.len() as u32;
+            mesh.positions
+                .push(DVec3::new(vertex[0], vertex[1], vertex[2]));
+            normals.push(normal);
+            let color = vertex.get(6..9).map_or([1.0; 3], |c| [c[0], c[1], c[2]]);
+            colors.push(color.map(|c| c as f32));
+        } else if normals[place[own] as usize].dot(normal) < 0.99 {
+            normals[place[own] as usize] = DVec3::ZERO;
+        }
+        place[i] = place[own];
+    }
+    let triangles = gl.tri_verts.chunks_exact(3);
+    mesh.triangles = triangles
+        .map(|t| [t[0], t[1], t[2]].map(|i| place[i as usize]))
+        .collect();
+    mesh.normals = Some(normals);
+    mesh.colors = Some(colors);
+    Ok(mesh)
+}
+
+/// The convex hull of points; `None` if they have no volume.
+pub fn convex_hull(points: &[DVec3]) -> Option<TriangleMesh> {
+    let points: Vec<_> = points
+        .iter()
+        .map(|p| manifold_rust::linalg::Vec3::new(p.x, p.y, p.z))
+        .collect();
+    let hull = Manifold::hull(&points);
+    if hull.is_empty() || !matches!(hull.status(), Error::NoError) {
+        return None;
+    }
+    let gl = hull.get_mesh_gl64(-1);
+    let positions = gl.vert_properties.chunks_exact(gl.num_prop as usize);
+    let triangles = gl.tri_verts.chunks_exact(3);
+    Some(TriangleMesh::new(
+        positions.map(|v| DVec3::new(v[0], v[1], v[2])).collect(),
+        triangles
+            .map(|t| [t[0], t[1], t[2]].map(|i| i as u32))
+            .collect(),
+    ))
+}

@@ -1,0 +1,214 @@
+//! Coatings of skeletons.
+
+mod common;
+
+use common::{assert_manifold, on_surface};
+use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
+use glam::DVec3;
+use mesh::Topology;
+use mesher::{Cage, Coat, Coating, coat_scene};
+use scene::{Element, Flesh, Scene, Shape};
+
+fn shaping(radius: f64) -> Shaping {
+    Shaping {
+        kernel: Kernel::Gauss,
+        radius,
+        blobbiness: -2.0,
+        blob_scale: BlobScale::Relative,
+        strength: 1.0,
+        influence: 1e-3,
+        taper: None,
+    }
+}
+
+/// A chain of segments with its field.
+fn chain(points: &[DVec3], radius: f64) -> (Sum, Vec<Cage>) {
+    let lines: Vec<_> = points
+        .windows(2)
+        .map(|w| [(w[0], radius), (w[1], radius)])
+        .collect();
+    let segment = |w: &[DVec3]| {
+        let skeleton = Skeleton::Segment {
+            base: w[0],
+            apex: w[1],
+        };
+        Primitive::new(skeleton, &shaping(radius), None)
+    };
+    (
+        points.windows(2).filter_map(segment).collect(),
+        Cage::around_lines(&lines),
+    )
+}
+
+fn check(name: &str, function: &dyn Implicit, coat: &Coat, bound: f64) {
+    assert_manifold(name, &coat.mesh);
+    assert!(coat.mesh.signed_volume() > 0.0, "{name}");
+    // All vertices that are not buried are on the surface, as near as was asked.
+    let off = |p: &DVec3| (function.jet(*p).value - THRESHOLD).abs();
+    let near = coat
+        .mesh
+        .positions
+        .iter()
+        .filter(|p| off(p) <= 0.1 * bound * (1.0 + 1e-9));
+    assert_eq!(
+        near.count() + coat.buried,
+        coat.mesh.positions.len(),
+        "{name}"
+    );
+    assert!(coat.excess <= bound, "{name}: {}", coat.excess);
+}
+
+const BEND: [DVec3; 4] = [
+    DVec3::new(0.0, 0.0, 0.0),
+    DVec3::new(1.0, 0.0, 0.0),
+    DVec3::new(1.6, 0.9, 0.0),
+    DVec3::new(1.7, 1.6, 0.8),
+];
+
+#[test]
+fn three_bounds_give_three_meshes_of_a_chain() {
+    let (sum, cages) = chain(&BEND, 0.25);
+    assert_eq!(cages.len(), 1, "joints of two segments are no ends");
+    let mut before = 0;
+    for bound in [0.3, 0.1, 0.02] {
+        let coat = Coating::default().update(&sum, &cages, &|_| bound);
+        check("chain", &sum, &coat, bound);
+        assert_eq!(Topology::of(&coat.mesh).unwrap().genera, [0]);
+        let count = coat.mesh.triangles.len();
+        assert!(count > before, "{bound}: {count} {before}");
+        before = count;
+        // The distance from the surface follows the bound.
+        let mut farthest = 0.0_f64;
+        for i in 0..coat.mesh.triangles.len() {
+            let [a, b, c] = coat.mesh.corners(i);
+            let middle = (a + b + c) / 3.0;
+            if let Some(found) = on_surface(&sum, middle) {
+                farthest = farthest.max(found.distance(middle));
+            }
+        }
+        assert!(farthest < 0.25 * bound, "{bound}: {farthest}");
+    }
+}
+
+#[test]
+fn moved_skeletons_start_from_the_last_positions() {
+    let mut coating = Coating::default();
+    let mut evaluations = [0, 0];
+    for i in 0..20 {
+        let mut points = BEND;
+        points[2].z = 0.02 * f64::from(i);
+        let (sum, cages) = chain(&points, 0.25);
+        let kept = coating.update(&sum, &cages, &|_| 0.05);
+        let fresh = Coating::default().update(&sum, &cages, &|_| 0.05);
+        check("moved", &sum, &kept, 0.05);
+        if i > 0 {
+            evaluations[0] += kept.evaluations;
+            evaluations[1] += fresh.evaluations;
+        }
+        // The same surface, whatever it was found from.
+        let volumes = [&kept, &fresh].map(|coat| coat.mesh.signed_volume());
+        assert!((volumes[0] / volumes[1] - 1.0).abs() < 0.01, "{volumes:?}");
+    }
+    let [kept, fresh] = evaluations;
+    assert!(kept * 5 < fresh * 4, "{kept} of {fresh}");
+}
+
+#[test]
+fn bound_may_depend_on_the_place() {
+    let (sum, cages) = chain(&BEND, 0.25);
+    let near = |p: DVec3| if p.x < 0.8 { 0.01 } else { 1.0 };
+    let coat = Coating::default().update(&sum, &cages, &near);
+    let all = Coating::default().update(&sum, &cages, &|_| 0.01);
+    assert_manifold("near", &coat.mesh);
+    assert!(coat.mesh.triangles.len() * 3 < all.mesh.triangles.len() * 2);
+}
+
+#[test]
+fn rings_and_branches_and_faces_are_closed() {
+    let ring: Vec<DVec3> = (0..=12)
+        .map(|i| {
+            let (sine, cosine) = libm::sincos(core::f64::consts::TAU * f64::from(i % 12) / 12.0);
+            DVec3::new(cosine, sine, 0.3 * libm::sin(3.0 * f64::from(i % 12)))
+        })
+        .collect();
+    let (sum, cages) = chain(&ring, 0.2);
+    assert_eq!(cages.len(), 1);
+    let coat = Coating::default().update(&sum, &cages, &|_| 0.05);
+    check("ring", &sum, &coat, 0.05);
+    assert_eq!(Topology::of(&coat.mesh).unwrap().genera, [1]);
+
+    // Three limbs at a branch are three pieces.
+    let limbs: Vec<[DVec3; 2]> = [DVec3::X, DVec3::Y, DVec3::NEG_ONE]
+        .map(|p| [DVec3::ZERO, p])
+        .into();
+    let lines: Vec<_> = limbs.iter().map(|l| l.map(|p| (p, 0.2))).collect();
+    let cages = Cage::around_lines(&lines);
+    assert_eq!(cages.len(), 3);
+    let sum: Sum = limbs
+        .iter()
+        .filter_map(|[base, apex]| {
+            let skeleton = Skeleton::Segment {
+                base: *base,
+                apex: *apex,
+            };
+            Primitive::new(skeleton, &shaping(0.2), None)
+        })
+        .collect();
+    let coat = Coating::default().update(&sum, &cages, &|_| 0.05);
+    check("branch", &sum, &coat, 0.05);
+    assert_eq!(Topology::of(&coat.mesh).unwrap().genera, [0; 3]);
+
+    let square = |s: f64| {
+        let corner = |x: f64, y: f64| DVec3::new(s * x, s * y, 0.0);
+        vec![
+            corner(-1.0, -1.0),
+            corner(1.0, -1.0),
+            corner(1.0, 1.0),
+            corner(-1.0, 1.0),
+        ]
+    };
+    let rings = vec![square(1.0), square(0.4)];
+    let cage = Cage::around_face(&rings, 0.1).unwrap();
+    let frame: Sum = Primitive::new(Skeleton::Polygon { rings }, &shaping(0.1), None)
+        .into_iter()
+        .collect();
+    let coat = Coating::default().update(&frame, &[cage], &|_| 0.05);
+    check("frame", &frame, &coat, 0.05);
+    assert_eq!(Topology::of(&coat.mesh).unwrap().genera, [1]);
+}
+
+#[test]
+fn scenes_are_coated_and_what_cannot_be_is_left_out() {
+    let mut scene = Scene::default();
+    scene.flesh.push(Flesh {
+        blobbiness: -2.0,
+        radius: 0.2,
+        ..Flesh::default()
+    });
+    let soft = |shape| Element {
+        flesh: Some(0),
+        ..Element::new(shape)
+    };
+    scene.elements.push(soft(Shape::Plane {
+        point: DVec3::ZERO,
+        normal: DVec3::Y,
+        radius: 0.1,
+    }));
+    let mut coatings = Vec::new();
+    assert!(
+        coat_scene(&scene, 0.1, &mut coatings).is_empty(),
+        "planes have no end"
+    );
+    scene.elements.clear();
+    for x in [0.0, f64::NAN, f64::INFINITY] {
+        scene.elements.push(soft(Shape::Sphere {
+            center: DVec3::X * x,
+            radius: 0.2,
+        }));
+    }
+    let bodies = coat_scene(&scene, 0.1, &mut coatings);
+    assert!(bodies.len() <= 1);
+    for number in [1e-300, 1e300] {
+        let _ = coat_scene(&scene, number, &mut coatings);
+    }
+}

@@ -1,0 +1,371 @@
+//! Scenes: random ones over all kernels and primitives, and the examples, judged by others.
+//!
+//! By default a small sample. `SINEW_MESHES=all` meshes all examples and 200 random scenes, `SINEW_MESHES=NAME` one example, and prints a
+//! line for each: `SINEW_MESHES=all cargo test --release -p mesher --test scenes -- --nocapture`.
+
+mod common;
+#[path = "../../tracer/tests/common/mod.rs"]
+mod numbers;
+#[path = "../../tracer/tests/common/trials.rs"]
+mod random;
+
+use common::{Distances, Random, crossings, manifold, on_surface};
+use field::{Implicit, Kernel};
+use glam::DVec3;
+use mesh::{Topology, TriangleMesh, self_intersections};
+use mesher::{MeshError, Model, Progress, Tolerance, Wishes, mesh_scene};
+use random::{KINDS, Kind, Trial};
+use scene::{Scene, Surface};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+use tracer::Reference;
+use tracer::reference::Near;
+
+/// How much is asked of a scene.
+#[derive(Clone, Copy)]
+struct Care {
+    relative: f64,
+    samples: usize,
+    rays: usize,
+    genus: bool,
+}
+
+/// What was found; an error is a promise that was broken.
+#[derive(Default)]
+struct Row {
+    triangles: usize,
+    undecided: usize,
+    unproved: usize,
+    /// Of sampled points, in tolerances.
+    off: [f64; 2],
+    unknown: usize,
+    seconds: f64,
+    empty: bool,
+}
+
+fn mesh_with(scene: &Scene, relative: f64) -> Result<Model, MeshError> {
+    let wishes = Wishes {
+        tolerance: Tolerance::Relative(relative),
+        max_triangles: 600_000,
+        threads: 2,
+        ..Wishes::default()
+    };
+    let mut report = |_| ControlFlow::Continue(());
+    mesh_scene(scene, &wishes, &mut Progress::new(&mut report))
+}
+
+/// Meshes a scene and checks all that is promised of it.
+fn judge(scene: &Scene, care: Care) -> Result<Row, String> {
+    let start = Instant::now();
+    let mut row = Row::default();
+    let model = match mesh_with(scene, care.relative) {
+        Ok(model) => model,
+        Err(MeshError::Nothing | MeshError::AllInside | MeshError::Unbounded) => {
+            row.empty = true;
+            return is_empty(scene).map(|()| row);
+        }
+        Err(other) => return Err(other.to_string()),
+    };
+    row.seconds = start.elapsed().as_secs_f64();
+    let surfaces = scene.surfaces();
+    for part in &model.parts {
+        let mesh = &part.mesh;
+        let name = &part.name;
+        row.triangles += mesh.triangles.len();
+        row.undecided += part.undecided.len();
+        row.unproved += part.unproved;
+        if !part.is_closed {
+            continue;
+        }
+        manifold(mesh).map_err(|why| format!("{name}: {why}"))?;
+        let is_hard = part.name.ends_with("hard");
+        if !is_hard {
+            let crossings = self_intersections(mesh, 10).map_err(|error| error.to_string())?;
+            if !crossings.is_free() {
+                return Err(format!("{name}: it cuts itself {crossings:?}"));
+            }
+        }
+        if part.error > model.tolerance {
+            return Err(format!(
+                "{name}: error {} of {}",
+                part.error, model.tolerance
+            ));
+        }
+    }
+    for surface in &surfaces {
+        let body = scene.bodies.get(surface.body() as usize);
+        let body = body.map_or("", |body| body.name.as_str());
+        let name = if body.is_empty() { "model" } else { body };
+        let own = |part: &&mesher::ModelPart| part.name == name;
+        let Some(part) = model.parts.iter().find(own) else {
+            continue;
+        };
+        distances(surface, &part.mesh, &model, care, &mut row)
+            .map_err(|why| format!("{name}: {why}"))?;
+    }
+    if care.genus && row.undecided == 0 && row.unproved == 0 {
+        let finer = mesh_with(scene, 0.5 * care.relative).map_err(|error| error.to_string())?;
+        let genera = |model: &Model| {
+            let closed = model.parts.iter().filter(|part| part.is_closed);
+            let mut all: Vec<u64> = closed
+                .flat_map(|part| Topology::of(&part.mesh).map_or(Vec::new(), |t| t.genera))
+                .collect();
+            all.sort_unstable();
+            all
+        };
+        let is_sure = finer.parts.iter().all(|part| part.undecided.is_empty());
+        let [own, other] = [&model, &finer].map(genera);
+        if is_sure && own != other {
+            return Err(format!("genus {own:?}, at twice the resolution {other:?}"));
+        }
+    }
+    Ok(row)
+}
+
+/// Random rays meet no surface.
+fn is_empty(scene: &Scene) -> Result<(), String> {
+    let mut random = Random(3);
+    for surface in scene.surfaces() {
+        let function = surface.function();
+        let Some(ball) = function.support().filter(|ball| ball.radius > 0.0) else {
+            continue;
+        };
+        for _ in 0..20 {
+            let from = ball.center + random.vector() * ball.radius;
+            let to = ball.center + random.vector() * ball.radius;
+            let (length, direction) = (from.distance(to), (to - from).normalize_or(DVec3::X));
+            let met = crossings(function, from, direction, length, 1e-6 * ball.radius);
+            if !met.is_empty() {
+                return Err(format!("no mesh, but a ray meets a surface at {met:?}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Both distances, by sampling: of points of the mesh from the surface, and of crossings of rays from the mesh.
+fn distances(
+    surface: &Surface,
+    mesh: &TriangleMesh,
+    model: &Model,
+    care: Care,
+    row: &mut Row,
+) -> Result<(), String> {
+    let function = surface.function();
+    let mut reference = match surface {
+        Surface::Sum(sum) => {
+            let mut reference = Reference::new(sum.sum.primitives.clone());
+            reference.patience = 3000;
+            Some(reference)
+        }
+        Surface::Composed(_) => None,
+    };
+    let tolerance = model.tolerance;
+    // Nothing is promised of the numbers' own rounding.
+    let slack = 1e-12
+        * mesh
+            .bounds()
+            .max
+            .abs()
+            .max(mesh.bounds().min.abs())
+            .max_element();
+    let allowed = tolerance * (1.0 + 1e-6) + slack;
+    // Triangles that are not proved may be farther; they are counted.
+    let may_be_off = row.unproved + row.undecided > 0;
+    let mut random = Random(11);
+    let is_cut = function.support().is_none();
+    let bounds = mesh.bounds();
+    let is_lid = |i: usize| {
+        let corners = mesh.corners(i);
+        is_cut
+            && (0..3).any(|k| {
+                [bounds.min[k], bounds.max[k]]
+                    .iter()
+                    .any(|side| corners.iter().all(|p| p[k] == *side))
+            })
+    };
+    for _ in 0..care.samples {
+        let (i, point) = random.of_mesh(mesh);
+        if is_lid(i) {
+            continue;
+        }
+        match &mut reference {
+            Some(reference) => match reference.surface_near(point, allowed) {
+                Near::Within(distance) => row.off[0] = row.off[0].max(distance / tolerance),
+                Near::Unknown => row.unknown += 1,
+                Near::Beyond if may_be_off => row.unknown += 1,
+                Near::Beyond => {
+                    let (excess, gradient) = reference.excess(point);
+                    return Err(format!(
+                        "{point} is {} off",
+                        excess.abs() / gradient.length()
+                    ));
+                }
+            },
+            None => match on_surface(function, point) {
+                Some(found) if found.distance(point) <= allowed => {
+                    row.off[0] = row.off[0].max(found.distance(point) / tolerance);
+                }
+                // The nearest point may be another one.
+                _ => row.unknown += 1,
+            },
+        }
+    }
+    let near = Distances::new(mesh);
+    let size = bounds.size();
+    for _ in 0..care.rays {
+        let inside = |random: &mut Random| bounds.center() + 0.5 * random.vector() * size;
+        let to = inside(&mut random);
+        let direction = random.vector().normalize_or(DVec3::X);
+        let from = to - direction * size.length();
+        let limit = 2.0 * size.length();
+        let resolution = 0.01 * tolerance;
+        let met: Vec<f64> = match &mut reference {
+            Some(reference) => {
+                let found = reference.crossings(from, direction, limit, resolution);
+                found.roots.iter().map(|root| root.t).collect()
+            }
+            None => crossings(function, from, direction, limit, resolution),
+        };
+        for t in met {
+            let point = from + direction * t;
+            let beyond = (bounds.min - point).max(point - bounds.max).max_element();
+            if is_cut && beyond > 0.0 {
+                continue;
+            }
+            let off = near.to(point);
+            if off > allowed + resolution && !may_be_off {
+                return Err(format!(
+                    "the surface at {point} is {off} away from the mesh, allowed {allowed}"
+                ));
+            }
+            row.off[1] = row.off[1].max(off / tolerance);
+        }
+    }
+    Ok(())
+}
+
+fn wanted() -> Option<String> {
+    std::env::var("SINEW_MESHES").ok()
+}
+
+fn told(name: &str, result: &Result<Row, String>) -> bool {
+    match result {
+        Ok(row) if row.empty => println!("{name}: nothing there"),
+        Ok(row) => println!(
+            "{name}: {} triangles, {} undecided, {} unproved, off {:.2} {:.2}, {} unknown, {:.2} s",
+            row.triangles,
+            row.undecided,
+            row.unproved,
+            row.off[0],
+            row.off[1],
+            row.unknown,
+            row.seconds
+        ),
+        Err(why) => println!("{name}: WRONG: {why}"),
+    }
+    result.is_err()
+}
+
+#[test]
+fn random_scenes() {
+    let is_all = wanted().is_some_and(|wanted| wanted == "all");
+    let (count, care) = if is_all {
+        (
+            200,
+            Care {
+                relative: 2e-3,
+                samples: 100,
+                rays: 30,
+                genus: true,
+            },
+        )
+    } else {
+        (
+            26,
+            Care {
+                relative: 1e-2,
+                samples: 10,
+                rays: 4,
+                genus: false,
+            },
+        )
+    };
+    let mut wrong = 0;
+    for number in 0..count {
+        let kernel = Kernel::ALL[number % Kernel::ALL.len()];
+        let kind = KINDS[(number * 5) % KINDS.len()];
+        if !is_all && kind == Kind::Cluster {
+            continue;
+        }
+        let scene = Trial::new(kernel, kind, 40_000 + number as u64, 0).scene;
+        let result = judge(&scene, care);
+        wrong += usize::from(told(&format!("{number} {kernel:?} {kind:?}"), &result));
+    }
+    assert_eq!(wrong, 0);
+}
+
+/// The scene of a file with the assets that it names.
+fn load(path: &Path) -> Scene {
+    let name = path.file_name().unwrap().to_string_lossy().into_owned();
+    let text = std::fs::read_to_string(path).unwrap();
+    let folder = path.parent().unwrap();
+    let assets = rats::asset_names(&text).into_iter().filter_map(|name| {
+        let bytes = std::fs::read(folder.join(&name)).ok()?.into();
+        Some(rats::Asset { name, bytes })
+    });
+    let assets: Vec<rats::Asset> = assets.collect();
+    let project = rats::Project {
+        files: vec![rats::File { name, text }],
+    };
+    rats::compile_at(&project, &assets, 0.0).scene
+}
+
+#[test]
+fn examples() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../www/examples");
+    let wanted = wanted();
+    let mut names: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "rat"))
+        .collect();
+    names.sort();
+    let (care, quick) = match &wanted {
+        Some(_) => (
+            Care {
+                relative: 1e-3,
+                samples: 200,
+                rays: 60,
+                genus: true,
+            },
+            false,
+        ),
+        None => (
+            Care {
+                relative: 4e-3,
+                samples: 20,
+                rays: 8,
+                genus: false,
+            },
+            true,
+        ),
+    };
+    let mut wrong = 0;
+    for path in names {
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let is_wanted = match wanted.as_deref() {
+            Some("all") => true,
+            Some(one) => one == name,
+            None => ["tshape", "starfish-a", "touching"].contains(&name.as_str()),
+        };
+        if !is_wanted {
+            continue;
+        }
+        let _ = quick;
+        let result = judge(&load(&path), care);
+        wrong += usize::from(told(&name, &result));
+    }
+    assert_eq!(wrong, 0);
+}

@@ -1,0 +1,248 @@
+//! Meshes of implicit surfaces, judged by others.
+
+mod common;
+
+use common::{assert_embedded, assert_manifold, distances};
+use core::f64::consts::{PI, TAU};
+use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
+use glam::DVec3;
+use mesh::Topology;
+use mesher::{MeshError, Options, Progress, SurfaceMesh, box_of, polygonize};
+use std::ops::ControlFlow;
+
+fn shaping(kernel: Kernel, radius: f64) -> Shaping {
+    Shaping {
+        kernel,
+        radius,
+        blobbiness: -2.0,
+        blob_scale: BlobScale::Relative,
+        strength: 1.0,
+        influence: 1e-3,
+        taper: None,
+    }
+}
+
+fn point(center: DVec3, kernel: Kernel, radius: f64) -> Primitive {
+    Primitive::new(Skeleton::Point { center }, &shaping(kernel, radius), None).unwrap()
+}
+
+fn mesh_with(sum: &Sum, options: &Options) -> Result<SurfaceMesh, MeshError> {
+    let domain = box_of(sum.support().expect("no plane"));
+    let mut report = |_| ControlFlow::Continue(());
+    polygonize(sum, &domain, options, &mut Progress::new(&mut report))
+}
+
+/// Meshes a surface without kinks, and checks all that is promised.
+fn check(name: &str, sum: &Sum, tolerance: f64, genera: &[u64]) -> SurfaceMesh {
+    let surface = mesh_with(sum, &Options::new(tolerance)).unwrap();
+    let mesh = &surface.mesh;
+    assert_manifold(name, mesh);
+    assert_embedded(name, mesh);
+    assert_eq!(Topology::of(mesh).unwrap().genera, genera, "{name}");
+    let SurfaceMesh {
+        error,
+        undecided,
+        unproved,
+        ..
+    } = &surface;
+    assert!(
+        *error <= tolerance && undecided.is_empty() && *unproved == 0,
+        "{name}: {error} {unproved} {undecided:?}"
+    );
+    let far = distances(sum, mesh, 500);
+    assert!(far[0].max(far[1]) <= *error, "{name}: {far:?} {error}");
+    let angle = |i| mesh::smallest_angle(&mesh.corners(i)).to_degrees();
+    let sharp = (0..mesh.triangles.len())
+        .filter(|i| angle(*i) < 15.0)
+        .count();
+    assert!(
+        sharp * 50 <= mesh.triangles.len(),
+        "{name}: {sharp} of {}",
+        mesh.triangles.len()
+    );
+    surface
+}
+
+#[test]
+fn each_kernel_gives_proved_meshes() {
+    for kernel in Kernel::ALL {
+        let ball = Sum::new(vec![point(DVec3::X, kernel, 1.0)]);
+        let surface = check(&format!("ball {kernel:?}"), &ball, 5e-3, &[0]);
+        let volume = surface.mesh.signed_volume() / (4.0 / 3.0 * PI);
+        assert!((volume - 1.0).abs() < 0.02, "{kernel:?}: {volume}");
+        let pair = Sum::new(vec![
+            point(DVec3::ZERO, kernel, 1.0),
+            point(DVec3::X * 1.6, kernel, 0.7),
+        ]);
+        check(&format!("pair {kernel:?}"), &pair, 1e-2, &[0]);
+    }
+}
+
+#[test]
+fn tunnels_cavities_and_components_are_kept() {
+    let arc = |center: DVec3, u: DVec3| Skeleton::Arc {
+        center,
+        u,
+        v: DVec3::Y,
+        radius: 1.0,
+        angle: TAU,
+    };
+    let flesh = shaping(Kernel::Compact6, 0.25);
+    let ring = |center, u| Primitive::new(arc(center, u), &flesh, None);
+    let one: Sum = ring(DVec3::ZERO, DVec3::X).into_iter().collect();
+    check("ring", &one, 1e-2, &[1]);
+    let far: Sum = [ring(DVec3::ZERO, DVec3::X), ring(DVec3::X * 4.0, DVec3::Z)]
+        .into_iter()
+        .flatten()
+        .collect();
+    check("two rings", &far, 1e-2, &[1, 1]);
+    // A ball with a hollow in it.
+    let hollow = Shaping {
+        strength: -1.5,
+        ..shaping(Kernel::Gauss, 0.5)
+    };
+    let center = Skeleton::Point {
+        center: DVec3::ZERO,
+    };
+    let carved: Sum = [
+        Some(point(DVec3::ZERO, Kernel::Gauss, 1.0)),
+        Primitive::new(center, &hollow, None),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let inside = carved.jet(DVec3::ZERO).value;
+    if inside < 1.0 {
+        check("hollow ball", &carved, 5e-3, &[0, 0]);
+    }
+    // A thin spike, and a small ball beside.
+    let spike = Skeleton::Segment {
+        base: DVec3::ZERO,
+        apex: DVec3::Y * 2.0,
+    };
+    let thin: Sum = [
+        Primitive::new(spike, &shaping(Kernel::Cauchy, 0.03), None),
+        Some(point(DVec3::X, Kernel::Gauss, 0.01)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    check("spike", &thin, 4e-3, &[0, 0]);
+}
+
+#[test]
+fn scale_does_not_matter() {
+    for scale in [1e-6, 1e6] {
+        let ball = Sum::new(vec![
+            point(DVec3::X * scale, Kernel::Soft, scale),
+            point(DVec3::Y * scale, Kernel::Soft, scale),
+        ]);
+        check(&format!("scale {scale}"), &ball, 1e-2 * scale, &[0]);
+    }
+}
+
+#[test]
+fn number_of_threads_does_not_matter() {
+    let curve = Skeleton::Curve {
+        control: [DVec3::ZERO, DVec3::X * 2.0, DVec3::Y * 2.0, DVec3::ONE],
+    };
+    let sum: Sum = [
+        Primitive::new(curve, &shaping(Kernel::Gauss, 0.3), None),
+        Some(point(DVec3::X, Kernel::Cauchy, 0.3)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let meshes = [1, 4].map(|threads| {
+        let options = Options {
+            threads,
+            ..Options::new(0.02)
+        };
+        mesh_with(&sum, &options).unwrap().mesh
+    });
+    assert_eq!(meshes[0], meshes[1]);
+}
+
+#[test]
+fn kinks_are_told() {
+    use field::{Profile, Wave};
+    let base = Skeleton::Segment {
+        base: -DVec3::X,
+        apex: DVec3::X,
+    };
+    let profile = Profile {
+        waves: [Wave::Hat, Wave::One],
+        scale: [4.0, 1.0],
+        bounds: [0.5, 1.0],
+        ..Profile::default()
+    };
+    let wavy = Primitive::new(base, &shaping(Kernel::Gauss, 0.4), Some(profile));
+    let sum: Sum = wavy.into_iter().collect();
+    let surface = mesh_with(&sum, &Options::new(0.02)).unwrap();
+    assert_manifold("kinks", &surface.mesh);
+    assert_embedded("kinks", &surface.mesh);
+    let far = distances(&sum, &surface.mesh, 500);
+    assert!(far[0].max(far[1]) <= 0.04, "{far:?}");
+}
+
+#[test]
+fn failures_are_told_in_words() {
+    let ball = Sum::new(vec![point(DVec3::ZERO, Kernel::Gauss, 1.0)]);
+    let few = Options {
+        max_triangles: 1000,
+        ..Options::new(2e-3)
+    };
+    let error = mesh_with(&ball, &few).unwrap_err();
+    let MeshError::TooMany {
+        limit: 1000,
+        fitting: Some(fitting),
+    } = error
+    else {
+        panic!("{error}");
+    };
+    let fits = Options {
+        tolerance: fitting,
+        ..few
+    };
+    assert!(mesh_with(&ball, &fits).is_ok(), "{fitting}");
+
+    let domain = box_of(ball.support().unwrap());
+    let mut cancel = |_| ControlFlow::Break(());
+    let options = Options::new(1e-2);
+    let cancelled = polygonize(&ball, &domain, &options, &mut Progress::new(&mut cancel));
+    assert_eq!(cancelled.unwrap_err(), MeshError::Cancelled);
+
+    let mut report = |_| ControlFlow::Continue(());
+    let mut within = |half: f64| {
+        let inside = mesh::Aabb::of_points([DVec3::splat(-half), DVec3::splat(half)]);
+        polygonize(&ball, &inside, &options, &mut Progress::new(&mut report))
+    };
+    assert_eq!(within(0.1).unwrap_err(), MeshError::AllInside);
+    assert!(within(f64::NAN).is_err() && within(0.0).is_err());
+    // A box that cuts the ball: closed by lids.
+    let cut = within(0.8).unwrap();
+    assert!(cut.is_cut);
+    assert_manifold("cut", &cut.mesh);
+    assert_embedded("cut", &cut.mesh);
+    let bounds = cut.mesh.bounds();
+    assert_eq!(
+        (bounds.min, bounds.max),
+        (DVec3::splat(-0.8), DVec3::splat(0.8))
+    );
+
+    let tiny = Sum::new(vec![]);
+    assert!(tiny.support().is_some_and(|ball| ball.radius == 0.0));
+    assert!(matches!(
+        mesh_with(&tiny, &options),
+        Err(MeshError::NotFinite(_))
+    ));
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(
+            matches!(
+                mesh_with(&ball, &Options::new(bad)),
+                Err(MeshError::NotFinite(_))
+            ),
+            "{bad}"
+        );
+    }
+}
