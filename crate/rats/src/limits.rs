@@ -43,6 +43,10 @@ pub const MAX_NESTED_EXPRESSIONS: usize = 64;
 pub const MAX_OPERANDS: usize = 4096;
 /// Shapes in a scene.
 pub const MAX_ELEMENTS: usize = 200_000;
+/// Faces of the mesh that strokes in a model start from.
+pub const MAX_STROKES_FACES: usize = 200_000;
+/// Vertices that the strokes of one text may visit together in a model, a second or so.
+pub const MAX_STROKES_WORK: u64 = 20_000_000;
 /// Corners of a polygon with its holes. (The original stopped at 128.)
 pub const MAX_CORNERS: usize = 800;
 /// As how many shapes a curve counts, or a limb that tapers: it is integrated piece by piece.

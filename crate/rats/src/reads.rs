@@ -1,11 +1,12 @@
 //! Which files a text asks for, so that whoever keeps files can fetch them before compiling.
 
+use crate::{is_strokes, start_file};
 use crate::parser::parse;
 use crate::symbol::Symbols;
 use crate::syntax::{Block, Command, Datum, Node, Syntax};
 use std::ops::Range;
 
-/// The file names after every `read` of a text, in order, wherever it stands. Nothing is run, so
+/// The file names after every `read` of a text, in order, wherever it stands, then the texts of strokes after `mesh`. Nothing is run, so
 /// a `read` that a condition would skip is listed too.
 #[must_use]
 pub fn reads(text: &str) -> Vec<String> {
@@ -13,6 +14,9 @@ pub fn reads(text: &str) -> Vec<String> {
     let syntax = parse(text, &mut symbols);
     let mut names = Vec::new();
     collect(&syntax.block, &["read"], &syntax, text, &mut names);
+    let mut meshes = Vec::new();
+    collect(&syntax.block, &["mesh"], &syntax, text, &mut meshes);
+    names.extend(meshes.into_iter().filter(|name| is_strokes(name)));
     names
 }
 
@@ -66,9 +70,15 @@ fn has_ending(name: &str, endings: &[&str]) -> bool {
     })
 }
 
-/// The images and meshes that a text asks for (`mesh`, `terra`, `texture`, `background`), in order, wherever it does.
+/// The images and meshes that a text asks for (`mesh`, `terra`, `texture`, `background`), in order, wherever it does. A text of
+/// strokes asks for the mesh that it starts from.
 #[must_use]
 pub fn asset_names(text: &str) -> Vec<String> {
+    let is_remark = |line: &&str| line.trim().is_empty() || line.trim_start().starts_with('#');
+    let first = text.lines().find(|line| !is_remark(line));
+    if first.is_some_and(|line| line.split_whitespace().next() == Some("strokes")) {
+        return start_file(text).into_iter().collect();
+    }
     let mut symbols = Symbols::default();
     let syntax = parse(text, &mut symbols);
     let mut names = Vec::new();
@@ -128,6 +138,12 @@ fn names_of(
 #[cfg(test)]
 mod tests {
     use super::{asset_names, places, reads};
+
+    #[test]
+    fn texts_of_strokes_are_read() {
+        let text = "mesh Clay dog.strokes\nread a.rat\nmesh Clay gem.obj\n";
+        assert_eq!(reads(text), ["a.rat", "dog.strokes"]);
+    }
 
     #[test]
     fn names_are_found_wherever_read_stands() {

@@ -64,7 +64,8 @@ impl<'a> Sources<'a> {
     }
 
     fn add(&mut self, name: String, text: &'a str, symbols: &mut Symbols<'a>) {
-        let syntax = parser::parse(text, symbols);
+        let run = if crate::is_strokes(&name) { "" } else { text };
+        let syntax = parser::parse(run, symbols);
         self.all.push(Source { name, text, syntax });
     }
 

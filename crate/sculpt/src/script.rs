@@ -1,7 +1,9 @@
 //! Texts of strokes.
 
+use crate::clay::Clay;
 use crate::error::Error;
 use crate::parse;
+use crate::sculpture::{Loader, begin, carry_out};
 use crate::stroke::{Beginning, Stroke};
 use crate::write;
 use core::fmt;
@@ -85,10 +87,41 @@ impl Script {
         parse::script(text)
     }
 
+    /// The line of the start, from 1; 0 if it was not parsed.
+    #[must_use]
+    pub fn start_line(&self) -> usize {
+        self.places.first().map_or(0, |place| place.line)
+    }
+
     /// The line on which a stroke stands, from 1; 0 if it was not parsed.
     #[must_use]
     pub fn line(&self, stroke: usize) -> usize {
         self.places.get(stroke + 1).map_or(0, |place| place.line)
+    }
+
+    /// A problem of the start.
+    #[must_use]
+    pub fn problem_at_start(&self, message: &str) -> Diagnostic {
+        self.at_start(&Error(message.to_owned()))
+    }
+
+    /// The clay before the first stroke.
+    ///
+    /// # Errors
+    /// If the start's file cannot be read, or is no mesh that can be sculpted.
+    pub fn begin(&self, load: Loader<'_>) -> Result<Clay, Diagnostic> {
+        begin(&self.start, load).map_err(|error| self.at_start(&error))
+    }
+
+    /// Carries out the strokes from one on. With those before it they may visit `most_work` vertices together.
+    ///
+    /// # Errors
+    /// At the line that cannot be carried out, or at which it becomes too much work.
+    pub fn resume(&self, clay: &mut Clay, from: usize, most_work: u64) -> Result<(), Diagnostic> {
+        for (i, stroke) in self.strokes.iter().enumerate().skip(from) {
+            carry_out(clay, stroke, most_work).map_err(|error| self.at(i, &error))?;
+        }
+        Ok(())
     }
 
     pub(crate) fn at_start(&self, error: &Error) -> Diagnostic {

@@ -65,7 +65,7 @@ impl Sculpture {
     /// # Errors
     /// At the line that cannot be carried out.
     pub fn open(script: &Script, load: Loader<'_>) -> Result<Self, Diagnostic> {
-        let start = begin(&script.start, load).map_err(|error| script.at_start(&error))?;
+        let start = script.begin(load)?;
         let mut sculpture = Self::new(start);
         for (i, stroke) in script.strokes.iter().enumerate() {
             sculpture
@@ -174,6 +174,11 @@ impl Sculpture {
         Ok(self.done.last().map(|done| &done.stroke))
     }
 
+    /// Forgets the strokes that were undone.
+    pub fn forget_undone(&mut self) {
+        self.undone.clear();
+    }
+
     fn replay(&mut self) -> Result<(), Error> {
         self.clay = self.start.clone();
         for done in &self.done {
@@ -213,7 +218,7 @@ pub fn replay(
     most_work: u64,
     mut each: impl FnMut(usize, &Stroke, &Clay),
 ) -> Result<Clay, Diagnostic> {
-    let mut clay = begin(&script.start, load).map_err(|error| script.at_start(&error))?;
+    let mut clay = script.begin(load)?;
     for (i, stroke) in script.strokes.iter().enumerate() {
         carry_out(&mut clay, stroke, most_work).map_err(|error| script.at(i, &error))?;
         each(i, stroke, &clay);
@@ -222,7 +227,7 @@ pub fn replay(
 }
 
 /// The clay that strokes begin with.
-fn begin(beginning: &Beginning, load: Loader<'_>) -> Result<Clay, Error> {
+pub(crate) fn begin(beginning: &Beginning, load: Loader<'_>) -> Result<Clay, Error> {
     match beginning {
         Beginning::Shape(start) => Clay::of_shape(start),
         Beginning::File(name) => {
@@ -232,8 +237,11 @@ fn begin(beginning: &Beginning, load: Loader<'_>) -> Result<Clay, Error> {
     }
 }
 
+/// As how many visits of a vertex a face counts where elements change: all are compared with those before.
+const TOPOLOGY_WORK: u64 = 20;
+
 /// Carries out a stroke, and returns what it has changed.
-fn carry_out(clay: &mut Clay, stroke: &Stroke, most_work: u64) -> Result<Delta, Error> {
+pub(crate) fn carry_out(clay: &mut Clay, stroke: &Stroke, most_work: u64) -> Result<Delta, Error> {
     let too_much = "all strokes together take too long";
     let delta = match stroke {
         Stroke::Stage(_) => Delta::default(),
@@ -262,7 +270,7 @@ fn carry_out(clay: &mut Clay, stroke: &Stroke, most_work: u64) -> Result<Delta, 
         Stroke::Simplify(share) => clay.simplify_with(*share)?,
     };
     if delta.topology.is_some() {
-        clay.work += clay.mesh.face_count() as u64;
+        clay.work += TOPOLOGY_WORK * clay.mesh.face_count() as u64;
     }
     if clay.work > most_work {
         let mut delta = delta;

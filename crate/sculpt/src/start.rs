@@ -83,6 +83,17 @@ impl Start {
         }
     }
 
+    /// How many faces it has.
+    ///
+    /// ```
+    /// assert_eq!(sculpt::Start::new(sculpt::Shape::Box, 3).face_count(), 108);
+    /// ```
+    #[must_use]
+    pub fn face_count(&self) -> usize {
+        let n = self.divisions as usize;
+        n.saturating_mul(n).saturating_mul(self.shape.faces())
+    }
+
     /// Checks the number of faces.
     ///
     /// # Errors

@@ -5,10 +5,10 @@ use crate::given::Given;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
-use crate::{Asset, Severity, assets};
+use crate::Severity;
 use field::Kernel;
 use glam::DAffine3;
-use mesh::TriangleMesh;
+use mesh::{Topology, TriangleMesh};
 use metaballs::Kind;
 use scene::{Form, Function, ImplicitMesh, Shape};
 use std::ops::Range;
@@ -66,7 +66,7 @@ pub fn add<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
     name: &Name<'a>,
-    asset: &Asset,
+    topology: Option<Topology>,
     mesh: &TriangleMesh,
     (kind, k, span): (Kind, f64, Range<usize>),
 ) -> Outcome<Flow> {
@@ -85,7 +85,7 @@ pub fn add<'a>(
         to_world: DAffine3::IDENTITY,
     };
     tell_bulges(run, mesh, k, span);
-    tell_topology(run, asset, command.span.clone());
+    tell_topology(run, topology, command.span.clone());
     run.add_of(
         command,
         material,
@@ -111,11 +111,8 @@ fn tell_bulges(run: &mut Evaluator<'_>, mesh: &TriangleMesh, k: f64, span: Range
 }
 
 /// Notes what an open mesh or one that is no manifold looks like.
-fn tell_topology(run: &mut Evaluator<'_>, asset: &Asset, span: Range<usize>) {
-    let Some(topology) = assets::topology(asset)
-        .ok()
-        .filter(|t| !t.is_closed_manifold())
-    else {
+fn tell_topology(run: &mut Evaluator<'_>, topology: Option<Topology>, span: Range<usize>) {
+    let Some(topology) = topology.filter(|t| !t.is_closed_manifold()) else {
         return;
     };
     let edges = topology.boundary_edges;

@@ -90,6 +90,36 @@ impl<'a> Evaluator<'a> {
         read.given(parameters, spec.options)
     }
 
+    /// A mesh file that a text of the project names, if there is one.
+    pub(super) fn mesh_beside(&self, file: usize, name: &str) -> Option<&'a Asset> {
+        let assets: &'a [Asset] = self.assets;
+        let places = places(&self.sources.all[file].name, name);
+        let find = |place: &String| {
+            let mut all = assets.iter().chain(library::assets());
+            all.find(|asset| asset.name == *place)
+        };
+        places.iter().find_map(find)
+    }
+
+    /// The index of a text of strokes of the project.
+    ///
+    /// # Errors
+    /// If there is none of this name.
+    pub(super) fn strokes(&self, name: &Name<'_>) -> Outcome<usize> {
+        let own = &self.sources.all[..self.sources.own];
+        let find = |place: &String| own.iter().position(|source| source.name == *place);
+        let places = places(&self.sources.all[self.file].name, name.text);
+        places.iter().find_map(find).ok_or_else(|| {
+            let texts = own.iter().map(|source| source.name.as_str());
+            let known: Vec<&str> = texts.filter(|name| crate::is_strokes(name)).collect();
+            let hint = suggest::hint(name.text, known.iter().copied()).unwrap_or_else(|| {
+                String::from("add a file of this name, or draw it in Sculpt; it begins with `strokes 1`")
+            });
+            let message = format!("there is no text of strokes `{}` in the project", name.text);
+            Problem::new(name.span.clone(), message).hint(hint)
+        })
+    }
+
     /// An image or mesh of the project.
     pub(super) fn asset(&self, name: &Name<'_>) -> Outcome<&'a Asset> {
         let assets: &'a [Asset] = self.assets;

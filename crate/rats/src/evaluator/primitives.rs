@@ -4,17 +4,19 @@ use super::implicit_mesh;
 use super::model::Part;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::assets;
+use crate::{assets, is_strokes};
 use crate::geometry::{self, ThreePoints, Transform};
 use crate::given::Given;
 use crate::limits::MAX_CORNERS;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
+use crate::strokes::{self, Sculpted};
 use crate::syntax::Command;
 use field::Kernel;
 use glam::{DMat3, DVec3};
 use mesh::TriangleMesh;
 use scene::{Element, Quadric, Shape};
+use std::rc::Rc;
 
 /// The operands, and the material's name: the chain's inside a chain, where shapes leave it out.
 pub(super) fn operands<'a>(
@@ -426,14 +428,50 @@ pub fn terra<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 /// `mesh sn fn`, `mesh sn fn metaballs spherical k`, `mesh sn fn metaballs triangular d0 k`
 pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let (name, given) = operands(run, command)?;
-    let asset = run.asset(given.name("fn"))?;
+    let file = given.name("fn");
+    if is_strokes(file.text) {
+        let made = sculpted(run, command, file)?;
+        if let Some(metaballs) = implicit_mesh::metaballs(&given)? {
+            let topology = made.topology().cloned();
+            return implicit_mesh::add(run, command, &name, topology, &made.mesh, metaballs);
+        }
+        return add_mesh(run, command, &name, &made.mesh, None);
+    }
+    let asset = run.asset(file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
     let mesh = assets::mesh(asset)
-        .map_err(|error| Problem::new(given.name("fn").span.clone(), error.to_string()))?;
+        .map_err(|error| Problem::new(file.span.clone(), error.to_string()))?;
     if let Some(metaballs) = implicit_mesh::metaballs(&given)? {
-        return implicit_mesh::add(run, command, &name, asset, &mesh, metaballs);
+        let topology = assets::topology(asset).ok().map(|own| (*own).clone());
+        return implicit_mesh::add(run, command, &name, topology, &mesh, metaballs);
     }
     add_mesh(run, command, &name, &mesh, None)
+}
+
+/// The mesh of a text of strokes. What is wrong with that text is told where it stands.
+fn sculpted(run: &mut Evaluator<'_>, command: &Command, name: &Name<'_>) -> Outcome<Rc<Sculpted>> {
+    let file = run.strokes(name)?;
+    let text = run.sources.all[file].text;
+    let steps = 1 + text.len() as u64 / 100;
+    run.scope.step(steps, &command.word_span)?;
+    let start = match crate::start_file(text) {
+        Some(wanted) => run.mesh_beside(file, &wanted),
+        None => None,
+    };
+    if let Some(asset) = start {
+        run.scope.step(assets::cost(asset), &command.word_span)?;
+    }
+    strokes::sculpted(text, start).map_err(|told| {
+        for problem in told.iter() {
+            let problem = Problem::new(problem.span.clone(), problem.message.clone()).related(
+                Some(run.file),
+                name.span.clone(),
+                "used here",
+            );
+            run.report.add(file, Severity::Error, problem);
+        }
+        Problem::follow_up(name.span.clone())
+    })
 }
 
 /// Adds the triangles of a mesh as one object, named after nothing: it is the last one.

@@ -1,0 +1,245 @@
+//! A text of strokes, and the mesh that they make.
+
+use sculpt::{Clay, Loader, PathPoint, Script, Sculpture, Stroke, Sweep};
+
+/// A text of strokes that is worked on. Remarks and blank lines of the text stay where they are.
+pub struct Document {
+    /// All lines before the first stroke.
+    head: String,
+    /// The lines of each stroke, with the remarks before it.
+    lines: Vec<String>,
+    /// Those of strokes that were undone, the last one first to come back.
+    undone: Vec<String>,
+    /// All lines after the last stroke of the text that was opened.
+    tail: String,
+    sculpture: Sculpture,
+    /// Rises with every change of the mesh.
+    revision: u64,
+}
+
+impl Document {
+    /// Carries out the strokes of a text.
+    ///
+    /// # Errors
+    /// What is wrong with the text, with its line.
+    pub fn open(text: &str, load: Loader<'_>) -> Result<Self, String> {
+        let script: Script = text.parse().map_err(|told: sculpt::Diagnostic| told.to_string())?;
+        let sculpture = Sculpture::open(&script, load).map_err(|told| told.to_string())?;
+        let mut rest: Vec<&str> = text.split_inclusive('\n').collect();
+        let mut take = |upto: usize, done: usize| -> String {
+            let count = upto.saturating_sub(done).min(rest.len());
+            let mut lines: String = rest.drain(..count).collect();
+            if !lines.is_empty() && !lines.ends_with('\n') {
+                lines.push('\n');
+            }
+            lines
+        };
+        let start = script.start_line();
+        let head = take(start, 0);
+        let mut done = start;
+        let mut lines = Vec::with_capacity(script.strokes.len());
+        for stroke in 0..script.strokes.len() {
+            let line = script.line(stroke);
+            lines.push(take(line, done));
+            done = line;
+        }
+        let tail = take(usize::MAX, done);
+        Ok(Self {
+            head,
+            lines,
+            undone: Vec::new(),
+            tail,
+            sculpture,
+            revision: 0,
+        })
+    }
+
+    /// The text as it is now.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = self.head.clone();
+        text.extend(self.lines.iter().map(String::as_str));
+        text + &self.tail
+    }
+
+    /// The mesh as it is now.
+    #[must_use]
+    pub fn clay(&self) -> &Clay {
+        self.sculpture.clay()
+    }
+
+    /// Rises with every change of the mesh.
+    #[must_use]
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// How many strokes can be undone, and how many redone.
+    #[must_use]
+    pub fn depth(&self) -> [usize; 2] {
+        self.sculpture.depth()
+    }
+
+    /// The names of the stages, with the number of strokes up to each.
+    #[must_use]
+    pub fn stages(&self) -> Vec<(String, usize)> {
+        let all = (1..).zip(self.sculpture.strokes());
+        let stages = all.filter_map(|(count, stroke)| match stroke {
+            Stroke::Stage(name) => Some((name.clone(), count)),
+            _ => None,
+        });
+        stages.collect()
+    }
+
+    /// Carries out a stroke, and writes it.
+    ///
+    /// # Errors
+    /// If it cannot be carried out; then nothing changes.
+    pub fn carry_out(&mut self, stroke: Stroke) -> Result<(), String> {
+        let line = format!("{stroke}\n");
+        self.sculpture
+            .carry_out(stroke)
+            .map_err(|error| error.to_string())?;
+        self.wrote(line);
+        Ok(())
+    }
+
+    /// Begins a stroke of a tool.
+    pub fn begin(&mut self, sweep: Sweep) {
+        self.sculpture.begin_drag(sweep);
+    }
+
+    /// Moves the tool of the stroke that was begun.
+    pub fn drag(&mut self, point: PathPoint) {
+        self.sculpture.drag_to(point);
+        self.revision += 1;
+    }
+
+    /// Ends the stroke that was begun, and writes it. Returns whether there was one.
+    pub fn end(&mut self) -> bool {
+        let Some(line) = self.sculpture.end_drag().map(|stroke| format!("{stroke}\n")) else {
+            return false;
+        };
+        self.wrote(line);
+        true
+    }
+
+    /// Gives the stroke up that was begun, as if it had never been.
+    pub fn cancel(&mut self) {
+        if self.end() {
+            // What was undone before is gone, and this comes back with no redo.
+            let _ = self.undo();
+            self.undone.clear();
+            self.sculpture.forget_undone();
+        }
+    }
+
+    fn wrote(&mut self, line: String) {
+        // Remarks at the end stay before what is new.
+        let remarks = core::mem::take(&mut self.tail);
+        self.lines.push(remarks + &line);
+        self.undone.clear();
+        self.revision += 1;
+    }
+
+    /// Takes the last stroke back; returns whether there was one.
+    ///
+    /// # Errors
+    /// If strokes before had to be carried out again and one of them failed, which it did not the first time.
+    pub fn undo(&mut self) -> Result<bool, String> {
+        self.end();
+        let is_undone = self.sculpture.undo().map_err(|error| error.to_string())?.is_some();
+        if is_undone {
+            self.undone.extend(self.lines.pop());
+            self.revision += 1;
+        }
+        Ok(is_undone)
+    }
+
+    /// Carries out the stroke again that was last undone; returns whether there was one.
+    ///
+    /// # Errors
+    /// If it cannot be carried out, which it could the first time.
+    pub fn redo(&mut self) -> Result<bool, String> {
+        self.end();
+        let is_redone = self.sculpture.redo().map_err(|error| error.to_string())?.is_some();
+        if is_redone {
+            self.lines.extend(self.undone.pop());
+            self.revision += 1;
+        }
+        Ok(is_redone)
+    }
+
+    /// Undoes or redoes until so many strokes are carried out, as far as there are any.
+    ///
+    /// # Errors
+    /// As [`Document::undo`] and [`Document::redo`].
+    pub fn go_to(&mut self, strokes: usize) -> Result<(), String> {
+        while self.depth()[0] > strokes && self.undo()? {}
+        while self.depth()[0] < strokes && self.redo()? {}
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use sculpt::{Action, Form, Tool};
+
+    const TEXT: &str = "# a horned ball\nstrokes 1\n\nstart sphere 4 # round\n# up\npull sphere 0.3 0.3 0.3 bell 0.5 : 0 0 1, 0 0 1.5\nstage horn\nloop\n# the end\n";
+
+    fn open(text: &str) -> Document {
+        Document::open(text, &mut |name| Err(format!("no {name}"))).expect("a text of strokes")
+    }
+
+    #[test]
+    fn text_stays_as_it_was_written_and_undo_takes_lines_away() {
+        let mut document = open(TEXT);
+        assert_eq!(document.text(), TEXT);
+        assert_eq!(document.stages(), [(String::from("horn"), 2)]);
+        let first = document.clay().digest();
+        document.undo().unwrap();
+        let shorter = document.text();
+        assert!(shorter.ends_with("stage horn\n# the end\n"), "{shorter}");
+        assert_eq!(open(&shorter).clay().digest(), document.clay().digest());
+        document.go_to(0).unwrap();
+        assert_eq!(document.text(), "# a horned ball\nstrokes 1\n\nstart sphere 4 # round\n# the end\n");
+        document.go_to(3).unwrap();
+        assert_eq!((document.text(), document.clay().digest()), (TEXT.to_owned(), first));
+    }
+
+    #[test]
+    fn strokes_of_the_hand_are_written_so_that_they_make_the_same_mesh() {
+        let mut document = open(TEXT);
+        let mut sweep = Sweep::new(Action::Push, Tool::new(Form::Sphere, DVec3::splat(0.25)));
+        sweep.range = 0.2;
+        document.begin(sweep.clone());
+        for x in 0..5 {
+            let mut point = PathPoint::new(DVec3::new(0.1 * f64::from(x), -1.0, 0.1));
+            point.pressure = 0.2 * f64::from(x);
+            document.drag(point);
+        }
+        assert!(document.end());
+        let again = open(&document.text());
+        assert_eq!(again.clay().digest(), document.clay().digest());
+        assert!(document.text().contains("# the end\npush sphere"));
+        // Giving up leaves nothing.
+        let (text, digest) = (document.text(), document.clay().digest());
+        document.begin(sweep);
+        document.drag(PathPoint::new(DVec3::new(0.0, 1.0, 0.0)));
+        document.cancel();
+        assert_eq!((document.text(), document.clay().digest()), (text, digest));
+        assert_eq!(document.depth()[1], 0);
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_line() {
+        let open = |text| Document::open(text, &mut |name| Err(format!("no {name}"))).err();
+        assert_eq!(
+            open("strokes 1\nstart sphere 4\npull\n").unwrap(),
+            "line 3, column 5: a tool is expected: box, cylinder or sphere"
+        );
+        assert_eq!(open("strokes 1\nstart file a.obj\n").unwrap(), "line 2, column 1: no a.obj");
+    }
+}
