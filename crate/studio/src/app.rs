@@ -13,6 +13,7 @@ use crate::gallery::Gallery;
 use crate::hands::Hands;
 use crate::help::Help;
 use crate::keyboard::Keyboard;
+use crate::mesh_export::MeshExport;
 use crate::notice::Notice;
 use crate::reading::MeshReading;
 use crate::recording::{Saving, VideoFormat};
@@ -43,6 +44,8 @@ pub enum Dialog {
     Help,
     /// A result of the text's jobs on pictures.
     Result,
+    /// The model as a mesh.
+    Mesh,
 }
 
 /// Which part a narrow page shows below the picture.
@@ -113,6 +116,7 @@ pub struct App {
     pub(crate) lab: Lab,
     /// Large meshes on their way into the work.
     pub(crate) reading: MeshReading,
+    pub(crate) mesh_export: MeshExport,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) notice: Option<Notice>,
     pub(crate) tab: Tab,
@@ -183,9 +187,10 @@ impl App {
         let pool = Pool::new(move || once(&repaint));
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
-        let repaint = ctx.clone();
+        let [repaint, repaint_too] = [ctx.clone(), ctx.clone()];
         let mut app = Self {
             reading: MeshReading::new(move || once(&repaint)),
+            mesh_export: MeshExport::new(move || once(&repaint_too)),
             lab: Lab::new(pool.clone(), lesson),
             renderer: Renderer::new(pool),
             draft: render_state
@@ -273,6 +278,10 @@ impl App {
         }
         if let Some(trouble) = self.work.tick(now) {
             self.notice = Some(Notice::trouble(trouble));
+        }
+        self.mesh_export.tick();
+        if self.dialog != Some(Dialog::Mesh) {
+            self.mesh_export.stop();
         }
         if self.reading.tick(&self.work.session) {
             self.work.session.compile();
