@@ -122,6 +122,8 @@ impl App {
             | Command::FindResult(_)
             | Command::FoldTray(_) => self.carry_out_in_tray(ctx, command, now),
             Command::SavePng => self.save_png(now),
+            Command::ShowMesh => self.dialog = Some(Dialog::Mesh),
+            Command::SaveMesh => self.save_mesh(now),
             Command::SaveProject => self.save_project(now),
             Command::Share => self.share(ctx, now),
             Command::OpenExample(_)
@@ -434,6 +436,19 @@ impl App {
             }
             Err(trouble) => Notice::trouble(trouble),
         });
+    }
+
+    /// Gives the user the mesh on show.
+    fn save_mesh(&mut self, now: f64) {
+        let files = self.mesh_export.files();
+        for file in files {
+            platform::download(&file.name, "application/octet-stream", &file.bytes);
+        }
+        let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
+        if !names.is_empty() {
+            let text = format!("Saved {}.", names.join(" and "));
+            self.notice = Some(Notice::done(text, now));
+        }
     }
 
     fn save_result(&mut self, index: usize, now: f64) {

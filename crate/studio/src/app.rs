@@ -14,6 +14,7 @@ use crate::gallery::Gallery;
 use crate::hands::Hands;
 use crate::help::Help;
 use crate::keyboard::Keyboard;
+use crate::mesh_export::MeshExport;
 use crate::notice::Notice;
 use crate::pencil::Pencil;
 use crate::reading::MeshReading;
@@ -48,6 +49,8 @@ pub enum Dialog {
     Result,
     /// How to begin a sculpture.
     Sculpt,
+    /// The model as a mesh.
+    Mesh,
 }
 
 /// Which part a narrow page shows below the picture.
@@ -125,6 +128,7 @@ pub struct App {
     pub(crate) reading: MeshReading,
     /// Fitting a mesh to measured points.
     pub(crate) fitting: Fitting,
+    pub(crate) mesh_export: MeshExport,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) notice: Option<Notice>,
     pub(crate) tab: Tab,
@@ -203,11 +207,11 @@ impl App {
         let pool = Pool::new(move || once(&repaint));
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
-        let repaint = ctx.clone();
-        let repaint_fit = ctx.clone();
+        let [repaint, repaint_fit, repaint_mesh] = [ctx.clone(), ctx.clone(), ctx.clone()];
         let mut app = Self {
             reading: MeshReading::new(move || once(&repaint)),
             fitting: Fitting::new(move || once(&repaint_fit)),
+            mesh_export: MeshExport::new(move || once(&repaint_mesh)),
             lab: Lab::new(pool.clone(), lesson),
             renderer: Renderer::new(pool),
             draft: render_state
@@ -297,6 +301,10 @@ impl App {
         }
         if let Some(trouble) = self.work.tick(now) {
             self.notice = Some(Notice::trouble(trouble));
+        }
+        self.mesh_export.tick();
+        if self.dialog != Some(Dialog::Mesh) {
+            self.mesh_export.stop();
         }
         if self.reading.tick(&self.work.session) {
             self.work.session.compile();

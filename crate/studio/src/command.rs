@@ -127,6 +127,10 @@ pub enum Command {
     FoldTray(bool),
     /// Write the picture to a file.
     SavePng,
+    /// Show the model as a mesh, to be saved.
+    ShowMesh,
+    /// Write the mesh on show to files.
+    SaveMesh,
     /// Write all texts, images and meshes to one file.
     SaveProject,
     /// Make a link, copy it, and put it into the address bar.

@@ -19,6 +19,14 @@ pub fn menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     }
     if row(
         ui,
+        "download mesh",
+        "3D model …",
+        "a mesh to print, or for Blender: STL, 3MF, GLB, OBJ, PLY",
+    ) {
+        commands.push(Command::ShowMesh);
+    }
+    if row(
+        ui,
         "download project",
         "Project",
         "one zip of all texts, images and meshes",

@@ -10,6 +10,7 @@
 //! | `status()` | the state, see below |
 //! | `finished()` | promise of a `status()`, resolved when the picture of the present text, camera and size is finished or was stopped; rejected while the lab keeps that picture waiting |
 //! | `image()` | promise of a PNG `Blob` of the traced picture as it is now; rejected while there is none |
+//! | `mesh({format, tolerance, size, union})` | promise of a `Uint8Array`: the model as a file of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or `"ply"`, `tolerance` the largest distance from the surface in lengths of the model (0.001), `size` the longest side in millimetres (100), `union` whether bodies that overlap become one |
 //! | `link()` | the full address that Share copies |
 //! | `camera()` | `{eye, target, up, fov}` in use |
 //! | `setCamera(camera)` | looks from there; `null` goes back to the camera of the text |
@@ -44,6 +45,7 @@
 
 use crate::app::Parts;
 use crate::intake::Taken;
+use crate::mesh_export::Order;
 use crate::picture;
 use crate::platform;
 use crate::request::Request;
@@ -151,6 +153,17 @@ fn state(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
         }))
     })?;
     let p = parts.clone();
+    method(sinew, "mesh", move |order, _| {
+        let order = order_of(&order)?;
+        Ok(promise(|yes, no| {
+            let answer = move |result: Result<Vec<u8>, String>| match result {
+                Ok(bytes) => call(&yes, &js_sys::Uint8Array::from(&bytes[..])),
+                Err(reason) => call(&no, &js_sys::Error::new(&reason)),
+            };
+            p.requests.ask(Request::Mesh(order, Box::new(answer)));
+        }))
+    })?;
+    let p = parts.clone();
     method(sinew, "camera", move |_, _| {
         to_js(&p.outbox.borrow().camera)
     })?;
@@ -238,6 +251,37 @@ fn to_js(value: &impl serde::Serialize) -> Result<JsValue, JsValue> {
     let json =
         serde_json::to_string(value).map_err(|error| js_sys::Error::new(&error.to_string()))?;
     JSON::parse(&json)
+}
+
+/// A mesh that a script asks for.
+fn order_of(options: &JsValue) -> Result<Order, JsValue> {
+    let mut order = Order::default();
+    if options.is_undefined() || options.is_null() {
+        return Ok(order);
+    }
+    let wrong = |what: &str| js_sys::TypeError::new(what);
+    let part = |name: &str| {
+        let value = Reflect::get(options, &name.into())?;
+        Ok::<_, JsValue>((!value.is_undefined()).then_some(value))
+    };
+    if let Some(format) = part("format")? {
+        let name = format.as_string().unwrap_or_default();
+        let format = mesh::Format::of_name(&format!("model.{name}"));
+        order.format = format.ok_or_else(|| wrong("format is one of stl, 3mf, glb, obj, ply"))?;
+    }
+    for (name, place) in [
+        ("tolerance", &mut order.tolerance),
+        ("size", &mut order.size),
+    ] {
+        if let Some(number) = part(name)? {
+            let number = number.as_f64();
+            *place = number.ok_or_else(|| wrong("tolerance and size are numbers"))?;
+        }
+    }
+    if let Some(union) = part("union")? {
+        order.union = union.is_truthy();
+    }
+    Ok(order)
 }
 
 /// Texts given by a script as a project.

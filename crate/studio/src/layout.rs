@@ -565,7 +565,7 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
     };
     let screen = ctx.content_rect();
     let width = match dialog {
-        Dialog::Gallery | Dialog::Result => 860.0,
+        Dialog::Gallery | Dialog::Result | Dialog::Mesh => 860.0,
         Dialog::Help | Dialog::Sculpt => 640.0,
     };
     let size = vec2(
@@ -600,6 +600,12 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
                     let kept = app.work.session.assets();
                     let now = platform::now(ui.ctx());
                     app.tray.show_large(ui, inner, kept, now, commands);
+                }
+                Dialog::Mesh => {
+                    let inner = size - Vec2::splat(inner);
+                    let (session, name) =
+                        (&app.work.session, crate::work::file_stem(&app.work.name));
+                    app.mesh_export.show(ui, inner, session, &name, commands);
                 }
                 Dialog::Help => app.help.show(ui, app.settings.hints, commands),
                 Dialog::Sculpt => app.sculpt_dialog(ui, commands),

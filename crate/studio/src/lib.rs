@@ -44,6 +44,7 @@ pub mod intake;
 pub mod keyboard;
 pub mod layout;
 pub mod marks;
+pub mod mesh_export;
 pub mod notice;
 mod outside;
 pub mod pad;

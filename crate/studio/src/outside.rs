@@ -6,7 +6,7 @@ use crate::notice::Notice;
 use crate::render::pass_label;
 use crate::report;
 use crate::request::Request;
-use crate::{examples, places, platform};
+use crate::{examples, places, platform, work};
 use egui::Context;
 use lab::Lesson;
 use std::rc::Rc;
@@ -41,6 +41,11 @@ impl App {
             Request::Videos(formats) => self.videos = Some(formats),
             Request::SetCamera(camera) => self.work.session.set_camera(camera),
             Request::Picture(answer) => answer(self.renderer.image()),
+            Request::Mesh(order, taker) => {
+                let name = work::file_stem(&self.work.name);
+                self.mesh_export
+                    .make_for(&self.work.session, &name, order, taker);
+            }
             Request::Cancel => self.renderer.cancel(),
             Request::Again => self.renderer.again(now),
             Request::PictureSize(size) => {

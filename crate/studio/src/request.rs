@@ -2,6 +2,7 @@
 
 use crate::asset::Asset;
 use crate::intake::Taken;
+use crate::mesh_export::{Order, Taker};
 use crate::picture::Image;
 use crate::recording::VideoFormat;
 use egui::Context;
@@ -34,6 +35,8 @@ pub enum Request {
     SetCamera(Option<Camera>),
     /// Give the traced picture.
     Picture(Viewer),
+    /// Give the file of a mesh of the model.
+    Mesh(Order, Taker),
     /// Answer when the picture of the present text and camera is finished, or was stopped. It is refused, with
     /// the reason, while the lab keeps the picture waiting.
     Finished(Answer),
