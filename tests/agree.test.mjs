@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { example, launch, native } from './page.mjs';
+import { example, filesOf, launch, native } from './page.mjs';
 import { colours, decode, shareThatDiffers } from './pictures.mjs';
 import { readFile } from 'node:fs/promises';
 
@@ -22,24 +22,27 @@ before(async () => {
 });
 after(() => browser?.close());
 
-test('there are examples', () => {
+test('there are examples, also with files', async () => {
   assert.ok(names.length >= 6, names.join());
+  assert.deepEqual(Object.keys(await filesOf(await example('heads'))), ['head.obj']);
 });
 
 for (const name of names) {
   test(`${name} is the same in the page and from the program`, async () => {
     const text = await example(name);
+    const files = await filesOf(text);
     // The thumbnail has the proportions of the frame.
     const thumbnail = decode(await readFile(new URL(`${name}.png`, folder)));
     assert.ok(colours(thumbnail) > 50, 'the thumbnail shows something');
     const size = [WIDTH, Math.round((WIDTH * thumbnail.height) / thumbnail.width)];
     await sinew.load(text);
+    if (Object.keys(files).length) await sinew.take(files);
     await sinew.resize(...size);
     assert.equal((await sinew.status()).errors, 0);
     const page = await sinew.image();
     assert.ok(colours(page) > 50, 'the picture shows something');
     for (const threads of ['1', '2']) {
-      const program = await native(text, size, ['--threads', threads]);
+      const program = await native(text, size, ['--threads', threads], files);
       assert.equal(shareThatDiffers(page, program, 0), 0, `the share of pixels that differ, ${threads} threads`);
     }
   });

@@ -76,6 +76,12 @@ for (const [size, options] of Object.entries(SIZES)) {
     });
     after(() => browser?.close());
 
+    test('finished() is refused while the lab keeps the picture waiting', async () => {
+      await until(sinew, (state) => state?.lesson === LESSONS[0]);
+      const told = await sinew.page.evaluate(() => sinew.finished().then(() => 'finished', (error) => error.message));
+      assert.match(told, /The lab is open/);
+    });
+
     for (const lesson of LESSONS) {
       test(`${lesson} opens by its link`, async () => {
         const colorScheme = LESSONS.indexOf(lesson) % 2 ? 'light' : 'dark';

@@ -1,7 +1,7 @@
 // The page in a real browser: starting it, aiming at its widgets, asking its handle.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { promisify } from 'node:util';
@@ -83,7 +83,7 @@ export class Sinew {
   }
 
   async ready() {
-    const isThere = () => globalThis.sinew?.ready || document.querySelector('#loading.failed');
+    const isThere = () => Boolean(globalThis.sinew?.ready) || document.querySelector('#loading.failed');
     await this.page.waitForFunction(isThere, undefined, { timeout: PATIENCE });
     const failure = await this.page.evaluate(() => document.querySelector('#loading.failed')?.innerText);
     assert.equal(failure, undefined, 'the page could not start');
@@ -105,6 +105,17 @@ export class Sinew {
 
   load(text) {
     return this.page.evaluate((text) => sinew.load(text), text);
+  }
+
+  /** Puts files beside the texts, as if they were dropped on the page, and waits until they are there and read. */
+  async take(files) {
+    const names = Object.keys(files);
+    const encoded = names.map((name) => [name, Buffer.from(files[name]).toString('base64')]);
+    await this.page.evaluate((encoded) => {
+      const decode = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+      sinew.take(Object.fromEntries(encoded.map(([name, base64]) => [name, decode(base64)])));
+    }, encoded);
+    await this.until(({ assets, reading }) => names.every((name) => assets.includes(name)) && !reading);
   }
 
   status() {
@@ -154,7 +165,19 @@ export class Sinew {
   /** Where a widget is, in CSS pixels. */
   async place(name) {
     await this.page.waitForFunction((name) => sinew.debug.rects()[name], name, { timeout: 60_000 });
-    return this.page.evaluate((name) => sinew.debug.rects()[name], name);
+    return this.page.evaluate(async (name) => {
+      const frame = () => new Promise((done) => requestAnimationFrame(done));
+      const now = () => sinew.debug.rects()[name];
+      let last = now();
+      // In the frame in which a menu opens, or grows, its rows may be elsewhere than in the next one.
+      for (let [still, frames] = [0, 0]; still < 3 && frames < 60; frames++) {
+        await frame();
+        const { x, y, w, h } = now() ?? last;
+        still = x === last.x && y === last.y && w === last.w && h === last.h ? still + 1 : 0;
+        last = { x, y, w, h };
+      }
+      return last;
+    }, name);
   }
 
   /** Clicks the middle of a widget. */
@@ -180,12 +203,15 @@ export class Sinew {
   }
 }
 
-/** The picture that the program `sinew` draws of a text, decoded. `options` are further arguments. */
-export async function native(text, [width, height], options = []) {
+/** The picture that the program `sinew` draws of a text, decoded. `options` are further arguments, `files` what the text names: their bytes. */
+export async function native(text, [width, height], options = [], files = {}) {
   const folder = await mkdtemp(join(tmpdir(), 'sinew-'));
   try {
     const [dataset, picture] = [join(folder, 'main.rat'), join(folder, 'main.png')];
     await writeFile(dataset, text);
+    for (const [name, bytes] of Object.entries(files)) {
+      await writeFile(join(folder, name), bytes);
+    }
     await promisify(execFile)(setting('SINEW_PROGRAM'), [
       'render', dataset, '-o', picture, '-r', String(width), String(height), ...options,
     ]);
@@ -195,7 +221,19 @@ export async function native(text, [width, height], options = []) {
   }
 }
 
+const EXAMPLES = new URL('../www/examples/', import.meta.url);
+
 /** The text of an example. */
 export function example(name) {
-  return readFile(new URL(`../www/examples/${name}.rat`, import.meta.url), 'utf8');
+  return readFile(new URL(`${name}.rat`, EXAMPLES), 'utf8');
+}
+
+/** The images and meshes that the text of an example names: their bytes. */
+export async function filesOf(text) {
+  const all = await readdir(EXAMPLES);
+  const isThumbnail = (name) => name.endsWith('.png') && all.includes(name.replace(/png$/, 'rat'));
+  const words = new Set(text.split(/[\s,"]+/));
+  const named = all.filter((name) => words.has(name) && !name.endsWith('.rat') && !isThumbnail(name));
+  const bytes = await Promise.all(named.map((name) => readFile(new URL(name, EXAMPLES))));
+  return Object.fromEntries(named.map((name, i) => [name, bytes[i]]));
 }

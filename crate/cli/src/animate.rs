@@ -19,9 +19,9 @@ pub struct Animate {
     /// Number of frames
     #[arg(short, long, value_name = "N")]
     frames: u32,
-    /// Frames a second
-    #[arg(long, value_name = "F", default_value_t = 25.0)]
-    fps: f64,
+    /// Frames a second; default: those of the dataset's `motion`, else 25
+    #[arg(long, value_name = "F")]
+    fps: Option<f64>,
     /// Stop after the last frame instead of beginning again
     #[arg(long)]
     once: bool,
@@ -51,7 +51,6 @@ impl Animate {
         if !(1..=MAX_FRAMES).contains(&self.frames) {
             return Err(format!("--frames takes 1 to {MAX_FRAMES}"));
         }
-        let timing = Timing::new(self.fps, !self.once).map_err(say)?;
         let wishes = Wishes {
             size: self.resolution.as_ref().map(|size| [size[0], size[1]]),
             samples: self.samples,
@@ -59,10 +58,12 @@ impl Animate {
             threads: self.threads,
         };
         let mut loaded = files::load(&self.file)?;
+        let fps = self.fps.or(loaded.compiled.rate).unwrap_or(25.0);
+        let timing = Timing::new(fps, !self.once).map_err(say)?;
         if !loaded.compiled.animated {
             report::to_stderr(&loaded);
             return Err(format!(
-                "nothing of {} changes with the frames; let a variable grow, e.g. `var angle = 0 += 5`",
+                "nothing of {} changes with the frames; let a variable grow, e.g. `var angle = 0 += 5`, or move a skeleton by `motion`",
                 self.file.display()
             ));
         }

@@ -39,7 +39,18 @@ enum Fineness {
     Smooth,
 }
 
-/// `sinew time FILE | --balls N [--kernel K] [--apart D] [--pass P] [--size W H] [--soft on|off] [--hierarchy on|off]
+/// What bodies the balls are.
+#[derive(Clone, Copy, ValueEnum)]
+enum Bodies {
+    /// One body.
+    One,
+    /// One body, three smaller balls for each.
+    Triples,
+    /// The same, but each three balls are a body.
+    Many,
+}
+
+/// `sinew time FILE | --balls N [--kernel K] [--apart D] [--bodies B] [--pass P] [--size W H] [--soft on|off] [--hierarchy on|off]
 /// [--rays N]`.
 #[derive(Args)]
 pub struct Time {
@@ -55,6 +66,9 @@ pub struct Time {
     /// The mean distance of their middles, in radii: at 3 many touch and melt together
     #[arg(long, value_name = "D", default_value_t = 3.0, requires = "balls")]
     apart: f64,
+    /// What bodies they are
+    #[arg(long, value_name = "B", default_value = "one", requires = "balls")]
+    bodies: Bodies,
     /// How finely
     #[arg(long, default_value = "full")]
     pass: Fineness,
@@ -83,10 +97,16 @@ impl Time {
                 let clean = report::to_stderr(&loaded);
                 (loaded.compiled.scene, clean)
             }
-            (None, count) => (
-                balls::scene(count.unwrap_or(1), self.kernel, self.apart),
-                true,
-            ),
+            (None, count) => {
+                let count = count.unwrap_or(1);
+                let triples = |apart| balls::triples(count, self.kernel, self.apart, apart);
+                let scene = match self.bodies {
+                    Bodies::One => balls::scene(count, self.kernel, self.apart),
+                    Bodies::Triples => triples(false),
+                    Bodies::Many => triples(true),
+                };
+                (scene, true)
+            }
         };
         if let Some(soft) = self.soft {
             scene.settings.soft = matches!(soft, Switch::On);
@@ -176,5 +196,14 @@ mod tests {
         assert_eq!(scene.elements.len(), 1000);
         let surfaces = scene.soft_surfaces();
         assert_eq!(surfaces[0].sum.primitives.len(), 1000);
+    }
+
+    #[test]
+    fn triples_are_one_body_or_many() {
+        for (in_bodies, bodies) in [(false, 1), (true, 50)] {
+            let scene = balls::triples(50, Kernel::Gauss, 3.0, in_bodies);
+            let surfaces = scene.soft_surfaces();
+            assert_eq!((scene.elements.len(), surfaces.len()), (150, bodies));
+        }
     }
 }

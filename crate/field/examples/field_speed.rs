@@ -3,7 +3,7 @@
 //! `cargo run --release -p field --example field_speed`. The thesis's table 2.6 gives the ratios
 //! point : line : arc : triangle : plane = 1 : 4.48 : 8.17 : 14.36 : 1.02.
 use field::real::Scalar;
-use field::{BlobScale, Kernel, Primitive, Real, Shaping, Skeleton};
+use field::{BlobScale, Evaluate, Kernel, Primitive, Shaping, Skeleton};
 use glam::DVec3;
 use std::hint::black_box;
 use std::time::Instant;
@@ -83,7 +83,7 @@ fn main() {
     }
 }
 
-fn rate<R: Real>(primitive: &Primitive) -> f64
+fn rate<R: Evaluate<Scalar: Evaluate>>(primitive: &Primitive) -> f64
 where
     R::Scalar: Scalar,
 {

@@ -14,7 +14,7 @@
 use crate::bone::{Bone, Segment};
 use crate::ramp::Ramp;
 use crate::real::Scalar;
-use crate::term::Frame;
+use crate::term::{Evaluate, Frame};
 use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI};
 use glam::DVec3;
@@ -119,7 +119,7 @@ impl Primitive {
     /// Returns the primitive as a blob about [`Primitive::blob_middle`]; `None` if it is none ([module](crate::blob)) or its width
     /// or amplitude exceed single precision's range.
     #[must_use]
-    pub fn blob<S: Scalar>(&self) -> Option<Blob<S>> {
+    pub fn blob<S: Scalar + Evaluate>(&self) -> Option<Blob<S>> {
         let term = S::prepared(&self.prepared);
         let ends = self.kernel == Kernel::Gauss || self.kernel.is_compact();
         let plain = ends && self.tapered.is_none();

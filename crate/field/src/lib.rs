@@ -55,6 +55,7 @@ pub mod bound;
 mod carlson;
 mod cauchy;
 mod clausen;
+mod compiled;
 mod cubed;
 mod curve;
 mod cut;
@@ -67,6 +68,7 @@ mod form;
 mod gauss;
 mod implicit;
 mod influence;
+mod integral;
 mod inverse;
 pub mod kernel;
 pub mod kinks;
@@ -111,6 +113,7 @@ pub use real::Real;
 pub use shaping::{BlobScale, Shaping, Taper};
 pub use skeleton::Skeleton;
 pub use sum::{Sum, sum};
+pub use term::Evaluate;
 
 /// The iso-value T: the surface is where the field equals it.
 pub const THRESHOLD: f64 = 1.0;

@@ -1,7 +1,7 @@
 //! A skeletal element with its kernel: one term of the field.
 use crate::bone::Bone;
 use crate::real::Scalar;
-use crate::term::{Prepared, Term, place, tapered_curve};
+use crate::term::{Evaluate, Prepared, Term, place, tapered_curve};
 use crate::waves::Waves;
 use crate::{AlongRay, Kernel, Profile, Real, Shaping, Skeleton, THRESHOLD};
 use crate::{influence, reach};
@@ -160,14 +160,14 @@ impl Primitive {
     /// Value and gradient at a point.
     #[inline]
     #[must_use]
-    pub fn jet<R: Real>(&self, point: [R; 3]) -> Jet<R> {
-        R::Scalar::prepared(&self.prepared).jet(point)
+    pub fn jet<R: Evaluate>(&self, point: [R; 3]) -> Jet<R> {
+        R::prepared(&self.prepared).jet(point)
     }
 
     /// Value alone.
     #[inline]
     #[must_use]
-    pub fn value<R: Real>(&self, point: [R; 3]) -> R {
+    pub fn value<R: Evaluate>(&self, point: [R; 3]) -> R {
         self.jet(point).value
     }
 
@@ -215,14 +215,19 @@ impl Primitive {
 
     /// Prepares evaluations of the field along the ray `origin + t·direction`.
     #[must_use]
-    pub fn on_ray<S: Scalar>(&self, origin: DVec3, direction: DVec3) -> AlongRay<'_, S> {
+    pub fn on_ray<S: Scalar + Evaluate>(&self, origin: DVec3, direction: DVec3) -> AlongRay<'_, S> {
         AlongRay::new(&self.prepared, origin, direction)
     }
 
     /// Value and derivative by t at `origin + t·direction`. For more than one evaluation on a ray,
     /// and for what origin to choose, see [`Primitive::on_ray`].
     #[must_use]
-    pub fn along_ray<R: Real>(&self, origin: DVec3, direction: DVec3, t: R) -> (R, R) {
+    pub fn along_ray<R: Evaluate<Scalar: Evaluate>>(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        t: R,
+    ) -> (R, R) {
         self.on_ray::<R::Scalar>(origin, direction).at(t)
     }
 }

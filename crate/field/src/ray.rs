@@ -1,7 +1,6 @@
 //! A primitive's field along a ray.
-use crate::Real;
 use crate::real::Scalar;
-use crate::term::{Prepared, Term};
+use crate::term::{Evaluate, Prepared, Term};
 use glam::DVec3;
 
 /// A primitive seen along a ray `origin + t·direction`.
@@ -17,7 +16,7 @@ pub struct AlongRay<'a, S> {
     direction: [S; 3],
 }
 
-impl<'a, S: Scalar> AlongRay<'a, S> {
+impl<'a, S: Scalar + Evaluate> AlongRay<'a, S> {
     pub(crate) fn new(prepared: &'a Prepared, origin: DVec3, direction: DVec3) -> Self {
         let frame = &prepared.double.frame;
         let round = |v: DVec3| v.to_array().map(S::round);
@@ -31,7 +30,7 @@ impl<'a, S: Scalar> AlongRay<'a, S> {
     /// Value and derivative by t.
     #[inline]
     #[must_use]
-    pub fn at<R: Real<Scalar = S>>(&self, t: R) -> (R, R) {
+    pub fn at<R: Evaluate<Scalar = S>>(&self, t: R) -> (R, R) {
         let [dx, dy, dz] = self.direction.map(R::lift);
         let [ox, oy, oz] = self.origin.map(R::lift);
         let jet = self.term.local_jet([ox + t * dx, oy + t * dy, oz + t * dz]);

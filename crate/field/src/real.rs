@@ -6,8 +6,6 @@
 //! our own are used, never a fused multiply-add and never a platform's `sin` or `atan`. So results
 //! have the same bits on every platform, and a lane of `f32x8` has the same bits as `f32` alone.
 
-use crate::Jet;
-use crate::term::{Prepared, Term};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 mod double;
@@ -115,14 +113,6 @@ pub trait Real:
         self.sign_to((x + square / (one + (one + square).sqrt())).ln_1p())
     }
 
-    /// A term's value and local gradient at a local position. Compiled once for each type, in this
-    /// crate: the chart's formulas are too long to be compiled again wherever one is used.
-    #[doc(hidden)]
-    fn evaluate(term: &Term<Self::Scalar>, local: [Self; 3]) -> Jet<Self>;
-    /// Value and gradient of a point primitive at a position in world coordinates, see [`Term`].
-    #[doc(hidden)]
-    fn evaluate_point(term: &Term<Self::Scalar>, position: [Self; 3]) -> Jet<Self>;
-
     /// `magnitude` with the sign of `self`.
     #[inline(always)]
     fn sign_to(self, magnitude: Self) -> Self {
@@ -140,9 +130,6 @@ pub trait Real:
 pub trait Scalar: Real<Scalar = Self> + PartialEq + core::fmt::Debug {
     /// The nearest number of this type.
     fn round(value: f64) -> Self;
-    /// Selects this precision of a term prepared in both.
-    #[doc(hidden)]
-    fn prepared(term: &Prepared) -> &Term<Self>;
 }
 
 /// `c₀ + c₁x + c₂x² + …`

@@ -1,5 +1,4 @@
 //! The bones: geometry of dimension 0, 1 and 2.
-use crate::term::orthonormal;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -80,7 +79,7 @@ impl Skeleton {
                 let c = cubic(control);
                 let breaks: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0).collect();
                 let mut speed = |t: f64| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
-                crate::quadrature::integral(&mut speed, &breaks, 1e-12)
+                crate::integral::integral(&mut speed, &breaks, 1e-12)
             }
             Self::Plane { .. } => f64::INFINITY,
         }
@@ -343,4 +342,13 @@ pub(crate) fn nearest_on_segment(point: DVec3, base: DVec3, apex: DVec3) -> DVec
         return base;
     }
     base + d * ((point - base).dot(d) / square).clamp(0.0, 1.0)
+}
+
+/// Unit vectors in the plane of u and v, the first along u.
+pub(crate) fn orthonormal(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
+    let u = u.try_normalize().unwrap_or(DVec3::X);
+    let v = (v - u * u.dot(v))
+        .try_normalize()
+        .unwrap_or_else(|| u.any_orthonormal_vector());
+    (u, v)
 }

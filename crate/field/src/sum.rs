@@ -1,6 +1,6 @@
 //! The sum of primitives: the field of a convolution surface.
 use crate::kinks::{self, Kink};
-use crate::{Ball, Bound, Enclosure, Implicit, Jet, Primitive, Real, THRESHOLD};
+use crate::{Ball, Bound, Enclosure, Evaluate, Implicit, Jet, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::sync::OnceLock;
 use wide::f32x8;
@@ -59,7 +59,7 @@ impl Sum {
 
     /// Value and gradient in any precision; pictures use `f32` and `f32x8`.
     #[must_use]
-    pub fn sum<R: Real>(&self, point: [R; 3]) -> Jet<R> {
+    pub fn sum<R: Evaluate>(&self, point: [R; 3]) -> Jet<R> {
         sum(&self.primitives, point)
     }
 
@@ -83,7 +83,7 @@ impl Sum {
 
 /// Value and gradient of the sum of some primitives, added up in their order.
 #[must_use]
-pub fn sum<'a, R: Real>(
+pub fn sum<'a, R: Evaluate>(
     primitives: impl IntoIterator<Item = &'a Primitive>,
     point: [R; 3],
 ) -> Jet<R> {

@@ -3,7 +3,7 @@ use crate::bone::curve::Law;
 use crate::bone::{Arc, Bone, Curve, Polygon, Segment, Triangle};
 use crate::cubed::cone::Cone;
 use crate::form::Form;
-use crate::skeleton::{area_vector, cubic};
+use crate::skeleton::{area_vector, cubic, orthonormal};
 use crate::waves::Waves;
 use crate::{Jet, Kernel, Real, Skeleton, point};
 use glam::{DMat3, DVec3};
@@ -56,6 +56,20 @@ impl Frame<f64> {
     }
 }
 
+/// A number type in which fields are evaluated: `f64`, `f32` or `f32x8`. The chart's formulas are too long to be compiled again
+/// wherever one is used, so they are compiled once for each of these, in this crate.
+pub trait Evaluate: Real {
+    /// Selects the precision of a term prepared in both.
+    #[doc(hidden)]
+    fn prepared(term: &Prepared) -> &Term<Self::Scalar>;
+    /// A term's value and local gradient at a local position.
+    #[doc(hidden)]
+    fn evaluate(term: &Term<Self::Scalar>, local: [Self; 3]) -> Jet<Self>;
+    /// Value and gradient of a point primitive at a position in world coordinates, see [`Term`].
+    #[doc(hidden)]
+    fn evaluate_point(term: &Term<Self::Scalar>, position: [Self; 3]) -> Jet<Self>;
+}
+
 /// Frame, form and factor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term<S> {
@@ -70,7 +84,7 @@ pub struct Term<S> {
 impl<S: Copy> Term<S> {
     /// Value and local gradient at a local position.
     #[inline(always)]
-    pub(crate) fn local_jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+    pub(crate) fn local_jet<R: Evaluate<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
         R::evaluate(self, p)
     }
 
@@ -116,7 +130,7 @@ impl<S: Copy> Term<S> {
 
     /// Value and gradient at a position in the world.
     #[inline(always)]
-    pub(crate) fn jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+    pub(crate) fn jet<R: Evaluate<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
         if matches!(self.form.bone, Bone::Point) && self.waves.is_none() {
             return R::evaluate_point(self, p);
         }
@@ -313,15 +327,6 @@ pub(crate) fn tapered_curve(
             Curve::new(kernel, &cubics, &cubics, Some(law))
         }
     }
-}
-
-/// Unit vectors in the plane of u and v, the first along u.
-pub(crate) fn orthonormal(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
-    let u = u.try_normalize().unwrap_or(DVec3::X);
-    let v = (v - u * u.dot(v))
-        .try_normalize()
-        .unwrap_or_else(|| u.any_orthonormal_vector());
-    (u, v)
 }
 
 fn frame(origin: DVec3, axes: DMat3, s: f64) -> Frame<f64> {

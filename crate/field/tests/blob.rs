@@ -2,7 +2,7 @@
 mod common;
 
 use common::{Random, primitive};
-use field::{Blob, Kernel, Limits, Primitive, Profile, Real, Skeleton, Wave};
+use field::{Blob, Evaluate, Kernel, Limits, Primitive, Profile, Real, Skeleton, Wave};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -57,7 +57,11 @@ fn cases() -> Vec<(Primitive, DVec3, DVec3)> {
     cases
 }
 
-fn on_ray<R: Real>(primitive: &Primitive, origin: DVec3, direction: DVec3) -> field::BlobOnRay<R> {
+fn on_ray<R: Real<Scalar: Evaluate>>(
+    primitive: &Primitive,
+    origin: DVec3,
+    direction: DVec3,
+) -> field::BlobOnRay<R> {
     let blob: Blob<R::Scalar> = primitive.blob().expect("a blob");
     let middle = (primitive.blob_middle() - origin).to_array().map(R::splat);
     blob.on_ray(middle, direction.to_array().map(R::splat))

@@ -5,7 +5,7 @@ mod common;
 use common::{ALL_KINDS, Kind, Random, jet, primitive, shaping, single};
 use core::hint::black_box;
 use field::real::Scalar;
-use field::{Kernel, Primitive, Real, Shaping, Skeleton};
+use field::{Evaluate, Kernel, Primitive, Shaping, Skeleton};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -128,7 +128,7 @@ fn typical(kind: Kind) -> Skeleton {
 }
 
 /// Million evaluations a second along rays near the skeleton.
-fn rate<R: Real>(primitive: &Primitive) -> f64
+fn rate<R: Evaluate<Scalar: Evaluate>>(primitive: &Primitive) -> f64
 where
     R::Scalar: Scalar,
 {

@@ -3,7 +3,7 @@ mod common;
 
 use common::{KINDS, Kind, Random, extent, jet, primitive, sensitivity, shaping, single};
 use core::f64::consts::{PI, TAU};
-use field::{Kernel, Primitive, Profile, Real, Shaping, Skeleton, Wave, quadrature};
+use field::{Evaluate, Kernel, Primitive, Profile, Real, Shaping, Skeleton, Wave, quadrature};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -20,7 +20,7 @@ fn ulps(kind: Kind) -> f64 {
     }
 }
 
-fn close_to_quadrature<R: Real>(primitive: &Primitive, point: DVec3, relative: f64) {
+fn close_to_quadrature<R: Evaluate>(primitive: &Primitive, point: DVec3, relative: f64) {
     let want = quadrature::value(primitive, point);
     let (value, gradient) = jet::<R>(primitive, point);
     let slack = 64.0 * EPSILON64 * sensitivity(primitive, point);

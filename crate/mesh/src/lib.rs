@@ -51,4 +51,4 @@ pub use report::Topology;
 pub use simplify::{Level, levels_of_detail, simplify, simplify_part};
 pub use terra::terra;
 pub use triangle_mesh::{Group, Material, TriangleMesh};
-pub use write::{Export, ExportedFile, Format, Part};
+pub use write::{Export, ExportedFile, Format, Joint, Part, Pose, Rig};

@@ -77,7 +77,7 @@ mod tests {
             animate play split collage fli convert resize diff and xor show kill refresh tile colors \
             rats table shell horn \
             material blobscale sky ground tone body curve deform seed for if else define influence \
-            skeleton contact tree spikes sphereflake spiral";
+            skeleton contact motion tree spikes sphereflake spiral";
         for name in names.split_whitespace() {
             assert!(find(name).is_some(), "{name}");
             assert!(find(&name.to_uppercase()).is_some(), "{name}");

@@ -21,8 +21,10 @@ pub struct Compiled {
     pub tool_origins: Vec<Origin>,
     /// Under what name the picture is to be saved.
     pub output: Output,
-    /// Whether a variable changes with every frame.
+    /// Whether a variable changes with every frame, or something moves.
     pub animated: bool,
+    /// Frames of a second, where a `motion` says so.
+    pub rate: Option<f64>,
 }
 
 /// How an element came from its command.

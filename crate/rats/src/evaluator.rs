@@ -12,6 +12,8 @@ mod contact;
 mod deform;
 mod dispatch;
 mod extent;
+mod frozen;
+mod image_list;
 mod images;
 mod implicit_mesh;
 mod interpreter;
@@ -23,6 +25,7 @@ mod materials;
 mod messages;
 mod model;
 mod moments;
+mod motion;
 mod objects;
 mod options;
 mod palette;
@@ -32,6 +35,7 @@ mod run;
 mod scene_commands;
 mod skeleton;
 mod state;
+mod surroundings;
 mod textures;
 mod tools;
 mod variables;
@@ -65,7 +69,10 @@ pub fn run<'a>(
     let (mut scene, placements) = state.run_all();
     state.note_unused_materials();
     state.lint(&scene);
-    if state.animated && state.shutter > 0.0 && !state.report.has_errors() {
+    if (state.animated || state.moving.is_any())
+        && state.shutter > 0.0
+        && !state.report.has_errors()
+    {
         let exposure = Exposure {
             sources,
             assets,
@@ -85,7 +92,8 @@ pub fn run<'a>(
         tools: state.tools,
         tool_origins: state.tool_origins,
         output: state.output,
-        animated: state.animated,
+        animated: state.animated || state.moving.is_any(),
+        rate: state.moving.rate(),
     }
 }
 

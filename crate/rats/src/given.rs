@@ -304,8 +304,10 @@ impl<'a> Reader<'_, 'a> {
             Kind::Word(words) => self.is_option_next(words),
             Kind::Copy(_) => self.datum() == Some(Datum::Sign(b'=')),
             Kind::Known(crate::commands::Names::Texture) => self.datum() == Some(Datum::Sign(b'+')),
-            // Nodes have short names, which are the beginnings of many words.
-            Kind::Known(crate::commands::Names::Node) => !self.is_whole_option_next(options),
+            // Nodes and objects have short names, which are the beginnings of many words.
+            Kind::Known(crate::commands::Names::Node | crate::commands::Names::Object) => {
+                !self.is_whole_option_next(options)
+            }
             Kind::Block => false,
             _ => !self.is_option_next(options),
         }

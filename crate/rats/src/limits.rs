@@ -51,6 +51,13 @@ pub const CURVE_WEIGHT: usize = 64;
 pub const MAX_OBJECTS: usize = 100_000;
 /// Contacts of bodies.
 pub const MAX_CONTACTS: usize = 1000;
+/// Operations of all motions of a text, up to the frame that is shown. They take half a second at first; then the frames
+/// are kept.
+pub const MAX_MOTION_WORK: u64 = 300_000_000;
+/// Motions of a text.
+pub const MAX_MOTIONS: usize = 32;
+/// Steps of the runs that find where pinned nodes are in the frames before.
+pub const MAX_PIN_STEPS: u64 = 4 * MAX_STEPS;
 /// Objects inside each other.
 pub const MAX_NESTED_OBJECTS: usize = 16;
 /// Materials in a scene.

@@ -58,6 +58,23 @@ impl Curves {
         Self { local, ..self }
     }
 
+    /// The same curves with their nodes at other places.
+    ///
+    /// # Errors
+    /// If places are not usable.
+    pub fn moved(&self, places: &[DVec3]) -> Result<Self, skeleton::Error> {
+        let mut skeleton = self.skeleton.clone();
+        for (node, place) in skeleton.nodes.iter_mut().zip(places) {
+            node.position = *place;
+        }
+        let polyline = skeleton.polyline(self.scheme, self.levels)?;
+        Ok(Self {
+            skeleton,
+            polyline: OnceLock::from(Some(polyline)),
+            ..self.clone()
+        })
+    }
+
     /// The refined curves; `None` if data from elsewhere are not usable.
     #[must_use]
     pub fn polyline(&self) -> Option<&Polyline> {

@@ -53,6 +53,9 @@ pub const MOST_LEVELS: u32 = 6;
 /// The largest coordinate and radius of a node.
 pub const LARGEST: f64 = 1e100;
 
+/// The least weight of a node that counts.
+const LEAST_WEIGHT: f64 = 1e-6;
+
 /// A node of a skeleton.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Node {
@@ -86,6 +89,60 @@ impl Skeleton {
             scheme::refine(scheme, levels, &nodes, &fixed, is_closed(curve))
         });
         Ok(Polyline::new(self, curves.collect()))
+    }
+
+    /// For each vertex of [`Self::polyline`] the nodes whose places it is a mean of, with their weights, which add up to 1. Those of
+    /// nodes that lie behind others on the way may be negative. It takes a third as many refinements as there are nodes.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use skeleton::{Node, Scheme, Skeleton};
+    ///
+    /// let node = |x, y| Node { position: DVec3::new(x, y, 0.0), radius: 0.1 };
+    /// let nodes = vec![node(0.0, 0.0), node(1.0, 1.0), node(2.0, 0.0)];
+    /// let skeleton = Skeleton { nodes, curves: vec![vec![0, 1, 2]] };
+    /// let weights = skeleton.weights(Scheme::Cubic, 0)?;
+    /// // The spline's point at a corner is (P + 4Q + R)/6.
+    /// assert_eq!(weights[1].iter().map(|(node, _)| *node).collect::<Vec<_>>(), [0, 1, 2]);
+    /// assert!((weights[1][1].1 - 4.0 / 6.0).abs() < 1e-12);
+    /// # Ok::<(), skeleton::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::polyline`].
+    pub fn weights(&self, scheme: Scheme, levels: u32) -> Result<Vec<Vec<(usize, f64)>>, Error> {
+        let count = self.nodes.len();
+        let mut weights: Vec<Vec<(usize, f64)>> = Vec::new();
+        // Refinement is linear in the nodes' places, so that it is told by three nodes at a time being moved along the axes.
+        for start in (0..count).step_by(3) {
+            let nodes = (0..count).map(|i| Node {
+                position: match i.checked_sub(start) {
+                    Some(axis @ 0..3) => DVec3::AXES[axis],
+                    _ => DVec3::ZERO,
+                },
+                radius: 0.0,
+            });
+            let probe = Self {
+                nodes: nodes.collect(),
+                curves: self.curves.clone(),
+            };
+            let refined = probe.polyline(scheme, levels)?;
+            weights.resize_with(refined.vertices.len(), Vec::new);
+            for (own, vertex) in weights.iter_mut().zip(&refined.vertices) {
+                for (axis, weight) in vertex.position.to_array().into_iter().enumerate() {
+                    if weight.abs() > LEAST_WEIGHT {
+                        own.push((start + axis, weight));
+                    }
+                }
+            }
+        }
+        for own in &mut weights {
+            let sum: f64 = own.iter().map(|(_, weight)| weight).sum();
+            for (_, weight) in own {
+                *weight /= sum;
+            }
+        }
+        Ok(weights)
     }
 
     /// How often each node is visited. The last node of a closed curve is its first one again, and counts once more,

@@ -172,8 +172,14 @@ impl App {
                 self.player.pause();
                 session.set_film_frame(frame);
             }
-            Command::SetFilmLength(count) => self.player.count = count,
-            Command::SetFilmRate(rate) => self.player.rate = rate,
+            Command::SetFilmLength(count) => {
+                self.player.count = count;
+                self.player.chosen = true;
+            }
+            Command::SetFilmRate(rate) => {
+                self.player.rate = rate;
+                self.player.chosen = true;
+            }
             Command::SetPlayback(playback) => self.player.playback = playback,
             Command::SaveFilm(kind) => self.begin_film(ctx, kind, now),
             Command::StopFilm => self.stop_film("You stopped it."),

@@ -65,7 +65,7 @@ const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 37] = [
+pub const ALL: [Example; 40] = [
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -95,6 +95,9 @@ pub const ALL: [Example; 37] = [
     example!(CURVES, "Finger and thumb", "they squeeze a ball, which gives way", "squeeze"),
     example!(CURVES, "Two drops", "they touch and do not melt", "drops"),
     example!(CURVES, "Three bulges", "limbs that press each other flat", "touching"),
+    example!(CURVES, "Falling body", "it slides down a wall and folds: play it", "falling"),
+    example!(CURVES, "Jelly frog", "it drops on steps: play it", "jelly"),
+    example!(CURVES, "Floppy ears", "a shaken head, and what hangs on it: play it", "floppy-ears"),
     example!(FIRST, "T-shape", "two bars that melt together", "tshape"),
     example!(FIRST, "Icicle", "a first little dataset", "icicle"),
     example!(STARFISH, "Starfish A", "seven arcs, the bare skeleton", "starfish-a"),

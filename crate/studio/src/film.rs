@@ -55,6 +55,8 @@ pub struct Player {
     pub rate: u16,
     /// What comes after the last one.
     pub playback: Playback,
+    /// Whether a person has chosen the number of frames or their rate.
+    pub chosen: bool,
     /// When the last frame came, seconds, while the film is played.
     playing: Option<f64>,
     /// Whether it is played backwards just now.
@@ -67,6 +69,7 @@ impl Default for Player {
             count: 2 * u32::from(RATE),
             rate: RATE,
             playback: Playback::default(),
+            chosen: false,
             playing: None,
             back: false,
         }
@@ -74,6 +77,15 @@ impl Default for Player {
 }
 
 impl Player {
+    /// Takes the rate of a work that has one of its own, and four seconds of it, unless a person has chosen others.
+    pub fn follow(&mut self, rate: Option<f64>) {
+        let Some(rate) = rate.filter(|_| !self.chosen) else {
+            return;
+        };
+        self.rate = (rate.round() as u16).clamp(1, MAX_RATE);
+        self.count = (4 * u32::from(self.rate)).clamp(2, MAX_FRAMES);
+    }
+
     /// Whether the film is played.
     #[must_use]
     pub fn is_playing(&self) -> bool {

@@ -47,6 +47,7 @@ impl App {
         if !self.work.session.is_animated() || self.lab.is_open() {
             self.player.pause();
         }
+        self.player.follow(self.work.session.film_rate());
         let has_draft = self.draft.is_some() && self.settings.show != Show::Traced;
         let ready = has_draft || self.is_finished();
         let frame = self.work.session.film_frame();

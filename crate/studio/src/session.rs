@@ -511,6 +511,12 @@ impl Session {
         }
     }
 
+    /// Frames of a second, if the text says so.
+    #[must_use]
+    pub fn film_rate(&self) -> Option<f64> {
+        self.compiled.rate
+    }
+
     /// Whether the text changes from frame to frame of a film.
     #[must_use]
     pub fn is_animated(&self) -> bool {

@@ -1,7 +1,7 @@
 //! A scene's blobs, prepared for lists of nearby blobs.
 use crate::beam::Beam;
 use crate::hierarchy::Hierarchy;
-use crate::nearby::{Extent, Near, Nearby, Other};
+use crate::nearby::{Extent, NearBlob, Nearby, Other};
 use crate::soft::NEXT_TO_NOTHING;
 use field::{Blob, ChainBlob, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
@@ -11,7 +11,7 @@ use std::ops::Range;
 /// Field, as a fraction of T divided by the number of primitives, at which a blob's reach ends.
 const BLOBS_LEFT_OUT: f64 = 2e-6;
 
-/// [`Near::lead`] in kernel widths. At a Gaussian's own surface −F″ ≤ 2T; with h = 0.6, `h²·2T` is about what the march's proof
+/// [`NearBlob::lead`] in kernel widths. At a Gaussian's own surface −F″ ≤ 2T; with h = 0.6, `h²·2T` is about what the march's proof
 /// allows ([`climb`](mod@crate::blob_march)).
 const LEAD: f64 = 0.6;
 
@@ -27,7 +27,7 @@ pub struct BlobSet {
 
 struct Item {
     middle: DVec3,
-    near: Near,
+    near: NearBlob,
     extent: Extent<f32>,
 }
 
@@ -64,7 +64,7 @@ impl BlobSet {
             }
             let item = |blob: Blob<f32>, middle: DVec3, square: f64, core: f64, part: bool| Item {
                 middle,
-                near: Near {
+                near: NearBlob {
                     blob,
                     middle: [0.0; 3],
                     square: square as f32,
@@ -194,7 +194,7 @@ impl BlobSet {
             let middle = (item.middle - list.middle).as_vec3().to_array();
             let from = (near - base) as f32;
             list.push(
-                Near {
+                NearBlob {
                     middle,
                     // Rounded down.
                     from: from - from * 1e-6,

@@ -42,7 +42,7 @@ struct Facts {
 
 /// A group as seen from a ball.
 #[derive(Clone, Copy, Debug)]
-pub struct View {
+pub struct GroupView {
     /// Bound on the sum of the members' fields.
     pub magnitude: f64,
     /// Bound on the fourth derivative of their sum along any line; infinite if unknown.
@@ -98,13 +98,13 @@ impl Clusters {
     /// Returns the bounds on a group as seen from a ball.
     #[inline]
     #[must_use]
-    pub fn view(&self, cluster: u32, center: DVec3, radius: f64) -> View {
+    pub fn view(&self, cluster: u32, center: DVec3, radius: f64) -> GroupView {
         let index = cluster as usize;
         let (own, around) = self.tree.ball(index);
         let distance = (center.distance(own) - radius - around).at_least(0.0);
         let facts = &self.facts[index];
         let [magnitude, fourth] = facts.table[entry(distance)].map(f64::from);
-        View {
+        GroupView {
             magnitude,
             fourth,
             distance,

@@ -36,7 +36,7 @@ pub(crate) struct FunctionBody {
 
 /// A query for the crossings along one ray.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Along {
+pub(crate) struct RayQuery {
     pub ray: Ray,
     /// Parameters between which the ray is followed.
     pub range: [f64; 2],
@@ -96,7 +96,7 @@ pub(crate) fn range(
 /// until `tell` returns false. Returns the number of evaluations.
 pub(crate) fn crossings(
     function: &dyn Implicit,
-    along: &Along,
+    along: &RayQuery,
     mut tell: impl FnMut(f64, bool) -> bool,
 ) -> u64 {
     let ray = &along.ray;

@@ -2,12 +2,12 @@
 //!
 //! The digger is written once, for any number of rays side by side: eight in single precision for
 //! pictures, one in double precision for exact answers.
-use field::Real;
+use field::Evaluate;
 use wide::bytemuck::cast;
 use wide::{f32x4, f32x8};
 
 /// Numbers of several rays, side by side, with comparisons as bit masks.
-pub trait Lanes: Real {
+pub trait Lanes: Evaluate {
     /// One bit a lane: whether the number is less than the other. Never set for NaN.
     fn less(self, other: Self) -> u32;
     /// A number of single precision, in all lanes.

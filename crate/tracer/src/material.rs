@@ -16,7 +16,7 @@ pub(crate) struct Materials {
     finishes: Vec<Material>,
     /// Index into `places` of each element whose finish has layers.
     place_of: Vec<Option<u32>>,
-    places: Vec<Place>,
+    places: Vec<Charted>,
     frames: Vec<Object>,
     images: Vec<Arc<Rgb8>>,
 }
@@ -40,7 +40,7 @@ struct Object {
 }
 
 /// Where a textured element is.
-struct Place {
+struct Charted {
     object: u32,
     chart: Chart,
 }
@@ -81,7 +81,7 @@ impl Materials {
             let mut place = |element: &Element| {
                 let object = frames.get(element.frame as usize)?;
                 let chart = textured(element).then(|| chart(&element.shape, &object.to_object))?;
-                places.push(Place {
+                places.push(Charted {
                     object: element.frame,
                     chart,
                 });
@@ -123,7 +123,7 @@ impl Materials {
         let mut look = self.plain(finish, normal);
         let place = self.place_of.get(element as usize).copied().flatten();
         if let Some(place) = place {
-            let Place { object, chart } = &self.places[place as usize];
+            let Charted { object, chart } = &self.places[place as usize];
             let object = &self.frames[*object as usize];
             let at = object.to_object.transform_point3(point);
             let own = (object.from_world * normal).normalize_or(normal);

@@ -5,7 +5,7 @@
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::flesh::Flesh;
-use crate::function::{Along, FunctionBody, crossings, range};
+use crate::function::{FunctionBody, RayQuery, crossings, range};
 use crate::hard::Crossing;
 use crate::layout::PACKET;
 use crate::lens::{Fan, Lens};
@@ -419,7 +419,7 @@ impl World {
         let Some(range) = range(body.support, &ray, limit * scale, FURTHEST * scale) else {
             return 0;
         };
-        let along = Along {
+        let along = RayQuery {
             ray,
             range,
             resolution: RESOLUTION * scale,

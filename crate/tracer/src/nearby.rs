@@ -15,7 +15,7 @@ pub struct Nearby {
     pub middle: DVec3,
     /// … and of ray parameters.
     pub base: f64,
-    blobs: Vec<Near>,
+    blobs: Vec<NearBlob>,
     /// Primitives near the beam that are no blobs.
     pub others: Vec<Other>,
     blocks: Vec<Block>,
@@ -38,7 +38,7 @@ pub struct Other {
 
 /// A blob in a list.
 #[derive(Clone, Copy, Debug)]
-pub struct Near {
+pub struct NearBlob {
     /// Its field.
     pub blob: Blob<f32>,
     /// Position of its middle.
@@ -182,7 +182,7 @@ impl Nearby {
 
     /// Adds a blob, its position relative to [`Nearby::middle`].
     #[inline(always)]
-    pub fn push(&mut self, near: Near, extent: &Extent<f32>) {
+    pub fn push(&mut self, near: NearBlob, extent: &Extent<f32>) {
         self.has_segments |= extent.half != [0.0; 3];
         let lane = self.blobs.len() % 8;
         if lane == 0 {
@@ -203,7 +203,7 @@ impl Nearby {
     /// Returns a blob.
     #[inline(always)]
     #[must_use]
-    pub fn get(&self, index: usize) -> &Near {
+    pub fn get(&self, index: usize) -> &NearBlob {
         &self.blobs[index]
     }
 
@@ -376,7 +376,7 @@ mod tests {
                 let blob = primitive.blob::<f32>().expect("a blob");
                 let square = blob.reach(BEYOND);
                 let place = primitive.blob_middle() - middle;
-                let near = Near {
+                let near = NearBlob {
                     blob,
                     middle: place.as_vec3().to_array(),
                     square: square as f32,

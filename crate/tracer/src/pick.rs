@@ -1,5 +1,5 @@
 //! Picking: which element is seen in a direction.
-use crate::function::{Along, crossings, range};
+use crate::function::{RayQuery, crossings, range};
 use crate::picture::Hit;
 use crate::ray::Ray;
 use crate::solids::Solids;
@@ -73,7 +73,7 @@ impl Picker {
             let Some(range) = range(*support, &ray, limit, FURTHEST) else {
                 continue;
             };
-            let along = Along {
+            let along = RayQuery {
                 ray,
                 range,
                 resolution: PICK_RESOLUTION,

@@ -49,7 +49,7 @@ struct Reached {
     guess: f32x8,
     /// See [`MarchRays::first`].
     first: f32x8,
-    /// Largest [`Near::steep`](crate::nearby::Near::steep).
+    /// Largest [`NearBlob::steep`](crate::nearby::NearBlob::steep).
     steepest: f32,
     evaluations: u64,
 }

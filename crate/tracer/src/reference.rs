@@ -19,7 +19,7 @@ mod waves;
 
 use crate::ray::Ray;
 use field::{Kink, Primitive, THRESHOLD};
-use function::{Function, Sample, Terms, ULP};
+use function::{Evaluation, FieldTerms, Function, ULP};
 use glam::DVec3;
 
 /// The field of some primitives, or the smooth maximum of two fields, prepared for searches.
@@ -106,13 +106,16 @@ impl Reference {
     /// Prepares the field of these primitives.
     #[must_use]
     pub fn new(primitives: Vec<Primitive>) -> Self {
-        Self::of(Function::Sum(Terms::new(primitives)))
+        Self::of(Function::Sum(FieldTerms::new(primitives)))
     }
 
     /// Prepares the smooth maximum `(a + b + √((a−b)² + k²))/2` of the fields of two sets of primitives; k > 0.
     #[must_use]
     pub fn smooth_maximum(parts: [Vec<Primitive>; 2], k: f64) -> Self {
-        Self::of(Function::SmoothMaximum(Box::new(parts.map(Terms::new)), k))
+        Self::of(Function::SmoothMaximum(
+            Box::new(parts.map(FieldTerms::new)),
+            k,
+        ))
     }
 
     fn of(function: Function) -> Self {
@@ -130,7 +133,7 @@ impl Reference {
         (sample.excess, sample.gradient)
     }
 
-    fn sample(&mut self, point: DVec3) -> Sample {
+    fn sample(&mut self, point: DVec3) -> Evaluation {
         self.evaluations += 1;
         self.function.sample(point)
     }
@@ -308,7 +311,7 @@ impl Reference {
     }
 
     /// [`Reference::surface_near`] by subdivision of the ball around the point into cubes.
-    fn search_ball(&mut self, point: DVec3, start: Sample, reach: f64) -> Near {
+    fn search_ball(&mut self, point: DVec3, start: Evaluation, reach: f64) -> Near {
         let mut stack = vec![(point, reach)];
         let mut unknown = false;
         for _ in 0..MOST_CELLS {

@@ -84,7 +84,7 @@ impl Default for RootIsolator {
 
 /// A piece of an interval.
 #[derive(Clone, Debug)]
-struct Piece {
+struct Subinterval {
     from: f64,
     to: f64,
     /// How many times halved.
@@ -101,7 +101,7 @@ struct Piece {
 
 /// Primitives with their bounds and kinks.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight<'a> {
+pub struct BoundedTerms<'a> {
     /// All primitives.
     pub primitives: &'a [Primitive],
     /// Their bounds.
@@ -114,7 +114,7 @@ pub struct Sight<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Along<'a> {
     /// Its primitives.
-    pub sight: Sight<'a>,
+    pub sight: BoundedTerms<'a>,
     /// The ray, its direction of unit length.
     pub ray: Ray,
     /// Length below which pieces are not halved.
@@ -197,7 +197,7 @@ impl RootIsolator {
             let ends = [first, last].map(|t| self.sum(along, &rest, t));
             let known = Span::hermite(known(first), known(last), last - first);
             let resolved = Span([-THRESHOLD; 4]).plus(known);
-            let piece = Piece {
+            let piece = Subinterval {
                 from: first,
                 to: last,
                 depth: 0,
@@ -229,7 +229,7 @@ impl RootIsolator {
                 }
             }
         }
-        found.sort_by(f64::total_cmp);
+        found.sort_unstable_by(f64::total_cmp);
         found
     }
 
@@ -248,7 +248,7 @@ impl RootIsolator {
         &mut self,
         along: &Along<'_>,
         share: f64,
-        mut piece: Piece,
+        mut piece: Subinterval,
         tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
         let cost = 1 + piece.rest.len() as u32 / PRIMITIVES_A_PIECE;
@@ -313,7 +313,7 @@ impl RootIsolator {
         &mut self,
         along: &Along<'_>,
         share: f64,
-        piece: &Piece,
+        piece: &Subinterval,
         above: f64,
         error: f64,
         tell: &mut impl FnMut(f64, bool) -> bool,
@@ -344,7 +344,7 @@ impl RootIsolator {
         let t = 0.5 * (piece.from + piece.to);
         let middle = self.sum(along, &piece.rest, t);
         let [near, far] = piece.resolved.halves();
-        let near = Piece {
+        let near = Subinterval {
             to: t,
             depth: piece.depth + 1,
             most: next_share(piece.most),
@@ -357,7 +357,7 @@ impl RootIsolator {
             return false;
         }
         // The far half gets the pieces that the near one left.
-        let far = Piece {
+        let far = Subinterval {
             from: t,
             depth: piece.depth + 1,
             most: piece.most.saturating_sub(before - self.pieces),
@@ -372,7 +372,7 @@ impl RootIsolator {
     fn give_up(
         &mut self,
         along: &Along<'_>,
-        piece: &Piece,
+        piece: &Subinterval,
         tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
         if self.off.value > 0.0 {
@@ -386,10 +386,10 @@ impl RootIsolator {
     fn refine(
         &mut self,
         along: &Along<'_>,
-        piece: &Piece,
+        piece: &Subinterval,
         tell: &mut impl FnMut(f64, bool) -> bool,
     ) -> bool {
-        let Piece {
+        let Subinterval {
             from, to, resolved, ..
         } = *piece;
         let enters = resolved.0[3] + piece.ends[1].value >= 0.0;
@@ -451,7 +451,7 @@ mod tests {
         };
         let primitives = [ball(DVec3::Z * 0.7), ball(DVec3::new(0.1, 0.0, 1.2))];
         let bounds = primitives.each_ref().map(Bound::new);
-        let sight = Sight {
+        let sight = BoundedTerms {
             primitives: &primitives,
             bounds: &bounds,
             kinks: &Kinks::default(),
@@ -513,7 +513,7 @@ mod tests {
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn slopes_of_unknown_sign_are_not_decided() {
-        let sight = Sight {
+        let sight = BoundedTerms {
             primitives: &[],
             bounds: &[],
             kinks: &Kinks::default(),

@@ -72,7 +72,7 @@ pub struct Slabs<'a> {
     ids: Vec<u32>,
     /// Entries still to be examined for a new slab.
     stack: Vec<u32>,
-    blocks: Vec<Block>,
+    blocks: Vec<Interpolant>,
     scratch: Vec<Candidate>,
     /// Entries of a new slab, by fate.
     lists: [Vec<u32>; 5],
@@ -87,7 +87,7 @@ pub struct Space {
     nodes: Vec<Slab>,
     ids: Vec<u32>,
     stack: Vec<u32>,
-    blocks: Vec<Block>,
+    blocks: Vec<Interpolant>,
     scratch: Vec<Candidate>,
     lists: [Vec<u32>; 5],
 }
@@ -137,7 +137,7 @@ impl Afar {
 const GROUP: u32 = 1 << 31;
 
 /// Interpolant of a slab's shared or joined primitives.
-pub struct Block {
+pub struct Interpolant {
     /// Box in which it holds.
     pub cell: Cell,
     /// Sum over all of them.
@@ -302,7 +302,7 @@ struct Heritage {
 }
 
 /// Geometry of a new slab.
-struct Place {
+struct SlabGeometry {
     from: f64,
     to: f64,
     /// Ball around the slab.
@@ -607,7 +607,7 @@ impl<'a> Slabs<'a> {
     }
 
     /// Returns the interpolant of a slab's shared or joined primitives, made at first use; `None` if it has none.
-    pub fn block(&mut self, index: u32, which: Which) -> Option<&Block> {
+    pub fn block(&mut self, index: u32, which: Which) -> Option<&Interpolant> {
         let slab = &self.nodes[index as usize];
         if slab.together(which).is_empty() {
             return None;
@@ -626,7 +626,7 @@ impl<'a> Slabs<'a> {
             let (total, of_each) = sums.finish();
             self.evaluations += CORNERS * count;
             let made = self.blocks.len() as u32;
-            self.blocks.push(Block {
+            self.blocks.push(Interpolant {
                 cell,
                 total,
                 of_each,
@@ -645,7 +645,7 @@ impl<'a> Slabs<'a> {
     }
 
     /// Calls `f` with the shared interpolants of a slab and of those above it that have been made.
-    pub fn each_block(&self, index: u32, mut f: impl FnMut(&Block)) {
+    pub fn each_block(&self, index: u32, mut f: impl FnMut(&Interpolant)) {
         self.up(index, |s, _| {
             if let Some(block) = self.blocks.get(s.blocks[0] as usize) {
                 f(block);
@@ -958,7 +958,7 @@ impl<'a> Slabs<'a> {
         });
     }
 
-    fn place(&self, number: usize, from: f64, to: f64) -> Place {
+    fn place(&self, number: usize, from: f64, to: f64) -> SlabGeometry {
         let beam = self.beams.get(number);
         let (center, mut radius) = beam.ball(from, to);
         let mut roughness = f64::INFINITY;
@@ -968,7 +968,7 @@ impl<'a> Slabs<'a> {
             radius = radius.at_least(cell.radius());
         }
         let rounding = self.precision.rounding;
-        Place {
+        SlabGeometry {
             from,
             to,
             center,
@@ -984,7 +984,7 @@ impl<'a> Slabs<'a> {
     }
 
     /// Collects the candidates of a new slab in `scratch`, without negligible ones; near groups are opened.
-    fn gather(&mut self, candidates: Range<u32>, place: &Place) -> Sizes {
+    fn gather(&mut self, candidates: Range<u32>, place: &SlabGeometry) -> Sizes {
         let mut sizes = Sizes::default();
         self.scratch.clear();
         for at in candidates {
@@ -1013,7 +1013,12 @@ impl<'a> Slabs<'a> {
 
     /// Returns a group as a candidate; `None` if it is negligible, or if its parts are candidates instead.
     #[inline(always)]
-    fn group(&mut self, clusters: &Clusters, group: u32, place: &Place) -> Option<Candidate> {
+    fn group(
+        &mut self,
+        clusters: &Clusters,
+        group: u32,
+        place: &SlabGeometry,
+    ) -> Option<Candidate> {
         let view = clusters.view(group, place.center, place.radius);
         if view.magnitude <= self.terms.left_out * view.count as f64 {
             return None;
@@ -1038,7 +1043,7 @@ impl<'a> Slabs<'a> {
 
     /// Returns a primitive as a candidate; `None` if it is negligible.
     #[inline(always)]
-    fn single(&self, id: u32, place: &Place) -> Option<Candidate> {
+    fn single(&self, id: u32, place: &SlabGeometry) -> Option<Candidate> {
         let (center, radius) = (place.center, place.radius);
         let primitive = self.list[id as usize];
         let bound = &self.terms.bounds[primitive as usize];
@@ -1072,7 +1077,7 @@ impl<'a> Slabs<'a> {
     }
 
     /// Marks the candidates to drop and to share, and decides which interpolants the slab has.
-    fn plan(&mut self, place: &Place, sizes: &Sizes, heritage: &Heritage) -> Plan {
+    fn plan(&mut self, place: &SlabGeometry, sizes: &Sizes, heritage: &Heritage) -> Plan {
         let count = self.scratch.len();
         let share = |budget: f64, spent: f64| Share::of(budget, spent, count, sizes.total);
         let for_spans = share(heritage.budget, heritage.spent.spans);
@@ -1104,7 +1109,7 @@ impl<'a> Slabs<'a> {
     }
 
     /// Sorts the candidates into `lists`, by fate, and adds their errors and rounding.
-    fn sort(&mut self, place: &Place, plan: &Plan, spent: &mut Spent) -> Sorted {
+    fn sort(&mut self, place: &SlabGeometry, plan: &Plan, spent: &mut Spent) -> Sorted {
         let rounding = self.precision.rounding;
         let rounded = |magnitude: f64, steepness: f64| {
             magnitude.at_most(LARGE_TERM) * (4.0 * rounding + place.misplaced * steepness)

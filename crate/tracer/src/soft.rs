@@ -7,7 +7,7 @@ use crate::hierarchy::Hierarchy;
 use crate::kinks::Kinks;
 use crate::nearby::{Nearby, Other};
 use crate::ray::Ray;
-use crate::root_isolation::{Along, RootIsolator, Sight};
+use crate::root_isolation::{Along, BoundedTerms, RootIsolator};
 use crate::roots::bracketed;
 use crate::scratch::Scratch;
 use crate::slabs::{Precision, Slabs, Space, Terms};
@@ -329,8 +329,8 @@ impl Soft {
         }
     }
 
-    fn sight<'a>(&'a self, body: &'a SoftBody) -> Sight<'a> {
-        Sight {
+    fn sight<'a>(&'a self, body: &'a SoftBody) -> BoundedTerms<'a> {
+        BoundedTerms {
             primitives: &self.primitives,
             bounds: self.bounds(),
             kinks: &self.groups(body).kinks,
@@ -448,7 +448,7 @@ impl Soft {
         let primitives: Vec<Primitive> = near.iter().map(of).collect();
         let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
         let along = Along {
-            sight: Sight {
+            sight: BoundedTerms {
                 primitives: &primitives,
                 bounds: &bounds,
                 kinks: &Kinks::new(numbered(&primitives)),

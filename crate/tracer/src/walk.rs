@@ -6,7 +6,7 @@
 //! ends when every ray has its crossing, so that nothing behind the first hit is interpolated.
 use crate::lanes::Lanes;
 use crate::ray::Ray;
-use crate::root_isolation::{Along, KnownPart, RootIsolator, STEEP, Sight};
+use crate::root_isolation::{Along, BoundedTerms, KnownPart, RootIsolator, STEEP};
 use crate::slabs::{Parts, Slabs, Which};
 use crate::spans::{Node, Span};
 use field::{Primitive, THRESHOLD};
@@ -51,7 +51,7 @@ pub struct Found {
 
 /// Traversal state of a bundle.
 pub struct Walk<'w, 's, L> {
-    sight: Sight<'w>,
+    sight: BoundedTerms<'w>,
     slabs: &'w mut Slabs<'s>,
     packet: usize,
     quest: Quest,
@@ -146,7 +146,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     /// Starts a traversal. `memory` is working space.
     #[must_use]
     pub fn new(
-        sight: Sight<'w>,
+        sight: BoundedTerms<'w>,
         slabs: &'w mut Slabs<'s>,
         bundle: Bundle<'w>,
         quest: Quest,

@@ -9,7 +9,7 @@ use field::{Ball, Enclosure, Implicit, Jet, Kernel, Sum, THRESHOLD};
 use glam::{DAffine3, DMat3, DVec3};
 use scene::{Body, Element, Form, Function, Scene, Shape};
 use std::sync::Arc;
-use tracer::{Hit, Pass, Picture, Stats, Tile};
+use tracer::{Hit, Pass, Picture, Reference, Stats, Tile};
 use trials::{Kind, Row, check};
 use wide::f32x8;
 
@@ -501,4 +501,117 @@ fn bodies_in_contact_are_seen_where_they_are() {
         }
     }
     assert!(crossings > 150 && shared > 4, "{crossings} {shared}");
+}
+
+/// The general path for a function that is no sum, judged by the reference. `SINEW_RAYS` sets how many rays there are.
+#[test]
+fn a_smooth_maximum_is_within_the_tolerance() {
+    const LIMIT: f64 = 12.0;
+    let wanted = std::env::var("SINEW_RAYS").ok();
+    let wanted = wanted.and_then(|n| n.parse().ok()).unwrap_or(400);
+    let (mut seen, mut hits, mut uncertain, mut faults) = (0, 0, 0, Vec::new());
+    for seed in 0.. {
+        if seen >= wanted {
+            break;
+        }
+        let mut scene = in_bodies(seed + 500, 6, 1);
+        let parts = || <[_; 2]>::try_from(scene.soft_surfaces()).ok();
+        let (Some(a), Some(b)) = (parts(), parts()) else {
+            continue;
+        };
+        let k = [0.05, 0.3, 0.8][seed as usize % 3];
+        let function = SmoothMaximum {
+            parts: a.map(|surface| surface.sum),
+            k,
+        };
+        let mut reference = Reference::smooth_maximum(b.map(|surface| surface.sum.primitives), k);
+        for element in &mut scene.elements {
+            element.finish = u32::MAX;
+        }
+        let mut picture = Picture::new(&scene, [256; 2]);
+        picture.add_function(Arc::new(function), vec![0, 0]);
+        let rays = rays(&mut Numbers(seed * 2 + 11), 3);
+        for (&(origin, direction), hit) in rays.iter().zip(picture.cast(&rays)) {
+            let t = hit.map(|hit| hit.t).filter(|t| *t < LIMIT);
+            let verdict = reference.judge(origin, direction, t, LIMIT, |t| picture.tolerance(t));
+            seen += 1;
+            hits += usize::from(t.is_some());
+            uncertain += usize::from(!verdict.certain);
+            if let Some(fault) = verdict.fault {
+                faults.push((seed, t, fault));
+            }
+        }
+    }
+    println!(
+        "{seen} rays, {hits} hits, {uncertain} undecided, {} faults",
+        faults.len()
+    );
+    assert!(faults.is_empty(), "{faults:?}");
+    assert!(
+        4 * hits > seen && 200 * uncertain <= seen,
+        "{hits} {uncertain} of {seen}"
+    );
+}
+
+/// Molecules of three balls spread through a cube, all in one body or each in one of its own.
+fn molecules(count: u32, apart: bool) -> Scene {
+    let mut scene = common::empty();
+    common::clothe(&mut scene, vec![common::soft(-4.0, 1.0)]);
+    let mut numbers = Numbers(5);
+    let radius = 0.7 / f64::from(count).cbrt();
+    for number in 0..count {
+        let center = numbers.vector();
+        let body = if apart { number } else { 0 };
+        for around in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let shape = Shape::Sphere {
+                center: center + 0.5 * radius * around,
+                radius: 0.6 * radius,
+            };
+            let element = Element {
+                kernel: Kernel::Gauss,
+                body,
+                ..common::element(shape, 0)
+            };
+            scene.elements.push(element);
+        }
+    }
+    let bodies = if apart { count as usize } else { 1 };
+    scene.bodies.resize(bodies, Body::default());
+    scene
+}
+
+/// Thousands of bodies take about as long as one body of their elements. The goal is twice at most, `cargo xtask bench models`; a
+/// test may be disturbed.
+#[test]
+fn very_many_bodies_take_as_long_as_one() {
+    const SIDE: u32 = 96;
+    let whole = Tile {
+        x: 0,
+        y: 0,
+        width: SIDE,
+        height: SIDE,
+    };
+    let scenes = [false, true].map(|apart| molecules(5000, apart));
+    let (mut seconds, mut evaluations, mut lit) = ([f64::INFINITY; 2], [0; 2], [0; 2]);
+    for _ in 0..5 {
+        for (i, scene) in scenes.iter().enumerate() {
+            let begun = std::time::Instant::now();
+            let picture = Picture::new(scene, [SIDE; 2]);
+            let mut stats = Stats::default();
+            let pixels = picture.trace(whole, Pass::Full, &|| false, &mut stats);
+            seconds[i] = seconds[i].min(begun.elapsed().as_secs_f64());
+            evaluations[i] = stats.field_evaluations;
+            let pixels = pixels.expect("nobody asked to stop");
+            let background = pixels[..4].to_vec();
+            lit[i] = pixels
+                .chunks_exact(4)
+                .filter(|p| **p != background[..])
+                .count();
+        }
+    }
+    println!("{seconds:?} s, {evaluations:?} evaluations, {lit:?} pixels");
+    let [one, many] = lit;
+    assert!(many > 2000 && one > 2000, "{lit:?} pixels show something");
+    assert!(evaluations[1] <= 2 * evaluations[0], "{evaluations:?}");
+    assert!(seconds[1] <= 3.0 * seconds[0], "{seconds:?}");
 }

@@ -19,7 +19,7 @@ pub fn fuzz(minutes: u64) -> Result<()> {
         "--profile",
         "fuzz",
         "--package",
-        "rats",
+        "assist",
         "--example",
         "fuzz",
         "--",

@@ -78,6 +78,41 @@ pub fn wasm_opt() -> Option<PathBuf> {
     }
 }
 
+/// Installs packages of Debian.
+///
+/// # Errors
+/// If `apt-get` fails, or this user may not install packages; the message says what to install.
+fn apt_install(packages: &[&str]) -> Result<()> {
+    let root_user = read(&mut command("id", &["-u"])).is_some_and(|id| id == "0");
+    let sudo: &[&str] = if root_user { &[] } else { &["sudo", "-n"] };
+    let apt = |arguments: &[&str]| {
+        let lock: &[&str] = &["apt-get", "-o", "DPkg::Lock::Timeout=500"];
+        let words = [sudo, lock, arguments].concat();
+        run(command(words[0], &words[1..]).env("DEBIAN_FRONTEND", "noninteractive"))
+    };
+    let install = ["install", "-y", "--no-install-recommends"];
+    apt(&["update"])
+        .and_then(|()| apt(&[&install, packages].concat()))
+        .with_context(|| format!("Install it: apt-get install {}", packages.join(" ")))
+}
+
+/// A Firefox that tests can drive, installed with apt-get on Debian.
+///
+/// # Errors
+/// If there is none and none can be installed.
+pub fn firefox() -> Result<PathBuf> {
+    if let Some(chosen) = std::env::var_os("FIREFOX") {
+        return Ok(chosen.into());
+    }
+    let present = || ["firefox-esr", "firefox"].into_iter().find_map(find);
+    if let Some(path) = present() {
+        return Ok(path);
+    }
+    apt_install(&["firefox-esr"])
+        .context("Firefox is missing. Install it, or set FIREFOX to its path")?;
+    present().context("apt-get installed no Firefox")
+}
+
 /// A Chromium that tests can drive, installed with apt-get on Debian, by playwright elsewhere.
 pub fn chromium() -> Result<PathBuf> {
     if let Some(chosen) = std::env::var_os("CHROMIUM") {
@@ -100,30 +135,10 @@ pub fn chromium() -> Result<PathBuf> {
     }
     let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
     let is = |name: &str| release.lines().any(|line| line == format!("ID={name}"));
-    let root_user = read(&mut command("id", &["-u"])).is_some_and(|id| id == "0");
     if is("debian") {
-        let sudo: &[&str] = if root_user { &[] } else { &["sudo", "-n"] };
-        let apt = |arguments: &[&str]| {
-            let words = [
-                sudo,
-                &["apt-get", "-o", "DPkg::Lock::Timeout=500"],
-                arguments,
-            ]
-            .concat();
-            run(command(words[0], &words[1..]).env("DEBIAN_FRONTEND", "noninteractive"))
-        };
         // The second package is how tests as wasm drive the browser, the third draws without a graphics card.
-        let packages = [
-            "install",
-            "-y",
-            "--no-install-recommends",
-            "chromium",
-            "chromium-driver",
-            "mesa-vulkan-drivers",
-        ];
-        apt(&["update"]).and_then(|()| apt(&packages)).context(
-            "The browser is missing. Install it: apt-get install chromium chromium-driver mesa-vulkan-drivers",
-        )?;
+        apt_install(&["chromium", "chromium-driver", "mesa-vulkan-drivers"])
+            .context("The browser is missing")?;
         return present().context("apt-get installed no chromium that runs");
     }
     if is("ubuntu") {

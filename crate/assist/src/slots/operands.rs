@@ -143,7 +143,7 @@ impl<'p> Slots<'_, 'p> {
             Kind::Word(words) => self.is_option_next(words),
             Kind::Copy(_) => self.datum(0) == Some(Datum::Sign(b'=')),
             Kind::Known(Names::Texture) => self.datum(0) == Some(Datum::Sign(b'+')),
-            Kind::Known(Names::Node) => {
+            Kind::Known(Names::Node | Names::Object) => {
                 let word = self.word().unwrap_or("");
                 !options.iter().any(|o| o.name.eq_ignore_ascii_case(word))
             }

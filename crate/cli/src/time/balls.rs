@@ -2,7 +2,7 @@
 
 use field::Kernel;
 use glam::DVec3;
-use scene::{Camera, Element, Flesh, Light, LightKind, Scene, Shape};
+use scene::{Body, Camera, Element, Flesh, Light, LightKind, Scene, Shape};
 
 /// Balls of a kernel spread evenly through a cube of side 2, by the additive sequence of the three
 /// powers of 1/φ₃, φ₃ ≈ 1.2207 being the root of x⁴ = x + 1. Their mean distance is `apart` radii: at 3
@@ -42,5 +42,33 @@ pub fn scene(count: u32, kernel: Kernel, apart: f64) -> Scene {
         size: 0.0,
     });
     scene.settings.frame = [512, 512];
+    scene
+}
+
+/// Molecules of three balls that melt together, in the places of the balls of [`scene`]: all in one body, or each in a body of
+/// its own.
+pub fn triples(count: u32, kernel: Kernel, apart: f64, in_bodies: bool) -> Scene {
+    let mut scene = scene(count, kernel, apart);
+    let middles = core::mem::take(&mut scene.elements);
+    if in_bodies {
+        scene.bodies.resize(middles.len(), Body::default());
+    }
+    for (number, middle) in (0..).zip(middles) {
+        let Shape::Sphere { center, radius } = middle.shape else {
+            continue;
+        };
+        for around in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let shape = Shape::Sphere {
+                center: center + 0.5 * radius * around,
+                radius: 0.6 * radius,
+            };
+            scene.elements.push(Element {
+                flesh: Some(0),
+                kernel,
+                body: if in_bodies { number } else { 0 },
+                ..Element::new(shape)
+            });
+        }
+    }
     scene
 }

@@ -599,7 +599,7 @@ fn length(c: &Cubic, from: f64, to: f64) -> f64 {
         .collect();
     // Next to a place where the curve stands still its speed is nothing but rounding, which no bisection settles.
     let rounding = 4.0 * f64::EPSILON * (c[1].length() + 2.0 * c[2].length() + 3.0 * c[3].length());
-    crate::quadrature::integral_within(&mut speed, &breaks, 1e-13, rounding)
+    crate::integral::integral_within(&mut speed, &breaks, 1e-13, rounding)
 }
 
 /// 0, the places between at which a cubic is much slower than elsewhere, and 1.

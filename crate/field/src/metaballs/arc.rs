@@ -14,13 +14,15 @@
 use super::INNER;
 use super::rule_arc;
 use crate::bone::Arc;
-use crate::polynomial::arc::{Around, Moments, Piece, Place, Span, eighth_turn, quarter_turn};
+use crate::polynomial::arc::{
+    AzimuthRange, Azimuths, FromCircle, Moments, PieceFrame, eighth_turn, quarter_turn,
+};
 use crate::{Jet, Real};
 
 /// Value and gradient at a local position.
 #[inline(always)]
 pub fn jet<R: Real>(arc: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
-    let place = Place::new(arc, p);
+    let place = FromCircle::new(arc, p);
     let inner = place.window(R::splat(INNER));
     let outer = place.window(R::splat(1.0));
     let mut sum = [R::splat(0.0); 4];
@@ -28,7 +30,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
     for piece in inner.pieces(arc, &place).into_iter().flatten() {
         add(smooth(arc, &place, inner.top, &piece));
     }
-    for span in Span::of(arc, &place).into_iter().flatten() {
+    for span in AzimuthRange::of(arc, &place).into_iter().flatten() {
         for [from, to] in [[inner.half, outer.half], [-outer.half, -inner.half]] {
             add(rooted(arc, &place, &span.between(from, to)));
         }
@@ -38,8 +40,13 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
 
 /// The integrals of [`polynomial::arc`](crate::polynomial::arc) for `⅔ + 3v`.
 #[inline(always)]
-fn smooth<R: Real>(arc: &Arc<R::Scalar>, place: &Place<R>, top: R, piece: &Piece<R>) -> [R; 4] {
-    let around = Around::new(place, top, piece.middle);
+fn smooth<R: Real>(
+    arc: &Arc<R::Scalar>,
+    place: &FromCircle<R>,
+    top: R,
+    piece: &Azimuths<R>,
+) -> [R; 4] {
+    let around = PieceFrame::new(place, top, piece.middle);
     let h = R::splat(0.5) * piece.half;
     let h2 = h * h;
     let second = Moments::new(h).second;
@@ -56,7 +63,7 @@ fn smooth<R: Real>(arc: &Arc<R::Scalar>, place: &Place<R>, top: R, piece: &Piece
 
 /// The same for `1.5(1−u)²`.
 #[inline(always)]
-fn rooted<R: Real>(arc: &Arc<R::Scalar>, place: &Place<R>, piece: &Piece<R>) -> [R; 4] {
+fn rooted<R: Real>(arc: &Arc<R::Scalar>, place: &FromCircle<R>, piece: &Azimuths<R>) -> [R; 4] {
     let zero = R::splat(0.0);
     let one = R::splat(1.0);
     let half = R::splat(0.5);

@@ -24,7 +24,7 @@ use core::f64::consts::TAU;
 /// Value and gradient at a local position.
 #[inline(always)]
 pub fn jet<R: Real>(coefficients: [f64; 2], arc: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
-    let place = Place::new(arc, p);
+    let place = FromCircle::new(arc, p);
     let window = place.window(R::splat(1.0));
     let mut sum = [R::splat(0.0); 4];
     for piece in window.pieces(arc, &place).into_iter().flatten() {
@@ -35,7 +35,7 @@ pub fn jet<R: Real>(coefficients: [f64; 2], arc: &Arc<R::Scalar>, p: [R; 3]) -> 
 }
 
 /// Where a point is, seen from the circle's centre, mirrored so that y ≥ 0.
-pub(crate) struct Place<R> {
+pub(crate) struct FromCircle<R> {
     /// Distance from the axis.
     pub rho: R,
     /// Cosine and sine of the azimuth.
@@ -50,7 +50,7 @@ pub(crate) struct Place<R> {
     pub spread: R,
 }
 
-impl<R: Real> Place<R> {
+impl<R: Real> FromCircle<R> {
     #[inline(always)]
     pub fn new(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Self {
         let radius = R::lift(arc.radius);
@@ -122,7 +122,7 @@ pub(crate) struct Window<R: Real> {
 }
 
 /// A piece of an arc: azimuths around `middle`, seen from the point's.
-pub(crate) struct Piece<R> {
+pub(crate) struct Azimuths<R> {
     pub middle: R,
     /// Half the angle.
     pub half: R,
@@ -130,13 +130,13 @@ pub(crate) struct Piece<R> {
 
 /// An arc as seen from a point: the azimuths `base + τ`, τ from `low` to `high`.
 #[derive(Clone, Copy)]
-pub(crate) struct Span<R> {
+pub(crate) struct AzimuthRange<R> {
     pub base: R,
     pub low: R,
     pub high: R,
 }
 
-impl<R: Real> Span<R> {
+impl<R: Real> AzimuthRange<R> {
     /// The arc, and the arc a turn on where both can be within the distance 1 of a point.
     ///
     /// From a point outside a circle of radius r ≥ 1, or inside, its part within the distance 1 has an angle
@@ -144,7 +144,7 @@ impl<R: Real> Span<R> {
     ///
     /// Ends are measured from whichever is near, the arc's middle or the gap's: so τ keeps its digits.
     #[inline(always)]
-    pub fn of(arc: &Arc<R::Scalar>, place: &Place<R>) -> [Option<Self>; 2] {
+    pub fn of(arc: &Arc<R::Scalar>, place: &FromCircle<R>) -> [Option<Self>; 2] {
         // Of the arc, not of lanes.
         let [side, radius, sine, end_angle] =
             [arc.side, arc.radius, arc.sine, arc.end_angle].map(|x| R::lift(x).lane(0));
@@ -186,7 +186,7 @@ impl<R: Real> Span<R> {
 
     /// The piece between two azimuths.
     #[inline(always)]
-    pub fn between(&self, from: R, to: R) -> Piece<R> {
+    pub fn between(&self, from: R, to: R) -> Azimuths<R> {
         let zero = R::splat(0.0);
         let half = R::splat(0.5);
         let (low, high) = (
@@ -195,7 +195,7 @@ impl<R: Real> Span<R> {
         );
         let part = (half * (high - low)).max(zero);
         let middle = self.base + half * (low + high);
-        Piece {
+        Azimuths {
             middle: R::select(zero.lt(part), middle, zero),
             half: part,
         }
@@ -205,8 +205,8 @@ impl<R: Real> Span<R> {
 impl<R: Real> Window<R> {
     /// The arc's pieces in the window.
     #[inline(always)]
-    pub fn pieces(&self, arc: &Arc<R::Scalar>, place: &Place<R>) -> [Option<Piece<R>>; 2] {
-        let [first, second] = Span::of(arc, place);
+    pub fn pieces(&self, arc: &Arc<R::Scalar>, place: &FromCircle<R>) -> [Option<Azimuths<R>>; 2] {
+        let [first, second] = AzimuthRange::of(arc, place);
         // A window of all azimuths has no ends to cut at, and no need of the second.
         let wide = R::select(self.open, self.half, R::splat(2.0 * TAU));
         let none = R::select(self.open, self.half, R::splat(0.0));
@@ -318,7 +318,7 @@ impl<R: Real> Moments<R> {
 }
 
 /// Frame of a piece, for the conversion of integrals around its middle to the local axes.
-pub(crate) struct Around<R> {
+pub(crate) struct PieceFrame<R> {
     /// v at the middle.
     pub v: R,
     /// `2ρr·(cos m, sin m)`.
@@ -329,9 +329,9 @@ pub(crate) struct Around<R> {
     pub from: [R; 2],
 }
 
-impl<R: Real> Around<R> {
+impl<R: Real> PieceFrame<R> {
     #[inline(always)]
-    pub fn new(place: &Place<R>, top: R, middle: R) -> Self {
+    pub fn new(place: &FromCircle<R>, top: R, middle: R) -> Self {
         let half = R::splat(0.5);
         let two = R::splat(2.0);
         let one = R::splat(1.0);
@@ -368,11 +368,11 @@ impl<R: Real> Around<R> {
 fn integral<R: Real>(
     [c2, c3]: [f64; 2],
     arc: &Arc<R::Scalar>,
-    place: &Place<R>,
+    place: &FromCircle<R>,
     window: &Window<R>,
-    piece: &Piece<R>,
+    piece: &Azimuths<R>,
 ) -> [R; 4] {
-    let around = Around::new(place, window.top, piece.middle);
+    let around = PieceFrame::new(place, window.top, piece.middle);
     let h = R::splat(0.5) * piece.half;
     let Moments {
         second,

@@ -45,7 +45,7 @@ pub fn jet<R: Real>(
 }
 
 /// The part of a segment within a ball around the point.
-pub(crate) struct Part<R> {
+pub(crate) struct InBall<R> {
     /// Half the length of the ball's chord on the segment's line, squared.
     pub reach2: R,
     /// The part's middle, from the foot of the perpendicular.
@@ -60,7 +60,7 @@ pub(crate) fn within<R: Real>(
     segment: &Segment<R::Scalar>,
     radius: R,
     [x, y, z]: [R; 3],
-) -> Part<R> {
+) -> InBall<R> {
     let zero = R::splat(0.0);
     let half = R::lift(segment.half);
     let reach2 = (radius * radius - (y * y + z * z)).max(zero);
@@ -71,7 +71,7 @@ pub(crate) fn within<R: Real>(
     let whole = R::both((-reach).lt(t0), t1.lt(reach));
     let middle = R::splat(0.5) * (low + high);
     let cut = (R::splat(0.5) * (high - low)).max(zero);
-    Part {
+    InBall {
         reach2,
         middle: R::select(whole, -x, middle),
         half: R::select(whole, half, cut),

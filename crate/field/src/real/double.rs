@@ -1,17 +1,10 @@
 //! `f64`, the reference precision.
 use super::{Real, Scalar, polynomial};
-use crate::Jet;
-use crate::term::{Prepared, Term};
 
 impl Scalar for f64 {
     #[inline(always)]
     fn round(value: f64) -> Self {
         value
-    }
-
-    #[inline(always)]
-    fn prepared(term: &Prepared) -> &Term<Self> {
-        &term.double
     }
 }
 
@@ -21,16 +14,6 @@ impl Real for f64 {
     const LANES: usize = 1;
     const HORIZON: f64 = 1e60;
     const DUPLICATIONS: usize = 8;
-
-    #[inline(never)]
-    fn evaluate(term: &Term<f64>, local: [Self; 3]) -> Jet<Self> {
-        term.local_jet_inline(local)
-    }
-
-    #[inline(never)]
-    fn evaluate_point(term: &Term<f64>, position: [Self; 3]) -> Jet<Self> {
-        term.point_jet_inline(position)
-    }
 
     #[inline(always)]
     fn splat(value: f64) -> Self {

@@ -1,18 +1,11 @@
 //! `f32`, one lane of the shipping path.
 use super::{Real, Scalar, polynomial};
-use crate::Jet;
 use crate::error_function;
-use crate::term::{Prepared, Term};
 
 impl Scalar for f32 {
     #[inline(always)]
     fn round(value: f64) -> Self {
         value as f32
-    }
-
-    #[inline(always)]
-    fn prepared(term: &Prepared) -> &Term<Self> {
-        &term.single
     }
 }
 
@@ -22,16 +15,6 @@ impl Real for f32 {
     const LANES: usize = 1;
     const HORIZON: f64 = 1e9;
     const DUPLICATIONS: usize = 5;
-
-    #[inline(never)]
-    fn evaluate(term: &Term<f32>, local: [Self; 3]) -> Jet<Self> {
-        term.local_jet_inline(local)
-    }
-
-    #[inline(never)]
-    fn evaluate_point(term: &Term<f32>, position: [Self; 3]) -> Jet<Self> {
-        term.point_jet_inline(position)
-    }
 
     #[inline(always)]
     fn splat(value: f64) -> Self {

@@ -1,9 +1,7 @@
 //! `wide::f32x8`, eight lanes of the shipping path.
 use super::single::Binary;
 use super::{Real, single};
-use crate::Jet;
 use crate::error_function;
-use crate::term::Term;
 use wide::bytemuck::cast;
 use wide::{f32x8, i32x8};
 
@@ -13,16 +11,6 @@ impl Real for f32x8 {
     const LANES: usize = 8;
     const HORIZON: f64 = <f32 as Real>::HORIZON;
     const DUPLICATIONS: usize = <f32 as Real>::DUPLICATIONS;
-
-    #[inline(never)]
-    fn evaluate(term: &Term<f32>, local: [Self; 3]) -> Jet<Self> {
-        term.local_jet_inline(local)
-    }
-
-    #[inline(never)]
-    fn evaluate_point(term: &Term<f32>, position: [Self; 3]) -> Jet<Self> {
-        term.point_jet_inline(position)
-    }
 
     #[inline(always)]
     fn splat(value: f64) -> Self {

@@ -80,7 +80,7 @@ fn over_edges<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
         let (ik, i_rim) = (i_both * rim, i_both * k);
         let both = t0 * t1;
 
-        let side = Side {
+        let side = EdgeTerms {
             h: h_abs,
             h2,
             k2,
@@ -119,7 +119,7 @@ fn over_edges<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
 }
 
 /// Quantities that both ends of an edge share.
-struct Side<R> {
+struct EdgeTerms<R> {
     /// |h|.
     h: R,
     /// h².
@@ -142,7 +142,7 @@ struct End<R> {
     less: R,
 }
 
-impl<R: Real> Side<R> {
+impl<R: Real> EdgeTerms<R> {
     /// Returns the contributions of the end t.
     #[inline(always)]
     fn at(&self, t: R) -> End<R> {

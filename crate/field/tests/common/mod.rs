@@ -2,7 +2,7 @@
 #![allow(dead_code)] // Each test file uses its part.
 
 use core::f64::consts::{PI, TAU};
-use field::{BlobScale, Jet, Kernel, Primitive, Profile, Real, Shaping, Skeleton};
+use field::{BlobScale, Evaluate, Jet, Kernel, Primitive, Profile, Shaping, Skeleton};
 use glam::DVec3;
 
 /// Tests that run natively and, by the same names, in WebAssembly.
@@ -270,7 +270,7 @@ pub fn primitive(skeleton: Skeleton, shaping: &Shaping, profile: Option<Profile>
 }
 
 /// Value and gradient by one evaluator, as doubles.
-pub fn jet<R: Real>(primitive: &Primitive, point: DVec3) -> (f64, DVec3) {
+pub fn jet<R: Evaluate>(primitive: &Primitive, point: DVec3) -> (f64, DVec3) {
     let Jet { value, gradient } = primitive.jet(point.to_array().map(R::splat));
     (
         value.lane(0),

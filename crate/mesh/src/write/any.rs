@@ -19,7 +19,7 @@ impl Export {
             bytes,
         };
         let bytes = match format {
-            Format::Glb => glb::write(self, &parts)?,
+            Format::Glb => glb::write(self, &parts, None)?,
             Format::ThreeMf => three_mf::write(self, &parts)?,
             Format::Stl => stl::write(&parts),
             Format::Ply => ply::write(self, &parts),

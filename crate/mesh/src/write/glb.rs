@@ -2,12 +2,14 @@
 
 use super::export::Export;
 use super::prepared::{Prepared, materials, put_floats};
+use super::rig::{Rig, Share};
 use crate::error::{Error, fail};
 use serde_json::{Value, json};
 
 /// Numbers of glTF: component types, and what a buffer view is for.
 const F32: u32 = 5126;
 const U32: u32 = 5125;
+const U16: u32 = 5123;
 const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
@@ -53,7 +55,13 @@ impl Builder {
     }
 
     /// The primitives of a part: one for each segment.
-    fn part(&mut self, part: &Prepared<'_>, plain: &[usize], white: &[usize]) -> Value {
+    fn part(
+        &mut self,
+        part: &Prepared<'_>,
+        shares: Option<&[[Share; 4]]>,
+        plain: &[usize],
+        white: &[usize],
+    ) -> Value {
         let mut attributes = json!({ "POSITION": self.vectors(&part.positions, true) });
         if let Some(normals) = &part.normals {
             attributes["NORMAL"] = json!(self.vectors(normals, false));
@@ -64,6 +72,24 @@ impl Builder {
                 .map(|c| c.map(|x| if x > 0.0 { x.min(1.0) } else { 0.0 }))
                 .collect();
             attributes["COLOR_0"] = json!(self.vectors(&cut, false));
+        }
+        if let Some(shares) = shares {
+            let start = self.numbers.len();
+            for (joint, _) in shares.as_flattened() {
+                self.numbers.extend(joint.to_le_bytes());
+            }
+            let view = self.view(start, VERTICES);
+            attributes["JOINTS_0"] = json!(self.accessor(json!({
+                "bufferView": view, "componentType": U16, "count": shares.len(), "type": "VEC4"
+            })));
+            let start = self.numbers.len();
+            for (_, weight) in shares.as_flattened() {
+                self.numbers.extend(weight.to_le_bytes());
+            }
+            let view = self.view(start, VERTICES);
+            attributes["WEIGHTS_0"] = json!(self.accessor(json!({
+                "bufferView": view, "componentType": F32, "count": shares.len(), "type": "VEC4"
+            })));
         }
         let start = self.numbers.len();
         for i in part.mesh.triangles.as_flattened() {
@@ -91,7 +117,96 @@ impl Builder {
     }
 }
 
-pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> Result<Vec<u8>, Error> {
+impl Builder {
+    /// Numbers that are no vertices, and the accessor of them.
+    fn numbers(&mut self, numbers: &[f32], count: usize, kind: &str) -> usize {
+        let start = self.numbers.len();
+        put_floats(&mut self.numbers, numbers);
+        let length = self.numbers.len() - start;
+        self.views
+            .push(json!({ "buffer": 0, "byteOffset": start, "byteLength": length }));
+        let mut accessor = json!({
+            "bufferView": self.views.len() - 1, "componentType": F32, "count": count, "type": kind
+        });
+        if kind == "SCALAR" {
+            accessor["min"] = json!([numbers.iter().copied().reduce(f32::min)]);
+            accessor["max"] = json!([numbers.iter().copied().reduce(f32::max)]);
+        }
+        self.accessor(accessor)
+    }
+
+    /// The nodes of the joints, the first of which has the number `first`; the skin, and the animation if there are two frames or more.
+    fn rig(
+        &mut self,
+        rig: &Rig,
+        millimetres: f64,
+        first: usize,
+    ) -> (Vec<Value>, Value, Option<Value>) {
+        let rest = rig.rest();
+        let local = rig.local(&rest, millimetres);
+        let nodes = rig.joints.iter().enumerate().map(|(i, joint)| {
+            let mut node = json!({ "name": joint.name, "translation": local[i].0 });
+            let children: Vec<usize> = (0..rig.joints.len())
+                .filter(|&other| rig.joints[other].parent == Some(i))
+                .map(|other| first + other)
+                .collect();
+            if !children.is_empty() {
+                node["children"] = json!(children);
+            }
+            node
+        });
+        let nodes = nodes.collect();
+        let inverse: Vec<f32> = rig
+            .joints
+            .iter()
+            .flat_map(|joint| {
+                let [x, y, z] = (joint.place * -millimetres).to_array().map(|x| x as f32);
+                [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., x, y, z, 1.]
+            })
+            .collect();
+        let inverse = self.numbers(&inverse, rig.joints.len(), "MAT4");
+        let joints: Vec<usize> = (0..rig.joints.len()).map(|i| first + i).collect();
+        let skin = json!({
+            "inverseBindMatrices": inverse, "joints": joints, "skeleton": first - 1
+        });
+        if rig.frames.len() < 2 {
+            return (nodes, skin, None);
+        }
+        let times: Vec<f32> = (0..rig.frames.len())
+            .map(|i| (i as f64 / rig.rate) as f32)
+            .collect();
+        let times = self.numbers(&times, rig.frames.len(), "SCALAR");
+        let frames: Vec<_> = rig
+            .frames
+            .iter()
+            .map(|frame| rig.local(frame, millimetres))
+            .collect();
+        let (mut samplers, mut channels) = (Vec::new(), Vec::new());
+        for i in 0..rig.joints.len() {
+            let places: Vec<f32> = frames.iter().flat_map(|frame| frame[i].0).collect();
+            let turns: Vec<f32> = frames.iter().flat_map(|frame| frame[i].1).collect();
+            let outputs = [
+                ("translation", self.numbers(&places, frames.len(), "VEC3")),
+                ("rotation", self.numbers(&turns, frames.len(), "VEC4")),
+            ];
+            for (path, output) in outputs {
+                channels.push(json!({
+                    "sampler": samplers.len(), "target": { "node": first + i, "path": path }
+                }));
+                samplers
+                    .push(json!({ "input": times, "output": output, "interpolation": "LINEAR" }));
+            }
+        }
+        let animation = json!({ "name": "motion", "samplers": samplers, "channels": channels });
+        (nodes, skin, Some(animation))
+    }
+}
+
+pub(super) fn write(
+    export: &Export,
+    parts: &[Prepared<'_>],
+    rig: Option<&Rig>,
+) -> Result<Vec<u8>, Error> {
     let materials = materials(export);
     // Each as it is, and white for meshes with vertex colours, which multiply it; only those in use.
     let mut described = Vec::new();
@@ -111,25 +226,52 @@ pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> Result<Vec<u8>, 
     };
     let [plain, white] = [list(false), list(true)];
     let mut builder = Builder::default();
+    let shares = |i: usize| rig.map(|rig| &rig.shares[i][..]);
     let meshes: Vec<Value> = parts
         .iter()
-        .map(|part| builder.part(part, &plain, &white))
+        .enumerate()
+        .map(|(i, part)| builder.part(part, shares(i), &plain, &white))
         .collect();
-    let nodes: Vec<Value> = parts
+    let scale = [0.001, 0.001, 0.001];
+    let mut nodes: Vec<Value> = parts
         .iter()
         .enumerate()
-        .map(|(i, part)| json!({ "name": part.name, "mesh": i, "scale": [0.001, 0.001, 0.001] }))
+        .map(|(i, part)| match rig {
+            // Joints alone place it.
+            Some(_) => json!({ "name": part.name, "mesh": i, "skin": 0 }),
+            None => json!({ "name": part.name, "mesh": i, "scale": scale }),
+        })
         .collect();
+    let mut roots: Vec<usize> = (0..parts.len()).collect();
+    let mut skeleton = None;
+    if let Some(rig) = rig {
+        let first = nodes.len() + 1;
+        let (joints, skin, animation) = builder.rig(rig, export.millimetres, first);
+        let top: Vec<usize> = (0..rig.joints.len())
+            .filter(|&i| rig.joints[i].parent.is_none())
+            .map(|i| first + i)
+            .collect();
+        roots.push(nodes.len());
+        nodes.push(json!({ "name": "skeleton", "scale": scale, "children": top }));
+        nodes.extend(joints);
+        skeleton = Some((skin, animation));
+    }
     let mut file = json!({
         "asset": { "version": "2.0", "generator": "Sinew" },
         "scene": 0,
-        "scenes": [{ "nodes": (0..parts.len()).collect::<Vec<_>>() }],
+        "scenes": [{ "nodes": roots }],
         "nodes": nodes,
         "meshes": meshes,
         "accessors": builder.accessors,
         "bufferViews": builder.views,
         "buffers": [{ "byteLength": builder.numbers.len() }]
     });
+    if let Some((skin, animation)) = skeleton {
+        file["skins"] = json!([skin]);
+        if let Some(animation) = animation {
+            file["animations"] = json!([animation]);
+        }
+    }
     if !described.is_empty() {
         file["materials"] = json!(described);
     }

@@ -6,7 +6,9 @@ mod glb;
 mod obj;
 mod ply;
 mod prepared;
+mod rig;
 mod stl;
 mod three_mf;
 
 pub use export::{Export, ExportedFile, Format, Part};
+pub use rig::{Joint, Pose, Rig};

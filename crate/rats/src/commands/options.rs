@@ -751,6 +751,84 @@ pub static SKELETON: &[OptionSpec] = &[
     ),
 ];
 
+/// `motion`.
+pub static MOTION: &[OptionSpec] = &[
+    option(
+        "gravity",
+        &[parameter("V", Kind::Vector, "the acceleration")],
+        "0 -9.81 0",
+        "acceleration of all that falls, lengths per second²",
+    ),
+    option(
+        "damping",
+        &[number("d", "the damping").at_least(0.0)],
+        "0.2",
+        "share of the speed that air takes in a second",
+    ),
+    option(
+        "stiffness",
+        &[number("k", "the stiffness").at_least(0.0)],
+        "1000",
+        "force that stretches a curve to twice its length, for nodes of a mean mass of 1",
+    ),
+    option(
+        "bending",
+        &[number("b", "the share").at_least(0.0)],
+        "0.2",
+        "share of the stiffness with which curves resist bending and twisting",
+    ),
+    option(
+        "steps",
+        &[super::parameter::whole(
+            "n",
+            1,
+            motion::MOST_STEPS,
+            "the steps of a frame",
+        )],
+        "16",
+        "steps of a frame",
+    ),
+    option(
+        "rate",
+        &[number("f", "frames of a second").from(0.1, 1000.0)],
+        "25",
+        "frames of a second",
+    ),
+    option(
+        "floor",
+        &[
+            vector("P", "a point of the floor"),
+            parameter("N", Kind::Direction, "the floor's normal"),
+        ],
+        "none",
+        "a floor or wall; the normal points to where there is room; there may be several",
+    ),
+    option(
+        "bounce",
+        &[number("e", "the share").from(0.0, 1.0)],
+        "0",
+        "share of the speed that is left after a blow",
+    ),
+    option(
+        "friction",
+        &[number("m", "the coefficient").from(0.0, 1000.0)],
+        "0.4",
+        "friction: 0 is ice, 1 is rubber",
+    ),
+    option(
+        "pin",
+        &[parameter("A", Kind::Known(Names::Node), "the name of a node").many()],
+        "",
+        "nodes that stay where the text has them, frame by frame",
+    ),
+    option(
+        "against",
+        &[parameter("object", Kind::Known(Names::Object), "an object's name").many()],
+        "",
+        "objects that stand in the way: boxes, spheres, cylinders, cones, pipes, planes, skeletons",
+    ),
+];
+
 /// Schemes of subdivision.
 pub static SCHEMES: &[OptionSpec] = &[
     plain("cubic", "the smoothest: cubic B-splines"),

@@ -126,6 +126,7 @@ pub(crate) enum Routine {
     Table,
     Blobscale,
     Skeleton,
+    Motion,
     Contact,
     Influence,
     Curve,

@@ -2,7 +2,7 @@
 
 use super::state::{Evaluator, Flow};
 use super::{
-    air, camera, contact, deform, lights, materials, objects, options, primitives, run,
+    air, camera, contact, deform, lights, materials, motion, objects, options, primitives, run,
     scene_commands, skeleton, textures, tools, variables,
 };
 use crate::commands::Routine;
@@ -113,6 +113,7 @@ pub fn function(routine: Routine) -> Run {
         Routine::Influence => options::influence,
         Routine::Curve => primitives::curve,
         Routine::Skeleton => skeleton::skeleton,
+        Routine::Motion => motion::motion,
         Routine::Contact => contact::contact,
         Routine::Seed => variables::seed,
     }

@@ -5,16 +5,7 @@ use crate::assets;
 use crate::limits::MAX_IMAGE_PIXELS;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
-use std::sync::Arc;
 use texture::Rgb8;
-
-/// Images in the order in which the text names them first, each with its name in the project.
-#[derive(Debug, Default)]
-pub struct Images {
-    /// The images.
-    pub all: Vec<Arc<Rgb8>>,
-    names: Vec<String>,
-}
 
 impl<'a> Evaluator<'a> {
     /// The index of an image of the project.
@@ -23,7 +14,7 @@ impl<'a> Evaluator<'a> {
     /// If there is no such file, it is no picture, or all together are too large.
     pub(super) fn image(&mut self, name: &Name<'a>) -> Outcome<usize> {
         let asset = self.asset(name)?;
-        if let Some(index) = self.images.names.iter().position(|n| *n == asset.name) {
+        if let Some(index) = self.images.position(&asset.name) {
             return Ok(index);
         }
         self.scope.step(assets::cost(asset), &name.span)?;
@@ -38,8 +29,6 @@ impl<'a> Evaluator<'a> {
             )
             .hint("make them smaller"));
         }
-        self.images.names.push(asset.name.clone());
-        self.images.all.push(image);
-        Ok(self.images.all.len() - 1)
+        Ok(self.images.add(asset.name.clone(), image))
     }
 }

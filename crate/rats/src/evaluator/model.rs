@@ -14,6 +14,7 @@ use scene::{Body, Contact, Element, Shape};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
+use std::rc::Rc;
 
 /// A shape and what the language must remember of it.
 #[derive(Clone, Debug)]
@@ -31,6 +32,10 @@ pub struct Part {
     pub tapers: bool,
     /// Whether it has been removed.
     pub removed: bool,
+    /// The names of a skeleton's nodes.
+    pub nodes: Option<Rc<Vec<String>>>,
+    /// Whether `motion` has moved it.
+    pub moves: bool,
 }
 
 impl Part {

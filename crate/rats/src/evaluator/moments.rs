@@ -1,68 +1,16 @@
-//! The scene at the moments of a shutter that stays open, and what `transform` holds still meanwhile.
+//! The scene at the moments of a shutter that stays open.
 
-use super::model::{Model, Part};
+use super::frozen::Frozen;
 use super::state::Evaluator;
 use crate::limits::{MAX_ELEMENTS, MAX_MOMENTS, MAX_STEPS};
 use crate::project::Asset;
 use crate::scope::Scope;
 use crate::sources::Sources;
 use crate::symbol::Symbols;
-use glam::DAffine3;
-use scene::{Scene, Shape};
-use std::ops::Range;
+use scene::Scene;
 
 /// Fewest moments that show a movement.
 const FEWEST: usize = 4;
-
-/// Shapes as `transform` commands found them, command by command.
-#[derive(Clone, Debug, Default)]
-pub struct Frozen {
-    /// What the commands of this run have found.
-    found: Vec<Vec<Still>>,
-    /// What those of the frame's own run found, which counts here.
-    given: Option<Vec<Vec<Still>>>,
-}
-
-/// Where a shape is.
-#[derive(Clone, Debug)]
-struct Still {
-    shape: Shape,
-    moved: Option<Box<DAffine3>>,
-    growth: f64,
-}
-
-impl Still {
-    fn of(part: &Part) -> Self {
-        Self {
-            shape: part.element.shape.clone(),
-            moved: part.moved.clone(),
-            growth: part.growth,
-        }
-    }
-}
-
-impl Frozen {
-    /// Holds these shapes still: in the run of a frame it notes where they are, in that of another moment it puts them
-    /// back there.
-    pub fn hold(&mut self, model: &mut Model<'_>, range: Range<usize>) {
-        let parts = &mut model.parts[range];
-        let number = self.found.len();
-        let Some(given) = &self.given else {
-            self.found.push(parts.iter().map(Still::of).collect());
-            return;
-        };
-        self.found.push(Vec::new());
-        // Other shapes than in the frame itself: there is nothing to go back to.
-        let Some(still) = given.get(number).filter(|still| still.len() == parts.len()) else {
-            return;
-        };
-        for (part, still) in parts.iter_mut().zip(still) {
-            part.element.shape = still.shape.clone();
-            part.moved.clone_from(&still.moved);
-            part.growth = still.growth;
-        }
-    }
-}
 
 /// A frame whose shutter stays open.
 pub struct Exposure<'s, 'a> {
@@ -105,7 +53,7 @@ impl<'s, 'a: 's> Exposure<'s, 'a> {
     fn at(&self, moment: f64) -> Scene {
         let scope = Scope::new(self.symbols.clone());
         let mut state = Evaluator::new(self.sources, self.assets, moment, scope);
-        state.frozen.given = Some(self.frozen.found.clone());
+        state.frozen = self.frozen.of_frame();
         state.run_all().0
     }
 }

@@ -64,6 +64,8 @@ impl<'a> Evaluator<'a> {
             moved: None,
             repeated: self.repeating > 0 || !self.is_own(),
             removed: false,
+            nodes: None,
+            moves: false,
         };
         self.model.push(part, &command.span)?;
         self.palette.surfaces[material].used = true;

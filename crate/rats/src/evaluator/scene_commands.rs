@@ -1,7 +1,7 @@
 //! SCENE: `report`, `reset`, `shoot`.
 
-use super::air::Air;
 use super::state::{Evaluator, Flow};
+use super::surroundings::Air;
 use crate::Severity;
 use crate::problem::Outcome;
 use crate::syntax::Command;

@@ -13,6 +13,7 @@ use glam::DAffine3;
 use scene::{Curves, Element, Form, Function, Shape};
 use skeleton::{Node, Scheme, Skeleton};
 use std::ops::Range;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Levels of subdivision unless the text says so.
@@ -45,6 +46,8 @@ pub fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
         );
     }
     let lonely = read.lonely();
+    let names = read.nodes.iter().map(|(name, _)| name.text.to_owned());
+    let names = names.collect();
     let curves = read.refined(command, &given)?;
     let segments = curves.polyline().map_or(0, |p| p.segments.len());
     run.scope
@@ -76,6 +79,8 @@ pub fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
         moved: None,
         repeated: run.repeating > 0 || !run.is_own(),
         removed: false,
+        nodes: Some(Rc::new(names)),
+        moves: false,
     };
     let pushed = run.model.push(part, &command.span);
     run.model.close();

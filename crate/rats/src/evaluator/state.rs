@@ -1,10 +1,11 @@
 //! The state of a running text, which every command reads and changes.
 
-use super::air::Air;
-use super::images::Images;
+use super::frozen::Frozen;
+use super::image_list::Images;
 use super::model::Model;
-use super::moments::Frozen;
+use super::motion::Moving;
 use super::palette::Palette;
+use super::surroundings::Air;
 use super::view_plane::ViewPlane;
 use super::watched::Watch;
 use crate::compiled::{HotVariable, Output, Placement};
@@ -71,6 +72,8 @@ pub struct Evaluator<'a> {
     pub(super) output: Output,
     /// Whether a variable changes with every frame.
     pub(super) animated: bool,
+    /// What `motion` has moved.
+    pub(super) moving: Moving,
     /// The file that is being run.
     pub(super) file: usize,
     /// The files that are being read, the innermost last.
@@ -127,6 +130,7 @@ impl<'a> Evaluator<'a> {
             tool_origins: Vec::new(),
             output: Output::default(),
             animated: false,
+            moving: Moving::default(),
             file: 0,
             reading: Vec::new(),
             uses: Vec::new(),

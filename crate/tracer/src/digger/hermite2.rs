@@ -24,14 +24,14 @@ impl Spans {
 }
 
 /// A cubic on a part of the ray.
-struct Piece {
+struct CubicPart {
     from: f64,
     to: f64,
     /// By powers of t − from.
     powers: [f64; 4],
 }
 
-impl Piece {
+impl CubicPart {
     fn new(from: f64, to: f64, nodes: [Node<f64>; 2]) -> Self {
         let length = to - from;
         let [left, right] = nodes;
@@ -75,13 +75,13 @@ impl Single for Spans {
                 if i < self.0 {
                     (right.value, right.slope) = sight.one(term, place(i));
                 }
-                pieces.push(Piece::new(place(i - 1), place(i), [left, right]));
+                pieces.push(CubicPart::new(place(i - 1), place(i), [left, right]));
                 left = right;
             }
             cuts.extend((0..=self.0).map(place));
         }
         cuts.retain(|t| *t >= sight.range[0] && *t <= sight.range[1]);
-        cuts.sort_by(f64::total_cmp);
+        cuts.sort_unstable_by(f64::total_cmp);
         pieces.sort_by(|a, b| a.from.total_cmp(&b.from));
 
         let mut side = Side::unknown(quest);

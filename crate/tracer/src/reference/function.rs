@@ -1,5 +1,5 @@
 //! The function whose surface the reference looks for: a field, or the smooth maximum of two.
-use super::pieces::{Extent, Pieces};
+use super::pieces::{Magnitudes, Pieces};
 use super::waves::Factor;
 use field::{Kink, Primitive, THRESHOLD};
 use glam::DVec3;
@@ -10,7 +10,7 @@ pub(super) const ULP: f64 = 4e-16;
 
 /// The function less T at a point, its gradient, and how far rounding may have moved them.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
+pub(super) struct Evaluation {
     pub excess: f64,
     pub gradient: DVec3,
     pub noise: f64,
@@ -20,20 +20,20 @@ pub(super) struct Sample {
 /// A function of space.
 #[derive(Clone, Debug)]
 pub(super) enum Function {
-    Sum(Terms),
+    Sum(FieldTerms),
     /// `(a + b + √((a−b)² + k²))/2`, k > 0.
-    SmoothMaximum(Box<[Terms; 2]>, f64),
+    SmoothMaximum(Box<[FieldTerms; 2]>, f64),
 }
 
 /// The terms of a field.
 #[derive(Clone, Debug)]
-pub(super) struct Terms {
+pub(super) struct FieldTerms {
     primitives: Vec<Primitive>,
     pieces: Pieces,
 }
 
 impl Function {
-    pub fn sample(&self, point: DVec3) -> Sample {
+    pub fn sample(&self, point: DVec3) -> Evaluation {
         match self {
             Self::Sum(terms) => terms.sample(point),
             Self::SmoothMaximum(parts, k) => {
@@ -42,7 +42,7 @@ impl Function {
                 let (excess, share) = mixed(a.excess, b.excess, *k);
                 // The share changes by at most 1/(2k) where the difference changes by 1.
                 let turned = (a.noise + b.noise) / (2.0 * k) * a.gradient.distance(b.gradient);
-                Sample {
+                Evaluation {
                     excess,
                     gradient: a.gradient * share + b.gradient * (1.0 - share),
                     noise,
@@ -53,7 +53,7 @@ impl Function {
     }
 
     /// Bounds in a ball; of the second derivative along a unit vector, if one is given, else in any direction.
-    pub fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Extent {
+    pub fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Magnitudes {
         match self {
             Self::Sum(terms) => terms.extent(center, radius, along),
             Self::SmoothMaximum(parts, k) => {
@@ -61,7 +61,7 @@ impl Function {
                     .each_mut()
                     .map(|part| part.extent(center, radius, along));
                 let both = a.slope + b.slope;
-                Extent {
+                Magnitudes {
                     // It grows with both parts, and is above each.
                     above: mixed(a.above, b.above, *k).0,
                     below: a.below.min(b.below),
@@ -90,7 +90,7 @@ fn mixed(a: f64, b: f64, k: f64) -> (f64, f64) {
     (0.5 * (a + b + root), 0.5 * (1.0 + (a - b) / root))
 }
 
-impl Terms {
+impl FieldTerms {
     pub fn new(primitives: Vec<Primitive>) -> Self {
         Self {
             pieces: Pieces::new(&primitives),
@@ -98,7 +98,7 @@ impl Terms {
         }
     }
 
-    fn sample(&self, point: DVec3) -> Sample {
+    fn sample(&self, point: DVec3) -> Evaluation {
         let (mut excess, mut size) = (-THRESHOLD, THRESHOLD);
         let (mut gradient, mut steep) = (DVec3::ZERO, 0.0);
         for primitive in &self.primitives {
@@ -109,7 +109,7 @@ impl Terms {
             gradient += slope;
             steep += slope.length();
         }
-        Sample {
+        Evaluation {
             excess,
             gradient,
             noise: FIELD_ERROR * size + ULP * point.abs().max_element() * steep,
@@ -117,7 +117,7 @@ impl Terms {
         }
     }
 
-    fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Extent {
+    fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Magnitudes {
         self.pieces.extent(&self.primitives, center, radius, along)
     }
 }

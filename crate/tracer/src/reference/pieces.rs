@@ -11,7 +11,7 @@ use glam::DVec3;
 
 /// Bounds of magnitudes of some terms of the field in a ball.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Extent {
+pub struct Magnitudes {
     /// Bound on the sum of the positive terms.
     pub above: f64,
     /// Bound on the sum of the sizes of the negative terms.
@@ -157,8 +157,8 @@ impl Pieces {
         center: DVec3,
         radius: f64,
         along: Option<DVec3>,
-    ) -> Extent {
-        let mut sum = Extent::default();
+    ) -> Magnitudes {
+        let mut sum = Magnitudes::default();
         for number in 0..self.bodies.len() {
             let mut most = match self.bodies[number].root {
                 Some(root) => self.gather(number, root, center, radius),

@@ -21,9 +21,9 @@ macro_rules! examples {
 }
 
 /// Names and texts of the examples.
-pub const EXAMPLES: [(&str, &str); 36] = examples![
-    "agate-shell" "coral-crab" "coral-tree" "cowrie" "diamond" "drops" "fireflies" "fog-stones" "generators"
-    "glass-drops" "hermite-crab" "icicle" "octopus" "pebbles" "planets" "sea-urchin" "seahorse" "seaweed"
+pub const EXAMPLES: [(&str, &str); 39] = examples![
+    "agate-shell" "coral-crab" "coral-tree" "cowrie" "diamond" "drops" "falling" "fireflies" "floppy-ears" "fog-stones" "generators"
+    "glass-drops" "hermite-crab" "icicle" "jelly" "octopus" "pebbles" "planets" "sea-urchin" "seahorse" "seaweed"
     "shell-1" "shell-2" "shell-3" "snail" "sphereflake" "spinal-starecase" "squeeze" "starfish" "starfish-a"
     "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "still-life" "touching" "tshape"
     "urchin-patterns"

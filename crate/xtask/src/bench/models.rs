@@ -1,5 +1,5 @@
 //! The cost of softness: the thesis's eight models (table 3.3) as convolution surfaces and as the
-//! offset surfaces of their skeletons.
+//! offset surfaces of their skeletons. And the cost of bodies: many small ones against one large one.
 
 use super::goal::{Goal, Wanted, short};
 use super::scenes::Scenes;
@@ -67,5 +67,34 @@ pub fn measure() -> Result<Piece> {
         unit: "×",
         measured: Ok(mean),
     };
-    Ok((vec![goal], page))
+    let bodies = bodies(&scenes, &mut page)?;
+    Ok((vec![goal, bodies], page))
+}
+
+/// How many bodies of three elements are compared with one body of all elements.
+const BODIES: &str = "5000";
+
+/// Times a scene of very many bodies against the same elements as one body.
+fn bodies(scenes: &Scenes, page: &mut String) -> Result<Goal> {
+    let time = |bodies: &str| {
+        let options = ["--balls", BODIES, "--bodies", bodies];
+        Ok(ours::time(&scenes.sinew, &options)?.seconds)
+    };
+    let [one, many] = alternate(5, [&mut || time("triples"), &mut || time("many")])?;
+    let ratio = many.best() / one.best();
+    writeln!(
+        page,
+        "{BODIES} molecules of three Gaussian balls (`sinew time --balls {BODIES} --bodies many`), each a body of its own, and all \
+         in one body; one ray a pixel:\n\n| one body | {BODIES} bodies | ratio |\n|--:|--:|--:|\n| {} | {} | {} |\n",
+        one.text(),
+        many.text(),
+        short(ratio)
+    )?;
+    Ok(Goal {
+        what: format!("{BODIES} bodies of 3 elements ÷ one body of them"),
+        against: "one body".into(),
+        wanted: Wanted::AtMost(2.0),
+        unit: "×",
+        measured: Ok(ratio),
+    })
 }

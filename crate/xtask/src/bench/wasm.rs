@@ -18,8 +18,8 @@ const ROUNDS: usize = 5;
 pub fn measure() -> Result<Piece> {
     tools::wasm_target()?;
     let runner = tools::wasm_test_runner()?;
-    let native = built(&[])?;
-    let mut wasm = built(&["--target", tools::WASM])?;
+    let native = built(&["--profile", "release"])?;
+    let mut wasm = built(&["--profile", "worker", "--target", tools::WASM])?;
     // As the page's worker is.
     if let Some(wasm_opt) = tools::wasm_opt() {
         let folder = target().join("bench");
@@ -81,7 +81,6 @@ fn built(arguments: &[&str]) -> Result<PathBuf> {
     let fixed = [
         "test",
         "--no-run",
-        "--release",
         "--package",
         "worker",
         "--test",

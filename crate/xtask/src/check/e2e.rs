@@ -11,14 +11,44 @@ use std::path::PathBuf;
 pub struct Built {
     page: PathBuf,
     program: PathBuf,
-    chromium: PathBuf,
+}
+
+/// Which page and program are built.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Of {
+    /// Those that are shipped, whose sizes are held to limits.
+    Release,
+    /// Those that are built soonest.
+    Development,
+}
+
+impl Built {
+    /// `node --test` on files in `tests/`, told of the page and the program.
+    fn tests(&self, options: &[&str], files: &[String]) -> Result<std::process::Command> {
+        let screenshots = target().join("screenshots");
+        std::fs::create_dir_all(&screenshots)?;
+        let mut node = command("node", &["--test", "--test-reporter=spec"]);
+        node.args(options)
+            .args(files)
+            .current_dir(root().join("tests"))
+            .env("SINEW_PAGE", &self.page)
+            .env("SINEW_PROGRAM", &self.program)
+            .env("SINEW_SCREENSHOTS", screenshots);
+        Ok(node)
+    }
+}
+
+/// Runs the tests in Firefox.
+pub fn firefox(watch: &mut Watch) -> Result<String> {
+    let built = build(watch, Of::Development)?;
+    let firefox = tools::firefox()?;
+    let mut tests = built.tests(&[], &[String::from("firefox.mjs")])?;
+    watch.step("tests", || run(tests.env("FIREFOX", firefox)))?;
+    Ok(String::from("the page works in Firefox"))
 }
 
 /// Runs this part.
 pub fn check(watch: &mut Watch, chosen: &Chosen, built: Built) -> Result<String> {
-    let screenshots = target().join("screenshots");
-    std::fs::create_dir_all(&screenshots)?;
-
     let folder = root().join("tests");
     let mut tests: Vec<_> = std::fs::read_dir(&folder)?
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
@@ -37,30 +67,24 @@ pub fn check(watch: &mut Watch, chosen: &Chosen, built: Built) -> Result<String>
         }
     }
     // One after the other: each has the machine to itself.
-    let mut options = vec!["--test", "--test-concurrency=1", "--test-reporter=spec"];
+    let mut options = vec!["--test-concurrency=1"];
     if let Some(pattern) = pattern {
         options.extend(["--test-name-pattern", pattern]);
     }
-    watch.step("tests", || {
-        run(command("node", &options)
-            .args(&tests)
-            .current_dir(&folder)
-            .env("CHROMIUM", &built.chromium)
-            .env("SINEW_PAGE", &built.page)
-            .env("SINEW_PROGRAM", &built.program)
-            .env("SINEW_SCREENSHOTS", &screenshots))
-    })?;
+    let mut node = built.tests(&options, &tests)?;
+    node.env("CHROMIUM", tools::chromium()?);
+    watch.step("tests", || run(&mut node))?;
     let count = tests.len();
+    let screenshots = target().join("screenshots");
     Ok(format!(
         "{count} files of tests passed, screenshots in {}",
         screenshots.display()
     ))
 }
 
-/// Builds the page and the program: those that are shipped, and whose sizes are held to limits, where everything is tested; else
-/// what is built soonest. Installs what drives the page.
-pub fn build(watch: &mut Watch, chosen: &Chosen) -> Result<Built> {
-    let (page, program) = if *chosen == Chosen::All {
+/// Builds the page and the program, and installs the packages that drive a browser.
+pub fn build(watch: &mut Watch, of: Of) -> Result<Built> {
+    let (page, program) = if of == Of::Release {
         let page = watch.step("page", dist::dist)?;
         let program = watch.step("program", portable::build)?.program;
         (page, program)
@@ -73,10 +97,5 @@ pub fn build(watch: &mut Watch, chosen: &Chosen) -> Result<Built> {
         (page, executable(&made, "sinew")?)
     };
     tools::node_packages()?;
-    let chromium = tools::chromium()?;
-    Ok(Built {
-        page,
-        program,
-        chromium,
-    })
+    Ok(Built { page, program })
 }

@@ -28,6 +28,8 @@ pub enum Part {
     Wasm,
     /// The page in a real browser.
     E2e,
+    /// The page in Firefox. Runs only where it is asked for.
+    Firefox,
 }
 
 /// What a part takes, step by step.
@@ -68,6 +70,7 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
         Some(Part::Quick) => vec![run(Part::Quick, &Chosen::changed(filter)?)],
         // Crates are not to be seen there.
         Some(Part::E2e) => vec![run(Part::E2e, &filter.map_or(Chosen::All, Chosen::Test))],
+        Some(Part::Firefox) => vec![run(Part::Firefox, &Chosen::All)],
         Some(part) => vec![run(part, &Chosen::new(filter))],
         None => all(),
     };
@@ -92,7 +95,8 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
 fn all() -> Vec<Done> {
     let mut watch = Watch::default();
     let (mut done, built) = std::thread::scope(|scope| {
-        let page = scope.spawn(|| in_lane("page", true, || e2e::build(&mut watch, &Chosen::All)));
+        let page =
+            scope.spawn(|| in_lane("page", true, || e2e::build(&mut watch, e2e::Of::Release)));
         let code = scope.spawn(|| {
             let parts = [Part::Lint, Part::Native, Part::Wasm];
             in_lane("code", true, || parts.map(|part| run(part, &Chosen::All)))
@@ -134,9 +138,15 @@ fn run(part: Part, chosen: &Chosen) -> Done {
         Part::Native => native::check(watch, chosen),
         Part::Wasm => wasm::check(watch, chosen),
         Part::E2e => {
-            let built = e2e::build(watch, chosen)?;
+            let of = if *chosen == Chosen::All {
+                e2e::Of::Release
+            } else {
+                e2e::Of::Development
+            };
+            let built = e2e::build(watch, of)?;
             e2e::check(watch, chosen, built)
         }
+        Part::Firefox => e2e::firefox(watch),
     })
 }
 

@@ -90,6 +90,16 @@ pub static EXTENSIONS: &[CommandSpec] = &[
             material names another. With `local D` only the stretch within D along the curves counts at a point, so that a fold does \
             not blend with what lies beside it; about four radii suit. A skeleton is an object: it is moved, turned and copied by its name.")
         .example("light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular Gray50, shine 40, radius 0.6, blobbiness -2\nskeleton Flesh, HAND {\n  node WRIST <-3 -1 0> radius 0.5\n  node PALM <-0.5 0 0> radius 0.9\n  node TIP <3 1.2 0> radius 0.3\n  node THUMB <0.5 2.4 0> radius 0.3\n  curve WRIST PALM TIP\n  curve PALM THUMB\n}"),
+    row("motion", "let skeletons fall, swing and touch", run(Routine::Motion))
+        .newer()
+        .takes(&[Parameter { arity: Arity::Any, ..parameter("object", Kind::Known(Names::Object), "an object's name") }])
+        .options(o::MOTION)
+        .details("Stands behind skeletons, and moves the last one or those of the objects it names, together. Nodes are masses and curves are springs; frame 0 has them \
+            where the text has them, and each further frame follows from the one before. Floors, the objects of `against` and the flesh of all that moves \
+            together, own folds too, push back. A chain of n nodes that hangs is stretched by a share of n·gravity/stiffness at its upper end. Flesh moves at most half its thickness in a step, so \
+            that it passes through nothing: fast things need more `steps`. A node that is pinned follows variables that change with the frames. \
+            At most 200 nodes move together, 3000 frames long.")
+        .example("light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular Gray50, shine 40, radius 0.4, blobbiness -2\nskeleton Flesh, TAIL {\n  node ROOT <-3 2 0> radius 0.6\n  node A <-1.5 2.2 0> node B <0 2 0> node C <1.5 2.2 0>\n  node TIP <3 2 0> radius 0.2\n  curve ROOT A B C TIP\n}\nmotion TAIL { gravity 0 -10 0, stiffness 400, steps 20, pin ROOT, floor <0 -2 0> <0 1 0> }"),
     row("deform", "bend a mesh by control points", run(Routine::Deform))
             .newer()
         .takes(&[parameter("object", Kind::Known(Names::Object), "an object's name").optional("the last one")])

@@ -1,0 +1,686 @@
+//! Where flesh touches: samples of the surface, what they can meet, and how they are pushed back.
+
+use crate::field::{distance, line};
+use crate::obstacle::{Obstacle, foot};
+use crate::setup::{Body, Settings};
+use glam::DVec3;
+use skeleton::Polyline;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Levels of subdivision of the curves that touch.
+const LEVELS: u32 = 1;
+/// Samples are at most so many radii apart, unless that are too many.
+const SPACING: f64 = 1.5;
+/// The most samples of a segment, besides its ends.
+const MOST_BETWEEN: usize = 3;
+
+/// Radii within which curves add to the thickness of the flesh at a point.
+const NEAR: f64 = 8.0;
+/// The share of its radius by which a sample that begins in an obstacle is put out in a step.
+const RISE: f64 = 0.005;
+
+/// A mean of some nodes: their numbers and weights, which add up to 1.
+type Mean = Vec<(u32, f64)>;
+
+fn at(mean: &Mean, places: &[DVec3]) -> DVec3 {
+    mean.iter().fold(DVec3::ZERO, |sum, &(node, weight)| {
+        sum + places[node as usize] * weight
+    })
+}
+
+/// `Σ weight²/mass`: the inverse of the mass that a force on the point meets.
+fn inverse_mass(mean: &Mean, inverse: &[f64]) -> f64 {
+    mean.iter()
+        .map(|&(node, weight)| weight * weight * inverse[node as usize])
+        .sum()
+}
+
+/// Moves a point's nodes by an impulse.
+fn push(mean: &Mean, impulse: DVec3, places: &mut [DVec3], inverse: &[f64]) {
+    for &(node, weight) in mean {
+        places[node as usize] += impulse * (weight * inverse[node as usize]);
+    }
+}
+
+/// A point of a curve and the ball of flesh around it.
+#[derive(Clone, Debug)]
+struct Sample {
+    mean: Mean,
+    radius: f64,
+    /// The segments that it can meet.
+    far: Vec<u32>,
+    /// Those of them that were near when last looked for.
+    near: Vec<u32>,
+    /// By how much the flesh overlapped at first, which is let be.
+    overlap: f64,
+}
+
+/// A piece of a curve.
+#[derive(Clone, Debug)]
+struct Segment {
+    ends: [u32; 2],
+    radius: f64,
+}
+
+/// A sample that met an obstacle in this step.
+#[derive(Clone, Copy, Debug)]
+struct Hit {
+    sample: usize,
+    normal: DVec3,
+    /// The speed away from the obstacle before.
+    speed: f64,
+}
+
+/// All flesh of some bodies.
+#[derive(Clone, Debug)]
+pub struct Flesh {
+    vertices: Vec<Mean>,
+    segments: Vec<Segment>,
+    samples: Vec<Sample>,
+    /// Places of the vertices in this step.
+    now: Vec<DVec3>,
+    before: Vec<DVec3>,
+    /// Places of the nodes when near segments were last looked for.
+    looked: Vec<DVec3>,
+    /// By how much a sample may miss a segment and still be taken for near.
+    margin: f64,
+    hits: Vec<Hit>,
+}
+
+impl Flesh {
+    /// The flesh of bodies, whose nodes come one body after another.
+    pub fn new(bodies: &[Body]) -> Result<Self, skeleton::Error> {
+        let mut flesh = Self {
+            vertices: Vec::new(),
+            segments: Vec::new(),
+            samples: Vec::new(),
+            now: Vec::new(),
+            before: Vec::new(),
+            looked: Vec::new(),
+            margin: 0.0,
+            hits: Vec::new(),
+        };
+        let mut first = 0;
+        let mut starts = Vec::new();
+        let mut lines = Vec::new();
+        for body in bodies {
+            let polyline = body.skeleton.polyline(body.scheme, LEVELS)?;
+            starts.push((flesh.samples.len(), flesh.segments.len()));
+            flesh.add(body, &polyline, first)?;
+            first += body.skeleton.nodes.len();
+            lines.push(polyline);
+        }
+        starts.push((flesh.samples.len(), flesh.segments.len()));
+        let places: Vec<DVec3> = bodies
+            .iter()
+            .flat_map(|b| b.skeleton.nodes.iter().map(|n| n.position))
+            .collect();
+        flesh.refresh(&places);
+        for (number, polyline) in lines.iter().enumerate() {
+            let (samples, segments) = (starts[number], starts[number + 1]);
+            flesh.own_folds(
+                samples.0..segments.0,
+                samples.1..segments.1,
+                polyline,
+                &places,
+            );
+        }
+        flesh.margin = flesh.samples.iter().map(|s| s.radius).fold(0.0, f64::max);
+        flesh.look(&places);
+        for index in 0..flesh.samples.len() {
+            let overlap = flesh.depth(index, &places).map_or(0.0, |(depth, _)| depth.max(0.0));
+            flesh.samples[index].overlap = overlap;
+        }
+        Ok(flesh)
+    }
+
+    /// Adds the vertices, segments and samples of a body.
+    fn add(
+        &mut self,
+        body: &Body,
+        polyline: &Polyline,
+        first: usize,
+    ) -> Result<(), skeleton::Error> {
+        let base = self.vertices.len();
+        let weights = body.skeleton.weights(body.scheme, LEVELS)?;
+        let shifted = |(node, weight): (usize, f64)| ((first + node) as u32, weight);
+        let means: Vec<Mean> = weights
+            .into_iter()
+            .map(|own| own.into_iter().map(shifted).collect())
+            .collect();
+        let radius_at = |segment: &skeleton::Segment| {
+            let [a, b] = segment.ends.map(|end| polyline.vertices[end].radius);
+            0.5 * (a + b)
+        };
+        let pieces: Vec<_> = polyline
+            .segments
+            .iter()
+            .map(|s| {
+                let [a, b] = s.ends.map(|end| polyline.vertices[end].position);
+                (a, b, radius_at(s))
+            })
+            .collect();
+        for (index, vertex) in polyline.vertices.iter().enumerate() {
+            let around = polyline.around(index);
+            let Some(&one) = around.first() else {
+                continue;
+            };
+            let (a, b, _) = pieces[one];
+            self.samples.push(Sample {
+                mean: means[index].clone(),
+                radius: thickness(
+                    &pieces,
+                    vertex.position,
+                    b - a,
+                    vertex.radius,
+                    around.len() == 1,
+                ),
+                far: Vec::new(),
+                near: Vec::new(),
+                overlap: 0.0,
+            });
+        }
+        for (segment, &(a, b, radius)) in polyline.segments.iter().zip(&pieces) {
+            self.segments.push(Segment {
+                ends: segment.ends.map(|end| (base + end) as u32),
+                radius,
+            });
+            let between = if radius > 0.0 {
+                ((segment.length / (SPACING * radius)) as usize).min(MOST_BETWEEN)
+            } else {
+                0
+            };
+            for i in 1..=between {
+                let along = i as f64 / (between + 1) as f64;
+                let [first, second] = segment.ends.map(|end| &means[end]);
+                let radii = segment.ends.map(|end| polyline.vertices[end].radius);
+                let own = radii[0] + (radii[1] - radii[0]) * along;
+                self.samples.push(Sample {
+                    mean: mixed(first, second, along),
+                    radius: thickness(&pieces, a.lerp(b, along), b - a, own, false),
+                    far: Vec::new(),
+                    near: Vec::new(),
+                    overlap: 0.0,
+                });
+            }
+        }
+        self.vertices.extend(means);
+        Ok(())
+    }
+
+    /// Finds for each sample of a body the segments it can meet: all of other bodies, and those of its own that are neither near
+    /// along the curves nor near in space as they are at first.
+    fn own_folds(
+        &mut self,
+        samples: std::ops::Range<usize>,
+        segments: std::ops::Range<usize>,
+        polyline: &Polyline,
+        places: &[DVec3],
+    ) {
+        let along: Vec<Vec<f64>> = (0..polyline.vertices.len())
+            .map(|vertex| ways(polyline, vertex))
+            .collect();
+        // Samples at vertices come first, then those within segments.
+        let at_vertices: Vec<usize> = (0..polyline.vertices.len())
+            .filter(|&v| !polyline.around(v).is_empty())
+            .collect();
+        let mut hosts: Vec<[(usize, f64); 2]> =
+            at_vertices.iter().map(|&v| [(v, 0.0), (v, 0.0)]).collect();
+        for segment in &polyline.segments {
+            let radius = segment.ends.map(|end| polyline.vertices[end].radius);
+            let radius = 0.5 * (radius[0] + radius[1]);
+            let between = if radius > 0.0 {
+                ((segment.length / (SPACING * radius)) as usize).min(MOST_BETWEEN)
+            } else {
+                0
+            };
+            for i in 1..=between {
+                let share = i as f64 / (between + 1) as f64;
+                hosts.push([
+                    (segment.ends[0], segment.length * share),
+                    (segment.ends[1], segment.length * (1.0 - share)),
+                ]);
+            }
+        }
+        for (index, host) in samples.zip(hosts) {
+            let (point, radius) = (
+                at(&self.samples[index].mean, places),
+                self.samples[index].radius,
+            );
+            let mut far = Vec::new();
+            for number in 0..self.segments.len() {
+                if segments.contains(&number) {
+                    let own = &polyline.segments[number - segments.start];
+                    let reach = radius + self.segments[number].radius;
+                    let way = |(vertex, start): (usize, f64)| {
+                        let to = own.ends.map(|end| along[vertex][end]);
+                        start + to[0].min(to[1])
+                    };
+                    let [a, b] = self.ends(number);
+                    let apart = point.distance(a.lerp(b, foot(point, a, b)));
+                    let is_far =
+                        way(host[0]).min(way(host[1])) > 2.0 * reach && apart > 1.05 * reach;
+                    if !is_far {
+                        continue;
+                    }
+                }
+                far.push(number as u32);
+            }
+            self.samples[index].far = far;
+        }
+    }
+
+    fn ends(&self, segment: usize) -> [DVec3; 2] {
+        self.segments[segment]
+            .ends
+            .map(|end| self.now[end as usize])
+    }
+
+    /// Takes the vertices to where the nodes are.
+    fn refresh(&mut self, places: &[DVec3]) {
+        self.now.clear();
+        self.now
+            .extend(self.vertices.iter().map(|mean| at(mean, places)));
+    }
+
+    /// Looks for the segments near each sample.
+    fn look(&mut self, places: &[DVec3]) {
+        self.looked.clear();
+        self.looked.extend_from_slice(places);
+        let (now, segments, margin) = (&self.now, &self.segments, self.margin);
+        for sample in &mut self.samples {
+            let point = at(&sample.mean, places);
+            let (far, radius) = (&sample.far, sample.radius);
+            sample.near.clear();
+            sample.near.extend(far.iter().copied().filter(|&number| {
+                let segment = &segments[number as usize];
+                let [a, b] = segment.ends.map(|end| now[end as usize]);
+                let reach = radius + segment.radius + 0.5 * a.distance(b) + margin;
+                point.distance_squared((a + b) * 0.5) < reach * reach
+            }));
+        }
+    }
+
+    /// How deep a sample is in the flesh of other stretches, and by which gradient `Σ ∇∫ds/d³` it is pushed. The
+    /// field's value stands for a distance, from which both radii are taken.
+    fn depth(&self, index: usize, places: &[DVec3]) -> Option<(f64, Push)> {
+        let sample = &self.samples[index];
+        if sample.near.is_empty() {
+            return None;
+        }
+        let point = at(&sample.mean, places);
+        let touches = sample.near.iter().any(|&number| {
+            let [a, b] = self.ends(number as usize);
+            let reach = sample.radius + self.segments[number as usize].radius;
+            point.distance_squared(a.lerp(b, foot(point, a, b))) < reach * reach
+        });
+        if !touches {
+            return None;
+        }
+        let (mut value, mut slope, mut radii) = (0.0, DVec3::ZERO, 0.0);
+        for &number in &sample.far {
+            let [a, b] = self.ends(number as usize);
+            let (own, gradient) = line(point, a, b);
+            let radius = self.segments[number as usize].radius;
+            value += own;
+            slope += gradient;
+            radii += radius * radius * own;
+        }
+        if !(value > 0.0 && value.is_finite() && slope.is_finite()) {
+            return None;
+        }
+        let apart = distance(value);
+        let depth = sample.radius + (radii / value).sqrt() - apart;
+        // ∇√(2/S) = −½√(2/S)·∇S/S
+        let scale = -0.5 * apart / value;
+        Some((
+            depth,
+            Push {
+                point,
+                scale,
+                slope: slope * scale,
+            },
+        ))
+    }
+
+    /// Pushes samples out of the flesh of other stretches: springs of the constant `stiffness/radius`, with friction.
+    pub fn solve_folds(
+        &mut self,
+        places: &mut [DVec3],
+        previous: &[DVec3],
+        inverse: &[f64],
+        settings: &Settings,
+        step: f64,
+    ) {
+        if settings.stiffness <= 0.0 || self.samples.iter().all(|s| s.far.is_empty()) {
+            return;
+        }
+        self.refresh(places);
+        let moved = places.iter().zip(&self.looked);
+        let moved = moved
+            .map(|(a, b)| a.distance_squared(*b))
+            .fold(0.0, f64::max);
+        if !(4.0 * moved <= self.margin * self.margin) {
+            self.look(places);
+        }
+        self.before.clear();
+        let vertices = &self.vertices;
+        self.before
+            .extend(vertices.iter().map(|mean| at(mean, previous)));
+        for index in 0..self.samples.len() {
+            let Some((depth, push_by)) = self.depth(index, places) else {
+                continue;
+            };
+            let sample = &self.samples[index];
+            let depth = depth - sample.overlap;
+            if depth <= 0.0 {
+                continue;
+            }
+            // The share of each segment in the push, on the point of it that is nearest; the push is their sum, so that it equals
+            // the push back.
+            let mut shares: Vec<(usize, f64, DVec3)> = Vec::with_capacity(sample.far.len());
+            let mut normal = DVec3::ZERO;
+            let mut weight = 0.0;
+            let least = 1e-6 * push_by.slope.length_squared();
+            for &number in &sample.far {
+                let [a, b] = self.ends(number as usize);
+                let own = line(push_by.point, a, b).1 * push_by.scale;
+                if own.length_squared() < least {
+                    continue;
+                }
+                normal += own;
+                let along = foot(push_by.point, a, b);
+                let [first, second] = self.segments[number as usize].ends;
+                let of = |end: u32| inverse_mass(&self.vertices[end as usize], inverse);
+                weight += own.length_squared()
+                    * ((1.0 - along) * (1.0 - along) * of(first) + along * along * of(second));
+                shares.push((number as usize, along, own));
+            }
+            weight += inverse_mass(&sample.mean, inverse) * normal.length_squared();
+            let give = sample.radius / settings.stiffness;
+            let hold = weight + give / (step * step);
+            if !(hold > 0.0) {
+                continue;
+            }
+            let mut impulse = depth / hold;
+            // No farther than is deep: springs that pull on light ends of heavy limbs would throw them.
+            let own = inverse_mass(&sample.mean, inverse) * normal.length();
+            if impulse * own > depth {
+                impulse = depth / own;
+            }
+            let rub = self.friction(
+                index, &push_by, &shares, previous, settings, impulse, inverse,
+            );
+            let sample = &self.samples[index];
+            push(&sample.mean, normal * impulse + rub, places, inverse);
+            let length = normal.length();
+            for (number, along, own) in shares {
+                let share = own.dot(normal) / (length * length);
+                let back = -own * impulse - rub * share;
+                let [first, second] = self.segments[number].ends;
+                push(
+                    &self.vertices[first as usize],
+                    back * (1.0 - along),
+                    places,
+                    inverse,
+                );
+                push(
+                    &self.vertices[second as usize],
+                    back * along,
+                    places,
+                    inverse,
+                );
+            }
+        }
+    }
+
+    /// The impulse against sliding: at most friction times the push, and no more than stops it.
+    #[expect(clippy::too_many_arguments, reason = "a step's data")]
+    fn friction(
+        &self,
+        index: usize,
+        push_by: &Push,
+        shares: &[(usize, f64, DVec3)],
+        previous: &[DVec3],
+        settings: &Settings,
+        impulse: f64,
+        inverse: &[f64],
+    ) -> DVec3 {
+        let sample = &self.samples[index];
+        let Some(normal) = push_by.slope.try_normalize() else {
+            return DVec3::ZERO;
+        };
+        let own = push_by.point - at(&sample.mean, previous);
+        let strongest = shares
+            .iter()
+            .max_by(|a, b| a.2.length_squared().total_cmp(&b.2.length_squared()));
+        let Some(&(number, along, _)) = strongest else {
+            return DVec3::ZERO;
+        };
+        let [a, b] = self.segments[number]
+            .ends
+            .map(|end| self.now[end as usize] - self.before[end as usize]);
+        let slide = own - a.lerp(b, along);
+        let slide = slide - normal * slide.dot(normal);
+        let [first, second] = self.segments[number].ends;
+        let of = |end: u32| inverse_mass(&self.vertices[end as usize], inverse);
+        let weight = inverse_mass(&sample.mean, inverse)
+            + (1.0 - along) * (1.0 - along) * of(first)
+            + along * along * of(second);
+        resisted(
+            slide,
+            weight,
+            settings.friction * impulse * push_by.slope.length(),
+        )
+    }
+
+    /// Takes samples out of obstacles, with friction, and notes which were in one.
+    pub fn solve_obstacles(
+        &mut self,
+        places: &mut [DVec3],
+        previous: &mut [DVec3],
+        velocities: &[DVec3],
+        inverse: &[f64],
+        obstacles: &[Obstacle],
+        friction: f64,
+    ) {
+        self.hits.clear();
+        for (index, sample) in self.samples.iter().enumerate() {
+            let weight = inverse_mass(&sample.mean, inverse);
+            if weight <= 0.0 {
+                continue;
+            }
+            for obstacle in obstacles {
+                let point = at(&sample.mean, places);
+                let (apart, normal) = obstacle.distance(point);
+                let depth = sample.radius - apart;
+                if !(depth > 0.0) {
+                    continue;
+                }
+                self.hits.push(Hit {
+                    sample: index,
+                    normal,
+                    speed: at(&sample.mean, velocities).dot(normal),
+                });
+                // What was too deep before is put out bit by bit, and without a speed, as if it had been out.
+                let before = at(&sample.mean, previous);
+                let sunk = (sample.radius - obstacle.distance(before).0).clamp(0.0, depth);
+                let out = sunk.min(RISE * sample.radius);
+                push(&sample.mean, normal * (out / weight), previous, inverse);
+                let depth = depth - sunk + out;
+                let slide = point - before;
+                let slide = slide - normal * slide.dot(normal);
+                let impulse = depth / weight;
+                let rub = resisted(slide, weight, friction * impulse);
+                push(&sample.mean, normal * impulse + rub, places, inverse);
+            }
+        }
+    }
+
+    /// Gives samples that met an obstacle the speed away from it that they are left with: that of having been pushed out is none.
+    pub fn rebound(&self, velocities: &mut [DVec3], inverse: &[f64], bounce: f64, least: f64) {
+        for hit in &self.hits {
+            let mean = &self.samples[hit.sample].mean;
+            let speed = at(mean, velocities).dot(hit.normal);
+            let left = if hit.speed < -least {
+                -hit.speed * bounce
+            } else {
+                // What left by itself goes on.
+                hit.speed.max(0.0)
+            };
+            if speed > left || (speed < left && bounce > 0.0 && hit.speed < -least) {
+                let weight = inverse_mass(mean, inverse);
+                push(
+                    mean,
+                    hit.normal * ((left - speed) / weight),
+                    velocities,
+                    inverse,
+                );
+            }
+        }
+    }
+
+    /// The thinnest flesh that there is anywhere, if any.
+    pub fn thinnest(&self) -> Option<f64> {
+        let radii = self.samples.iter().map(|s| s.radius).filter(|r| *r > 0.0);
+        radii.min_by(f64::total_cmp)
+    }
+
+    /// The energy of the flesh that is pressed in.
+    pub fn energy(&mut self, places: &[DVec3], stiffness: f64) -> f64 {
+        if stiffness <= 0.0 {
+            return 0.0;
+        }
+        self.refresh(places);
+        self.look(places);
+        let mut energy = 0.0;
+        for index in 0..self.samples.len() {
+            if let Some((depth, _)) = self.depth(index, places) {
+                let sample = &self.samples[index];
+                let depth = (depth - sample.overlap).max(0.0);
+                if sample.radius > 0.0 {
+                    energy += 0.5 * depth * depth * stiffness / sample.radius;
+                }
+            }
+        }
+        energy
+    }
+
+    /// How far the flesh reaches into each obstacle, at most.
+    pub fn deepest(&self, places: &[DVec3], obstacles: &[Obstacle]) -> f64 {
+        let depth = |sample: &Sample| {
+            let point = at(&sample.mean, places);
+            let apart = obstacles.iter().map(|o| o.distance(point).0);
+            sample.radius - apart.fold(f64::INFINITY, f64::min)
+        };
+        self.samples
+            .iter()
+            .map(depth)
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Operations of a step, roughly.
+    pub fn work(&self, obstacles: usize) -> u64 {
+        let of = |s: &Sample| 4 * (1 + obstacles) + s.far.len();
+        self.samples.iter().map(|s| of(s) as u64).sum()
+    }
+}
+
+/// How a sample is pushed.
+struct Push {
+    point: DVec3,
+    /// From the field's gradient to that of the distance.
+    scale: f64,
+    /// The gradient of the distance.
+    slope: DVec3,
+}
+
+/// The impulse that stops a slide, cut off where friction ends.
+fn resisted(slide: DVec3, weight: f64, most: f64) -> DVec3 {
+    let length = slide.length();
+    if !(length > 0.0 && weight > 0.0) {
+        return DVec3::ZERO;
+    }
+    slide * (-(length / weight).min(most) / length)
+}
+
+/// A point on the way from one mean to another.
+fn mixed(a: &Mean, b: &Mean, along: f64) -> Mean {
+    let mut mixed: Mean = a.iter().map(|&(n, w)| (n, w * (1.0 - along))).collect();
+    for &(node, weight) in b {
+        match mixed.iter_mut().find(|(own, _)| *own == node) {
+            Some((_, own)) => *own += weight * along,
+            None => mixed.push((node, weight * along)),
+        }
+    }
+    mixed
+}
+
+/// The radius of the flesh across a curve, where the field of all its segments is 1: `Σ R²/2 ∫ ds/d³`. At an end the mean of that
+/// across and that ahead.
+fn thickness(
+    pieces: &[(DVec3, DVec3, f64)],
+    point: DVec3,
+    along: DVec3,
+    radius: f64,
+    is_end: bool,
+) -> f64 {
+    let Some(along) = along.try_normalize().filter(|_| radius > 0.0) else {
+        return radius;
+    };
+    // Those farther away add a hundredth at most.
+    let is_near = |&&(a, b, _): &&(DVec3, DVec3, f64)| {
+        let reach = NEAR * radius + 0.5 * a.distance(b);
+        point.distance_squared((a + b) * 0.5) < reach * reach
+    };
+    let near: Vec<_> = pieces.iter().filter(is_near).collect();
+    let value = |p: DVec3| {
+        let field = |&&(a, b, r): &&(DVec3, DVec3, f64)| 0.5 * r * r * line(p, a, b).0;
+        near.iter().map(field).sum::<f64>()
+    };
+    let reach = |direction: DVec3| {
+        let mut reach = radius;
+        // Exact in a step where the field falls as 1/d².
+        for _ in 0..12 {
+            let next = reach * value(point + direction * reach).sqrt();
+            reach = next.clamp(0.25 * radius, 2.0 * radius);
+        }
+        reach
+    };
+    let across = along.any_orthonormal_vector();
+    let other = along.cross(across);
+    let sides = [across, other, -across, -other].map(reach);
+    let across = 0.25 * sides.iter().sum::<f64>();
+    if is_end {
+        // The curve goes on to one side only: the other is ahead.
+        let ahead = reach(along).min(reach(-along));
+        0.5 * (across + ahead)
+    } else {
+        across
+    }
+}
+
+/// Shortest ways along the curves from a vertex to all.
+fn ways(polyline: &Polyline, from: usize) -> Vec<f64> {
+    let mut ways = vec![f64::INFINITY; polyline.vertices.len()];
+    ways[from] = 0.0;
+    // Lengths are not negative, so their bits are in their order.
+    let mut open = BinaryHeap::from([Reverse((0u64, from))]);
+    while let Some(Reverse((bits, vertex))) = open.pop() {
+        let way = f64::from_bits(bits);
+        if way > ways[vertex] {
+            continue;
+        }
+        for &number in polyline.around(vertex) {
+            let segment = &polyline.segments[number];
+            let other = segment.ends[usize::from(segment.ends[0] == vertex)];
+            let next = way + segment.length;
+            if next < ways[other] {
+                ways[other] = next;
+                open.push(Reverse((next.to_bits(), other)));
+            }
+        }
+    }
+    ways
+}

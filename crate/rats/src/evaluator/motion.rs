@@ -1,0 +1,562 @@
+//! `motion`: skeletons that fall, swing and touch.
+//!
+//! The state in a frame follows from that in the frame before, so that frames are computed in order from frame 0 on. They are
+//! kept, and a text that is compiled again goes on from them. What a text says in frame 0 is what moves: in another frame a
+//! text whose variables change is run again for it, and for the places of pinned nodes in all frames up to the present one.
+
+use super::model::Part;
+use super::state::{Evaluator, Flow};
+use crate::given::Given;
+use crate::limits::{MAX_MOTION_WORK, MAX_MOTIONS, MAX_PIN_STEPS};
+use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
+use crate::scope::Scope;
+use crate::syntax::Command;
+use crate::{Severity, suggest};
+use glam::{DAffine3, DVec3};
+use motion::{Body, MOST_FRAMES, Obstacle, Settings, Setup, Simulation};
+use scene::{Curves, Form, Shape};
+use skeleton::{Node, Skeleton};
+use std::cell::RefCell;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Motions that are kept: all of one text, before and after an edit.
+const KEPT: usize = 2 * MAX_MOTIONS;
+
+/// What `motion` has done in this run.
+#[derive(Debug, Default)]
+pub struct Moving {
+    /// How many motions there were.
+    count: usize,
+    /// Their operations up to this frame.
+    work: u64,
+    /// Frames of a second of the last one.
+    rate: Option<f64>,
+    /// Whether the run is only asked for setups, which it puts into `found`.
+    asked: bool,
+    found: Vec<Setup>,
+}
+
+impl Moving {
+    /// Whether anything moves.
+    pub fn is_any(&self) -> bool {
+        self.count > 0
+    }
+
+    /// Frames of a second, as the last motion says.
+    pub fn rate(&self) -> Option<f64> {
+        self.rate
+    }
+}
+
+/// A motion and its frames.
+struct Kept {
+    setup: Setup,
+    /// Where pinned nodes are in each frame from frame 1 on; none if they stay.
+    pins: Vec<Vec<DVec3>>,
+    simulation: Simulation,
+    /// The nodes' places in each frame.
+    frames: Vec<Vec<DVec3>>,
+    /// The first frame in which something was too fast.
+    hurried: Option<usize>,
+    /// How far the flesh is in obstacles in frame 0.
+    sunk: f64,
+}
+
+/// What a text says in its frames.
+struct Told {
+    texts: Vec<String>,
+    /// Its motions in frame 0.
+    first: Vec<Setup>,
+    /// For each frame the places of the pinned nodes of each motion.
+    pins: Vec<Vec<Vec<DVec3>>>,
+    /// Steps of one run.
+    steps: u64,
+}
+
+thread_local! {
+    static KEEP: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
+    static TOLD: RefCell<Option<Told>> = const { RefCell::new(None) };
+}
+
+/// `motion [A B …] { gravity V damping d stiffness k steps n floor P N … }`
+pub fn motion<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let given = run.given(command)?;
+    let wanted = Wanted::read(run, command, &given)?;
+    if run.moving.count >= MAX_MOTIONS {
+        return Err(Problem::new(
+            command.word_span.clone(),
+            format!("there are more than {MAX_MOTIONS} motions"),
+        )
+        .hint("name several skeletons in one motion"));
+    }
+    let number = run.moving.count;
+    run.moving.count += 1;
+    run.moving.rate = Some(wanted.setup.settings.rate);
+    if run.moving.asked {
+        run.moving.found.push(wanted.setup);
+        return Ok(Flow::Next);
+    }
+    let Wanted { setup, parts } = wanted;
+    let frame = run.moment.ceil().min(f64::from(MOST_FRAMES)) as usize;
+    let (setup, pins) = if run.animated && frame > 0 {
+        run.told(number, frame).unwrap_or((setup, Vec::new()))
+    } else {
+        (setup, Vec::new())
+    };
+    let left = MAX_MOTION_WORK - run.moving.work;
+    let moved = moved(setup, pins, run.moment, left)
+        .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
+    run.moving.work += moved.work;
+    run.warn(command, &moved);
+    let mut places = moved.places.iter().copied();
+    for index in parts {
+        let part = &mut run.model.parts[index];
+        part.moves = true;
+        let count = part
+            .element
+            .shape
+            .curves()
+            .map_or(0, |c| c.skeleton.nodes.len());
+        let own: Vec<DVec3> = places.by_ref().take(count).collect();
+        // Frame 0 is the text's to the last bit.
+        if run.moment > 0.0 && own.len() == count {
+            put(part, &own)
+                .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
+        }
+    }
+    Ok(Flow::Next)
+}
+
+/// What a command asks for.
+struct Wanted {
+    setup: Setup,
+    /// The shapes that move, in the order of the setup's bodies.
+    parts: Vec<usize>,
+}
+
+impl Wanted {
+    fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command, given: &Given<'a>) -> Outcome<Self> {
+        let names = given.names("object");
+        let mut ranges = Vec::new();
+        for name in &names {
+            ranges.push((name.span.clone(), run.model.find(name)?));
+        }
+        if names.is_empty() {
+            ranges.push((
+                command.word_span.clone(),
+                run.model.last(&command.word_span)?,
+            ));
+        }
+        let shapes = ranges.iter().map(|(_, range)| range.len() as u64);
+        run.scope
+            .step(1 + shapes.sum::<u64>(), &command.word_span)?;
+        let (mut parts, mut bodies) = (Vec::new(), Vec::new());
+        for (span, range) in ranges {
+            for index in range {
+                let part = &run.model.parts[index];
+                let Some(curves) = part.element.shape.curves().filter(|_| !part.removed) else {
+                    continue;
+                };
+                if part.moves {
+                    return Err(moves_already(span));
+                }
+                if !parts.contains(&index) {
+                    parts.push(index);
+                    bodies.push(body(part, curves));
+                }
+            }
+            if parts.is_empty() {
+                return Err(Problem::new(span, "only skeletons move, and here is none")
+                    .hint("make one with `skeleton` before, and name it: `motion TAIL { … }`"));
+            }
+        }
+        pin(run, given, &parts, &mut bodies)?;
+        let obstacles = obstacles(run, given, &parts)?;
+        let nodes: usize = bodies.iter().map(|b| b.skeleton.nodes.len()).sum();
+        run.scope.step(8 * nodes as u64, &command.word_span)?;
+        Ok(Self {
+            setup: Setup {
+                bodies,
+                obstacles,
+                settings: settings(given),
+            },
+            parts,
+        })
+    }
+}
+
+fn moves_already(span: Range<usize>) -> Box<Problem> {
+    Problem::new(span, "this moves already, or is a copy of what does").hint(
+        "name all skeletons that move together in one `motion`, and copy what is to move before it moves",
+    )
+}
+
+/// A skeleton in coordinates of the world.
+fn body(part: &Part, curves: &Curves) -> Body {
+    let to_world = to_world(part);
+    let nodes = curves.skeleton.nodes.iter().map(|node| Node {
+        position: to_world.transform_point3(node.position),
+        radius: node.radius * part.growth,
+    });
+    Body {
+        skeleton: Skeleton {
+            nodes: nodes.collect(),
+            curves: curves.skeleton.curves.clone(),
+        },
+        scheme: curves.scheme,
+        pinned: Vec::new(),
+    }
+}
+
+fn to_world(part: &Part) -> DAffine3 {
+    match &part.element.shape {
+        Shape::Function(function) => function.to_world,
+        _ => DAffine3::IDENTITY,
+    }
+}
+
+/// Puts a skeleton's nodes to places in the world.
+fn put(part: &mut Part, places: &[DVec3]) -> Result<(), skeleton::Error> {
+    if let Shape::Function(function) = &mut part.element.shape
+        && let Form::Skeleton(curves) = &mut function.form
+    {
+        let to_own = function.to_world.inverse();
+        let own: Vec<DVec3> = places.iter().map(|p| to_own.transform_point3(*p)).collect();
+        *curves = Arc::new(curves.moved(&own)?);
+    }
+    Ok(())
+}
+
+fn settings(given: &Given<'_>) -> Settings {
+    let number = |option, name, other| {
+        let chosen = given.option(option);
+        chosen.map_or(other, |chosen| chosen.given.number(name))
+    };
+    let usual = Settings::default();
+    Settings {
+        gravity: given
+            .option("gravity")
+            .map_or(usual.gravity, |chosen| chosen.given.vector("V")),
+        damping: number("damping", "d", usual.damping),
+        stiffness: number("stiffness", "k", usual.stiffness),
+        bending: number("bending", "b", usual.bending),
+        bounce: number("bounce", "e", usual.bounce),
+        friction: number("friction", "m", usual.friction),
+        steps: number("steps", "n", f64::from(usual.steps)) as u32,
+        rate: number("rate", "f", usual.rate),
+    }
+}
+
+/// Pins the nodes of these names.
+fn pin<'a>(
+    run: &Evaluator<'a>,
+    given: &Given<'a>,
+    parts: &[usize],
+    bodies: &mut [Body],
+) -> Outcome<()> {
+    let names = |index: usize| run.model.parts[index].nodes.as_deref();
+    for chosen in given.options.iter().filter(|c| c.name == "pin") {
+        for name in chosen.given.names("A") {
+            let mut found = false;
+            for (body, &index) in bodies.iter_mut().zip(parts) {
+                let mut own = names(index).into_iter().flatten();
+                if let Some(node) = own.position(|own| own == name.text) {
+                    found = true;
+                    body.pinned.push(node);
+                }
+            }
+            if !found {
+                return Err(no_such_node(&name, parts.iter().filter_map(|&i| names(i))));
+            }
+        }
+    }
+    for body in bodies {
+        body.pinned.sort_unstable();
+        body.pinned.dedup();
+    }
+    Ok(())
+}
+
+fn no_such_node<'n>(name: &Name<'_>, all: impl Iterator<Item = &'n Vec<String>>) -> Box<Problem> {
+    let names: Vec<&str> = all.flatten().map(String::as_str).collect();
+    Problem::new(
+        name.span.clone(),
+        format!("no node `{}` moves here", name.text),
+    )
+    .maybe_hint(suggest::hint(name.text, names.iter().copied()))
+}
+
+/// Floors, walls, and the shapes of objects that stand in the way.
+fn obstacles<'a>(
+    run: &mut Evaluator<'a>,
+    given: &Given<'a>,
+    parts: &[usize],
+) -> Outcome<Vec<Obstacle>> {
+    let mut obstacles = Vec::new();
+    for chosen in &given.options {
+        if chosen.name == "floor" {
+            let normal = chosen.given.vector("N");
+            obstacles.push(Obstacle::Plane {
+                point: chosen.given.vector("P"),
+                normal,
+            });
+        }
+        if chosen.name != "against" {
+            continue;
+        }
+        for name in chosen.given.names("object") {
+            let range = run.model.find(&name)?;
+            run.scope.step(1 + range.len() as u64, &name.span)?;
+            for index in range {
+                let part = &run.model.parts[index];
+                if part.removed {
+                    continue;
+                }
+                if part.moves || parts.contains(&index) {
+                    return Err(Problem::new(
+                        name.span.clone(),
+                        format!("`{}` moves itself", name.text),
+                    )
+                    .hint("skeletons that move together touch anyway: name both in one `motion`"));
+                }
+                if !obstacle(part, &mut obstacles) {
+                    return Err(Problem::new(
+                        name.span.clone(),
+                        format!("`{}` has a shape that cannot stand in the way", name.text),
+                    )
+                    .hint("boxes, spheres, cylinders, cones, pipes, planes and skeletons can; put other shapes into an object of their own"));
+                }
+                if obstacles.len() > motion::MOST_OBSTACLES {
+                    let error = motion::Error::Obstacles(obstacles.len());
+                    return Err(Problem::new(name.span.clone(), error.to_string()));
+                }
+            }
+        }
+    }
+    Ok(obstacles)
+}
+
+/// Adds a shape to what stands in the way; false if it cannot.
+fn obstacle(part: &Part, into: &mut Vec<Obstacle>) -> bool {
+    let rod = |a, b, from, to| Obstacle::Rod {
+        ends: [a, b],
+        radii: [from, to],
+    };
+    match part.element.shape {
+        Shape::Sphere { center, radius } => into.push(rod(center, center, radius, radius)),
+        Shape::Box { center, axes } => into.push(Obstacle::Box { center, axes }),
+        Shape::Plane { point, normal, .. } => into.push(Obstacle::Plane { point, normal }),
+        Shape::Cylinder { base, apex, radius } | Shape::Pipe { base, apex, radius } => {
+            into.push(rod(base, apex, radius, radius));
+        }
+        Shape::Cone {
+            base,
+            base_radius,
+            apex,
+            apex_radius,
+        } => into.push(rod(base, apex, base_radius, apex_radius)),
+        Shape::Function(ref function) => {
+            let Some(curves) = function.curves() else {
+                return false;
+            };
+            let at = |p: DVec3| function.to_world.transform_point3(p);
+            into.extend(curves.pieces().map(|[(a, from), (b, to)]| {
+                rod(at(a), at(b), from * part.growth, to * part.growth)
+            }));
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// Where a motion is at a moment.
+struct Moved {
+    places: Vec<DVec3>,
+    work: u64,
+    /// The last frame that is computed, if the moment is after it.
+    stopped: Option<usize>,
+    /// The first frame in which something was too fast.
+    hurried: Option<usize>,
+    speed_limit: f64,
+    /// How far the flesh is in obstacles in frame 0.
+    sunk: f64,
+}
+
+/// The places of nodes at a moment, computed or kept.
+fn moved(
+    setup: Setup,
+    pins: Vec<Vec<DVec3>>,
+    moment: f64,
+    left: u64,
+) -> Result<Moved, motion::Error> {
+    KEEP.with_borrow_mut(|keep| {
+        // Frames that are computed must be of the same pins, as far as they are wanted.
+        let is_it = |kept: &Kept| {
+            let both = kept.pins.len().min(pins.len());
+            let same = if pins.is_empty() {
+                kept.pins.is_empty()
+            } else {
+                kept.pins[..both] == pins[..both] && kept.pins.len() >= kept.frames.len() - 1
+            };
+            kept.setup == setup && (moment <= 0.0 || same)
+        };
+        match keep.iter().position(is_it) {
+            Some(index) => keep[index..].rotate_left(1),
+            None => {
+                let simulation = Simulation::new(&setup)?;
+                let sunk = simulation.deepest();
+                if keep.len() >= KEPT {
+                    keep.remove(0);
+                }
+                keep.push(Kept {
+                    frames: vec![simulation.positions().to_vec()],
+                    setup,
+                    pins: Vec::new(),
+                    simulation,
+                    hurried: None,
+                    sunk,
+                });
+            }
+        }
+        let last = keep.len() - 1;
+        let kept = &mut keep[last];
+        if pins.len() > kept.pins.len() {
+            kept.pins = pins;
+        }
+        Ok(kept.at(moment, left))
+    })
+}
+
+impl Kept {
+    fn at(&mut self, moment: f64, left: u64) -> Moved {
+        let each = self.simulation.work().max(1);
+        let most = (left / each).min(u64::from(MOST_FRAMES)) as usize;
+        let reached = moment.min(most as f64);
+        let (before, behind) = (reached.floor() as usize, reached.ceil() as usize);
+        while self.frames.len() <= behind {
+            let number = self.frames.len();
+            let targets = self.pins.get(number - 1).map_or(&[][..], Vec::as_slice);
+            self.simulation.advance(targets);
+            self.frames.push(self.simulation.positions().to_vec());
+            if self.simulation.is_hurried() {
+                self.hurried.get_or_insert(number);
+            }
+        }
+        let share = reached - before as f64;
+        let between = self.frames[before].iter().zip(&self.frames[behind]);
+        let at = |(a, b): (&DVec3, &DVec3)| if share > 0.0 { a.lerp(*b, share) } else { *a };
+        Moved {
+            places: between.map(at).collect(),
+            work: each * behind as u64,
+            stopped: (moment > most as f64).then_some(most),
+            hurried: self.hurried.filter(|&number| number <= behind),
+            speed_limit: self.simulation.speed_limit(),
+            sunk: self.sunk,
+        }
+    }
+}
+
+impl Evaluator<'_> {
+    /// What the motion of this number is in frame 0, and where its pinned nodes are in the frames up to this one. `None` if there is
+    /// none in frame 0.
+    fn told(&mut self, number: usize, frame: usize) -> Option<(Setup, Vec<Vec<DVec3>>)> {
+        TOLD.with_borrow_mut(|told| {
+            let texts = self.sources.all[..self.sources.own].iter();
+            let is_same = |told: &Told| {
+                told.texts.len() == self.sources.own
+                    && texts.clone().zip(&told.texts).all(|(a, b)| a.text == b)
+            };
+            let mut now = told.take().filter(is_same).unwrap_or_else(|| Told {
+                texts: texts.clone().map(|s| s.text.to_owned()).collect(),
+                first: Vec::new(),
+                pins: Vec::new(),
+                steps: 0,
+            });
+            while now.pins.len() <= frame {
+                let count = now.pins.len() as u64;
+                let is_free = count > 0 && now.first.iter().all(|setup| pins(setup).is_empty());
+                if is_free || count * now.steps > MAX_PIN_STEPS {
+                    break;
+                }
+                let scope = Scope::new(self.scope.symbols.clone());
+                let mut other = Evaluator::new(self.sources, self.assets, count as f64, scope);
+                other.moving.asked = true;
+                other.run_all();
+                now.steps = now.steps.max(other.scope.steps());
+                now.pins.push(other.moving.found.iter().map(pins).collect());
+                if count == 0 {
+                    now.first = other.moving.found;
+                }
+            }
+            let found = now.at(number, frame);
+            *told = Some(now);
+            found
+        })
+    }
+
+    fn warn(&mut self, command: &Command, moved: &Moved) {
+        let span = command.word_span.clone();
+        let thin = 1e-3;
+        if moved.sunk > thin {
+            self.say(Severity::Warning, span.clone(), || {
+                (
+                    format!(
+                        "the flesh begins {:.3} deep in what stands in its way, and is put out at once",
+                        moved.sunk
+                    ),
+                    Some(String::from("begin farther away")),
+                )
+            });
+        } else if let Some(frame) = moved.stopped {
+            self.say(Severity::Warning, span, || {
+                (
+                    format!("this motion is too much work, so it stops in frame {frame}"),
+                    Some(String::from("take fewer nodes or steps")),
+                )
+            });
+        } else if let Some(frame) = moved.hurried {
+            self.say(Severity::Warning, span, || {
+                (
+                    format!(
+                        "something is faster than {:.0} units a second from frame {frame} on, and is slowed down to it",
+                        moved.speed_limit
+                    ),
+                    Some(String::from("take more `steps`")),
+                )
+            });
+        }
+    }
+}
+
+impl Told {
+    fn at(&self, number: usize, frame: usize) -> Option<(Setup, Vec<Vec<DVec3>>)> {
+        let first = self.first.get(number)?.clone();
+        let mut last = pins(&first);
+        if last.is_empty() {
+            return Some((first, Vec::new()));
+        }
+        let mut all = Vec::with_capacity(frame);
+        for index in 1..=frame {
+            let now = self.pins.get(index).and_then(|motions| motions.get(number));
+            // As many as in frame 0: else they stay.
+            if let Some(now) = now.filter(|now| now.len() == last.len()) {
+                last.clone_from(now);
+            }
+            all.push(last.clone());
+        }
+        Some((first, all))
+    }
+}
+
+/// The places of the pinned nodes, body by body.
+fn pins(setup: &Setup) -> Vec<DVec3> {
+    let of = |body: &Body| -> Vec<DVec3> {
+        let nodes = body.pinned.iter();
+        nodes
+            .map(|&node| body.skeleton.nodes[node].position)
+            .collect()
+    };
+    setup.bodies.iter().flat_map(of).collect()
+}
