@@ -157,9 +157,13 @@ pub fn pointer(
             input.pointer.any_down(),
         )
     });
-    let pressure = pressure(outside, ui);
+    let pressure = pressure(outside);
     let Some(at) = at else {
+        // A finger was lifted.
         place.hand.shown = None;
+        if !any_down && !matches!(place.hand.doing, State::Modal(_)) {
+            finish(place, true, commands);
+        }
         return;
     };
     if let Some(at) = place.hand.grabs.take() {
@@ -209,17 +213,9 @@ pub fn pointer(
     }
 }
 
-/// The pressure of a pen or of a finger that has one.
-fn pressure(outside: &Outside, ui: &Ui) -> f64 {
-    let force = ui.input(|input| {
-        let touches = input.events.iter().rev();
-        let forces = touches.filter_map(|event| match event {
-            Event::Touch { force, .. } => *force,
-            _ => None,
-        });
-        forces.into_iter().find(|force| *force > 0.0)
-    });
-    let pressure = outside.pressure.or(force).unwrap_or(1.0);
+/// The pressure of a pen; what has none presses fully.
+fn pressure(outside: &Outside) -> f64 {
+    let pressure = outside.pressure.unwrap_or(1.0);
     round(f64::from(pressure.clamp(0.02, 1.0)), 2)
 }
 

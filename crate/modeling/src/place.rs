@@ -298,7 +298,10 @@ impl Sculpting {
         self.refresh();
         let size = rect.size() * ctx.pixels_per_point();
         let pixels = f64::from(size.x * size.y).max(1.0);
+        let longest = f64::from(size.max_elem()).max(1.0);
+        let most = ctx.input(|input| input.max_texture_side).min(4096) as f64 / longest;
         let sized = |scale: f64| {
+            let scale = scale.min(most * most);
             [size.x, size.y].map(|side| (f64::from(side) * scale.sqrt()).round().max(1.0) as usize)
         };
         // At rest twice as many on each side, which the screen averages.
@@ -386,7 +389,7 @@ impl Sculpting {
             planes: &planes,
         };
         self.frame.draw(&self.view, &self.surface, &look);
-        let image = ColorImage::from_rgba_unmultiplied(wanted.size, self.frame.rgba());
+        let image = ColorImage::from_rgba_unmultiplied(self.frame.size(), self.frame.rgba());
         match &mut self.texture {
             Some(texture) => texture.set(image, TextureOptions::LINEAR),
             None => {

@@ -64,7 +64,7 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
     let pen = Closure::<dyn Fn(web_sys::PointerEvent)>::new(|event: web_sys::PointerEvent| {
         platform::note_pen(&event);
     });
-    for event in ["pointerdown", "pointermove", "pointerup"] {
+    for event in ["pointerdown", "pointermove"] {
         let pen = pen.as_ref().unchecked_ref();
         window.add_event_listener_with_callback_and_bool(event, pen, true)?;
     }

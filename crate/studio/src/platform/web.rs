@@ -31,12 +31,13 @@ pub fn pen_pressure() -> Option<f32> {
 
 /// Notes what a pointer event says about a pen.
 pub fn note_pen(event: &web_sys::PointerEvent) {
-    let is_pen = event.pointer_type() == "pen";
-    PEN.set(
-        is_pen
-            .then(|| event.pressure())
-            .filter(|pressure| *pressure > 0.0),
-    );
+    let pressure = event.pressure();
+    if event.pointer_type() != "pen" {
+        PEN.set(None);
+    } else if pressure > 0.0 {
+        // Lifted it keeps the last one, for the end of its stroke.
+        PEN.set(Some(pressure));
+    }
 }
 
 /// Says whether each frame keeps the tracer waiting.
