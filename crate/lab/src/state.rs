@@ -2,7 +2,10 @@
 
 use crate::lesson::Lesson;
 use crate::pictures::Pictures;
-use crate::{chart, contact, convolution, fitting, grid, kernels, profiles, sculpting, slice, spans, superposition, textures};
+use crate::{
+    chart, contact, convolution, fitting, grid, kernels, profiles, sculpting, slice, spans,
+    superposition, textures,
+};
 use pool::Pool;
 use serde::Serialize;
 use std::cell::RefCell;
