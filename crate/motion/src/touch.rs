@@ -493,8 +493,8 @@ impl Flesh {
             if weight <= 0.0 {
                 continue;
             }
+            let mut point = at(&sample.mean, places);
             for obstacle in obstacles {
-                let point = at(&sample.mean, places);
                 let (apart, normal) = obstacle.distance(point);
                 let depth = sample.radius - apart;
                 if !(depth > 0.0) {
@@ -516,6 +516,7 @@ impl Flesh {
                 let impulse = depth / weight;
                 let rub = resisted(slide, weight, friction * impulse);
                 push(&sample.mean, normal * impulse + rub, places, inverse);
+                point = at(&sample.mean, places);
             }
         }
     }

@@ -24,6 +24,11 @@ use std::sync::Arc;
 /// Motions that are kept: all of one text, before and after an edit.
 const KEPT: usize = 2 * MAX_MOTIONS;
 
+/// Places of nodes that are kept, of 24 bytes: more than one text can have.
+const MOST_PLACES: usize = 4_000_000;
+/// Operations that the room for a node's place counts as.
+const WORK_PER_NODE: u64 = 100;
+
 /// What `motion` has done in this run.
 #[derive(Debug, Default)]
 pub struct Moving {
@@ -425,13 +430,21 @@ fn moved(
         if pins.len() > kept.pins.len() {
             kept.pins = pins;
         }
-        Ok(kept.at(moment, left))
+        let moved = kept.at(moment, left);
+        let places = |kept: &Kept| kept.frames.len() * kept.simulation.positions().len();
+        let mut all: usize = keep.iter().map(places).sum();
+        while all > MOST_PLACES && keep.len() > 1 {
+            all -= places(&keep.remove(0));
+        }
+        Ok(moved)
     })
 }
 
 impl Kept {
     fn at(&mut self, moment: f64, left: u64) -> Moved {
-        let each = self.simulation.work().max(1);
+        // Frames that are kept take room.
+        let each = self.simulation.work() + WORK_PER_NODE * self.simulation.positions().len() as u64;
+        let each = each.max(1);
         let most = (left / each).min(u64::from(MOST_FRAMES)) as usize;
         let reached = moment.min(most as f64);
         let (before, behind) = (reached.floor() as usize, reached.ceil() as usize);
