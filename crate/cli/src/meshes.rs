@@ -49,6 +49,12 @@ pub struct Mesh {
     /// edges are split where the field in their middle is off its threshold by more than B
     #[arg(long, value_name = "B", conflicts_with_all = ["tolerance", "relative", "union", "outer", "body", "lod"])]
     coat: Option<f64>,
+    /// With the skeletons as joints, each vertex's shares in them as weights, and what moves as an animation: for .glb
+    #[arg(long, conflicts_with_all = ["union", "lod", "coat"])]
+    rig: bool,
+    /// Frames of the rig's animation; default: four seconds of a dataset that moves
+    #[arg(long, value_name = "N", requires = "rig")]
+    frames: Option<u32>,
     /// Threads; default: as many as the machine has cores
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -68,6 +74,12 @@ impl Mesh {
         let is_sound = self.size > 0.0 && self.size.is_finite();
         if !is_sound {
             return Err("--size must be a positive number of millimetres".into());
+        }
+        if self.rig && format != Format::Glb {
+            return Err("--rig takes a name that ends in .glb: other formats have no joints".into());
+        }
+        if self.frames.is_some_and(|n| !(1..=motion::MOST_FRAMES).contains(&n)) {
+            return Err(format!("--frames takes 1 to {}", motion::MOST_FRAMES));
         }
         if self.threads == Some(0) {
             return Err("--threads takes 1 or more".into());
@@ -119,7 +131,11 @@ impl Mesh {
             } else {
                 PathBuf::from(format!("{}-{i}", stem.display()))
             };
-            written.extend(write(&path, format, &parts.0, self.size / longest)?);
+            if self.rig {
+                written.push(self.write_rigged(&loaded, &path, &parts.0, self.size / longest)?);
+            } else {
+                written.extend(write(&path, format, &parts.0, self.size / longest)?);
+            }
         }
         let write_seconds = start.elapsed().as_secs_f64();
         for note in &model.notes {
@@ -161,6 +177,48 @@ impl Mesh {
             );
         }
         Ok(clean)
+    }
+
+    /// Writes the file with its rig.
+    fn write_rigged(
+        &self,
+        loaded: &files::Loaded,
+        stem: &Path,
+        parts: &[Part],
+        millimetres: f64,
+    ) -> Result<(String, usize), String> {
+        let rate = loaded.compiled.rate.unwrap_or(25.0);
+        let usual = if loaded.compiled.animated {
+            (4.0 * rate).clamp(2.0, 1000.0) as u32
+        } else {
+            1
+        };
+        let scenes: Vec<scene::Scene> = (0..self.frames.unwrap_or(usual))
+            .map(|frame| {
+                let frame = f64::from(frame);
+                rats::compile_at(&loaded.project, &loaded.assets, frame).scene
+            })
+            .collect();
+        let meshes: Vec<&TriangleMesh> = parts.iter().map(|part| &part.mesh).collect();
+        let rig = rig::rig(&scenes, rate, &meshes)?;
+        let name = stem.file_name().unwrap_or_default().to_string_lossy();
+        let export = Export {
+            name: name.into_owned(),
+            parts: parts.to_vec(),
+            millimetres,
+        };
+        let file = export.write_rigged(&rig).map_err(|error| error.to_string())?;
+        let path = stem.with_file_name(&file.name);
+        whole::write(&path, |out| {
+            out.write_all(&file.bytes)
+                .map_err(|error| error.to_string())
+        })?;
+        eprintln!(
+            "{} joints, {} frames at {rate} a second",
+            rig.joints.len(),
+            rig.frames.len()
+        );
+        Ok((path.display().to_string(), file.bytes.len()))
     }
 
     /// Writes a coating of the skeletons.

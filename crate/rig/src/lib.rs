@@ -28,7 +28,8 @@ use field::Implicit;
 use glam::DVec3;
 use mesh::{Joint, Pose, Rig, TriangleMesh};
 use pose::Turns;
-use scene::{Curves, Element, Scene, Shape, SoftSurface};
+use scene::{Curves, Element, Form, Scene, Shape, SoftSurface};
+use std::sync::Arc;
 
 /// The most nodes of all skeletons that are rigged.
 pub const MOST_NODES: usize = 2000;
@@ -182,7 +183,17 @@ impl Weights {
         for (own, joint_of) in rest.iter().zip(joint_of) {
             stretches.push((own.element, of_stretches(scene, own, joint_of)?));
         }
-        let surfaces = scene.soft_surfaces().into_iter().map(|surface| {
+        // Of curves that are convolved locally all stretches share: near a fold that touches at rest too.
+        let mut whole = scene.clone();
+        for element in &mut whole.elements {
+            if let Shape::Function(function) = &mut element.shape
+                && let Form::Skeleton(curves) = &mut function.form
+                && curves.local.is_some()
+            {
+                Arc::make_mut(curves).local = None;
+            }
+        }
+        let surfaces = whole.soft_surfaces().into_iter().map(|surface| {
             let holds = surface.sum.primitives.iter().zip(&surface.element);
             let holds = holds.map(|(primitive, element)| {
                 let all = stretches.iter().find(|(own, _)| own == element);
