@@ -77,7 +77,7 @@ const BULGES: [Bulge; 3] = [
 
 #[test]
 fn folds_are_deformed_as_the_formula_says() {
-    let local = Arc::new(hairpin(0.7));
+    let local = Arc::new(hairpin(0.5));
     let mut random = Random(5);
     let mut kinds = [0; 4];
     for bulge in BULGES {
@@ -139,7 +139,7 @@ fn crest(f: f64, m: f64, h: f64, wave: f64) -> f64 {
 
 #[test]
 fn bounds_hold_in_balls() {
-    let local = Arc::new(hairpin(0.75));
+    let local = Arc::new(hairpin(0.55));
     let mut random = Random(9);
     let (mut finite, mut all) = (0, 0);
     for bulge in BULGES {
