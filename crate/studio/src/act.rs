@@ -138,6 +138,7 @@ impl App {
                 self.carry_out_in_lab(ctx, command, now);
             }
             Command::ShowSculpt => self.show_sculpt(),
+            Command::SculptModel => self.sculpt_model(now),
             Command::NewSculpture => self.dialog = Some(Dialog::Sculpt),
             Command::OpenSculpture(name) => self.open_sculpture(&name),
             Command::BeginSculpture { start, is_new } => {

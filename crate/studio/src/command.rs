@@ -156,6 +156,8 @@ pub enum Command {
     ShareLab,
     /// Go on with a sculpture of the work, or ask how to begin one.
     ShowSculpt,
+    /// Mesh the model, and sculpt the mesh.
+    SculptModel,
     /// Ask how to begin a sculpture.
     NewSculpture,
     /// Open a text of strokes in the place for sculpting.

@@ -38,6 +38,7 @@ impl App {
                 let result = self.work.open_example(index, assets);
                 self.opened_or(ctx, result);
             }
+            Request::SculptModel(result) => self.sculpt_mesh(ctx, result),
             Request::Videos(formats) => self.videos = Some(formats),
             Request::SetCamera(camera) => self.work.session.set_camera(camera),
             Request::Picture(answer) => answer(self.renderer.image()),

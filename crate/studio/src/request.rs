@@ -29,6 +29,8 @@ pub enum Request {
     Files(Vec<Taken>),
     /// Open an example of the gallery with its images and meshes, which were fetched.
     Example(usize, Vec<Asset>),
+    /// Sculpt the mesh of the model, as a PLY file, or say why there is none.
+    SculptModel(Result<Vec<u8>, String>),
     /// The browser has these encoders of videos.
     Videos(Vec<VideoFormat>),
     /// Look at the scene with this camera; `None`: with the text's.

@@ -3,8 +3,10 @@
 use crate::app::{App, Dialog};
 use crate::asset::{self, Kind};
 use crate::command::Command;
+use crate::mesh_export::Order;
 use crate::notice::Notice;
 use crate::project_file::Project;
+use crate::request::Request;
 use crate::session::Session;
 use crate::{examples, places, platform, theme};
 use egui::{Button, Context, RichText, Ui};
@@ -33,6 +35,9 @@ background 0.86 0.88 0.9
 light White point, position 3 -6 8
 light <0.35 0.35 0.42> point, position -6 -3 3
 ";
+
+/// The name of the first sculpture of a work.
+const FIRST: &str = "sculpture.strokes";
 
 /// The group of examples that are sculptures.
 pub const GROUP: &str = "Sculpted";
@@ -169,7 +174,7 @@ impl App {
         };
         let name = (1..)
             .map(|n| match n {
-                1 => String::from("sculpture.strokes"),
+                1 => String::from(FIRST),
                 n => format!("sculpture{n}.strokes"),
             })
             .find(|name| !taken(name))
@@ -209,6 +214,53 @@ impl App {
         };
         match result {
             Ok(()) => self.open_sculpture(&name),
+            Err(trouble) => self.notice = Some(Notice::trouble(trouble)),
+        }
+    }
+
+    /// Has the model meshed, to be sculpted when the mesh is there.
+    pub(crate) fn sculpt_model(&mut self, now: f64) {
+        self.dialog = None;
+        let order = Order {
+            format: mesh::Format::Ply,
+            tolerance: 8e-3,
+            // As large as the shapes that one may begin with.
+            size: 2.0,
+            union: true,
+        };
+        let requests = self.parts.requests.clone();
+        let taker = Box::new(move |result| requests.ask(Request::SculptModel(result)));
+        let text = String::from("The model is being meshed; then you can sculpt it.");
+        self.notice = Some(Notice::done(text, now));
+        let session = &self.work.session;
+        self.mesh_export.make_for(session, "model", order, taker);
+    }
+
+    /// Opens the mesh of the model as a new work.
+    pub(crate) fn sculpt_mesh(&mut self, ctx: &Context, result: Result<Vec<u8>, String>) {
+        let opened = result.and_then(|bytes| {
+            let name = format!("{} in clay", self.work.name);
+            let asset = crate::intake::asset("model.ply", bytes)?;
+            let text = |name: &str, text: String| File {
+                name: name.to_owned(),
+                text,
+            };
+            let strokes = text(FIRST, String::from("strokes 1\nstart file model.ply\n"));
+            let main = text("main.rat", format!("{STUDIO}\n{}", shown("", FIRST)));
+            let project = Project {
+                name,
+                texts: vec![main, strokes],
+                assets: vec![asset],
+                ..Project::default()
+            };
+            self.work.open_files(project)
+        });
+        match opened {
+            Ok(()) => {
+                platform::set_hash("");
+                self.opened(ctx);
+                self.open_sculpture(FIRST);
+            }
             Err(trouble) => self.notice = Some(Notice::trouble(trouble)),
         }
     }
@@ -346,6 +398,17 @@ impl App {
         let check = ui.checkbox(&mut here, "add it to the open work");
         places::note(ui.ctx(), "begin here", check.rect);
         ui.data_mut(|data| data.insert_temp(id, here));
+        heading(ui, "This model");
+        ui.horizontal_wrapped(|ui| {
+            let label = Button::new(RichText::new("Sculpt this").size(14.5));
+            let button = ui
+                .add(label)
+                .on_hover_text("The model as it is drawn is meshed first");
+            places::note(ui.ctx(), "begin this", button.rect);
+            if button.clicked() {
+                commands.push(Command::SculptModel);
+            }
+        });
         let session = &self.work.session;
         let meshes = session.assets().iter();
         let meshes: Vec<&str> = meshes
