@@ -21,6 +21,15 @@
 //! assert!((squashed.jet(DVec3::ZERO).value - THRESHOLD).abs() < 1e-12);
 //! ```
 //!
+//! The volume that is left to a ball of radius 1 and blobbiness −1.5 beside another one at a distance of 1.5, as part of a ball's
+//! alone (`tests/volume.rs`, by Monte Carlo):
+//!
+//! | kernel | only cut off | fast 0.2 | height 0.2 0.65 0.25 | ripple 0.2 0.25 2 |
+//! |---|---|---|---|---|
+//! | cauchy | 95.1 % | 97.3 % | 100.2 % | 96.9 % |
+//! | gauss | 95.1 % | 96.1 % | 97.6 % | 96.1 % |
+//! | cubed | 95.1 % | 96.6 % | 98.8 % | 96.5 % |
+//!
 //! - `bulge.rs`: the three bulges and bounds on them;
 //! - `squashed.rs`: the deformed function;
 //! - `folded.rs`: the folds of one skeleton, which press each other;

@@ -82,8 +82,8 @@ fn folds_are_deformed_as_the_formula_says() {
     let mut kinds = [0; 4];
     for bulge in BULGES {
         let folded = Folded::new(local.clone(), bulge);
-        for _ in 0..400 {
-            let point = DVec3::new(-1.0, 0.0, 0.0) + random.vector() * DVec3::new(1.5, 0.9, 0.6);
+        for _ in 0..1200 {
+            let point = DVec3::new(-1.0, 0.0, 0.0) + random.vector() * DVec3::new(0.8, 0.6, 0.4);
             let (first, second) = local.two(point);
             let Some(second) = second else { continue };
             let (f, other) = (first.value, second.value);
