@@ -275,6 +275,12 @@ fn check(name: &str, scene: &Scene, (mean, share): (f64, f64)) {
         return;
     }
     let ours = draw(scene, SIZE);
+    // Beside POV-Ray's, for whoever wants to see what differs.
+    let mut file = format!("P6 {} {} 255\n", SIZE[0], SIZE[1]).into_bytes();
+    file.extend(ours.iter().flatten());
+    let picture =
+        PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("povray-{name}-ours.ppm"));
+    std::fs::write(picture, file).expect("the folder takes files");
     let found = difference(&ours, &drawn_by_povray(scene, name));
     eprintln!("{name}: mean {:.3}, share {:.4}", found.mean, found.share);
     assert!(found.mean < mean, "{name}: mean {}", found.mean);
