@@ -5,7 +5,7 @@ use motion::{Body, Obstacle, Settings, Setup, Simulation};
 use skeleton::{Node, Scheme, Skeleton};
 
 /// Hash (FNV-1a) of all places in all frames.
-const PLACES: u64 = 0;
+const PLACES: u64 = 0xB162_5CD8_C711_001B;
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
