@@ -16,21 +16,6 @@ fn background(gaze: vec3f) -> vec3f {
     return mix(view.background[min(first, last)].rgb, view.background[next].rgb, place - f32(first));
 }
 
-// The ground's light: Phong's model without highlights and without shadows.
-fn lit(place: vec3f) -> vec3f {
-    var light = daylight(view.zenith.xyz);
-    for (var i = 0u; i < 8u; i++) {
-        if f32(i) >= view.picture.w {
-            break;
-        }
-        let lamp = view.lights[i];
-        let way = lamp.place.xyz - lamp.place.w * place;
-        let towards = way / max(length(way), 1e-30);
-        light += spot(lamp, towards) * lamp.colour.rgb * max(dot(view.zenith.xyz, towards), 0.0);
-    }
-    return light * view.ground.rgb;
-}
-
 @fragment
 fn draw(@builtin(position) position: vec4f) -> Fragment {
     let gaze = gaze_at(position.xy);
@@ -48,7 +33,8 @@ fn draw(@builtin(position) position: vec4f) -> Fragment {
         let away = length(place - dot(place, view.zenith.xyz) * view.zenith.xyz);
         // It fades into the background, as the tracer's does.
         let cover = 1.0 - smoothstep(4.0, 16.0, away);
-        light = mix(light, foggy(lit(place), gaze, distance), cover);
+        // The ground has its own colour wherever no shadow falls, whatever the lights.
+        light = mix(light, foggy(view.ground.rgb, gaze, distance), cover);
         if cover > 0.0 {
             out.depth = depth_at(distance, gaze);
         }

@@ -141,7 +141,7 @@ pub fn all() -> Vec<Swatch> {
         list.push(Swatch {
             name: format!("light-{name}"),
             title: light.rsplit('\n').next().unwrap_or(light).to_owned(),
-            text: format!("eyep 0 2.2 6\nvrp 0 -0.1 0\nfov 34\nbackground 0.10 0.11 0.14\n{light}\nground 0.72 0.68 0.62, height -0.8\nsurface Clay, diffuse 0.80 0.45 0.28, specular 30%, shine 40\nsphere Clay 0.8, 0 0 0\nsphere Clay 0.35, 1.3 -0.45 0.6\n"),
+            text: format!("eyep 0 2.2 6\nvrp 0 -0.1 0\nfov 34\nbackground 0.10 0.11 0.14\n{light}\nsurface Floor, diffuse 0.72 0.68 0.62\nplane Floor <0 -0.8 0> <0 1 0>\nsurface Clay, diffuse 0.80 0.45 0.28, specular 30%, shine 40\nsphere Clay 0.8, 0 0 0\nsphere Clay 0.35, 1.3 -0.45 0.6\n"),
         });
     }
     list
