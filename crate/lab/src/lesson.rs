@@ -35,7 +35,7 @@ const PREFIX: &str = "#lab";
 
 impl Lesson {
     /// All lessons, in the order of the list.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::Kernels,
         Self::Convolution,
         Self::Slice,

@@ -1,4 +1,4 @@
-//! The lab: nine small lessons, each one figure to take hold of, that show how a convolution
+//! The lab: twelve small lessons, each one figure to take hold of, that show how a convolution
 //! surface comes about. Each has its own link (`#lab=kernels`), and opening one leaves the open
 //! work alone.
 //!
