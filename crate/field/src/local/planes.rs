@@ -142,7 +142,7 @@ impl Swept {
 /// The real roots of `c + bu + au²`.
 fn roots([c, b, a]: [f64; 3]) -> [Option<f64>; 2] {
     let discriminant = b * b - 4.0 * a * c;
-    if !(discriminant >= 0.0) {
+    if discriminant.is_nan() || discriminant < 0.0 {
         return [None; 2];
     }
     // The stable one of the two forms of each.

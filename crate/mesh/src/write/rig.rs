@@ -142,9 +142,8 @@ impl Rig {
         {
             return fail("a rig has a frame without a sound pose for each joint");
         }
-        if !(self.rate > 0.0 && self.rate.is_finite())
-            || !self.joints.iter().all(|joint| joint.place.is_finite())
-        {
+        let sound = self.rate > 0.0 && self.rate.is_finite();
+        if !sound || !self.joints.iter().all(|joint| joint.place.is_finite()) {
             return fail("a rig has a number that is not finite");
         }
         Ok(())
