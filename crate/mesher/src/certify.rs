@@ -70,6 +70,9 @@ fn ball([a, b, c]: &[DVec3; 3]) -> Ball {
     }
 }
 
+/// Twice the area of a triangle over the square of its longest side, below which it counts as flat.
+const FLAT: f64 = 1e-7;
+
 /// Divisions of an edge that are tried.
 const GRIDS: [usize; 3] = [2, 3, 6];
 
@@ -77,7 +80,16 @@ const GRIDS: [usize; 3] = [2, 3, 6];
 pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Option<f64> {
     let positions = corners.map(|v| v.position);
     let [a, b, c] = positions;
-    let normal = (b - a).cross(c - a).try_normalize()?;
+    let cross = (b - a).cross(c - a);
+    let longest = a
+        .distance_squared(b)
+        .max(b.distance_squared(c))
+        .max(c.distance_squared(a));
+    // The normal of a flat triangle is noise.
+    if cross.length() <= FLAT * longest {
+        return None;
+    }
+    let normal = cross.try_normalize()?;
     let steepness = |gradient: DVec3| -gradient.dot(normal);
     let highest = corners.iter().map(|v| v.value.abs()).fold(0.0, f64::max);
     let steep = corners

@@ -89,9 +89,9 @@ pub struct Improver<'a> {
 pub struct Improved {
     /// The mesh, with normals.
     pub mesh: TriangleMesh,
-    /// The largest proved distance of a triangle from the surface.
+    /// The largest proved distance of a triangle from the surface, of those within the tolerance.
     pub error: f64,
-    /// Number of triangles of which no distance is proved.
+    /// Number of triangles that are not proved to be within the tolerance.
     pub unproved: usize,
 }
 
@@ -157,10 +157,12 @@ impl<'a> Improver<'a> {
         self.settle(&mut progress.part(0.99, 1.0))?;
         let mesh = &self.mesh;
         let errors = || mesh.faces().map(|f| self.errors[f.index()]);
-        let unproved = errors().filter(|error| error.is_infinite()).count();
-        let error = errors()
-            .filter(|error| error.is_finite())
-            .fold(0.0, f32::max);
+        let tolerance = self.tolerance;
+        let is_proved = |error: &f32| *error <= tolerance as f32;
+        let unproved = errors().filter(|error| !is_proved(error)).count();
+        let error = errors().filter(is_proved).fold(0.0, f32::max);
+        // Rounding to single precision is no part of it.
+        let error = f64::from(error).min(tolerance);
         let normals = mesh.vertices().map(|v| self.vertices[v.index()].normal());
         let normals: Vec<DVec3> = normals.collect();
         let triangles = mesh.to_triangles();
@@ -168,7 +170,7 @@ impl<'a> Improver<'a> {
         mesh.normals = Some(normals);
         Ok(Improved {
             mesh,
-            error: f64::from(error),
+            error,
             unproved,
         })
     }

@@ -90,7 +90,7 @@ pub struct ModelPart {
     pub error: f64,
     /// Centres of the cells in which the topology is not proved.
     pub undecided: Vec<DVec3>,
-    /// Triangles whose distance from the surface is not proved.
+    /// Triangles that are not proved to be within the tolerance.
     pub unproved: usize,
     /// Triangles before they were made fewer.
     pub raw_triangles: usize,

@@ -18,7 +18,7 @@ pub struct SurfaceMesh {
     /// No point of the mesh is farther from the surface than this, and no point of the surface farther from the mesh, but for
     /// undecided cells and unproved triangles.
     pub error: f64,
-    /// Triangles whose distance from the surface is not proved: near undecided cells and kinks.
+    /// Triangles that are not proved to be within the tolerance: near undecided cells and kinks.
     pub unproved: usize,
     /// Centres of the cells in which the topology of the surface is not proved before it is meshed: none if all is. If all triangles
     /// are proved, components of the surface may be missing there that are as small as a cell; the others have the topology of
