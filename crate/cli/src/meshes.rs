@@ -76,9 +76,14 @@ impl Mesh {
             return Err("--size must be a positive number of millimetres".into());
         }
         if self.rig && format != Format::Glb {
-            return Err("--rig takes a name that ends in .glb: other formats have no joints".into());
+            return Err(
+                "--rig takes a name that ends in .glb: other formats have no joints".into(),
+            );
         }
-        if self.frames.is_some_and(|n| !(1..=motion::MOST_FRAMES).contains(&n)) {
+        if self
+            .frames
+            .is_some_and(|n| !(1..=motion::MOST_FRAMES).contains(&n))
+        {
             return Err(format!("--frames takes 1 to {}", motion::MOST_FRAMES));
         }
         if self.threads == Some(0) {
@@ -199,7 +204,17 @@ impl Mesh {
                 rats::compile_at(&loaded.project, &loaded.assets, frame).scene
             })
             .collect();
-        let meshes: Vec<&TriangleMesh> = parts.iter().map(|part| &part.mesh).collect();
+        // The mesher calls a soft surface as its body.
+        let bodies = &loaded.compiled.scene.bodies;
+        let body = |name: &str| {
+            let own =
+                |body: &scene::Body| body.name == name || (body.name.is_empty() && name == "model");
+            bodies.iter().position(own).map(|number| number as u32)
+        };
+        let meshes: Vec<(Option<u32>, &TriangleMesh)> = parts
+            .iter()
+            .map(|part| (body(&part.name), &part.mesh))
+            .collect();
         let rig = rig::rig(&scenes, rate, &meshes)?;
         let name = stem.file_name().unwrap_or_default().to_string_lossy();
         let export = Export {
@@ -207,7 +222,9 @@ impl Mesh {
             parts: parts.to_vec(),
             millimetres,
         };
-        let file = export.write_rigged(&rig).map_err(|error| error.to_string())?;
+        let file = export
+            .write_rigged(&rig)
+            .map_err(|error| error.to_string())?;
         let path = stem.with_file_name(&file.name);
         whole::write(&path, |out| {
             out.write_all(&file.bytes)

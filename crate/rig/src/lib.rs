@@ -14,7 +14,7 @@
 //! let scenes: Vec<_> = (0..3).map(|f| rats::compile_at(&project, &[], f64::from(f)).scene).collect();
 //! // Two vertices above the ends.
 //! let mesh = TriangleMesh::new(vec![DVec3::new(0.0, 0.3, 0.0), DVec3::new(4.0, 0.3, 0.0)], vec![]);
-//! let rig = rig::rig(&scenes, 25.0, &[&mesh]).unwrap();
+//! let rig = rig::rig(&scenes, 25.0, &[(Some(0), &mesh)]).unwrap();
 //! // One that stays, and three nodes.
 //! assert_eq!(rig.joints.len(), 4);
 //! let moved = |i: usize, frame: usize| rig.skinned(mesh.positions[i], &rig.shares[0][i], &rig.frames[frame]);
@@ -66,13 +66,18 @@ fn skeletons(scene: &Scene) -> Vec<Skeleton<'_>> {
 }
 
 /// The rig of meshes of a scene. The first of `scenes` is the one that was meshed; all of them, in order, are the frames of the
-/// animation, up to the first one whose skeletons are not the same curves. `rate` is in frames per second.
+/// animation, up to the first one whose skeletons are not the same curves. `rate` is in frames per second. With each mesh comes the
+/// number of the body whose soft surface it is, in [`Scene::bodies`]; none for hard shapes, which stay.
 ///
 /// The first joint stays where it is: vertices that no skeleton has a share in hang on it.
 ///
 /// # Errors
 /// In a sentence, if there is no skeleton, or if there are more than [`MOST_NODES`].
-pub fn rig(scenes: &[Scene], rate: f64, meshes: &[&TriangleMesh]) -> Result<Rig, String> {
+pub fn rig(
+    scenes: &[Scene],
+    rate: f64,
+    meshes: &[(Option<u32>, &TriangleMesh)],
+) -> Result<Rig, String> {
     let Some(first) = scenes.first() else {
         return Err("there is no scene to rig".into());
     };
@@ -127,7 +132,8 @@ pub fn rig(scenes: &[Scene], rate: f64, meshes: &[&TriangleMesh]) -> Result<Rig,
         frames.push(frame);
     }
     let weights = Weights::new(first, &rest, &joint_of)?;
-    let shares = meshes.iter().map(|mesh| weights.of(mesh)).collect();
+    let of = |(body, mesh): &(Option<u32>, &TriangleMesh)| weights.of(*body, mesh);
+    let shares = meshes.iter().map(of).collect();
     Ok(Rig {
         joints,
         shares,
@@ -217,18 +223,12 @@ impl Weights {
     }
 
     /// The four strongest joints of each vertex.
-    fn of(&self, mesh: &TriangleMesh) -> Vec<[(u16, f32); 4]> {
+    fn of(&self, body: Option<u32>, mesh: &TriangleMesh) -> Vec<[(u16, f32); 4]> {
         let mut shares = Vec::new();
         let mut sums = vec![0.0; self.joints];
+        let mut surfaces = self.surfaces.iter();
+        let surface = surfaces.find(|(surface, _)| Some(surface.body) == body);
         let vertex = |point: &DVec3| {
-            // The body whose surface it is on.
-            let off = |(surface, _): &&(SoftSurface, Vec<Hold>)| {
-                (surface.sum.jet(*point).value - field::THRESHOLD).abs()
-            };
-            let surface = self
-                .surfaces
-                .iter()
-                .min_by(|a, b| off(a).total_cmp(&off(b)));
             sums.fill(0.0);
             if let Some((surface, holds)) = surface {
                 shares.clear();

@@ -67,7 +67,7 @@ fn skinned_vertices_stay_near_the_surface_that_moved() {
     let scenes = scenes(SNAKE, 16);
     let points = on_surface(&scenes[0]);
     let mesh = TriangleMesh::new(points.clone(), vec![]);
-    let rig = rig::rig(&scenes, 25.0, &[&mesh]).unwrap();
+    let rig = rig::rig(&scenes, 25.0, &[(Some(0), &mesh)]).unwrap();
     assert_eq!(rig.joints.len(), 1 + 6);
     assert_eq!(rig.frames.len(), 16);
     // The tip has fallen by more than its thickness.
@@ -103,7 +103,7 @@ fn what_no_skeleton_holds_stays() {
         vec![DVec3::new(9.3, 9.0, 9.0), DVec3::new(0.0, 3.3, 0.0)],
         vec![],
     );
-    let rig = rig::rig(&scenes, 25.0, &[&mesh]).unwrap();
+    let rig = rig::rig(&scenes, 25.0, &[(Some(0), &mesh)]).unwrap();
     let moved = |i: usize| rig.skinned(mesh.positions[i], &rig.shares[0][i], &rig.frames[9]);
     // The ball and the snake are one body, whose far ends have next to nothing of each other.
     assert_eq!(rig.shares[0][0][0], (0, 1.0));
@@ -113,12 +113,20 @@ fn what_no_skeleton_holds_stays() {
 }
 
 #[test]
+fn hard_shapes_stay_however_near_they_are() {
+    let scenes = scenes(SNAKE, 10);
+    let mesh = TriangleMesh::new(on_surface(&scenes[0]), vec![]);
+    let rig = rig::rig(&scenes, 25.0, &[(None, &mesh)]).unwrap();
+    assert!(rig.shares[0].iter().all(|shares| shares[0] == (0, 1.0)));
+}
+
+#[test]
 fn a_rigged_file_is_written_and_read() {
     let scenes = scenes(SNAKE, 5);
     let points = on_surface(&scenes[0]);
     let triangles = (0..points.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
     let mesh = TriangleMesh::new(points, triangles.collect());
-    let rig = rig::rig(&scenes, 25.0, &[&mesh]).unwrap();
+    let rig = rig::rig(&scenes, 25.0, &[(Some(0), &mesh)]).unwrap();
     let export = Export {
         name: "snake".into(),
         parts: vec![Part {
