@@ -55,9 +55,9 @@ pub const CURVE_WEIGHT: usize = 64;
 pub const MAX_OBJECTS: usize = 100_000;
 /// Contacts of bodies.
 pub const MAX_CONTACTS: usize = 1000;
-/// Operations of all motions of a text, up to the frame that is shown. They take half a second at first; then the frames
+/// Operations of all motions of a text, up to the frame that is shown. They take a second or two at first; then the frames
 /// are kept.
-pub const MAX_MOTION_WORK: u64 = 300_000_000;
+pub const MAX_MOTION_WORK: u64 = 150_000_000;
 /// Motions of a text.
 pub const MAX_MOTIONS: usize = 32;
 /// Steps of the runs that find where pinned nodes are in the frames before.
