@@ -74,7 +74,7 @@ class Hand {
       for (const point of points.slice(1)) await mouse.move(...point);
       await mouse.up();
     }
-    return this.sinew.until((status) => status.revision > revision || this.mayDoNothing, 20_000);
+    return this.sinew.until((status) => status.revision > revision, 20_000);
   }
 
   async tap(place) {
@@ -128,7 +128,12 @@ for (const [size, options] of [['desktop', DESKTOP], ['phone', PHONE]]) {
     await settle();
     await hand.tap([0.772, 0.3]);
     await settle();
-    console.log(await sinew.text());
+    const text = await sinew.text();
+    // A body that goes on to the head and the tail; two pairs of legs, a pair of ears, two eyes.
+    assert.equal(text.match(/^ *curve /gm)?.length, 7, text);
+    assert.equal(text.match(/^sphere /gm)?.length, 2, text);
+    assert.equal((await sinew.status()).errors, 0);
+    assert.ok(hand.gestures <= 30);
     await sinew.finished();
     await keep();
     assert.deepEqual(sinew.troubles, []);
