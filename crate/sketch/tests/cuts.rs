@@ -207,7 +207,7 @@ fn curves_and_nodes_are_taken_away_and_come() {
         assert_eq!(left.nodes[5], new);
         assert_eq!(left.curves[0], [0, 1, 5, 2]);
         assert_eq!(insert(&text, span.clone(), 0, 2, &new, 0.01), None);
-        let wide = widen(&text, span.clone(), 3, 0.125, 0.01).unwrap();
+        let wide = widen(&text, span.clone(), 3, 0.127, 0.01).unwrap();
         assert_eq!(changed(&text, which, &wide).nodes[3].radius, 0.13);
         let limb = |start| Limb {
             start,
