@@ -137,6 +137,8 @@ impl MeshExport {
             };
             match event {
                 ToolEvent::Progress(fraction) => self.running[index].fraction = fraction,
+                // A mesh comes in one piece.
+                ToolEvent::Partial(_) => {}
                 ToolEvent::Done(result) => {
                     let job = self.running.remove(index);
                     let result = match result {
