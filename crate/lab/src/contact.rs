@@ -3,7 +3,7 @@
 
 use crate::bench::Bench;
 use crate::contour::Grid;
-use crate::plot::{self, Axis, Plot, number};
+use crate::plot::{self, Axis, Plot};
 use crate::sample::{self, Window};
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
 use contact::Bulge;

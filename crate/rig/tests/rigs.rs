@@ -1,6 +1,5 @@
 //! Skins against the fields they come from: what is skinned stays on the surface of the scene that moved.
 
-use field::Implicit;
 use glam::DVec3;
 use mesh::{Export, Part, TriangleMesh};
 use rats::{Project, compile_at};

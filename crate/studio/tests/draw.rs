@@ -168,6 +168,7 @@ fn nodes_are_moved_widened_and_bent() {
         delta: vec2(0.0, 120.0),
         phase: egui::TouchPhase::Move,
         modifiers: Modifiers::NONE,
+        source: egui::MouseWheelSource::Wheel,
     });
     window.steps(12);
     let wide = skeletons(&window.text())[0].clone();
