@@ -59,7 +59,8 @@ pub fn cage(deform: &Deform) -> Vec<Handle> {
 /// let to = DVec3::new(1.0, 0.0, 0.5);
 /// let edit = assist::handles::pull(&project, &compiled.deforms[0], 0, to, 0.01).unwrap();
 /// let moved = assist::apply(&project, &[edit]);
-/// assert!(moved.files[0].text.ends_with("deform { control <1 0 0> move <0 0 0.5> }\n"));
+/// let last = moved.files[0].text.lines().last();
+/// assert_eq!(last, Some("deform { control <1 0 0> move <0 0 0.5> }"));
 /// ```
 #[must_use]
 pub fn pull(

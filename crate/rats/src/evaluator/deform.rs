@@ -102,7 +102,7 @@ fn controls(text: &str, options: &[Chosen<'_>]) -> Outcome<Vec<Control>> {
     for chosen in options {
         let vector = chosen.given.vector("XYZ");
         let span = chosen.given.span("XYZ");
-        let span = span.unwrap_or_else(|| chosen.span.clone());
+        let span = closed(text, span.unwrap_or_else(|| chosen.span.clone()));
         if chosen.name == "control" {
             controls.push(Control {
                 place: vector,
@@ -125,6 +125,20 @@ fn controls(text: &str, options: &[Chosen<'_>]) -> Outcome<Vec<Control>> {
         }
     }
     Ok(controls)
+}
+
+/// A range of a text that begins with the sign that opens a vector, enlarged to the sign that closes it; others as they are.
+fn closed(text: &str, span: Range<usize>) -> Range<usize> {
+    let opens = text
+        .get(span.clone())
+        .is_some_and(|part| part.starts_with('<') && !part.ends_with('>'));
+    let after = text.get(span.end..).unwrap_or_default();
+    let rest = after.trim_start();
+    if opens && rest.starts_with('>') {
+        span.start..span.end + (after.len() - rest.len()) + 1
+    } else {
+        span
+    }
 }
 
 /// The vertices of some shapes, each once.

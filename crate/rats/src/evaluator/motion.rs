@@ -443,7 +443,8 @@ fn moved(
 impl Kept {
     fn at(&mut self, moment: f64, left: u64) -> Moved {
         // Frames that are kept take room.
-        let each = self.simulation.work() + WORK_PER_NODE * self.simulation.positions().len() as u64;
+        let each =
+            self.simulation.work() + WORK_PER_NODE * self.simulation.positions().len() as u64;
         let each = each.max(1);
         let most = (left / each).min(u64::from(MOST_FRAMES)) as usize;
         let reached = moment.min(most as f64);
