@@ -101,7 +101,7 @@ fn what_cannot_be_meshed_is_told() {
     let empty = folder.write("empty.rat", "light White point pos 3 4 5\n");
     let far = folder.write(
         "plane.rat",
-        "surface s diffuse White blob -2 rad 0.1\nplane s 0 1 0 0\n",
+        "surface s diffuse White blob -2 rad 0.1\nplane s <0 0 0> <0 1 0>\n",
     );
     let out = folder.path("out.stl");
     let told = |arguments: &[&str], word: &str| {
@@ -114,10 +114,7 @@ fn what_cannot_be_meshed_is_told() {
     told(&["mesh", &far, "-o", &out], "box");
     told(&["mesh", &file, "-o", "out.xyz"], ".3mf");
     told(&["mesh", &file, "-o", &out, "--size", "0"], "millimetres");
-    told(
-        &["mesh", &file, "-o", &out, "--tolerance", "-1"],
-        "tolerance",
-    );
+    told(&["mesh", &file, "-o", &out, "--tolerance=-1"], "tolerance");
     told(&["mesh", &file, "-o", &out, "--body", "NOBODY"], "NOBODY");
     told(&["mesh", &file, "-o", &out, "--threads", "0"], "--threads");
     assert!(!std::fs::exists(&out).unwrap(), "nothing is written");

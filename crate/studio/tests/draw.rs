@@ -46,8 +46,10 @@ fn stroke(window: &mut Window, places: &[(f32, f32)]) {
 /// The skeletons that a text makes.
 fn skeletons(text: &str) -> Vec<Skeleton> {
     let compiled = rats::compile(&rats::Project::single(text));
+    // A material that nothing is made of yet is worth a note.
+    let is_note = |diagnostic: &rats::Diagnostic| diagnostic.severity == rats::Severity::Note;
     assert!(
-        compiled.diagnostics.is_empty(),
+        compiled.diagnostics.iter().all(is_note),
         "{:?}\n{text}",
         compiled.diagnostics
     );
@@ -216,8 +218,8 @@ fn limbs_are_cut_and_taken_away_in_pairs() {
     assert!((low(&cut, 1).x + low(&cut, 2).x).abs() < 0.02, "{text}");
     window.key(Modifiers::COMMAND, Key::Z);
     assert_eq!(skeletons(&window.text())[0], whole);
-    // A tap on the limb takes both.
-    let limb = at(&window, 0.442, 0.74);
+    // A tap on the limb, between two nodes, takes both.
+    let limb = at(&window, 0.4415, 0.71);
     window.click(limb);
     let text = window.text();
     assert_eq!(skeletons(&text)[0].curves.len(), 1, "{text}");
