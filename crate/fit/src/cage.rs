@@ -148,10 +148,8 @@ pub fn web(controls: &[DVec3]) -> Vec<[u32; 3]> {
             }
         }
     }
-    for i in 0..controls.len() {
-        if !has_any[i]
-            && let [(_, j), (_, k), ..] = nearest(i)[..]
-        {
+    for (i, has) in has_any.iter().enumerate() {
+        if !has && let [(_, j), (_, k), ..] = nearest(i)[..] {
             let mut key = [i as u32, j, k];
             key.sort_unstable();
             found.insert(key);

@@ -363,7 +363,9 @@ impl Flesh {
         let moved = moved
             .map(|(a, b)| a.distance_squared(*b))
             .fold(0.0, f64::max);
-        if !(4.0 * moved <= self.margin * self.margin) {
+        let is_near = 4.0 * moved <= self.margin * self.margin;
+        // Also where a place is no number.
+        if !is_near {
             self.look(places);
         }
         self.before.clear();
@@ -402,7 +404,7 @@ impl Flesh {
             weight += inverse_mass(&sample.mean, inverse) * normal.length_squared();
             let give = sample.radius / settings.stiffness;
             let hold = weight + give / (step * step);
-            if !(hold > 0.0) {
+            if hold <= 0.0 || hold.is_nan() {
                 continue;
             }
             let mut impulse = depth / hold;
@@ -497,7 +499,7 @@ impl Flesh {
             for obstacle in obstacles {
                 let (apart, normal) = obstacle.distance(point);
                 let depth = sample.radius - apart;
-                if !(depth > 0.0) {
+                if depth <= 0.0 || depth.is_nan() {
                     continue;
                 }
                 self.hits.push(Hit {

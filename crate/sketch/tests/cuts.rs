@@ -73,7 +73,7 @@ const WAYS: [(&str, usize); 7] = [
     ),
     // Another one before it.
     (
-        "surface a, radius 1\nskeleton a, t { node A <0 9 0> node B <2 9 0> curve A B }\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  curve C E\n}\nrotate 0 90 0, s\n",
+        "surface a, radius 1\nskeleton a, t { node A <0 9 0> node B <2 9 0> curve A B }\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  curve C E\n}\nrotate 0 1 0 90, s\n",
         1,
     ),
 ];

@@ -477,7 +477,13 @@ mod tests {
                 ],
             };
             let compiled = rats::compile(&project);
-            assert_eq!(compiled.diagnostics, [], "{name}");
+            // A corner of the box may be outside the picture, which is worth a note.
+            let is_note = |d: &rats::Diagnostic| d.severity == rats::Severity::Note;
+            assert!(
+                compiled.diagnostics.iter().all(is_note),
+                "{name}: {:?}",
+                compiled.diagnostics
+            );
             let faces = compiled.scene.elements.len();
             assert!((700..1300).contains(&faces), "{name}: {faces}");
         }
