@@ -333,11 +333,11 @@ fn chains(lines: &[[Place; 2]]) -> Vec<(Vec<Place>, bool, [End; 2])> {
             }
         }
     };
-    for node in 0..at.len() {
-        if at[node].len() != 2 {
-            for line in at[node].clone() {
-                if !is_used[line] {
-                    chains.push(walk(node, line, &mut is_used));
+    for (node, lines) in at.iter().enumerate() {
+        if lines.len() != 2 {
+            for line in lines {
+                if !is_used[*line] {
+                    chains.push(walk(node, *line, &mut is_used));
                 }
             }
         }

@@ -209,10 +209,10 @@ impl Forest {
             }
             let before = open.len();
             for direction in AROUND {
-                if let Some(i) = self.neighbor(&cell, direction) {
-                    if self.cells[i as usize].level < cell.level {
-                        open.push(i);
-                    }
+                if let Some(i) = self.neighbor(&cell, direction)
+                    && self.cells[i as usize].level < cell.level
+                {
+                    open.push(i);
                 }
             }
             if open.len() == before {
