@@ -130,7 +130,7 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
                 bent.abs() <= allowed * (1.0 + 1e-6) + 1e-6 * steepest + tolerance,
                 "{bent} > {allowed} on {h}: {primitive:?} {center}"
             );
-            if allowed.is_finite() && allowed > 1e-4 * steepest {
+            if allowed.is_finite() && allowed > 1e-4 * steepest + 100.0 * tolerance {
                 tightest_bend = tightest_bend.max(bent.abs() / allowed);
             }
             let least = bound.least(center, radius);
@@ -166,8 +166,9 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
         "{kind:?} {dress:?}: {tightest} {tightest_span} {tightest_slope}"
     );
     assert!(tightest_turn > least, "{kind:?} {dress:?}: {tightest_turn}");
+    // Of kernels that end in a kink, and of planes, there may be no place where the third derivative is told.
     assert!(
-        tightest_bend <= 1.0 && tightest_bend > 0.1 * least,
+        tightest_bend <= 1.0 && (tightest_bend == 0.0 || tightest_bend > 0.1 * least),
         "{kind:?} {dress:?}: {tightest_bend}"
     );
 }

@@ -127,7 +127,7 @@ impl Bust {
     /// Position on the side of the stack: `up` from 0 at the lowest oval to 1 at the highest, `angle` from the front.
     fn point(&self, up: f64, angle: f64) -> [f64; 3] {
         let [z, y, side, front, back, slope] = oval(self.ovals, up);
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         let radius = if cos > 0.0 { front } else { back };
         // Bumps are measured along the oval and added along its radius.
         let height = z + slope * radius * cos;
@@ -138,7 +138,7 @@ impl Bust {
                 let bump = |at: f64| {
                     let around = (angle - at) / wide;
                     let along = (height - level) / high;
-                    (-around * around - along * along).exp()
+                    libm::exp(-around * around - along * along)
                 };
                 out * if at == 0.0 {
                     bump(0.0)
@@ -175,7 +175,7 @@ impl Bust {
             for k in 0..self.around {
                 let turn = TAU * k as f64 / self.around as f64;
                 let turn = if turn > PI { turn - TAU } else { turn };
-                put(self.point(up, turn - self.dense * turn.sin()));
+                put(self.point(up, turn - self.dense * libm::sin(turn)));
             }
         }
         put(pole(1.0));
@@ -200,7 +200,7 @@ impl Bust {
         let [middle, wide, factor] = self.face;
         let weight = |up: f64| {
             let off = (oval(self.ovals, up)[0] - middle) / wide;
-            1.0 + (factor - 1.0) * (-off.powi(4)).exp()
+            1.0 + (factor - 1.0) * libm::exp(-off.powi(4))
         };
         let steps = 4000;
         let sums: Vec<f64> = (0..=steps)

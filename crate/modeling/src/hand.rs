@@ -453,10 +453,8 @@ fn hover(place: &mut Sculpting, rect: Rect, at: Pos2, over: bool, modifiers: Mod
                 rounded(at, place.decimals)
             });
         }
-        State::Turn(_) | State::Shift(_) => {
-            if place.turning != Turning::Tool {
-                place.hand.shown = None;
-            }
+        State::Turn(_) | State::Shift(_) if place.turning != Turning::Tool => {
+            place.hand.shown = None;
         }
         _ => {}
     }

@@ -61,6 +61,13 @@ fn absent(scene: &scene::Scene) -> usize {
     };
     let flesh = scene.flesh.iter().flat_map(of);
     let hard = scene.elements.iter().map(|element| element.flesh.is_none());
+    let whole = scene
+        .elements
+        .iter()
+        .filter_map(|element| match &element.shape {
+            scene::Shape::Function(function) => Some(function.curves()?.local.is_none()),
+            _ => None,
+        });
     let around = [
         scene.settings.map.is_none(),
         scene.sky.is_none(),
@@ -69,7 +76,13 @@ fn absent(scene: &scene::Scene) -> usize {
         scene.lens.focus.is_none(),
     ];
     let moments: usize = scene.moments.iter().map(absent).sum();
-    moments + flesh.chain(hard).chain(around).filter(|&is| is).count()
+    moments
+        + flesh
+            .chain(hard)
+            .chain(whole)
+            .chain(around)
+            .filter(|&is| is)
+            .count()
 }
 
 fn one_file(text: String) -> Project {

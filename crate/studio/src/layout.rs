@@ -420,7 +420,7 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         app.pencil.show(ui, rect, &picture, &around, commands);
     } else {
         app.hands.show(ui, rect, &picture, &around, commands);
-        if session.enabled() && !app.dialog.is_some() {
+        if session.enabled() && app.dialog.is_none() {
             pencil::bar::start(ui, rect, commands);
         }
     }

@@ -84,7 +84,7 @@ pub struct Pencil {
 
 enum Gesture {
     /// A limb is being drawn.
-    Stroke(Stroke, Begin),
+    Stroke(Stroke, Box<Begin>),
     /// A cut is being made.
     Cut(Stroke),
     /// A node is held.
@@ -387,7 +387,7 @@ impl Pencil {
         match self.tool {
             Some(Tool::Draw) => {
                 let begin = self.begin(session, sight, at, around.touch);
-                self.gesture = Some(Gesture::Stroke(Stroke::begin(mark(at)), begin));
+                self.gesture = Some(Gesture::Stroke(Stroke::begin(mark(at)), Box::new(begin)));
             }
             Some(Tool::Cut) => self.gesture = Some(Gesture::Cut(Stroke::begin(mark(at)))),
             Some(Tool::Move) => {
@@ -532,7 +532,7 @@ impl Pencil {
                 let result = if stroke.reach() < still {
                     self.tap(session, sight, around.touch, at, &begin)
                 } else {
-                    self.limb(session, sight, around.touch, &stroke, begin)
+                    self.limb(session, sight, around.touch, &stroke, *begin)
                 };
                 step(result, commands);
             }
