@@ -558,7 +558,7 @@ fn molecules(count: u32, apart: bool) -> Scene {
     let mut scene = common::empty();
     common::clothe(&mut scene, vec![common::soft(-4.0, 1.0)]);
     let mut numbers = Numbers(5);
-    let radius = 0.7 / f64::from(count).cbrt();
+    let radius = 0.7 / libm::cbrt(f64::from(count));
     for number in 0..count {
         let center = numbers.vector();
         let body = if apart { number } else { 0 };
