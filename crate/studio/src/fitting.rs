@@ -592,10 +592,9 @@ impl Place {
         let at = (start + 1 + indent.len()) as u32;
         let frame = f64::from(session.film_frame());
         let compiled = rats::compile_at(&project, session.assets(), frame);
-        let found = compiled.deforms.into_iter();
+        let mut found = compiled.deforms.into_iter();
         let deform = found
-            .filter(|d| d.origin.file as usize == file && d.origin.start == at)
-            .next_back()
+            .rfind(|d| d.origin.file as usize == file && d.origin.start == at)
             .ok_or("This mesh cannot be deformed where it stands in the text.")?;
         let place = Self {
             file,
