@@ -127,15 +127,26 @@ fn controls(text: &str, options: &[Chosen<'_>]) -> Outcome<Vec<Control>> {
     Ok(controls)
 }
 
-/// A range of a text that begins with the sign that opens a vector, enlarged to the sign that closes it; others as they are.
+/// The range of a vector in a text, enlarged to the signs that open and close it where they are written.
 fn closed(text: &str, span: Range<usize>) -> Range<usize> {
-    let opens = text
-        .get(span.clone())
-        .is_some_and(|part| part.starts_with('<') && !part.ends_with('>'));
-    let after = text.get(span.end..).unwrap_or_default();
+    let parts = (
+        text.get(..span.start),
+        text.get(span.clone()),
+        text.get(span.end..),
+    );
+    let (Some(before), Some(inner), Some(after)) = parts else {
+        return span;
+    };
+    let start = match before.trim_end() {
+        _ if inner.starts_with('<') => span.start,
+        opened if opened.ends_with('<') => opened.len() - 1,
+        _ => return span,
+    };
     let rest = after.trim_start();
-    if opens && rest.starts_with('>') {
-        span.start..span.end + (after.len() - rest.len()) + 1
+    if inner.ends_with('>') {
+        start..span.end
+    } else if rest.starts_with('>') {
+        start..text.len() - rest.len() + 1
     } else {
         span
     }
