@@ -253,12 +253,16 @@ impl Fitting {
         let elements = compiled.scene.elements.iter().zip(&compiled.placements);
         for (element, placement) in elements {
             let origin = element.origin;
+            // The triangles of a mesh are always repeated, as their command makes many; whether the command itself is, the
+            // compiler says when the fit begins.
             let is_mesh = match &element.shape {
                 Shape::Triangle { .. } | Shape::Patch { .. } => true,
-                Shape::Function(function) => matches!(function.form, Form::Mesh(_)),
+                Shape::Function(function) => {
+                    matches!(function.form, Form::Mesh(_)) && !placement.repeated
+                }
                 _ => false,
             };
-            if !is_mesh || placement.repeated || seen.last() == Some(&origin) {
+            if !is_mesh || origin.file as usize >= files || seen.last() == Some(&origin) {
                 continue;
             }
             if seen.contains(&origin) || compiled.deforms.iter().any(|d| d.of.contains(&origin)) {
@@ -596,6 +600,11 @@ impl Place {
         let deform = found
             .rfind(|d| d.origin.file as usize == file && d.origin.start == at)
             .ok_or("This mesh cannot be deformed where it stands in the text.")?;
+        if deform.repeated {
+            return Err(String::from(
+                "This mesh stands in a loop or a defined command, where one cage would move all copies.",
+            ));
+        }
         let place = Self {
             file,
             start,
