@@ -160,6 +160,17 @@ impl<'a> Improver<'a> {
         let tolerance = self.tolerance;
         let is_proved = |error: &f32| *error <= tolerance as f32;
         let unproved = errors().filter(|error| !is_proved(error)).count();
+        if std::env::var_os("DBG").is_some() && unproved > 0 {
+            for f in mesh.faces().filter(|f| !is_proved(&self.errors[f.index()])).take(400).step_by(40) {
+                let c = self.corners(f).map(|v| self.vertices[v.index()]);
+                let center = (c[0].position + c[1].position + c[2].position) / 3.0;
+                let radius = c[0].position.distance(center);
+                let b = field::Ball { center, radius: radius + tolerance };
+                let part = self.space.part_for(b);
+                let v = self.space.variation(part, b);
+                eprintln!("err {} angle {} radius {radius} c {center} hopeless {} values {:?} steep {} v {:?}", self.errors[f.index()], self.angle(f), is_hopeless(self.space, &c, tolerance), c.map(|v| v.value), c[0].gradient.length(), (v.curvature, v.third, v.rough, v.jump, v.step));
+            }
+        }
         let error = errors().filter(is_proved).fold(0.0, f32::max);
         // Rounding to single precision is no part of it.
         let error = f64::from(error).min(tolerance);
@@ -241,6 +252,7 @@ impl<'a> Improver<'a> {
         for round in 0..SETTLE_ROUNDS {
             progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
             let far = self.unproved();
+            if std::env::var_os("DBG").is_some() { let inf=far.iter().filter(|f| self.errors[f.index()].is_infinite()).count(); eprintln!("settle {round}: far {} inf {inf} of {} stalled {stalled}", far.len(), self.mesh.face_count()); }
             // All kinds of remedies have been tried without much success.
             if far.len() < least - least / 20 {
                 (least, stalled) = (far.len(), 0);
@@ -292,7 +304,12 @@ impl<'a> Improver<'a> {
                 if !self.is_allowed(edit) {
                     continue;
                 }
-                if let Some(plan) = self.plan(edit)
+                // Divisions of thin triangles that prove nothing would be repeated for ever.
+                let plan = match edit {
+                    Edit::Split(h) => self.plan_split(h, self.angle(f) <= THIN),
+                    _ => self.plan(edit),
+                };
+                if let Some(plan) = plan
                     && self.apply(edit, &plan)
                 {
                     done += 1;
@@ -377,7 +394,8 @@ impl<'a> Improver<'a> {
             1 | 5 => Some((-long.0, Edit::Flip(long.1))),
             4 => merge(edges[1]),
             6 => merge(*long),
-            3 => split(*long),
+            // Divided, it would be two that are as thin.
+            3 => merge(*short),
             _ => {
                 let movable = self.corners(f).into_iter().filter(|v| !is_fixed(*v));
                 let least = movable.map(|v| (self.star_angle(v), Edit::Move(v)));
@@ -450,7 +468,7 @@ impl<'a> Improver<'a> {
             Edit::Collapse(h) => self.plan_collapse(h),
             Edit::Merge(h) => self.plan_merge(h),
             Edit::Flip(h) => self.plan_flip(h),
-            Edit::Split(h) => self.plan_split(h),
+            Edit::Split(h) => self.plan_split(h, false),
             Edit::Move(v) => self.plan_move(v),
         }
     }
@@ -476,11 +494,14 @@ impl<'a> Improver<'a> {
         let around = |v: VertexId| mesh.vertex_faces(v).filter(move |f| !beside.contains(f));
         let before = self.unproved_among(around(ends[0]).chain(around(ends[1])).chain(beside));
         let faces: Vec<FaceId> = around(ends[0]).chain(around(ends[1])).collect();
+        // No flatter than they are: flat ones beside each other go one after the other.
+        let least_angle = self.star_angle(ends[0]).min(self.star_angle(ends[1]));
+        let least_angle = least_angle.min(1e-3);
         let target = |vertex: Vertex| {
             let corners = faces.iter().map(|f| self.corners_with(*f, &ends, vertex));
             let corners: Vec<[Vertex; 3]> = corners.collect();
-            let is_flat = |c: &[Vertex; 3]| sine(c.map(|v| v.position)) < 1e-3;
-            if corners.iter().any(is_flat) {
+            let angle = |c: &[Vertex; 3]| sine(c.map(|v| v.position));
+            if corners.iter().map(angle).fold(1.0, f64::min) < least_angle {
                 return None;
             }
             let faces = self.prove_more(&faces, &corners, before)?;
@@ -653,7 +674,8 @@ impl<'a> Improver<'a> {
         })
     }
 
-    fn plan_split(&self, h: HalfEdgeId) -> Option<Plan> {
+    /// A division of two triangles into four; `helps` if fewer have to be unproved afterwards.
+    fn plan_split(&self, h: HalfEdgeId, helps: bool) -> Option<Plan> {
         let mesh = &self.mesh;
         let [p, q, r, s] = self.diamond(h).map(|v| self.vertices[v.index()]);
         let middle = 0.5 * (p.position + q.position);
@@ -668,6 +690,7 @@ impl<'a> Improver<'a> {
             all: before.all,
             far: 5,
         };
+        let allowed = if helps { before } else { allowed };
         let proved = self.prove_more(&faces, &corners, allowed)?;
         Some(Plan {
             vertex: Some(m),

@@ -828,7 +828,7 @@ impl Pencil {
         let limb = stroke.map(|(stroke, begin)| {
             let samples = begin.samples(sight, stroke);
             let colour = self.stroke_colour(begin);
-            (samples, *begin, colour)
+            (samples, **begin, colour)
         });
         if let Some((samples, begin, colour)) = &limb {
             if begin.pair {
