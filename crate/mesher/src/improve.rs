@@ -17,13 +17,15 @@ const FAIR: f64 = 0.42;
 /// Most edges at a vertex after a collapse.
 const MOST_EDGES: usize = 9;
 /// Rounds in which triangles are divided or removed until all are near the surface.
-const SETTLE_ROUNDS: usize = 24;
+const SETTLE_ROUNDS: usize = 40;
 /// Rounds in which every edit is tried at the triangles that are left.
 const RESCUE_ROUNDS: usize = 8;
 /// Most triangles of such a round.
 const MOST_RESCUED: usize = 500;
 /// Sine of the smallest angle below which a triangle is not divided but removed.
 const THIN: f64 = 0.25;
+/// That below which it is not divided even if nothing else helps.
+const SLIVER: f64 = 0.02;
 /// Most rounds of one kind of edit.
 const MOST_ROUNDS: usize = 60;
 
@@ -160,17 +162,6 @@ impl<'a> Improver<'a> {
         let tolerance = self.tolerance;
         let is_proved = |error: &f32| *error <= tolerance as f32;
         let unproved = errors().filter(|error| !is_proved(error)).count();
-        if std::env::var_os("DBG").is_some() && unproved > 0 {
-            for f in mesh.faces().filter(|f| !is_proved(&self.errors[f.index()])).take(400).step_by(40) {
-                let c = self.corners(f).map(|v| self.vertices[v.index()]);
-                let center = (c[0].position + c[1].position + c[2].position) / 3.0;
-                let radius = c[0].position.distance(center);
-                let b = field::Ball { center, radius: radius + tolerance };
-                let part = self.space.part_for(b);
-                let v = self.space.variation(part, b);
-                eprintln!("err {} angle {} radius {radius} c {center} hopeless {} values {:?} steep {} v {:?}", self.errors[f.index()], self.angle(f), is_hopeless(self.space, &c, tolerance), c.map(|v| v.value), c[0].gradient.length(), (v.curvature, v.third, v.rough, v.jump, v.step));
-            }
-        }
         let error = errors().filter(is_proved).fold(0.0, f32::max);
         // Rounding to single precision is no part of it.
         let error = f64::from(error).min(tolerance);
@@ -252,7 +243,6 @@ impl<'a> Improver<'a> {
         for round in 0..SETTLE_ROUNDS {
             progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
             let far = self.unproved();
-            if std::env::var_os("DBG").is_some() { let inf=far.iter().filter(|f| self.errors[f.index()].is_infinite()).count(); eprintln!("settle {round}: far {} inf {inf} of {} stalled {stalled}", far.len(), self.mesh.face_count()); }
             // All kinds of remedies have been tried without much success.
             if far.len() < least - least / 20 {
                 (least, stalled) = (far.len(), 0);
@@ -269,9 +259,11 @@ impl<'a> Improver<'a> {
             edits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             edits.dedup_by_key(|(_, edit)| *edit);
             let edits = edits.into_iter().map(|(_, edit)| edit).collect::<Vec<_>>();
-            if edits.is_empty() || (self.do_round(edits) == 0 && round > 8) {
+            if edits.is_empty() {
                 break;
             }
+            // Another round tries other edits: that nothing was done in this one does not end it.
+            self.do_round(edits);
         }
         for round in 0..RESCUE_ROUNDS {
             progress.at(round as f32 / RESCUE_ROUNDS as f32)?;
@@ -304,9 +296,9 @@ impl<'a> Improver<'a> {
                 if !self.is_allowed(edit) {
                     continue;
                 }
-                // Divisions of thin triangles that prove nothing would be repeated for ever.
+                // Divisions of flat triangles that prove nothing would be repeated for ever.
                 let plan = match edit {
-                    Edit::Split(h) => self.plan_split(h, self.angle(f) <= THIN),
+                    Edit::Split(h) => self.plan_split(h, self.angle(f) <= SLIVER),
                     _ => self.plan(edit),
                 };
                 if let Some(plan) = plan
@@ -394,7 +386,8 @@ impl<'a> Improver<'a> {
             1 | 5 => Some((-long.0, Edit::Flip(long.1))),
             4 => merge(edges[1]),
             6 => merge(*long),
-            // Divided, it would be two that are as thin.
+            // A flat one would only become two.
+            3 if self.angle(f) > SLIVER => split(*long),
             3 => merge(*short),
             _ => {
                 let movable = self.corners(f).into_iter().filter(|v| !is_fixed(*v));

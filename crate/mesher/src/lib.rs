@@ -36,6 +36,10 @@
 //! - `surface.rs` does all that for one function ([`polygonize`]), `model.rs` for a scene ([`mesh_scene`]) with the help of
 //!   `solids.rs` (hard shapes), `level.rs` (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
 //!
+//! What is not proved: at kinks (profiles, creases between bodies), where the gradient jumps, and where a surface touches itself, no
+//! triangle can be proved however small it is, and the mesh may cut itself there. Such triangles are counted as `unproved`,
+//! crossings are told, and parts of a surface smaller than two tolerances may be missing.
+//!
 //! [`Coating`] is another kind of mesh, which follows a skeleton that is dragged: `cages.rs` has its rays, `coating.rs` their ends.
 //!
 //! Results have the same bits everywhere, whatever the number of threads.

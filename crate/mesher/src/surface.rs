@@ -155,8 +155,9 @@ pub fn polygonize(
     })
 }
 
-/// Cells are at least half so large, in tolerances. Parts of a surface that are thinner have their topology, too, as far as this goes.
-const FINEST: f64 = 0.25;
+/// Cells are at least half so large, in tolerances: smaller ones take minutes where surfaces touch. Parts of a surface that are smaller
+/// than they may be missing; where they leave the topology open, they are told.
+const FINEST: f64 = 4.0;
 
 /// Cells may be so many times as far from the surface as the result.
 const COARSE: f64 = 16.0;
