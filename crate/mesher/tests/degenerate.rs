@@ -82,13 +82,13 @@ fn hard_planes_are_cut_and_slabs_are_closed() {
         scene.elements.push(Element::new(plane(radius)));
         scene
             .elements
-            .push(Element::new(sphere(DVec3::Y * 3.0, 1.0)));
+            .push(Element::new(sphere(DVec3::Y * 0.5, 1.0)));
         scene.elements[0].body = 0;
         scene.bodies.push(Body::default());
         scene.elements[1].body = scene.bodies.len() as u32 - 1;
         let model = meshed(&scene, &coarse()).unwrap();
         assert!(
-            model.parts.iter().any(|part| part.is_closed == is_closed),
+            model.parts.iter().all(|part| part.is_closed) == is_closed,
             "{radius}"
         );
         for part in model.parts.iter().filter(|part| part.is_closed) {
@@ -207,9 +207,11 @@ fn union_joins_bodies_and_outer_drops_cavities() {
     let lens = core::f64::consts::PI * (4.0 * r + d) * (2.0 * r - d) * (2.0 * r - d) / 12.0;
     let expected = 2.0 * 4.0 / 3.0 * core::f64::consts::PI - lens;
     let volume = joined.parts[0].mesh.signed_volume();
+    // Each point of the mesh may be off by the tolerance.
+    let room = apart.tolerance * joined.parts[0].mesh.area();
     assert!(
-        (volume / expected - 1.0).abs() < 0.02,
-        "{volume} {expected}"
+        (volume - expected).abs() < room && room < 0.2 * expected,
+        "{volume} {expected} {room}"
     );
 
     let wishes = Wishes {

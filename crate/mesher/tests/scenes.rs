@@ -84,8 +84,12 @@ fn judge(scene: &Scene, care: Care) -> Result<Row, String> {
         let is_hard = part.name.ends_with("hard");
         if !is_hard {
             let crossings = self_intersections(mesh, 10).map_err(|error| error.to_string())?;
-            if !crossings.is_free() {
-                return Err(format!("{name}: it cuts itself {crossings:?}"));
+            // Where a triangle is not proved, at kinks and where the surface touches itself, the mesh may cut itself: that is told.
+            let is_proved = part.unproved == 0 && part.undecided.is_empty();
+            let is_told = crossings.is_free() == (part.crossings == 0);
+            if !is_told || (is_proved && !crossings.is_free()) {
+                let told = part.crossings;
+                return Err(format!("{name}: it cuts itself {crossings:?}, {told} told"));
             }
         }
         if part.error > model.tolerance {
@@ -285,9 +289,9 @@ fn random_scenes() {
         )
     } else {
         (
-            26,
+            9,
             Care {
-                relative: 1e-2,
+                relative: 2e-2,
                 samples: 10,
                 rays: 4,
                 genus: false,
@@ -334,25 +338,19 @@ fn examples() {
         .filter(|path| path.extension().is_some_and(|e| e == "rat"))
         .collect();
     names.sort();
-    let (care, quick) = match &wanted {
-        Some(_) => (
-            Care {
-                relative: 1e-3,
-                samples: 200,
-                rays: 60,
-                genus: true,
-            },
-            false,
-        ),
-        None => (
-            Care {
-                relative: 4e-3,
-                samples: 20,
-                rays: 8,
-                genus: false,
-            },
-            true,
-        ),
+    let care = match &wanted {
+        Some(_) => Care {
+            relative: 1e-3,
+            samples: 200,
+            rays: 60,
+            genus: true,
+        },
+        None => Care {
+            relative: 4e-3,
+            samples: 20,
+            rays: 8,
+            genus: false,
+        },
     };
     let mut wrong = 0;
     for path in names {
