@@ -1,3 +1,4 @@
+// Not run by `cargo xtask test` yet: it takes more than three minutes on two cores.
 // An animal with four legs, a head and a tail, drawn by mouse and by finger, as someone would who has read nothing.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
