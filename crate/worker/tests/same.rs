@@ -59,8 +59,10 @@ fn pictures_are_the_same_whoever_traces_them() {
         scene.settings.samples = SAMPLES;
         let size = scene.settings.frame;
         let all = tiles(size[0], size[1], TILE);
-        // From below the upper quarter on, which may be empty.
-        let tiles = all.iter().skip(all.len() / 4);
+        // The upper quarter of an example may be empty; a ball that is measured stands there.
+        let is_bench = BENCH.iter().any(|(bench, _)| *bench == name);
+        let first = if is_bench { 0 } else { all.len() / 4 };
+        let tiles = all.iter().skip(first);
         let tiles = tiles.step_by(all.len() / (2 * TILES)).take(TILES);
         let tiles: Vec<Tile> = tiles.copied().collect();
         for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
