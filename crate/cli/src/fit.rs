@@ -58,7 +58,7 @@ pub struct Fit {
     /// Most iterations
     #[arg(long, default_value_t = 60, value_name = "N")]
     iterations: usize,
-    /// What to write: a dataset with `deform` lines (.rat) or the deformed mesh (.ply, .obj, .stl, .glb, .3mf); may be
+    /// The file to write: a dataset with `deform` lines (.rat) or the deformed mesh (.ply, .obj, .stl, .glb, .3mf); may be
     /// given for each
     #[arg(short, long, required = true, value_name = "OUT")]
     output: Vec<PathBuf>,

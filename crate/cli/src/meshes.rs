@@ -30,7 +30,7 @@ pub struct Mesh {
     /// Length of the model's longest side in the file, millimetres
     #[arg(long, value_name = "MM", default_value_t = 100.0)]
     size: f64,
-    /// What is infinite is cut off by the box of all finite elements, times this
+    /// Infinite elements are cut off by the box of all finite elements, times this
     #[arg(long = "box", value_name = "S", default_value_t = 2.0)]
     box_scale: f64,
     /// Join all closed parts to one by a boolean union
@@ -376,7 +376,7 @@ fn write(
     Ok(written)
 }
 
-/// What is known of a part.
+/// Figures of a part.
 fn summary(part: &ModelPart) -> Value {
     let mesh = &part.mesh;
     let topology = Topology::of(mesh).ok();

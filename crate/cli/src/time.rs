@@ -39,7 +39,7 @@ enum Fineness {
     Smooth,
 }
 
-/// What bodies the balls are.
+/// Bodies that the balls belong to.
 #[derive(Clone, Copy, ValueEnum)]
 enum Bodies {
     /// One body.
@@ -66,7 +66,7 @@ pub struct Time {
     /// The mean distance of their middles, in radii: at 3 many touch and melt together
     #[arg(long, value_name = "D", default_value_t = 3.0, requires = "balls")]
     apart: f64,
-    /// What bodies they are
+    /// Bodies that they belong to
     #[arg(long, value_name = "B", default_value = "one", requires = "balls")]
     bodies: Bodies,
     /// How finely

@@ -220,7 +220,7 @@ fn scans_are_seeded() {
     assert_eq!(first.iter().filter(|b| **b == b'\n').count(), 75);
 }
 
-/// What the program says to an input that it refuses.
+/// Message of the program for an input that it refuses.
 fn refused(arguments: &[&str]) -> String {
     let output = sinew(arguments, "");
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");

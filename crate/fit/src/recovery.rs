@@ -27,7 +27,7 @@ pub struct Way {
     pub outlines: bool,
 }
 
-/// What came out of a fit, in units of [`NOISE`].
+/// Result of a fit, in units of [`NOISE`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
     /// Root of the mean square of the distances of the truth's points from the fitted mesh, away from the gap.

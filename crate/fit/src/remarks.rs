@@ -1,4 +1,4 @@
-//! What a mesh has that a fit can do little about.
+//! Faults of a mesh that a fit can do little about.
 
 use crate::error::{Error, fail};
 use mesh::{Topology, TriangleMesh, self_intersections};

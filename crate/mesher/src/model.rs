@@ -36,7 +36,7 @@ impl Default for Tolerance {
 pub struct Wishes {
     /// How far the mesh may be from the surface.
     pub tolerance: Tolerance,
-    /// What is infinite is cut off by the box of all finite elements, times this.
+    /// Infinite elements are cut off by the box of all finite elements, times this.
     pub box_scale: f64,
     /// Name of the only body that is wanted; `None` for all.
     pub body: Option<String>,
