@@ -14,7 +14,7 @@ use crate::space::Space;
 type Place = u64;
 
 /// The mesh before it is improved.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Raw {
     /// Vertices: on edges of the lattice where the surface crosses those, and at corners of lids.
     pub vertices: Vec<Vertex>,
