@@ -8,6 +8,7 @@ use crate::paint::Paint;
 use crate::solids::{Solid, tessellate};
 use crate::surface::{SurfaceMesh as Mesh, box_of, extent, polygonize};
 use crate::unite;
+use core::ops::ControlFlow;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Topology, TriangleMesh};
 use scene::{Element, Scene, Shape, Surface};
@@ -154,8 +155,8 @@ pub fn mesh_scene(
             &mut progress,
         )?;
     }
-    let progress = &mut progress.part(0.0, 1.0).in_phase(Phase::Solids);
-    progress.at(0.85)?;
+    let progress = &mut progress.part(0.85, 1.0).in_phase(Phase::Solids);
+    progress.at(0.0)?;
     for body in 0..scene.bodies.len() as u32 {
         let elements = plan
             .hard
@@ -170,7 +171,7 @@ pub fn mesh_scene(
         }
     }
     if wishes.union {
-        unite(&mut model)?;
+        unite(&mut model, progress)?;
     }
     model.parts.retain(|part| !part.mesh.triangles.is_empty());
     if model.parts.is_empty() {
@@ -198,7 +199,13 @@ pub fn coat_scene(scene: &Scene, bound: f64, coatings: &mut Vec<Coating>) -> Vec
     let coated = surfaces.iter().zip(coatings).map(|(surface, coating)| {
         let cages = Cage::of_surface(scene, surface);
         let mut coat = coating.update(surface.function(), &cages, &|_| bound);
-        Paint::new(scene, surface).apply(&mut coat.mesh, 1);
+        let paint = Paint::new(scene, surface);
+        // Nothing cancels it.
+        let _ = paint.apply(
+            &mut coat.mesh,
+            1,
+            &mut Progress::new(&mut |_| ControlFlow::Continue(())),
+        );
         CoatedBody {
             name: name_of(scene, surface.body(), ""),
             coat,
@@ -424,7 +431,7 @@ fn soft_part(
             "{name}: {crossings} pairs of triangles or more touch each other: the tolerance is too small for the numbers' precision",
         ));
     }
-    Paint::new(scene, surface).apply(&mut mesh, wishes.threads);
+    Paint::new(scene, surface).apply(&mut mesh, wishes.threads, progress)?;
     model.evaluations += evaluations;
     if is_cut {
         model.notes.push(format!(
@@ -477,6 +484,7 @@ fn hard_parts<'a>(
     let mut error = 0.0_f64;
     for element in elements {
         body = element.body;
+        progress.again()?;
         let solid = match &element.shape {
             Shape::Quadric(quadric) => Solid {
                 shells: Vec::new(),
@@ -501,7 +509,7 @@ fn hard_parts<'a>(
         match shells.len() {
             0 => {}
             1 => closed.add(&shells[0], element.finish),
-            _ => closed.add(&unite::union(&shells)?, element.finish),
+            _ => closed.add(&unite::union(&shells, progress)?, element.finish),
         }
         for sheet in solid.sheets.iter().filter(|m| is_sound(m)) {
             open.add(sheet, element.finish);
@@ -626,7 +634,7 @@ fn without_cavities(mesh: &TriangleMesh) -> TriangleMesh {
 }
 
 /// Joins all closed parts.
-fn unite(model: &mut Model) -> Result<(), MeshError> {
+fn unite(model: &mut Model, progress: &mut Progress<'_>) -> Result<(), MeshError> {
     let (closed, open): (Vec<_>, Vec<_>) = core::mem::take(&mut model.parts)
         .into_iter()
         .partition(|part| part.is_closed);
@@ -637,7 +645,7 @@ fn unite(model: &mut Model) -> Result<(), MeshError> {
             .collect();
         model.parts.push(ModelPart {
             name: "union".into(),
-            mesh: unite::union(&meshes)?,
+            mesh: unite::union(&meshes, progress)?,
             is_closed: true,
             error: closed.iter().map(|part| part.error).fold(0.0, f64::max),
             undecided: closed

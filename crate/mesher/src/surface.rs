@@ -118,7 +118,7 @@ pub fn polygonize(
     .map_err(too_many)?;
     let mut progress = progress.part(0.0, 1.0).in_phase(Phase::Triangles);
     progress.at(0.4)?;
-    let raw = march(&space, &lattice, threads);
+    let raw = march(&space, &lattice, threads, &mut progress)?;
     drop(lattice);
     if raw.triangles.is_empty() {
         return Err(MeshError::Nothing);
