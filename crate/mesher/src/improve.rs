@@ -72,6 +72,18 @@ impl Unproved {
     }
 }
 
+/// What became of an attempt to prove a face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Attempt {
+    /// There was none.
+    #[default]
+    None,
+    /// It failed.
+    Failed,
+    /// Nor would a smaller face there be proved.
+    Hopeless,
+}
+
 /// A mesh that is being improved.
 pub struct Improver<'a> {
     space: &'a Space<'a>,
@@ -83,6 +95,8 @@ pub struct Improver<'a> {
     vertices: Vec<Vertex>,
     is_fixed: Vec<bool>,
     errors: Vec<f32>,
+    /// What became of the last attempt to prove a face that is not proved to be within the tolerance, since it changed.
+    attempts: Vec<Attempt>,
     guard: Guard,
     /// The round in which something around a vertex has changed.
     changed: Vec<u32>,
@@ -142,6 +156,7 @@ impl<'a> Improver<'a> {
             threads,
             changed: vec![1; vertices.len()],
             refused: vec![0; mesh.half_edge_slots()],
+            attempts: vec![Attempt::None; mesh.face_slots()],
             guard,
             mesh,
             vertices,
@@ -349,24 +364,24 @@ impl<'a> Improver<'a> {
         let far: Vec<FaceId> = faces
             .filter(|f| self.errors[f.index()] > tolerance && !self.is_fixed_face(*f))
             .collect();
+        let is_new = |f: &FaceId| self.attempts[f.index()] == Attempt::None;
+        let new: Vec<FaceId> = far.iter().copied().filter(is_new).collect();
         let this = &*self;
-        let proved = map_told(self.threads, &far, progress, |f| {
+        let proved = map_told(self.threads, &new, progress, |f| {
             let corners = this.corners(*f).map(|v| this.vertices[v.index()]);
             let proved = distance(this.space, corners.each_ref(), this.tolerance);
-            (
-                proved,
-                proved.is_none() && is_hopeless(this.space, &corners, this.tolerance),
-            )
+            let is_hopeless = proved.is_none() && is_hopeless(this.space, &corners, this.tolerance);
+            (proved, is_hopeless)
         })?;
-        let mut unproved = Vec::new();
-        for (f, (proved, is_hopeless)) in far.into_iter().zip(proved) {
+        for (f, (proved, is_hopeless)) in new.into_iter().zip(proved) {
             match proved {
                 Some(distance) => self.errors[f.index()] = distance as f32,
-                None if is_hopeless => {}
-                None => unproved.push(f),
+                None if is_hopeless => self.attempts[f.index()] = Attempt::Hopeless,
+                None => self.attempts[f.index()] = Attempt::Failed,
             }
         }
-        Ok(unproved)
+        let has_failed = |f: &FaceId| self.attempts[f.index()] == Attempt::Failed;
+        Ok(far.into_iter().filter(has_failed).collect())
     }
 
     fn is_fixed_face(&self, f: FaceId) -> bool {
@@ -906,8 +921,10 @@ impl<'a> Improver<'a> {
                     .iter()
                     .map(|(_, distance)| *distance)
                     .fold(0.0, f32::max);
+                self.attempts.resize(self.mesh.face_slots(), Attempt::None);
                 for f in self.mesh.vertex_faces(v) {
                     self.errors[f.index()] = farthest;
+                    self.attempts[f.index()] = Attempt::None;
                 }
                 return Some(v);
             }
@@ -923,6 +940,7 @@ impl<'a> Improver<'a> {
         };
         for (face, distance) in &plan.faces {
             self.errors[face.index()] = *distance;
+            self.attempts[face.index()] = Attempt::None;
         }
         self.changed[center.index()] = self.round;
         for n in self.mesh.neighbors(center) {

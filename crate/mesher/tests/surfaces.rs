@@ -252,3 +252,53 @@ fn failures_are_told_in_words() {
         );
     }
 }
+
+#[test]
+fn each_phase_reports_often_and_can_be_cancelled() {
+    use mesher::{Phase, Step, Tolerance, Wishes, mesh_scene};
+    use scene::{Element, Flesh, Scene, Shape};
+    let mut scene = Scene::default();
+    scene.flesh.push(Flesh {
+        blobbiness: -2.0,
+        radius: 0.4,
+        ..Flesh::default()
+    });
+    let cylinder = Shape::Cylinder {
+        base: DVec3::ZERO,
+        apex: DVec3::X,
+        radius: 0.4,
+    };
+    let soft = Element {
+        flesh: Some(0),
+        ..Element::new(cylinder.clone())
+    };
+    scene.elements.extend([soft, Element::new(cylinder)]);
+    let wishes = Wishes {
+        tolerance: Tolerance::Relative(5e-3),
+        ..Wishes::default()
+    };
+    let mut steps: Vec<Step> = Vec::new();
+    let mut note = |step| {
+        steps.push(step);
+        ControlFlow::Continue(())
+    };
+    let model = mesh_scene(&scene, &wishes, &mut Progress::new(&mut note)).unwrap();
+    assert!(
+        steps.windows(2).all(|w| w[0].fraction <= w[1].fraction),
+        "{steps:?}"
+    );
+    let most = 100_000;
+    let (all, reports) = (model.evaluations, steps.len() as u64);
+    assert!(all < most * reports, "{all} evaluations in {reports} steps");
+    for phase in Phase::ALL {
+        let mut until = |step: Step| {
+            if step.phase == phase {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let error = mesh_scene(&scene, &wishes, &mut Progress::new(&mut until)).unwrap_err();
+        assert_eq!(error, MeshError::Cancelled, "{phase:?}");
+    }
+}
