@@ -14,6 +14,7 @@ use crate::parallel::map_told;
 use crate::space::Space;
 use glam::DVec3;
 use mesh::{FaceId, HalfEdgeId, HalfEdgeMesh, TriangleMesh, VertexId};
+use std::collections::BTreeMap;
 
 /// Sine of the smallest angle that collapses must leave, unless it was smaller.
 const FAIR: f64 = 0.42;
@@ -100,8 +101,8 @@ pub struct Improver<'a> {
     guard: Guard,
     /// The round in which something around a vertex has changed.
     changed: Vec<u32>,
-    /// The round in which an edit of an edge or a vertex was refused.
-    refused: Vec<u32>,
+    /// The round in which an edit was refused: as long as nothing changes at its vertices it would be again.
+    refused: BTreeMap<Edit, u32>,
     round: u32,
 }
 
@@ -155,7 +156,7 @@ impl<'a> Improver<'a> {
             coarse,
             threads,
             changed: vec![1; vertices.len()],
-            refused: vec![0; mesh.half_edge_slots()],
+            refused: BTreeMap::new(),
             attempts: vec![Attempt::None; mesh.face_slots()],
             guard,
             mesh,
@@ -207,15 +208,13 @@ impl<'a> Improver<'a> {
     }
 
     fn collapse(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
-        self.refused.fill(0);
         for round in 0..MOST_ROUNDS {
             progress.at(round as f32 / MOST_ROUNDS as f32)?;
             let mut edges: Vec<(f64, HalfEdgeId)> = Vec::new();
             for h in self.mesh.edges() {
                 let [u, v] = [self.mesh.origin(h), self.mesh.target(h)];
                 let [a, b] = [u, v].map(|v| self.is_fixed[v.index()]);
-                let changed = self.changed[u.index()].max(self.changed[v.index()]);
-                if (a && b) || changed <= self.refused[h.index()] {
+                if a && b {
                     continue;
                 }
                 let length = self
@@ -325,7 +324,9 @@ impl<'a> Improver<'a> {
             let edits: Vec<Edit> = merges.chain(flips).chain(moves).chain(splits).collect();
             self.round += 1;
             for edit in edits {
-                if !self.is_allowed(edit) {
+                // What was refused in a round was planned in the same way, but for divisions.
+                let is_known = !matches!(edit, Edit::Split(_)) && self.is_refused(edit);
+                if is_known || !self.is_allowed(edit) {
                     continue;
                 }
                 // Divisions of flat triangles that prove nothing would be repeated for ever.
@@ -338,6 +339,9 @@ impl<'a> Improver<'a> {
                 {
                     done += 1;
                     break;
+                }
+                if !matches!(edit, Edit::Split(_)) {
+                    self.refused.insert(edit, self.round);
                 }
             }
         }
@@ -375,7 +379,13 @@ impl<'a> Improver<'a> {
         })?;
         for (f, (proved, is_hopeless)) in new.into_iter().zip(proved) {
             match proved {
-                Some(distance) => self.errors[f.index()] = distance as f32,
+                Some(distance) => {
+                    self.errors[f.index()] = distance as f32;
+                    // Edits there are judged in another way from now on.
+                    for v in self.corners(f) {
+                        self.changed[v.index()] = self.round + 1;
+                    }
+                }
                 None if is_hopeless => self.attempts[f.index()] = Attempt::Hopeless,
                 None => self.attempts[f.index()] = Attempt::Failed,
             }
@@ -441,6 +451,9 @@ impl<'a> Improver<'a> {
         let mut chosen = Vec::new();
         let mut touched = Vec::new();
         for edit in edits {
+            if self.is_refused(edit) {
+                continue;
+            }
             touched.clear();
             self.touched(edit, &mut touched);
             if touched.iter().all(|v| !is_taken[v.index()]) {
@@ -454,13 +467,24 @@ impl<'a> Improver<'a> {
         for (edit, plan) in chosen.into_iter().zip(plans) {
             let is_done = plan.is_some_and(|plan| self.apply(edit, &plan));
             done += usize::from(is_done);
-            if let (false, Edit::Collapse(h)) = (is_done, edit) {
-                let twin = self.mesh.twin(h);
-                self.refused[h.index()] = self.round;
-                self.refused[twin.index()] = self.round;
+            if !is_done {
+                self.refused.insert(edit, self.round);
             }
         }
         Ok(done)
+    }
+
+    /// Whether an edit was refused, and would be again.
+    fn is_refused(&self, edit: Edit) -> bool {
+        let vertices = match edit {
+            Edit::Collapse(h) | Edit::Merge(h) | Edit::Flip(h) | Edit::Split(h) => {
+                [self.mesh.origin(h), self.mesh.target(h)]
+            }
+            Edit::Move(v) => [v; 2],
+        };
+        let changed = vertices.map(|v| self.changed[v.index()]);
+        let refused = self.refused.get(&edit);
+        refused.is_some_and(|round| changed.iter().all(|changed| changed <= round))
     }
 
     /// The vertices that an edit depends on.
@@ -914,7 +938,10 @@ impl<'a> Improver<'a> {
                 self.is_fixed[v.index()] = false;
                 self.guard.set_guarded(v, false);
                 self.changed.resize(self.mesh.vertex_slots(), self.round);
-                self.refused.resize(self.mesh.half_edge_slots(), 0);
+                self.changed[v.index()] = self.round;
+                for n in self.mesh.neighbors(v) {
+                    self.changed[n.index()] = self.round;
+                }
                 self.errors.resize(self.mesh.face_slots(), 0.0);
                 let farthest = plan
                     .faces

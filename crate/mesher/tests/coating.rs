@@ -158,7 +158,8 @@ fn moved_skeletons_start_from_the_last_positions() {
         assert!((volumes[0] / volumes[1] - 1.0).abs() < 0.01, "{volumes:?}");
     }
     let [kept, fresh] = evaluations;
-    assert!(kept * 10 < fresh * 8, "{kept} of {fresh}");
+    // At best an evaluation for each vertex, and one for the middle of each edge.
+    assert!(kept * 10 < fresh * 9, "{kept} of {fresh}");
 }
 
 #[test]
