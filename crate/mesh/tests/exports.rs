@@ -221,6 +221,29 @@ fn ply_is_read_by_ply_rs() {
 }
 
 #[test]
+fn ply_has_normals_if_one_part_has() {
+    let mut export = export();
+    export.parts[1].mesh.normals = None;
+    let files = write(&export, Format::Ply);
+    let read = read(&files[0].name, &files[0].bytes).unwrap();
+    let normals = read.normals.clone().unwrap();
+    let first = export.parts[0].mesh.positions.len();
+    for (i, n) in normals.iter().enumerate().skip(first) {
+        assert!((n.length() - 1.0).abs() < 1e-6);
+        // Each looks as its triangles do.
+        let around = (0..read.triangles.len()).filter(|t| read.triangles[*t].contains(&(i as u32)));
+        let mean: DVec3 = around
+            .map(|t| {
+                let [a, b, c] = read.corners(t);
+                (b - a).cross(c - a)
+            })
+            .sum();
+        assert!(n.dot(mean.normalize()) > 0.999, "{i}");
+    }
+    assert!(normals.len() > first);
+}
+
+#[test]
 fn obj_is_read_by_tobj() {
     let export = export();
     let files = write(&export, Format::Obj);

@@ -1,11 +1,12 @@
 //! Binary PLY: all parts as one list.
 
 use super::export::Export;
-use super::prepared::{Prepared, materials, put_floats};
+use super::prepared::{Prepared, materials, mean_normals, put_floats};
 use crate::color::srgb_from_linear;
 
 pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> Vec<u8> {
-    let has_normals = parts.iter().all(|part| part.normals.is_some());
+    // All or none: parts without get the means of their triangles'.
+    let has_normals = parts.iter().any(|part| part.normals.is_some());
     let has_colors = parts.iter().any(Prepared::is_colored);
     let vertices: usize = parts.iter().map(|part| part.positions.len()).sum();
     let faces: usize = parts.iter().map(|part| part.mesh.triangles.len()).sum();
@@ -28,9 +29,13 @@ pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> Vec<u8> {
     let materials = materials(export);
     for part in parts {
         let colors = part.colors(&materials);
+        let normals = match &part.normals {
+            None if has_normals => Some(mean_normals(part.mesh)),
+            own => own.clone(),
+        };
         for (i, position) in part.positions.iter().enumerate() {
             put_floats(&mut bytes, position);
-            if let Some(normals) = part.normals.as_ref().filter(|_| has_normals) {
+            if let Some(normals) = &normals {
                 put_floats(&mut bytes, &normals[i]);
             }
             if has_colors {

@@ -201,6 +201,11 @@ fn unit_normals(mesh: &TriangleMesh, normals: &[DVec3]) -> Vec<[f32; 3]> {
     normals.iter().zip(&own).map(unit).collect()
 }
 
+/// The means of the normals of the triangles around each vertex, by area.
+pub(super) fn mean_normals(mesh: &TriangleMesh) -> Vec<[f32; 3]> {
+    unit_normals(mesh, &vec![DVec3::ZERO; mesh.positions.len()])
+}
+
 /// A name on one line, without what would end it in a text format; `other` if nothing is left.
 pub(super) fn line_name(name: &str, other: &str) -> String {
     let kept: String = name
