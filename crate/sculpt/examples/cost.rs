@@ -1,5 +1,5 @@
 //! The cost of a step of a tool: the same brush, in vertices, on 10,000 and on 1,000,000 faces, and a step that touches 2,000
-//! vertices against a plain pass over as many. Medians; best run with `--release`.
+//! vertices against a plain pass over as many. Medians, a JSON object a line; best run with `--release`, or by `cargo xtask bench sculpt`.
 
 use glam::DVec3;
 use sculpt::{Action, Clay, Decay, Drag, Form, PathPoint, Shape, Start, Sweep, Tool};
@@ -22,7 +22,7 @@ fn sweep(clay: &Clay, action: Action, vertices: f64) -> Sweep {
     sweep
 }
 
-/// The median seconds of a step for each vertex that it moves, that of a step, and the median number of moved vertices. The steps are
+/// The median seconds of a step for each vertex that it and the step before move, that of a step, and the median number of these vertices. The steps are
 /// in proportion to the tool, so that on any number of faces the same happens.
 fn step(clay: &mut Clay, sweep: &Sweep) -> (f64, f64, usize) {
     let radius = sweep.range / 0.4;
@@ -35,9 +35,10 @@ fn step(clay: &mut Clay, sweep: &Sweep) -> (f64, f64, usize) {
             Action::Pull => [1.0, 1.0 + 0.1 * radius],
             _ => [1.0 + 0.2 * radius, 1.0 + 0.1 * radius],
         };
-        let mut drag = Drag::new(clay, sweep);
-        drag.step(clay, PathPoint::new(place(from)));
         let before: Vec<DVec3> = positions(clay);
+        let mut drag = Drag::new(clay, sweep);
+        // As on a stroke, the step before has brought what is touched into the processor's cache.
+        drag.step(clay, PathPoint::new(place(from)));
         let start = Instant::now();
         drag.step(clay, PathPoint::new(place(to)));
         let seconds = start.elapsed().as_secs_f64();
@@ -93,7 +94,8 @@ fn main() {
             let (each_b, b, moved_b) = step(&mut large, &of_large);
             let plain = pass(moved_b);
             println!(
-                "{name}: {moved_a} vertices of 10⁴ faces {:.3} ms, {moved_b} of 10⁶ {:.3} ms: {:.2} times a vertex; {:.1} plain passes",
+                "{{\"action\": \"{name}\", \"small\": {moved_a}, \"small_ms\": {:.4}, \"large\": {moved_b}, \"large_ms\": {:.4}, \
+                 \"times\": {:.3}, \"passes\": {:.1}}}",
                 1e3 * a,
                 1e3 * b,
                 each_b / each_a,
