@@ -135,6 +135,7 @@ mod solids;
 mod spans;
 mod square;
 mod stats;
+mod surface_samples;
 #[cfg(test)]
 mod tests;
 pub mod tile;

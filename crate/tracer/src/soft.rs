@@ -1,7 +1,7 @@
 //! The convolution surfaces of all bodies, prepared: finds the primitives near a beam, and where its rays cross a body's surface.
 use crate::beam::Beam;
 use crate::beams::Beams;
-use crate::blob_set::BlobSet;
+use crate::blob_set::{BlobSet, NEXT_TO_NOTHING};
 use crate::clusters::Clusters;
 use crate::hierarchy::Hierarchy;
 use crate::kinks::Kinks;
@@ -9,15 +9,13 @@ use crate::nearby::{Nearby, Other};
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator};
 use crate::roots::bracketed;
-use crate::scratch::Scratch;
 use crate::slabs::{Precision, Slabs, Space, Terms};
-use crate::walk::{Bundle, Found, Memories, Quest, Walk};
+use crate::walk::{Bundle, Memories, Quest, Walk};
 use field::{Bound, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::{Scene, SoftSurface};
 use std::ops::Range;
 use std::sync::OnceLock;
-use wide::f32x8;
 
 /// The convolution surfaces of a scene's bodies.
 ///
@@ -72,10 +70,6 @@ struct Groups {
 
 /// Largest sum of the fields left out, of all primitives that are no blobs, in T.
 const OTHERS_LEFT_OUT: f64 = 1e-5;
-
-/// Largest sum of the fields that slabs leave out of their lists, in T: below the accuracy of root isolation, which uses those
-/// lists.
-pub const NEXT_TO_NOTHING: f64 = 1e-10;
 
 /// End of rays along infinitely wide primitives, in units of the scene's size.
 const FAR: f64 = 1e4;
@@ -329,7 +323,7 @@ impl Soft {
         }
     }
 
-    fn sight<'a>(&'a self, body: &'a SoftBody) -> BoundedTerms<'a> {
+    pub fn sight<'a>(&'a self, body: &'a SoftBody) -> BoundedTerms<'a> {
         BoundedTerms {
             primitives: &self.primitives,
             bounds: self.bounds(),
@@ -410,23 +404,6 @@ impl Soft {
                 bodies.push(body);
             }
         }
-    }
-
-    /// Returns the crossings of a bundle with a body's surface, by traversing the slabs of its beam.
-    pub fn walk(
-        &self,
-        body: u32,
-        slabs: &mut Slabs<'_>,
-        bundle: Bundle<'_>,
-        quest: Quest,
-        scratch: &mut Scratch,
-    ) -> Vec<Found> {
-        slabs.tidy();
-        let sight = self.sight(&self.bodies[body as usize]);
-        let (found, evaluations) =
-            Walk::<f32x8>::new(sight, slabs, bundle, quest, &mut scratch.memory).run();
-        scratch.evaluations += evaluations;
-        found
     }
 
     /// Returns where a ray first enters a body's surface on a short interval, in double precision, and the number of evaluations. The
