@@ -113,6 +113,7 @@ mod nearby;
 mod paths;
 mod pick;
 pub mod picture;
+mod plain;
 mod quick;
 mod ray;
 pub mod reference;

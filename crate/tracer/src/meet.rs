@@ -29,6 +29,8 @@ pub(crate) struct Seen {
     pub hits: [Option<SurfacePoint>; PACKET],
     /// What finding them cost.
     pub costs: [f32; PACKET],
+    /// The first of them count, so many; the others repeat some ray.
+    pub used: usize,
 }
 
 impl Default for Seen {
@@ -41,6 +43,7 @@ impl Default for Seen {
             rays: [ray; PACKET],
             hits: [None; PACKET],
             costs: [0.0; PACKET],
+            used: PACKET,
         }
     }
 }

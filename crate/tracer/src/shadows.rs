@@ -101,7 +101,7 @@ impl World {
     }
 
     /// Finds out which rays to a light have something between them and the light.
-    fn look_for_shadows(
+    pub fn look_for_shadows(
         &self,
         shadows: &mut [Shadow],
         across: f64,

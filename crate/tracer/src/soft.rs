@@ -60,6 +60,17 @@ pub(crate) struct SoftBody {
     groups: OnceLock<Groups>,
 }
 
+/// What the material of a body's surface is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MakeUp {
+    /// Whether all primitives have one finish.
+    pub is_even: bool,
+    /// The first primitive's finish.
+    pub first: u32,
+    /// Whether some element consists of several primitives.
+    pub is_pieced: bool,
+}
+
 /// Data that is made at first use, for bodies that are not all blobs.
 struct Groups {
     /// Balls such that the field is below T outside all of them.
@@ -190,13 +201,20 @@ impl Soft {
             .get_or_init(|| self.primitives.iter().map(Bound::new).collect())
     }
 
-    /// For each body whether all its primitives have one finish, and the first's finish.
-    pub fn only_finishes(&self) -> Vec<(bool, u32)> {
-        let only = |body: &SoftBody| {
-            let own = &self.finish[body.range.start as usize..body.range.end as usize];
-            (own.iter().all(|finish| *finish == own[0]), own[0])
+    /// What the materials of each body's surface are made of.
+    pub fn make_ups(&self) -> Vec<MakeUp> {
+        let make_up = |body: &SoftBody| {
+            let range = body.range.start as usize..body.range.end as usize;
+            let own = &self.finish[range.clone()];
+            let mut elements = self.element[range].to_vec();
+            elements.sort_unstable();
+            MakeUp {
+                is_even: own.iter().all(|finish| *finish == own[0]),
+                first: own[0],
+                is_pieced: elements.windows(2).any(|pair| pair[0] == pair[1]),
+            }
         };
-        self.bodies.iter().map(only).collect()
+        self.bodies.iter().map(make_up).collect()
     }
 
     /// Appends the elements that add to a body's field at a point: element, finish and field.
