@@ -418,6 +418,12 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
             touch: app.touch == Some(true),
         };
         app.pencil.show(ui, rect, &picture, &around, commands);
+        if let Some(pair) = app.pencil.other(session)
+            && session.enabled()
+            && pencil::bar::turn(ui, rect, pair)
+        {
+            app.pencil.turn(session, commands);
+        }
     } else {
         app.hands.show(ui, rect, &picture, &around, commands);
         if session.enabled() && app.dialog.is_none() {
@@ -427,6 +433,11 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     if let Some(notice) = &app.notice {
         notice::show(ui, place, notice, commands);
     }
+    let noted = places::all(ui.ctx());
+    let lying = ["notice", "draw other"]
+        .iter()
+        .filter_map(|name| noted.get(*name));
+    app.pencil.keep_off(lying.copied().collect());
 }
 
 /// A narrow page below the bar.
