@@ -10,8 +10,8 @@ use crate::settings::Show;
 use crate::theme::{self, STRIP};
 use crate::view::{self, Grasp, Scenery};
 use crate::{
-    bar, download, files, fit_panel, intake, notice, pencil, places, platform, problems, screen,
-    size, sliders, status, timeline, tray,
+    bar, download, files, fit_panel, intake, lamp, notice, pencil, places, platform, problems,
+    screen, size, sliders, status, timeline, tray,
 };
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
@@ -426,6 +426,10 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         }
     } else {
         app.hands.show(ui, rect, &picture, &around, commands);
+        let is_well = session.enabled() && session.is_compiled() && session.errors() == 0;
+        if is_well && app.dialog.is_none() && lamp::is_dark(&session.compiled().scene) {
+            lamp::show(ui, rect, session, commands);
+        }
         if session.enabled() && app.dialog.is_none() {
             pencil::bar::start(ui, rect, commands);
         }
