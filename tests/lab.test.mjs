@@ -128,7 +128,7 @@ for (const [size, options] of Object.entries(SIZES)) {
         // Leaving leads to the editor, with what a first visit shows there.
         await sinew.click('lab back');
         await sinew.page.waitForFunction(() => sinew.lab() === null);
-        assert.equal(await sinew.text(), await example('cowrie'));
+        assert.equal(await sinew.text(), await example('tide'));
         assert.deepEqual(sinew.troubles, []);
       });
     }
