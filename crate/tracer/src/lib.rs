@@ -113,6 +113,7 @@ mod nearby;
 mod paths;
 mod pick;
 pub mod picture;
+mod plain;
 mod quick;
 mod ray;
 pub mod reference;
@@ -135,6 +136,7 @@ mod solids;
 mod spans;
 mod square;
 mod stats;
+mod surface_samples;
 #[cfg(test)]
 mod tests;
 pub mod tile;
