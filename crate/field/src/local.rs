@@ -43,7 +43,6 @@ use cells::Cells;
 use glam::DVec3;
 use groups::{Group, Node};
 use planes::Swept;
-use std::collections::BTreeMap;
 use stretch::Stretch;
 use wide::f32x8;
 use window::Window;
@@ -59,8 +58,8 @@ pub struct Local {
     links: Vec<Link>,
     /// Ends and branches: a segment, and which of its ends.
     nodes: Vec<(u32, usize)>,
-    /// For each point of the skeleton those within twice the reach, and their distances.
-    near: Vec<BTreeMap<u32, f64>>,
+    /// For each point of the skeleton those within twice the reach, in order, and their distances.
+    near: Vec<Vec<(u32, f64)>>,
     /// All pieces, halved again and again: after a group its first half, and where its second one starts.
     tree: Vec<(Group, Node)>,
     /// Numbers of all terms: segments, whose places sweep along them, then ends and branches.

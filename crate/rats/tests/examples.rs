@@ -30,7 +30,13 @@ fn no_complaints() {
             .diagnostics
             .iter()
             .find(|d| d.severity > Severity::Note);
-        assert_eq!(complaint, None, "{name}");
+        if name == "coating" {
+            // What it shows is what this warning is about.
+            let warning = complaint.map(|d| d.message.as_str());
+            assert!(warning.is_some_and(|m| m.contains("coats")), "{warning:?}");
+        } else {
+            assert_eq!(complaint, None, "{name}");
+        }
         assert!(!compiled.scene.elements.is_empty(), "{name}");
         assert!(!compiled.hot.is_empty(), "{name} has nothing to drag");
         for hot in &compiled.hot {
@@ -197,6 +203,8 @@ fn the_thesis_s_models_have_its_numbers_of_elements() {
 const EXAMPLES: &[&str] = &[
     "agate-shell",
     "blends",
+    "coating",
+    "coils",
     "coral-crab",
     "coral-tree",
     "cowrie",
@@ -207,8 +215,10 @@ const EXAMPLES: &[&str] = &[
     "flakes",
     "floppy-ears",
     "fog-stones",
+    "folds",
     "generators",
     "glass-drops",
+    "grasp",
     "hermite-crab",
     "icicle",
     "jelly",

@@ -53,6 +53,7 @@ pub use flesh::Flesh;
 pub use function::{Form, Function};
 pub use implicit_mesh::ImplicitMesh;
 pub use light::{Light, LightKind};
+pub use local::Limbs;
 pub use quadric::Quadric;
 pub use settings::{Digger, Fragile, Settings, Tone};
 pub use soft::SoftSurface;

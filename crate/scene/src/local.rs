@@ -21,11 +21,19 @@ impl Scene {
         element: &Element,
         function: &Function,
     ) -> Option<Result<Local, LocalError>> {
+        let limbs = self.limbs(element, function)?;
+        Some(Local::new(&limbs.points, &limbs.limbs, limbs.reach))
+    }
+
+    /// The points and segments of an element's curves that are convolved locally, in the world's coordinates, and their reach; `None`
+    /// if the element is no such skeleton.
+    #[must_use]
+    pub fn limbs(&self, element: &Element, function: &Function) -> Option<Limbs> {
         let curves = function.curves()?;
         let reach = curves.local? * function.growth();
         let flesh = self.flesh_in_world(element)?;
         let polyline = curves.polyline()?;
-        let points: Vec<DVec3> = (polyline.vertices.iter())
+        let points = (polyline.vertices.iter())
             .map(|v| function.to_world.transform_point3(v.position))
             .collect();
         let joints = Joints::of(polyline);
@@ -42,9 +50,24 @@ impl Scene {
                 pieces: pieces.collect(),
             }
         });
-        let limbs: Vec<Limb> = limbs.collect();
-        Some(Local::new(&points, &limbs, reach))
+        let limbs = limbs.collect();
+        Some(Limbs {
+            points,
+            limbs,
+            reach,
+        })
     }
+}
+
+/// What [`Local::new`] makes a local convolution of.
+#[derive(Clone, Debug)]
+pub struct Limbs {
+    /// Points of the skeleton.
+    pub points: Vec<DVec3>,
+    /// Segments between them.
+    pub limbs: Vec<Limb>,
+    /// The reach D.
+    pub reach: f64,
 }
 
 /// The segments of a polyline that have a length, and where they meet. Vertices between which there is no length are one.

@@ -98,7 +98,7 @@ const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 52] = [
+pub const ALL: [Example; 56] = [
     example!(SEA, "Tide line", "a cowrie, two starfish and pebbles", "tide"),
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
@@ -131,6 +131,10 @@ pub const ALL: [Example; 52] = [
     example!(CURVES, "Octopus", "one skeleton with eight arms", "octopus"),
     example!(CURVES, "Snail", "two skeletons of curves", "snail"),
     example!(CURVES, "Finger and thumb", "they squeeze a ball, which gives way", "squeeze"),
+    example!(CURVES, "Coiled snake", "its coils lie on each other and do not melt", "coils"),
+    example!(CURVES, "Two worms", "folds that melt, and folds that do not", "folds"),
+    example!(CURVES, "Hand and ball", "through each other, and in contact", "grasp"),
+    example!(CURVES, "Coated", "a bulge that reaches too far", "coating"),
     example!(CURVES, "Two drops", "they touch and do not melt", "drops"),
     example!(CURVES, "Three bulges", "limbs that press each other flat", "touching"),
     example!(CURVES, "Falling body", "it slides down a wall and folds: play it", "falling"),

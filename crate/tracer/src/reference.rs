@@ -12,15 +12,23 @@
 //! resolution, are reported as undecided.
 mod function;
 mod pieces;
+mod range;
 mod shell;
+mod skeleton;
 #[cfg(test)]
 mod tests;
+mod touching;
 mod waves;
 
+pub use range::Deformation;
+pub use touching::{Substance, TouchingBody};
+
 use crate::ray::Ray;
+use field::local::LocalError;
 use field::{Kink, Primitive, THRESHOLD};
 use function::{Evaluation, FieldTerms, Function, ULP};
 use glam::DVec3;
+use touching::Touching;
 
 /// The field of some primitives, or the smooth maximum of two fields, prepared for searches.
 #[derive(Clone, Debug)]
@@ -118,6 +126,14 @@ impl Reference {
         ))
     }
 
+    /// Prepares the union of bodies that touch, which press each other: the largest of their functions.
+    ///
+    /// # Errors
+    /// If a skeleton is of no use.
+    pub fn touching(bodies: Vec<TouchingBody>) -> Result<Self, LocalError> {
+        Ok(Self::of(Function::Touching(Touching::new(bodies)?)))
+    }
+
     fn of(function: Function) -> Self {
         Self {
             kinks: function.kinks(),
@@ -212,6 +228,16 @@ impl Reference {
             let point = ray.at(middle);
             let rounding = ULP * (point.abs().max_element() + middle);
             let around = half + rounding;
+            if let Some(range) = self.function.range(point, around) {
+                if range.high < THRESHOLD || range.low > THRESHOLD {
+                    continue;
+                }
+                if 2.0 * half >= resolution {
+                    stack.push([middle, b]);
+                    stack.push([a, middle]);
+                    continue;
+                }
+            }
             let extent = self.function.extent(point, around, Some(ray.direction));
             if extent.above < THRESHOLD {
                 continue;
@@ -326,6 +352,11 @@ impl Reference {
             let here = self.sample(center);
             if here.excess * start.excess <= 0.0 && away <= reach {
                 return Near::Within(away);
+            }
+            if let Some(range) = self.function.range(center, radius)
+                && (range.high < THRESHOLD || range.low > THRESHOLD)
+            {
+                continue;
             }
             let extent = self.function.extent(center, radius, None);
             // Bounds are weaker in balls with kinks.

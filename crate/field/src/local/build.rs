@@ -98,6 +98,7 @@ impl Local {
             each.collect::<Option<_>>().ok_or(LocalError::Reach)
         };
         let near = distances(&joints, 2.0 * reach)?;
+        let near = near.into_iter().map(|near| near.into_iter().collect());
         let within = distances(&cuts, reach)?;
         let mut local = Self {
             window: Window::new(reach),
@@ -107,7 +108,7 @@ impl Local {
             tree: Vec::new(),
             terms: Vec::new(),
             cells: Cells::new(points, reach),
-            near,
+            near: near.collect(),
             pieces,
         };
         local.connect(points, limbs, &ends, &within, &groups)?;

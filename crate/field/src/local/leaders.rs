@@ -8,7 +8,7 @@ use crate::Ball;
 pub struct Two {
     /// The largest stretch.
     pub first: Bounds,
-    /// The largest one that is far from it, or the level below which that is of no interest, if it is more; `None` if there is none.
+    /// The largest one that is far from it, or the level below which that is of no interest, if it is more; `None` if none is above the level.
     pub second: Option<Bounds>,
 }
 
@@ -24,9 +24,9 @@ const COARSE: f64 = 0.25;
 const MOST_COMPARED: usize = 8;
 
 impl Leaders {
-    fn above(survey: &Survey, floor: f64, of: impl Fn(&Candidate) -> bool) -> Self {
+    fn above(survey: &Survey, floor: f64, of: impl Fn(usize) -> bool) -> Self {
         let all = &survey.all;
-        let members = (0..all.len()).filter(|i| all[*i].most >= floor && of(&all[*i]));
+        let members = (0..all.len()).filter(|i| all[*i].most >= floor && of(*i));
         Self {
             floor,
             members: members.collect(),
@@ -119,7 +119,7 @@ impl Local {
                 survey.look(i);
             }
         }
-        let floor = survey.least(|_| true).max(floor);
+        let floor = survey.least(|_, _| true).max(floor);
         let leaders = Leaders::above(&survey, floor, |_| true);
         let mut first = leaders.bounds(&survey);
         first.value[1] = first.value[1].min(everything).max(first.value[0]);
@@ -130,7 +130,7 @@ impl Local {
     }
 }
 
-/// Bounds on the largest stretch that is far from those that lead, or a level, if that is more; `None` if there is none anywhere.
+/// Bounds on the largest stretch that is far from those that lead, or a level, if that is more; `None` if none is above the level.
 fn second(survey: &Survey, leaders: &Leaders, level: f64) -> Option<Bounds> {
     let far = 2.0 * survey.local.reach();
     let apart = |a: &Candidate, b: &Candidate| {
@@ -141,26 +141,39 @@ fn second(survey: &Survey, leaders: &Leaders, level: f64) -> Option<Bounds> {
         let distance = survey.local.distance(a, b);
         [distance - half_a - half_b, distance + half_a + half_b]
     };
-    let lead = || leaders.members.iter().map(|i| &survey.all[*i]);
-    let may = |c: &Candidate| lead().any(|leader| apart(c, leader)[1] > far);
-    if !survey.all.iter().any(may) {
+    // For each candidate and each leader the least and the largest distance between them, if the candidate is of interest.
+    let all = &survey.all;
+    let count = leaders.members.len();
+    let mut distances = vec![[0.0; 2]; all.len() * count];
+    let mut is_any = false;
+    for (i, candidate) in all.iter().enumerate().filter(|(_, c)| c.most >= level) {
+        for (k, leader) in leaders.members.iter().enumerate() {
+            let between = apart(candidate, &all[*leader]);
+            distances[i * count + k] = between;
+            is_any |= between[1] > far;
+        }
+    }
+    if !is_any {
         return None;
     }
-    let surely = |leader: &Candidate| survey.least(|c| apart(c, leader)[0] > far);
-    let floor = lead().map(surely).fold(f64::INFINITY, f64::min).max(level);
-    let seconds = Leaders::above(survey, floor, may);
+    let of = |i: usize| &distances[i * count..(i + 1) * count];
+    let floor = (0..count)
+        .map(|k| survey.least(|i, _| of(i)[k][0] > far))
+        .fold(f64::INFINITY, f64::min)
+        .max(level);
+    let seconds = Leaders::above(survey, floor, |i| of(i).iter().any(|d| d[1] > far));
     let mut own = seconds.bounds(survey);
-    let sharp = seconds.members.iter().all(|i| {
-        let candidate = &survey.all[*i];
-        lead().all(|leader| candidate.chain == leader.chain || apart(candidate, leader)[0] > far)
-    });
-    if !sharp {
+    let is_apart = |i: &usize| {
+        let mut pairs = leaders.members.iter().zip(of(*i));
+        pairs.all(|(k, d)| all[*i].chain == all[*k].chain || d[0] > far)
+    };
+    if !seconds.members.iter().all(is_apart) {
         own.slope = f64::INFINITY;
         own.curvature = f64::INFINITY;
         own.jump = f64::INFINITY;
-    } else if leaders.members.len() > 1 && !seconds.members.is_empty() {
+    } else if count > 1 && !seconds.members.is_empty() {
         // Which one is second may change with which one is first.
-        let mut chains = lead().map(|leader| leader.chain);
+        let mut chains = leaders.members.iter().map(|i| all[*i].chain);
         let first = chains.next();
         if chains.any(|chain| Some(chain) != first) {
             own.jump = 2.0 * own.slope;

@@ -1,5 +1,6 @@
 //! The field of a place: the sum of the pieces in its window, and the largest of such sums at a point.
 use super::near::Jets;
+use super::survey::reach_of;
 use super::window::Weight;
 use super::{FAINT, Link, Local, Place, Segment};
 use crate::{Ball, Jet};
@@ -27,6 +28,14 @@ struct Site {
 impl Local {
     /// Weight of a link for a place on its segment.
     pub(super) fn weight(&self, segment: &Segment, link: &Link, along: f64) -> Weight {
+        // Most pieces are wholly within the window's flat part, or out of reach.
+        let [nearest, farthest] = reach_of(segment, link, along);
+        if nearest >= self.window.reach || farthest <= self.window.flat() {
+            return Weight {
+                value: f64::from(u8::from(nearest < self.window.reach)),
+                slope: 0.0,
+            };
+        }
         if link.own {
             let [[start, _], [end, _]] = link.distances;
             return match along {
@@ -150,8 +159,10 @@ impl Local {
         }
         for (i, here) in [a.along, first.length - a.along].into_iter().enumerate() {
             for (k, there) in [b.along, second.length - b.along].into_iter().enumerate() {
-                let between = self.near[first.ends[i] as usize].get(&second.ends[k]);
-                least = least.min(here + there + between.copied().unwrap_or(f64::INFINITY));
+                let near = &self.near[first.ends[i] as usize];
+                let found = near.binary_search_by_key(&second.ends[k], |near| near.0);
+                let between = found.map_or(f64::INFINITY, |place| near[place].1);
+                least = least.min(here + there + between);
             }
         }
         least

@@ -290,7 +290,7 @@ impl<'a> Survey<'a> {
         if let Some(nearest) = self.nearest() {
             self.look_at_chain(self.all[nearest].chain);
         }
-        let floor = self.least(|_| true);
+        let floor = self.least(|_, _| true);
         let mut best: Option<(f64, usize)> = None;
         for i in 0..self.all.len() {
             if self.all[i].most >= floor {
@@ -303,19 +303,19 @@ impl<'a> Survey<'a> {
         match best {
             Some((_, i)) if self.all[i].known.is_none() => {
                 self.look_at_chain(self.all[i].chain);
-                self.least(|_| true)
+                self.least(|_, _| true)
             }
             _ => floor,
         }
     }
 
     /// A lower bound on the largest of some candidates: of one that is there for every point of the ball, with all that it goes on in.
-    pub fn least(&self, of: impl Fn(&Candidate) -> bool) -> f64 {
+    pub fn least(&self, of: impl Fn(usize, &Candidate) -> bool) -> f64 {
         // For each chain the least value of its candidates.
         let mut lowest = vec![f64::INFINITY; self.all.len()];
-        for candidate in &self.all {
+        for (i, candidate) in self.all.iter().enumerate() {
             let low = match &candidate.known {
-                Some(known) if candidate.lasting && of(candidate) => known.bounds.value[0],
+                Some(known) if candidate.lasting && of(i, candidate) => known.bounds.value[0],
                 _ => 0.0,
             };
             let chain = &mut lowest[candidate.chain];
@@ -353,7 +353,7 @@ impl<'a> Survey<'a> {
 }
 
 /// The least and the largest distance of a piece's points from a place of a segment, within the two ways to it.
-fn reach_of(segment: &Segment, link: &Link, along: f64) -> [f64; 2] {
+pub(super) fn reach_of(segment: &Segment, link: &Link, along: f64) -> [f64; 2] {
     if link.own {
         let [[start, _], [end, _]] = link.distances;
         let far = (along - start).abs().max((along - end).abs());

@@ -1,11 +1,13 @@
-//! The function whose surface the reference looks for: a field, or the smooth maximum of two.
+//! The function whose surface the reference looks for: a field, the smooth maximum of two, or the largest of those of bodies that touch.
 use super::pieces::{Magnitudes, Pieces};
+use super::range::Range;
+use super::touching::Touching;
 use super::waves::Factor;
 use field::{Kink, Primitive, THRESHOLD};
 use glam::DVec3;
 
 /// Relative error of the terms of a field, and of coordinates.
-const FIELD_ERROR: f64 = 1e-10;
+pub(super) const FIELD_ERROR: f64 = 1e-10;
 pub(super) const ULP: f64 = 4e-16;
 
 /// The function less T at a point, its gradient, and how far rounding may have moved them.
@@ -23,6 +25,8 @@ pub(super) enum Function {
     Sum(FieldTerms),
     /// `(a + b + √((a−b)² + k²))/2`, k > 0.
     SmoothMaximum(Box<[FieldTerms; 2]>, f64),
+    /// The largest of the functions of bodies that touch.
+    Touching(Touching),
 }
 
 /// The terms of a field.
@@ -36,6 +40,7 @@ impl Function {
     pub fn sample(&self, point: DVec3) -> Evaluation {
         match self {
             Self::Sum(terms) => terms.sample(point),
+            Self::Touching(bodies) => bodies.sample(point),
             Self::SmoothMaximum(parts, k) => {
                 let [a, b] = parts.each_ref().map(|part| part.sample(point));
                 let noise = a.noise.max(b.noise) + 4.0 * f64::EPSILON * k;
@@ -56,6 +61,13 @@ impl Function {
     pub fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Magnitudes {
         match self {
             Self::Sum(terms) => terms.extent(center, radius, along),
+            // Of these the range alone is known.
+            Self::Touching(_) => Magnitudes {
+                above: f64::INFINITY,
+                below: f64::INFINITY,
+                slope: f64::INFINITY,
+                curvature: f64::INFINITY,
+            },
             Self::SmoothMaximum(parts, k) => {
                 let [a, b] = parts
                     .each_mut()
@@ -73,11 +85,21 @@ impl Function {
         }
     }
 
+    /// The range of values in a ball, of functions with creases; `None` of others.
+    pub fn range(&mut self, center: DVec3, radius: f64) -> Option<Range> {
+        match self {
+            Self::Touching(bodies) => Some(bodies.range(center, radius)),
+            _ => None,
+        }
+    }
+
     /// Kinks of all terms.
     pub fn kinks(&self) -> Vec<Kink> {
         let parts = match self {
             Self::Sum(terms) => core::slice::from_ref(terms),
             Self::SmoothMaximum(parts, _) => &parts[..],
+            // They have more kinks than could be named.
+            Self::Touching(_) => &[],
         };
         let primitives = parts.iter().flat_map(|part| &part.primitives);
         primitives.flat_map(|p| Factor::of(p).kinks).collect()
@@ -98,7 +120,7 @@ impl FieldTerms {
         }
     }
 
-    fn sample(&self, point: DVec3) -> Evaluation {
+    pub fn sample(&self, point: DVec3) -> Evaluation {
         let (mut excess, mut size) = (-THRESHOLD, THRESHOLD);
         let (mut gradient, mut steep) = (DVec3::ZERO, 0.0);
         for primitive in &self.primitives {
@@ -117,7 +139,7 @@ impl FieldTerms {
         }
     }
 
-    fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Magnitudes {
+    pub fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Magnitudes {
         self.pieces.extent(&self.primitives, center, radius, along)
     }
 }
