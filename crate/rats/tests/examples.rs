@@ -203,6 +203,7 @@ const EXAMPLES: &[&str] = &[
     "diamond",
     "drops",
     "falling",
+    "fawn",
     "fireflies",
     "flakes",
     "floppy-ears",
