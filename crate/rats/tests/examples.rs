@@ -211,6 +211,7 @@ const EXAMPLES: &[&str] = &[
     "diamond",
     "drops",
     "falling",
+    "fawn",
     "fireflies",
     "flakes",
     "floppy-ears",

@@ -98,7 +98,7 @@ const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 56] = [
+pub const ALL: [Example; 57] = [
     example!(SEA, "Tide line", "a cowrie, two starfish and pebbles", "tide"),
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
@@ -128,6 +128,7 @@ pub const ALL: [Example; 56] = [
     example!(MATTER, "Fireflies", "clouds of light between leaves", "fireflies"),
     example!(MATTER, "Three worlds", "craters, bands and squares", "planets"),
     example!(MATTER, "Pebbles", "bumps that are not there", "pebbles"),
+    example!(CURVES, "Fawn", "drawn by hand, in nine strokes", "fawn"),
     example!(CURVES, "Octopus", "one skeleton with eight arms", "octopus"),
     example!(CURVES, "Snail", "two skeletons of curves", "snail"),
     example!(CURVES, "Finger and thumb", "they squeeze a ball, which gives way", "squeeze"),

@@ -196,7 +196,9 @@ fn thickness(ui: &mut Ui, value: &mut f32) {
         palette.button,
         Stroke::NONE,
     ));
-    let place = Rect::from_center_size(wedge.center(), vec2(width, 26.0));
+    // As high as the slider is, or it would lie lower, on its caption.
+    let height = ui.spacing().interact_size.y.max(26.0);
+    let place = Rect::from_center_size(wedge.center(), vec2(width, height));
     let builder = egui::UiBuilder::new().max_rect(place);
     let mut inner = ui.new_child(builder.layout(Layout::left_to_right(Align::Center)));
     slider::colours(&mut inner);

@@ -21,7 +21,9 @@ const ENDS: f64 = 0.75;
 const APART: [f64; 2] = [1.2, 0.85];
 /// A short stroke from an end is a head or a paw: lengths in radii at which it begins to be thicker, is thickest, and no longer is;
 /// and how thick it is then.
-const EGG: ([f64; 3], f64) = ([1.5, 5.0, 9.0], 1.7);
+const EGG: ([f64; 3], f64) = ([1.5, 6.0, 14.0], 1.8);
+/// Most radius of an end that is a neck or an ankle, in radii of the brush.
+const THIN: f64 = 1.3;
 /// Radius at no and at full pressure of a pen, in shares of the brush's.
 const PRESSED: [f64; 2] = [0.3, 1.5];
 /// Least cosine of the angle between the line of sight and the mirror's normal at which strokes are drawn on the mirror itself.
@@ -75,6 +77,8 @@ pub struct Begin {
     pub radius: f64,
     /// Whether the mirrored stroke is drawn as well.
     pub pair: bool,
+    /// Whether it goes on from an end that is hardly thicker than the brush: a short one is a head or a paw then.
+    pub tip: bool,
     /// From the model's own coordinates, in which the mirror is x = 0, to the world.
     pub to_world: DAffine3,
 }
@@ -109,8 +113,19 @@ fn leave(drawn: &Drawn, node: usize, sight: &Sight, heading: Option<Vec2>) -> Le
         let position = drawn.skeleton.nodes[node].position;
         sight.screen(drawn.to_world.transform_point3(position))
     };
+    // From the middle of its curve: the very end of a body often hangs down.
     let out = drawn.before(node).and_then(|before| {
-        let out = seen(node)? - seen(before)?;
+        let has = |along: &&Vec<usize>| {
+            along
+                .windows(2)
+                .any(|ends| ends == [node, before] || ends == [before, node])
+        };
+        let along = drawn.skeleton.curves.iter().find(has)?;
+        let places: Vec<Pos2> = along.iter().filter_map(|node| seen(*node)).collect();
+        let sum = places
+            .iter()
+            .fold(Vec2::ZERO, |sum, place| sum + place.to_vec2());
+        let out = seen(node)?.to_vec2() - sum / places.len() as f32;
         (out.length() > 1.0).then(|| out.normalized())
     });
     let (Some(out), Some(heading)) = (out, heading) else {
@@ -191,6 +206,7 @@ pub fn begin(
         plane: (through, if on_mirror { mirror } else { -ahead }),
         radius: radius(through),
         pair,
+        tip: false,
         to_world,
     };
     if let Some((index, node, goes_on)) = end {
@@ -201,7 +217,9 @@ pub fn begin(
         } else {
             Root::Node(index, node)
         };
-        return made(root, Some(place), place, !single && !flat, flat);
+        let begin = made(root, Some(place), place, !single && !flat, flat);
+        let tip = all[index].radius(node) <= THIN * begin.radius;
+        return Begin { tip, ..begin };
     }
     if let Some(spot) = spot {
         let drawn = &all[spot.drawn];
@@ -302,10 +320,7 @@ impl Begin {
         let radii = length / self.radius.max(f64::MIN_POSITIVE);
         let long = (radii - SHORT[0]) / (SHORT[1] - SHORT[0]);
         let tip = 1.0 + (TIP - 1.0) * long.clamp(0.0, 1.0);
-        let egg = match self.root {
-            Root::End(..) => egg(radii),
-            _ => 1.0,
-        };
+        let egg = if self.tip { egg(radii) } else { 1.0 };
         let sample = |((position, pressure), along): (&(DVec3, Option<f32>), &f64)| {
             let share = along / length;
             let thick = match pressure {

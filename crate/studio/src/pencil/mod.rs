@@ -56,7 +56,7 @@ impl Tool {
 /// Thickness of strokes, points of a picture 640 points wide: least and most.
 pub const THICKNESS: [f32; 2] = [3.0, 60.0];
 /// By how much thicker the first stroke of a page is.
-const BODY: f32 = 2.2;
+const BODY: f32 = 2.6;
 
 /// The tool in hand, and what is being done with it.
 pub struct Pencil {
