@@ -45,6 +45,7 @@ pub mod keyboard;
 pub mod layout;
 pub mod marks;
 pub mod mesh_export;
+mod mesh_panel;
 pub mod notice;
 mod outside;
 pub mod pad;

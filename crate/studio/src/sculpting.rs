@@ -227,13 +227,16 @@ impl App {
             // As large as the shapes that one may begin with.
             size: 2.0,
             union: true,
+            rig: false,
         };
         let requests = self.parts.requests.clone();
         let taker = Box::new(move |result| requests.ask(Request::SculptModel(result)));
         let text = String::from("The model is being meshed; then you can sculpt it.");
         self.notice = Some(Notice::done(text, now));
         let session = &self.work.session;
-        self.mesh_export.make_for(session, "model", order, taker);
+        let film = self.film();
+        self.mesh_export
+            .make_for(session, film, "model", order, taker);
     }
 
     /// Opens the mesh of the model as a new work.
