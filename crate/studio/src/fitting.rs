@@ -282,6 +282,30 @@ impl Fitting {
         targets
     }
 
+    /// Chooses the `mesh` command of a file, or the deformation of what it makes.
+    pub fn choose(&mut self, session: &Session, file: &str) {
+        let bare = file.rsplit('/').next().unwrap_or(file);
+        let shows = |origin: Origin| {
+            let text = session.text(origin.file as usize);
+            let command = text.get(origin.start as usize..origin.end as usize);
+            let mut words = command.unwrap_or_default().split_whitespace();
+            let named = words.nth(2).map(|name| name.trim_end_matches([',', ';']));
+            named.is_some_and(|name| name == file || name == bare)
+        };
+        let found = Self::targets(session)
+            .into_iter()
+            .find(|(target, _)| match target {
+                Target::Deform(index) => {
+                    let deforms = &session.compiled().deforms;
+                    deforms[*index].of.iter().any(|origin| shows(*origin))
+                }
+                Target::Mesh(origin) => shows(*origin),
+            });
+        if let Some((target, _)) = found {
+            self.target = Some(target);
+        }
+    }
+
     /// Begins the fit of what is chosen.
     pub fn start(&mut self, session: &Session, now: f64) {
         self.stop_worker();

@@ -1,7 +1,7 @@
 //! The model as a mesh, for printers and other programs: the jobs of the tools worker, and scripts that ask for a file. The
 //! dialog is in `mesh_panel`.
 //!
-//! The mesh is made apart from the page's thread, a coarse one first, so that there is something to see. Another format or
+//! The mesh is made apart from the page's thread; until it is there a coat of the skeletons is seen. Another format or
 //! size only writes the mesh again. Of a model with a skeleton the motion is asked of the language frame by frame, some at
 //! each tick, so that the page stays responsive.
 
@@ -16,11 +16,13 @@ use mesher::{Tolerance, Wishes};
 use pool::{ToolEvent, Tools};
 use rats::Project;
 use scene::Scene;
-use tools::{Job, MeshFacts, MeshJob, Meshed, Output, RigJob, WriteJob, Written};
+use tools::{CoatJob, Job, MeshFacts, MeshJob, Output, RigJob, WriteJob, Written};
 use viewport::{Surface, View};
 
-/// Tolerance of the mesh that is shown until the one that was asked for is there, in lengths of the model.
-const COARSE: f64 = 1.6e-2;
+/// Bound of the coat that is shown until the mesh that was asked for is there.
+const COAT: f64 = 0.05;
+/// Most elements of a scene that gets such a coat.
+const MOST_COATED: usize = 20_000;
 /// Most triangles whose edges are shown: beyond there are more edges than pixels.
 pub(crate) const MOST_EDGES: usize = 300_000;
 /// Seconds of a tick that frames of a motion may take.
@@ -115,8 +117,8 @@ pub type Taker = Box<dyn FnOnce(Result<Vec<u8>, String>)>;
 
 /// What a job is for.
 enum Purpose {
-    /// The dialog shows it until a finer one is there.
-    Coarse(Shape),
+    /// A coat of the skeletons, which the dialog shows until the mesh is there.
+    Coat(Shape),
     /// The dialog's triangles.
     Shape(Shape),
     /// The dialog's file.
@@ -268,14 +270,16 @@ impl MeshExport {
                 let mut files = meshed.written.files.into_iter();
                 files.next().map_or_else(Vec::new, |file| file.bytes)
             })),
-            Purpose::Coarse(shape) => {
-                // What went wrong the finer one tells, too.
-                if let Ok(meshed) = meshed(result) {
-                    self.take(shape, meshed);
+            Purpose::Coat(shape) => {
+                if let Ok(Output::Coated(coated)) = result
+                    && !coated.parts.is_empty()
+                {
+                    let facts = MeshFacts::default();
+                    self.take(shape, coated.parts, facts);
                 }
             }
             Purpose::Shape(shape) => match meshed(result) {
-                Ok(meshed) => self.take(shape, meshed),
+                Ok(meshed) => self.take(shape, meshed.parts, meshed.facts),
                 Err(reason) => self.fail(shape, reason),
             },
             Purpose::File(wanted) => match result {
@@ -289,8 +293,8 @@ impl MeshExport {
         }
     }
 
-    fn take(&mut self, shape: Shape, meshed: Meshed) {
-        let surface = surface(&meshed.parts, meshed.facts.is_closed);
+    fn take(&mut self, shape: Shape, parts: Vec<(String, TriangleMesh)>, facts: MeshFacts) {
+        let surface = surface(&parts, facts.is_closed);
         let other = self.made.as_ref().map(|made| made.shape.generation) != Some(shape.generation);
         if let Some([low, high]) = surface.bounds()
             && (other || self.show.view.is_none())
@@ -302,8 +306,8 @@ impl MeshExport {
         self.show.is_stale = true;
         self.made = Some(Made {
             shape,
-            parts: meshed.parts,
-            facts: meshed.facts,
+            parts,
+            facts,
             surface,
         });
     }
@@ -430,6 +434,12 @@ impl MeshExport {
         self.trouble = Some((self.wanted(session, film), text));
     }
 
+    /// Whether the mesh on show is only a coat of the skeletons.
+    pub(crate) fn shows_coat(&self) -> bool {
+        let made = self.made.as_ref();
+        made.is_some_and(|made| made.shape.tolerance.is_infinite())
+    }
+
     /// Whether the last try gave nothing.
     pub(crate) fn has_failed(&self) -> bool {
         self.trouble.is_some()
@@ -487,12 +497,15 @@ impl MeshExport {
                 made.shape.generation != shape.generation
                     || made.shape.first_frame != shape.first_frame
             };
-            if order.tolerance < 0.3 * COARSE && self.made.as_ref().is_none_or(is_other) {
-                let tolerance = COARSE;
-                let coarse = Shape { tolerance, ..shape };
-                let order = Order { tolerance, ..order };
-                let purpose = Purpose::Coarse(coarse);
-                self.submit(scene.clone(), order, name.to_owned(), None, purpose);
+            if scene.elements.len() <= MOST_COATED && self.made.as_ref().is_none_or(is_other) {
+                let job = Job::Coat(Box::new(CoatJob {
+                    scene: scene.clone(),
+                    bound: COAT,
+                    coatings: Vec::new(),
+                }));
+                // No mesh that is asked for is taken for it.
+                let tolerance = f64::INFINITY;
+                self.run(job, Purpose::Coat(Shape { tolerance, ..shape }));
             }
             let purpose = Purpose::Shape(shape);
             self.submit(scene, order, name.to_owned(), None, purpose);
@@ -756,7 +769,7 @@ mod tests {
     fn another_format_or_size_makes_no_new_triangles() {
         let (ball, arm) = (session(BALL), session(ARM));
         let mut export = MeshExport::new(|| {});
-        // Coarse, fine, file.
+        // Coat, mesh, file.
         assert_eq!(follow(&mut export, &ball), 3);
         assert_eq!(export.files()[0].name, "model.stl");
         export.order.format = Format::ThreeMf;

@@ -271,8 +271,8 @@ impl MeshExport {
             State::Making(fraction) => {
                 let bar = ui.add(ProgressBar::new(fraction).desired_width(220.0));
                 places::note(ui.ctx(), "mesh progress", bar.rect);
-                if self.made.is_some() {
-                    let text = "What you see is coarser.";
+                if self.shows_coat() {
+                    let text = "Till then you see a rough coat of it.";
                     ui.label(RichText::new(text).size(12.5).color(palette.weak));
                 }
                 let stop = ui.button("Stop");
