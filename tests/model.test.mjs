@@ -50,11 +50,19 @@ async function made(sinew) {
   return mesh;
 }
 
-async function save(sinew) {
-  const coming = sinew.page.waitForEvent('download', { timeout: PATIENCE });
+/** Saves the mesh, and gives the bytes of the file of a name; OBJ has a second file. */
+async function save(sinew, name) {
+  const predicate = (file) => file.suggestedFilename() === name;
+  const coming = sinew.page.waitForEvent('download', { predicate, timeout: PATIENCE });
   await sinew.click('save mesh');
-  const file = await coming;
-  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
+  return readFile(await (await coming).path());
+}
+
+/** Opens a text, whose picture is small as it does not matter here. */
+async function open(sinew, text) {
+  await sinew.load(text);
+  await sinew.page.evaluate(() => sinew.debug.pictureSize(32, 24));
+  await sinew.until(({ errors, elements, fresh }) => errors === 0 && elements > 0 && fresh);
 }
 
 /** What the page itself reads of a file: the triangles of a mesh. */
@@ -86,8 +94,7 @@ for (const [size, options] of Object.entries(SIZES)) {
   test(`the dialog shows the mesh and saves it: ${size}`, async () => {
     const sinew = await browser.open(options);
     const { page } = sinew;
-    await sinew.load(DROPS);
-    await sinew.finished();
+    await open(sinew, DROPS);
     await show(sinew, size);
     const first = await made(sinew);
     assert.equal(first.shown, first.triangles);
@@ -134,9 +141,7 @@ for (const [size, options] of Object.entries(SIZES)) {
       const before = (await sinew.status()).mesh;
       await sinew.click(`mesh format ${format}`);
       if (format !== 'STL') await sinew.until(({ mesh }) => mesh.bytes && mesh.bytes !== before.bytes);
-      const { name, bytes } = await save(sinew);
-      assert.equal(name, `Main.${format.toLowerCase()}`);
-      saved[format] = bytes;
+      saved[format] = await save(sinew, `Main.${format.toLowerCase()}`);
     }
     const { triangles } = await made(sinew);
     assert.equal(saved.STL.readUInt32LE(80), triangles);
@@ -204,9 +209,7 @@ test('what cannot be meshed is told', async () => {
 
 test('the seahorse as GLB is opened by three.js', async () => {
   const sinew = await browser.open(SIZES.desk);
-  await sinew.load(await example('seahorse'));
-  await sinew.until(({ errors, elements }) => errors === 0 && elements > 40);
-  await sinew.page.evaluate(() => sinew.cancel());
+  await open(sinew, await example('seahorse'));
   const bytes = await mesh(sinew, { format: 'glb', tolerance: 1e-2, size: 80 });
   const other = await viewer(sinew);
   const model = await other.load(bytes);
@@ -222,15 +225,14 @@ test('the seahorse as GLB is opened by three.js', async () => {
 
 test('joints and motion are played by three.js', async () => {
   const sinew = await browser.open(SIZES.desk);
-  await sinew.load(ARM);
-  await sinew.finished();
+  await open(sinew, ARM);
   await show(sinew, 'desk');
   await sinew.click('mesh format GLB');
   const plain = await made(sinew);
   await sinew.click('mesh rig');
   await sinew.until(({ mesh }) => mesh.bytes > plain.bytes);
   await sinew.keep('model rig');
-  const { bytes } = await save(sinew);
+  const bytes = await save(sinew, 'Main.glb');
   const other = await viewer(sinew);
   const model = await other.load(bytes);
   assert.ok(model.skinned);

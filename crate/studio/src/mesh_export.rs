@@ -206,7 +206,10 @@ impl MeshExport {
 
     /// Takes in what the worker has done. Returns whether it must be called again soon.
     pub fn tick(&mut self) -> bool {
+        // What is laid out in a new way is known, also to scripts, a frame later.
+        let mut again = false;
         for (id, event) in self.tools.poll() {
+            again = true;
             let Some(index) = self.running.iter().position(|job| job.id == id) else {
                 continue;
             };
@@ -221,7 +224,7 @@ impl MeshExport {
             }
         }
         self.film();
-        !self.filming.is_empty()
+        again || !self.filming.is_empty()
     }
 
     /// Asks the language for frames, as many as there is time for.

@@ -86,16 +86,22 @@ impl MeshExport {
             // How the mesh fares stays in view below the rest.
             let below = 150.0;
             let height = (size.y - 60.0 - below).max(120.0);
-            ScrollArea::vertical().max_height(height).show(ui, |ui| {
-                let side = (height - 250.0).clamp(120.0, 420.0);
+            let above = ScrollArea::vertical().id_salt("mesh settings");
+            above.max_height(height).show(ui, |ui| {
+                let side = (height - 290.0).clamp(120.0, 420.0);
                 self.view(ui, vec2(ui.available_width(), side));
                 ui.add_space(4.0);
                 settled = self.settings(ui, session);
             });
             ui.separator();
-            ScrollArea::vertical().max_height(below).show(ui, |ui| {
+            let outcome = ScrollArea::vertical().id_salt("mesh outcome");
+            outcome.max_height(below).auto_shrink(false).show(ui, |ui| {
                 self.outcome(ui, session, film, commands);
             });
+        }
+        if self.show.is_stale {
+            // It was drawn before the settings that it depends on.
+            ui.ctx().request_repaint();
         }
         // While a slider is dragged nothing is begun.
         if settled {
@@ -292,9 +298,9 @@ impl MeshExport {
             State::Done(facts, written) => {
                 let lines = lines(facts, self.growth(facts), written, film);
                 let save = Button::new(RichText::new("Save").color(palette.on_accent).size(14.5))
-                    .fill(palette.accent)
-                    .min_size(vec2(120.0, 30.0));
-                let save = ui.add(save);
+                    .fill(palette.accent);
+                let height = ui.spacing().interact_size.y.max(30.0);
+                let save = ui.add_sized(vec2(120.0, height), save);
                 places::note(ui.ctx(), "save mesh", save.rect);
                 if save.clicked() {
                     commands.push(Command::SaveMesh);

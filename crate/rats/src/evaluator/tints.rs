@@ -90,7 +90,9 @@ mod tests {
             vec![DVec3::ZERO; count as usize],
             (0..count).map(|i| [i; 3]).collect(),
         );
-        let channel = |i: u32, k: u32| (i.wrapping_mul(2_654_435_761 + 97 * k) >> 8) as f32 / 1.7e7;
+        let sides = [34, 35, 36];
+        let step = |i: u32, k: usize| i / [1, 34, 34 * 35][k] % sides[k];
+        let channel = |i: u32, k: usize| step(i, k) as f32 / 36.0;
         let colors: Vec<Rgb> = (0..count)
             .map(|i| [0, 1, 2].map(|k| channel(i, k)))
             .collect();
