@@ -227,8 +227,9 @@ test('joints and motion are played by three.js', async () => {
   const sinew = await browser.open(SIZES.desk);
   await open(sinew, ARM);
   await show(sinew, 'desk');
+  const { bytes: stl } = await made(sinew);
   await sinew.click('mesh format GLB');
-  const plain = await made(sinew);
+  const { mesh: plain } = await sinew.until(({ mesh }) => mesh.bytes && mesh.bytes !== stl);
   await sinew.click('mesh rig');
   await sinew.until(({ mesh }) => mesh.bytes > plain.bytes);
   await sinew.keep('model rig');
