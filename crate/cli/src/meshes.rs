@@ -204,16 +204,10 @@ impl Mesh {
                 rats::compile_at(&loaded.project, &loaded.assets, frame).scene
             })
             .collect();
-        // The mesher calls a soft surface as its body.
-        let bodies = &loaded.compiled.scene.bodies;
-        let body = |name: &str| {
-            let own =
-                |body: &scene::Body| body.name == name || (body.name.is_empty() && name == "model");
-            bodies.iter().position(own).map(|number| number as u32)
-        };
+        let scene = &loaded.compiled.scene;
         let meshes: Vec<(Option<u32>, &TriangleMesh)> = parts
             .iter()
-            .map(|part| (body(&part.name), &part.mesh))
+            .map(|part| (rig::body_of(scene, &part.name), &part.mesh))
             .collect();
         let rig = rig::rig(&scenes, rate, &meshes)?;
         let name = stem.file_name().unwrap_or_default().to_string_lossy();

@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use sculpt::{
     Constraint, Decay, Deletion, Form, MaskChange, Refinement, Region, RegionChange, Stroke,
 };
-use widgets::{places, slider, theme};
+use widgets::{places, screen, slider, theme};
 
 /// A button that shows whether it is chosen.
 fn chip(ui: &mut Ui, name: &str, is_chosen: bool, tip: &str) -> Response {
@@ -68,7 +68,10 @@ fn tools(place: &mut Sculpting, ui: &mut Ui) {
 /// All controls.
 pub fn controls(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
-    ui.horizontal_wrapped(|ui| tools(place, ui));
+    // A narrow page has the tools in its strip.
+    if !screen::is_narrow(ui.ctx()) {
+        ui.horizontal_wrapped(|ui| tools(place, ui));
+    }
     tool(place, ui);
     decay(place, ui);
     symmetry(place, ui, commands);
@@ -416,6 +419,10 @@ fn flesh(place: &Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
                 let edge = place.mean_edge();
                 commands.push(Command::Grow { flesh, edge });
             }
+        }
+        let tip = "Bring the mesh onto measured points or outlines, by control points around it";
+        if chip(ui, "Fit this to points", false, tip).clicked() {
+            commands.push(Command::Fit);
         }
     });
 }

@@ -29,6 +29,8 @@ pub enum Command {
         /// The mean length of its edges.
         edge: f64,
     },
+    /// Bring the mesh onto measured points.
+    Fit,
     /// Go back to the text.
     Close,
     /// Begin another one.

@@ -36,6 +36,7 @@ mod skeleton;
 mod state;
 mod surroundings;
 mod textures;
+mod tints;
 mod tools;
 mod variables;
 mod view_plane;

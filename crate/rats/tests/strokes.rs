@@ -60,6 +60,47 @@ fn sculpture_is_a_mesh_like_any_other() {
 }
 
 #[test]
+fn paint_tints_the_material_where_it_is() {
+    let painted = format!("{HORN}paint 1 0.04 0.04 sphere 0.5 0.5 0.5 flat 0 : 0 0 1.6\n");
+    for soft in ["", ", blobbiness -2, radius 0.2"] {
+        let main = format!("surface Flesh, diffuse <0.5 0.5 0.5>{soft}\nmesh Flesh horn.strokes\n");
+        let compiled = run(&main, &painted);
+        let is_error = |d: &rats::Diagnostic| d.severity == Severity::Error;
+        assert!(
+            !compiled.diagnostics.iter().any(is_error),
+            "{:?}",
+            compiled.diagnostics
+        );
+        let scene = &compiled.scene;
+        let mut tops = 0;
+        for element in &scene.elements {
+            let (scene::Shape::Patch { corners, .. } | scene::Shape::Triangle { corners, .. }) =
+                &element.shape
+            else {
+                panic!("triangles");
+            };
+            let [red, green, blue] = scene.finishes[element.finish as usize].diffuse;
+            assert_eq!(green, blue);
+            // Paint leaves red as it is.
+            assert_eq!(red, 0.5);
+            let (lowest, highest) = corners
+                .iter()
+                .fold((9.0_f64, -9.0_f64), |(l, h), c| (l.min(c.z), h.max(c.z)));
+            if lowest > 1.3 {
+                tops += 1;
+                assert!(green < 0.4, "{green} at {corners:?}");
+            }
+            if highest < 0.0 {
+                assert_eq!(green, 0.5);
+            }
+            assert_eq!(element.flesh.is_some(), !soft.is_empty());
+        }
+        assert!(tops > 0);
+        assert!(scene.finishes.len() < 12, "{}", scene.finishes.len());
+    }
+}
+
+#[test]
 fn sculpture_that_grows_equals_one_made_at_once() {
     let more = "symmetry x\npull sphere 0.3 0.3 0.3 bell 0.5 : 0.9 0 0, 1.3 0 0\nrefine\n";
     let _ = run("mesh Clay horn.strokes\n", HORN);

@@ -65,6 +65,35 @@ fn skeletons(scene: &Scene) -> Vec<Skeleton<'_>> {
     own.collect()
 }
 
+/// Whether a scene has a skeleton, whose nodes can become joints.
+#[must_use]
+pub fn has_skeleton(scene: &Scene) -> bool {
+    scene.elements.iter().any(|e| e.shape.curves().is_some())
+}
+
+/// A scene's skeletons alone: all that [`rig`] reads of the scenes after the first one.
+#[must_use]
+pub fn skeletons_of(scene: &Scene) -> Scene {
+    let elements = scene.elements.iter();
+    let own = elements.filter(|e| e.shape.curves().is_some());
+    Scene {
+        elements: own.cloned().collect(),
+        ..Scene::default()
+    }
+}
+
+/// The body, by its number in [`Scene::bodies`], whose soft surface is the mesh of this name: the mesher names a soft surface
+/// as its body, and that of a body without a name `model`.
+#[must_use]
+pub fn body_of(scene: &Scene, name: &str) -> Option<u32> {
+    let is_it = |body: &scene::Body| body.name == name || (body.name.is_empty() && name == "model");
+    scene
+        .bodies
+        .iter()
+        .position(is_it)
+        .map(|number| number as u32)
+}
+
 /// The rig of meshes of a scene. The first of `scenes` is the one that was meshed; all of them, in order, are the frames of the
 /// animation, up to the first one whose skeletons are not the same curves. `rate` is in frames per second. With each mesh comes the
 /// number of the body whose soft surface it is, in [`Scene::bodies`]; none for hard shapes, which stay.

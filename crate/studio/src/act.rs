@@ -154,6 +154,7 @@ impl App {
                 self.notice = None;
                 session.enable();
             }
+            Command::FitSculpture(name) => self.fit_sculpture(&name),
             Command::ShowFit(open) => {
                 self.fitting.open = open;
                 self.tab = if open { Tab::Fit } else { Tab::Text };

@@ -302,7 +302,9 @@ impl App {
         if let Some(trouble) = self.work.tick(now) {
             self.notice = Some(Notice::trouble(trouble));
         }
-        self.mesh_export.tick();
+        if self.mesh_export.tick() {
+            ctx.request_repaint();
+        }
         if self.dialog != Some(Dialog::Mesh) {
             self.mesh_export.stop();
         }
@@ -422,6 +424,14 @@ impl App {
             Phase::Done | Phase::Cancelled => true,
             Phase::Idle => !self.work.session.enabled(),
             Phase::Waiting | Phase::Tracing => false,
+        }
+    }
+
+    /// The film as the strip below the picture has it.
+    pub(crate) fn film(&self) -> crate::mesh_export::Film {
+        crate::mesh_export::Film {
+            count: self.player.count,
+            rate: self.player.rate,
         }
     }
 

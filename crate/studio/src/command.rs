@@ -187,6 +187,8 @@ pub enum Command {
         /// The mean length of its edges.
         edge: f64,
     },
+    /// Leave the place for sculpting, to fit the mesh of a sculpture to measured points.
+    FitSculpture(String),
     /// Leave the place for sculpting.
     CloseSculpt,
     /// Delete a saved work.

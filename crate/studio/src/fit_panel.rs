@@ -4,13 +4,13 @@ use crate::app::App;
 use crate::command::Command;
 use crate::fitting::{Fitting, Seen, Target};
 use crate::icon::{self, Icon};
-use crate::{places, slider, theme};
+use crate::{places, screen, slider, theme};
 use egui::{Button, Color32, Painter, Rect, RichText, Sense, Slider, Stroke, Ui, Vec2, pos2, vec2};
 
 /// Height of the panel beside the text.
 pub const HEIGHT: f32 = 326.0;
-/// Height of the plot.
-const PLOT: f32 = 74.0;
+/// Height of the plot, and on a narrow page.
+const PLOT: [f32; 2] = [74.0, 56.0];
 
 /// Whether there is something to fit, so that the panel is offered.
 #[must_use]
@@ -178,10 +178,12 @@ fn row(
 ) {
     ui.horizontal(|ui| {
         let height = ui.spacing().interact_size.y;
-        ui.add_sized(
-            vec2(96.0, height),
-            egui::Label::new(RichText::new(name).size(12.5)),
-        );
+        let label = egui::Label::new(RichText::new(name).size(12.5));
+        let left = egui::Layout::left_to_right(egui::Align::Center);
+        ui.allocate_ui_with_layout(vec2(96.0, height), left, |ui| {
+            ui.set_min_width(96.0);
+            ui.add(label);
+        });
         ui.scope(|ui| {
             slider::colours(ui);
             ui.spacing_mut().slider_width = (ui.available_width() - 74.0).clamp(60.0, 300.0);
@@ -259,7 +261,8 @@ fn progress(fitting: &Fitting, ui: &mut Ui) {
         places::note(ui.ctx(), "fit words", label.rect);
     }
     if fitting.residuals.len() > 1 {
-        let size = vec2(ui.available_width(), PLOT);
+        let height = PLOT[usize::from(screen::is_narrow(ui.ctx()))];
+        let size = vec2(ui.available_width(), height);
         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
         places::note(ui.ctx(), "fit plot", rect);
         plot(ui.painter(), rect, &fitting.residuals, palette);

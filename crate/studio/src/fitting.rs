@@ -282,6 +282,30 @@ impl Fitting {
         targets
     }
 
+    /// Chooses the `mesh` command of a file, or the deformation of what it makes.
+    pub fn choose(&mut self, session: &Session, file: &str) {
+        let bare = file.rsplit('/').next().unwrap_or(file);
+        let shows = |origin: Origin| {
+            let text = session.text(origin.file as usize);
+            let command = text.get(origin.start as usize..origin.end as usize);
+            let mut words = command.unwrap_or_default().split_whitespace();
+            let named = words.nth(2).map(|name| name.trim_end_matches([',', ';']));
+            named.is_some_and(|name| name == file || name == bare)
+        };
+        let found = Self::targets(session)
+            .into_iter()
+            .find(|(target, _)| match target {
+                Target::Deform(index) => {
+                    let deforms = &session.compiled().deforms;
+                    deforms[*index].of.iter().any(|origin| shows(*origin))
+                }
+                Target::Mesh(origin) => shows(*origin),
+            });
+        if let Some((target, _)) = found {
+            self.target = Some(target);
+        }
+    }
+
     /// Begins the fit of what is chosen.
     pub fn start(&mut self, session: &Session, now: f64) {
         self.stop_worker();
@@ -302,7 +326,13 @@ impl Fitting {
             .map(|(target, _)| target)
             .find(|target| Some(*target) == self.target.as_ref())
             .or(targets.first().map(|(target, _)| target))
-            .ok_or("There is no mesh in the text: open one and write a `mesh` command.")?;
+            .ok_or_else(|| {
+                String::from(if session.compiled().deforms.is_empty() {
+                    "There is no mesh in the text: open one and write a `mesh` command."
+                } else {
+                    "The mesh is deformed in a loop or a defined command, whose numbers are not of one mesh only."
+                })
+            })?;
         let mut observations = Observations::default();
         for found in self.files.iter().filter_map(|file| file.found.as_ref()) {
             observations.points.extend(&found.points);
@@ -669,6 +699,42 @@ mod tests {
             fitting.tick(session, start.elapsed().as_secs_f64());
             std::thread::sleep(Duration::from_millis(2));
         }
+    }
+
+    #[test]
+    fn meshes_of_loops_are_refused_in_words() {
+        for (text, words) in [
+            (
+                "surface s, diffuse Red\nfor i = 0 to 1 {\n  mesh s head.obj\n}\n",
+                "one cage would move all copies",
+            ),
+            (
+                "surface s, diffuse Red\nfor i = 0 to 1 {\n  mesh s head.obj\n  deform { control <0 0 0> move <i 0 0> control <9 9 9> control <9 0 0> control <0 9 0> control <-9 -9 -9> }\n}\n",
+                "deformed in a loop",
+            ),
+        ] {
+            let mut session = session(text);
+            let mut fitting = Fitting::new(|| {});
+            fitting.add(String::from("cloud.xyz"), cloud());
+            until(&mut fitting, &mut session, Fitting::has_data);
+            fitting.start(&session, 0.0);
+            let (said, bad) = fitting.said.clone().unwrap();
+            assert!(bad && said.contains(words), "{said}");
+            assert!(!fitting.is_running());
+            assert_eq!(session.text(0), text);
+        }
+    }
+
+    #[test]
+    fn mesh_of_a_file_is_chosen() {
+        let text = "surface s, diffuse Red\nmesh s gem.obj\nmesh s, head.obj\n";
+        let session = session(text);
+        let mut fitting = Fitting::new(|| {});
+        fitting.choose(&session, "head.obj");
+        let Some(Target::Mesh(origin)) = fitting.target else {
+            panic!("{:?}", fitting.target);
+        };
+        assert_eq!(origin.start as usize, text.find("mesh s, head").unwrap());
     }
 
     #[test]

@@ -10,7 +10,7 @@
 //! | `status()` | the state, see below |
 //! | `finished()` | promise of a `status()`, resolved when the picture of the present text, camera and size is finished or was stopped; rejected while the lab keeps that picture waiting |
 //! | `image()` | promise of a PNG `Blob` of the traced picture as it is now; rejected while there is none |
-//! | `mesh({format, tolerance, size, union})` | promise of a `Uint8Array`: the model as a file of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or `"ply"`, `tolerance` the largest distance from the surface in lengths of the model (0.001), `size` the longest side in millimetres (100), `union` whether bodies that overlap become one |
+//! | `mesh({format, tolerance, size, union, rig})` | promise of a `Uint8Array`: the model as a file of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or `"ply"`, `tolerance` the largest distance from the surface in lengths of the model (0.001), `size` the longest side in millimetres (100), `union` whether bodies that overlap become one, `rig` (GLB only) whether skeletons become joints and the film an animation |
 //! | `link()` | the full address that Share copies |
 //! | `camera()` | `{eye, target, up, fov}` in use |
 //! | `setCamera(camera)` | looks from there; `null` goes back to the camera of the text |
@@ -24,6 +24,7 @@
 //! `picture` (`{width, height}` or null), `errors` (how many), `elements` (how many the text makes),
 //! `diagnostics` (each `{severity, message, file, span, line, column, hint, related, command}`), `hot`
 //! (names of the sliders), `assets` (names of the images and meshes), `reading` (name of the mesh that is being read, or null), `fit` (`{running, iteration, residual, points, said}` of the panel that fits meshes, or null),
+//! `mesh` (`{running, shown, triangles, bytes, said}` of the open dialog with the model as a mesh, or null),
 //! `frame` (of an animated work, else
 //! null), `drawing` (the tool for drawing that is in hand: `"draw"`, `"move"`, `"cut"`, or null), `backend` (`"webgpu"`, `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`,
 //! `timings` (seconds: `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays,
@@ -278,8 +279,10 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
             *place = number.ok_or_else(|| wrong("tolerance and size are numbers"))?;
         }
     }
-    if let Some(union) = part("union")? {
-        order.union = union.is_truthy();
+    for (name, place) in [("union", &mut order.union), ("rig", &mut order.rig)] {
+        if let Some(wanted) = part(name)? {
+            *place = wanted.is_truthy();
+        }
     }
     Ok(order)
 }

@@ -618,9 +618,11 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
                 }
                 Dialog::Mesh => {
                     let inner = size - Vec2::splat(inner);
+                    let film = app.film();
                     let (session, name) =
                         (&app.work.session, crate::work::file_stem(&app.work.name));
-                    app.mesh_export.show(ui, inner, session, &name, commands);
+                    app.mesh_export
+                        .show(ui, inner, session, film, &name, commands);
                 }
                 Dialog::Help => app.help.show(ui, app.settings.hints, commands),
                 Dialog::Sculpt => app.sculpt_dialog(ui, commands),

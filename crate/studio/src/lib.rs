@@ -46,6 +46,7 @@ pub mod lamp;
 pub mod layout;
 pub mod marks;
 pub mod mesh_export;
+mod mesh_panel;
 pub mod notice;
 mod outside;
 pub mod pad;

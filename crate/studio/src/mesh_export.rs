@@ -1,30 +1,32 @@
-//! The model as a mesh, for printers and other programs: the dialog, the job of the tools worker, scripts that ask for one.
+//! The model as a mesh, for printers and other programs: the jobs of the tools worker, and scripts that ask for a file. The
+//! dialog is in `mesh_panel`.
 //!
-//! The mesh is made apart from the page's thread. What is shown is that of the settings made last; a finer one replaces
-//! it when it is there.
+//! The mesh is made apart from the page's thread; until it is there a coat of the skeletons is seen. Another format or
+//! size only writes the mesh again. Of a model with a skeleton the motion is asked of the language frame by frame, some at
+//! each tick, so that the page stays responsive.
 
-use crate::command::Command;
+use crate::film::MAX_FRAMES;
+use crate::mesh_panel::Show;
+use crate::report;
 use crate::session::Session;
-use crate::{asset, places, theme};
-use egui::{
-    Align, Button, Color32, ColorImage, DragValue, Layout, ProgressBar, Response, RichText,
-    ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,
-};
+use crate::{asset::Asset, clock};
 use glam::DVec3;
-use mesh::{ExportedFile, Format, TriangleMesh};
+use mesh::{Format, TriangleMesh};
 use mesher::{Tolerance, Wishes};
 use pool::{ToolEvent, Tools};
-use tools::{Job, MeshFacts, MeshJob, Meshed, Output};
-use viewport::{Frame, Look, Surface, View};
+use rats::Project;
+use scene::Scene;
+use tools::{CoatJob, Job, MeshFacts, MeshJob, Output, RigJob, WriteJob, Written};
+use viewport::{Surface, View};
 
-/// Finest and coarsest tolerance that the dialog offers, in lengths of the model.
-const TOLERANCES: [f64; 2] = [1e-4, 2e-2];
-/// Lengths of the longest side that can be asked for, millimetres.
-const SIZES: [f64; 2] = [1.0, 5000.0];
-/// Most pixels of the view, so that it follows a hand where the processor draws it.
-const MOST_PIXELS: f32 = 480_000.0;
+/// Bound of the coat that is shown until the mesh that was asked for is there.
+const COAT: f64 = 0.05;
+/// Most elements of a scene that gets such a coat.
+const MOST_COATED: usize = 20_000;
 /// Most triangles whose edges are shown: beyond there are more edges than pixels.
-const MOST_EDGES: usize = 300_000;
+pub(crate) const MOST_EDGES: usize = 300_000;
+/// Seconds of a tick that frames of a motion may take.
+const SLICE: f64 = 0.008;
 
 /// What is to be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +39,8 @@ pub struct Order {
     pub size: f64,
     /// Whether bodies that overlap become one.
     pub union: bool,
+    /// Whether skeletons become joints, and their motion an animation: in GLB files.
+    pub rig: bool,
 }
 
 impl Default for Order {
@@ -46,6 +50,7 @@ impl Default for Order {
             tolerance: 1e-3,
             size: 100.0,
             union: false,
+            rig: false,
         }
     }
 }
@@ -67,47 +72,118 @@ impl Order {
                 "The size is a length in millimetres from 0.001 to 1000000.",
             ));
         }
+        if self.rig && self.format != Format::Glb {
+            return Err(String::from("Only GLB files have joints."));
+        }
         Ok(())
     }
+
+    /// Whether joints are wanted, which only GLB has.
+    fn is_rigged(&self) -> bool {
+        self.rig && self.format == Format::Glb
+    }
+}
+
+/// Frames of the film that a motion is taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Film {
+    /// How many.
+    pub count: u32,
+    /// In a second.
+    pub rate: u16,
+}
+
+/// What the triangles depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shape {
+    tolerance: f64,
+    union: bool,
+    /// Of the scene that is meshed.
+    generation: u64,
+    /// Whether it is the film's first frame that is meshed, while another one is on show.
+    first_frame: bool,
+}
+
+/// What a file depends on beside the triangles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wanted {
+    shape: Shape,
+    order: Order,
+    film: Option<Film>,
 }
 
 /// Takes a file's bytes, or the reason why there are none.
 pub type Taker = Box<dyn FnOnce(Result<Vec<u8>, String>)>;
 
+/// What a job is for.
+enum Purpose {
+    /// A coat of the skeletons, which the dialog shows until the mesh is there.
+    Coat(Shape),
+    /// The dialog's triangles.
+    Shape(Shape),
+    /// The dialog's file.
+    File(Wanted),
+    /// A script waits for the file.
+    Script(Taker),
+}
+
 /// A job that runs.
 struct Running {
     id: u64,
-    order: Order,
-    /// Of the scene that is meshed.
-    generation: u64,
+    purpose: Purpose,
     fraction: f32,
-    /// A script that waits for it.
-    taker: Option<Taker>,
+}
+
+/// Frames of a motion that are being asked of the language.
+struct Filming {
+    project: Project,
+    assets: Vec<Asset>,
+    film: Film,
+    scenes: Vec<Scene>,
+    next: Next,
+}
+
+/// What comes after the frames.
+enum Next {
+    /// The dialog's file is written.
+    File(Wanted),
+    /// A script's mesh is made.
+    Script(Box<(Order, String, Taker)>),
 }
 
 /// A mesh that is there.
-struct Made {
-    order: Order,
-    generation: u64,
-    files: Vec<ExportedFile>,
+pub(crate) struct Made {
+    shape: Shape,
+    parts: Vec<(String, TriangleMesh)>,
     facts: MeshFacts,
-    surface: Surface,
+    pub(crate) surface: Surface,
 }
 
 /// The model as a mesh.
 pub struct MeshExport {
     tools: Tools,
-    order: Order,
+    pub(crate) order: Order,
     running: Vec<Running>,
-    made: Option<Made>,
-    /// Why the settings made last give no mesh.
-    trouble: Option<(Order, u64, String)>,
-    wireframe: bool,
-    view: Option<View>,
-    frame: Frame,
-    texture: Option<TextureHandle>,
-    /// Whether the image must be drawn again.
-    is_stale: bool,
+    filming: Vec<Filming>,
+    pub(crate) made: Option<Made>,
+    written: Option<(Wanted, Written)>,
+    /// Why the settings made last give no file.
+    trouble: Option<(Wanted, String)>,
+    pub(crate) show: Show,
+    /// Name of the files without ending.
+    name: String,
+}
+
+/// How far the dialog's mesh is.
+pub(crate) enum State<'a> {
+    /// It is being made: the fraction done.
+    Making(f32),
+    /// There is none, for this reason.
+    Trouble(&'a str),
+    /// It is there, with its file.
+    Done(&'a MeshFacts, &'a Written),
+    /// Nothing was asked for yet.
+    Idle,
 }
 
 impl MeshExport {
@@ -119,19 +195,21 @@ impl MeshExport {
             tools: Tools::new(repaint),
             order: Order::default(),
             running: Vec::new(),
+            filming: Vec::new(),
             made: None,
+            written: None,
             trouble: None,
-            wireframe: false,
-            view: None,
-            frame: Frame::default(),
-            texture: None,
-            is_stale: true,
+            show: Show::default(),
+            name: String::new(),
         }
     }
 
-    /// Takes in what the worker has done.
-    pub fn tick(&mut self) {
+    /// Takes in what the worker has done. Returns whether it must be called again soon.
+    pub fn tick(&mut self) -> bool {
+        // What is laid out in a new way is known, also to scripts, a frame later.
+        let mut again = false;
         for (id, event) in self.tools.poll() {
+            again = true;
             let Some(index) = self.running.iter().position(|job| job.id == id) else {
                 continue;
             };
@@ -141,432 +219,399 @@ impl MeshExport {
                 ToolEvent::Partial(_) => {}
                 ToolEvent::Done(result) => {
                     let job = self.running.remove(index);
-                    let result = match result {
-                        Ok(Output::Meshed(meshed)) => Ok(*meshed),
-                        Ok(_) => Err(String::from("The tools worker gave no mesh.")),
-                        Err(reason) => Err(reason),
-                    };
-                    self.finish(job, result);
+                    self.finish(job.purpose, result);
+                }
+            }
+        }
+        self.film();
+        again || !self.filming.is_empty()
+    }
+
+    /// Asks the language for frames, as many as there is time for.
+    fn film(&mut self) {
+        let start = clock::stopwatch();
+        while let Some(filming) = self.filming.first_mut() {
+            if filming.scenes.len() < filming.film.count as usize {
+                let frame = filming.scenes.len() as f64;
+                let scene = rats::compile_at(&filming.project, &filming.assets, frame).scene;
+                // The first one is meshed, of the others only the motion counts.
+                filming.scenes.push(if filming.scenes.is_empty() {
+                    scene
+                } else {
+                    rig::skeletons_of(&scene)
+                });
+                if clock::stopwatch() - start > SLICE {
+                    return;
+                }
+                continue;
+            }
+            let Filming {
+                film, scenes, next, ..
+            } = self.filming.remove(0);
+            let rate = f64::from(film.rate);
+            let rig = Some(RigJob { scenes, rate });
+            match next {
+                Next::File(wanted) => self.write(wanted, rig),
+                Next::Script(script) => {
+                    let (order, name, taker) = *script;
+                    self.make(order, name, rig, taker);
                 }
             }
         }
     }
 
-    fn finish(&mut self, job: Running, result: Result<Meshed, String>) {
-        if let Some(taker) = job.taker {
-            taker(result.map(|meshed| {
+    fn finish(&mut self, purpose: Purpose, result: Result<Output, String>) {
+        let strange = || String::from("The tools worker gave no mesh.");
+        let meshed = |result: Result<Output, String>| match result {
+            Ok(Output::Meshed(meshed)) => Ok(*meshed),
+            Ok(_) => Err(strange()),
+            Err(reason) => Err(reason),
+        };
+        match purpose {
+            Purpose::Script(taker) => taker(meshed(result).map(|meshed| {
                 // OBJ has its materials in a second file, which it can do without.
-                let mut files = meshed.files.into_iter();
+                let mut files = meshed.written.files.into_iter();
                 files.next().map_or_else(Vec::new, |file| file.bytes)
-            }));
-            return;
-        }
-        match result {
-            Ok(meshed) => {
-                let surface = surface(&meshed.parts, meshed.facts.is_closed);
-                let other = self.made.as_ref().map(|made| made.generation) != Some(job.generation);
-                if other || self.view.is_none() {
-                    self.view = surface.bounds().map(|[low, high]| {
-                        let mut view = View::around([low.as_dvec3(), high.as_dvec3()]);
-                        view.look_from(DVec3::new(0.35, 0.3, 1.0), DVec3::Y);
-                        view
-                    });
+            })),
+            Purpose::Coat(shape) => {
+                if let Ok(Output::Coated(coated)) = result
+                    && !coated.parts.is_empty()
+                {
+                    let facts = MeshFacts::default();
+                    self.take(shape, coated.parts, facts);
                 }
-                self.trouble = None;
-                self.is_stale = true;
-                self.made = Some(Made {
-                    order: job.order,
-                    generation: job.generation,
-                    files: meshed.files,
-                    facts: meshed.facts,
-                    surface,
-                });
             }
-            Err(reason) => self.trouble = Some((job.order, job.generation, reason)),
+            Purpose::Shape(shape) => match meshed(result) {
+                Ok(meshed) => self.take(shape, meshed.parts, meshed.facts),
+                Err(reason) => self.fail(shape, reason),
+            },
+            Purpose::File(wanted) => match result {
+                Ok(Output::Written(written)) => {
+                    self.trouble = None;
+                    self.written = Some((wanted, written));
+                }
+                Ok(_) => self.trouble = Some((wanted, strange())),
+                Err(reason) => self.trouble = Some((wanted, reason)),
+            },
         }
+    }
+
+    fn take(&mut self, shape: Shape, parts: Vec<(String, TriangleMesh)>, facts: MeshFacts) {
+        let surface = surface(&parts, facts.is_closed);
+        let other = self.made.as_ref().map(|made| made.shape.generation) != Some(shape.generation);
+        if let Some([low, high]) = surface.bounds()
+            && (other || self.show.view.is_none())
+        {
+            let mut view = View::around([low.as_dvec3(), high.as_dvec3()]);
+            view.look_from(DVec3::new(0.35, 0.3, 1.0), DVec3::Y);
+            self.show.view = Some(view);
+        }
+        self.show.is_stale = true;
+        self.made = Some(Made {
+            shape,
+            parts,
+            facts,
+            surface,
+        });
+    }
+
+    /// Notes why the mesh of a shape cannot be made.
+    fn fail(&mut self, shape: Shape, reason: String) {
+        let wanted = Wanted {
+            shape,
+            order: self.order,
+            film: None,
+        };
+        self.trouble = Some((wanted, reason));
     }
 
     /// Makes a mesh of the session's scene for a script.
-    pub fn make_for(&mut self, session: &Session, name: &str, order: Order, taker: Taker) {
+    pub fn make_for(
+        &mut self,
+        session: &Session,
+        film: Film,
+        name: &str,
+        order: Order,
+        taker: Taker,
+    ) {
         if let Err(reason) = order.check() {
             taker(Err(reason));
-        } else if session.scene().is_none() {
+            return;
+        }
+        let Some(scene) = session.scene() else {
             taker(Err(String::from("There is no model yet.")));
+            return;
+        };
+        if order.rig {
+            if !rig::has_skeleton(&scene) {
+                taker(Err(String::from(
+                    "There is no skeleton: joints come from the command skeleton.",
+                )));
+                return;
+            }
+            let script = Box::new((order, name.to_owned(), taker));
+            self.filming
+                .push(filming(session, Some(film), Next::Script(script)));
         } else {
-            self.begin(session, name, order, Some(taker));
+            self.submit(scene, order, name.to_owned(), None, Purpose::Script(taker));
         }
     }
 
-    fn begin(&mut self, session: &Session, name: &str, order: Order, taker: Option<Taker>) {
-        let Some(scene) = session.scene() else {
-            return;
-        };
+    fn make(&mut self, order: Order, name: String, rig: Option<RigJob>, taker: Taker) {
+        match rig.as_ref().and_then(|rig| rig.scenes.first()).cloned() {
+            Some(scene) => self.submit(scene, order, name, rig, Purpose::Script(taker)),
+            None => taker(Err(String::from("There is no model yet."))),
+        }
+    }
+
+    /// Has a scene meshed. The dialog's files are written apart from that.
+    fn submit(
+        &mut self,
+        scene: Scene,
+        order: Order,
+        name: String,
+        rig: Option<RigJob>,
+        purpose: Purpose,
+    ) {
         let wishes = Wishes {
             tolerance: Tolerance::Relative(order.tolerance),
             union: order.union,
             ..Wishes::default()
         };
+        let for_script = matches!(purpose, Purpose::Script(_));
         let job = Job::Mesh(Box::new(MeshJob {
             scene,
             wishes,
-            format: Some(order.format),
-            name: name.to_owned(),
+            format: for_script.then_some(order.format),
+            name,
             size: order.size,
+            rig,
         }));
+        self.run(job, purpose);
+    }
+
+    fn run(&mut self, job: Job, purpose: Purpose) {
         self.running.push(Running {
             id: self.tools.submit(job),
-            order,
-            generation: session.generation(),
+            purpose,
             fraction: 0.0,
-            taker,
         });
     }
 
-    /// Ends the job that the dialog waits for, as it is closed or nobody wants its mesh any more.
+    fn write(&mut self, wanted: Wanted, rig: Option<RigJob>) {
+        let Some(made) = self.made.as_ref().filter(|made| made.shape == wanted.shape) else {
+            return;
+        };
+        let job = WriteJob {
+            parts: made.parts.clone(),
+            format: wanted.order.format,
+            name: self.name.clone(),
+            size: wanted.order.size,
+            rig,
+        };
+        self.run(Job::Write(Box::new(job)), Purpose::File(wanted));
+    }
+
+    /// Ends the jobs of the dialog, as it is closed or nobody wants their results any more.
     pub fn stop(&mut self) {
-        let Self { tools, running, .. } = self;
-        running.retain(|job| {
-            if job.taker.is_none() {
+        let Self {
+            tools,
+            running,
+            filming,
+            ..
+        } = self;
+        // The last ones first, so that none of them is begun.
+        for job in running.iter().rev() {
+            if !matches!(job.purpose, Purpose::Script(_)) {
                 tools.cancel(job.id);
             }
-            job.taker.is_some()
-        });
-    }
-
-    /// Whether a mesh of these settings is there, comes, or cannot be had.
-    fn is_known(&self, generation: u64) -> bool {
-        let is_it = |order: &Order, of: u64| *order == self.order && of == generation;
-        self.made
-            .as_ref()
-            .is_some_and(|made| is_it(&made.order, made.generation))
-            || self
-                .trouble
-                .as_ref()
-                .is_some_and(|(order, of, _)| is_it(order, *of))
-            || self
-                .running
-                .iter()
-                .any(|job| job.taker.is_none() && is_it(&job.order, job.generation))
-    }
-
-    /// Shows the dialog in a space of a size.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        size: Vec2,
-        session: &Session,
-        name: &str,
-        commands: &mut Vec<Command>,
-    ) {
-        let palette = theme::palette(ui.visuals());
-        let generation = session.generation();
-        ui.horizontal(|ui| {
-            ui.label(
-                RichText::new("The model as a mesh")
-                    .heading()
-                    .color(palette.strong),
-            );
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let close = ui.button("Close");
-                places::note(ui.ctx(), "close mesh", close.rect);
-                if close.clicked() {
-                    commands.push(Command::Close);
-                }
-            });
-        });
-        ui.add_space(6.0);
-        let wide = size.x > 620.0;
-        let mut settled = true;
-        if wide {
-            ui.horizontal_top(|ui| {
-                let view = vec2(size.x - 300.0, (size.y - 70.0).max(160.0));
-                self.view(ui, view);
-                ui.add_space(8.0);
-                ui.vertical(|ui| settled = self.panel(ui, commands));
-            });
-        } else {
-            ScrollArea::vertical().show(ui, |ui| {
-                self.view(ui, vec2(size.x, (size.y * 0.42).max(140.0)));
-                ui.add_space(8.0);
-                settled = self.panel(ui, commands);
-            });
         }
-        // While a slider is dragged nothing is begun.
-        if settled && !self.is_known(generation) && session.scene().is_some() {
+        running.retain(|job| matches!(job.purpose, Purpose::Script(_)));
+        filming.retain(|filming| matches!(filming.next, Next::Script(_)));
+    }
+
+    /// Ends the jobs of the dialog at a person's word.
+    pub(crate) fn stop_asked(&mut self, session: &Session, film: Film) {
+        self.stop();
+        let text = String::from("Stopped. Choose less detail, or go on.");
+        self.trouble = Some((self.wanted(session, film), text));
+    }
+
+    /// Whether the mesh on show is only a coat of the skeletons.
+    pub(crate) fn shows_coat(&self) -> bool {
+        let made = self.made.as_ref();
+        made.is_some_and(|made| made.shape.tolerance.is_infinite())
+    }
+
+    /// Whether the last try gave nothing.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.trouble.is_some()
+    }
+
+    /// Forgets what went wrong, so that it is tried again.
+    pub(crate) fn again(&mut self) {
+        self.trouble = None;
+    }
+
+    fn wanted(&self, session: &Session, film: Film) -> Wanted {
+        let order = Order {
+            rig: self.order.is_rigged(),
+            ..self.order
+        };
+        let moves = order.rig && session.is_animated();
+        Wanted {
+            shape: Shape {
+                tolerance: order.tolerance,
+                union: order.union,
+                generation: session.generation(),
+                first_frame: moves && session.film_frame() > 0,
+            },
+            order,
+            film: moves.then_some(film),
+        }
+    }
+
+    /// Has made what the dialog's settings ask for, unless it is there or comes.
+    pub(crate) fn follow(&mut self, session: &Session, film: Film, name: &str) {
+        let wanted = self.wanted(session, film);
+        let Wanted { shape, order, .. } = wanted;
+        let same = |(of, _): &(Wanted, String)| of.shape == shape && of.order == order;
+        if self.trouble.as_ref().is_some_and(same) {
+            return;
+        }
+        name.clone_into(&mut self.name);
+        let is_made = self.made.as_ref().is_some_and(|made| made.shape == shape);
+        if !is_made {
+            let comes = |job: &Running| matches!(&job.purpose, Purpose::Shape(of) if *of == shape);
+            if self.running.iter().any(comes) {
+                return;
+            }
             self.stop();
-            self.begin(session, name, self.order, None);
-        }
-    }
-
-    /// Shows the mesh, to be turned, shifted and brought nearer.
-    fn view(&mut self, ui: &mut Ui, size: Vec2) {
-        let palette = theme::palette(ui.visuals());
-        let (rect, response) = ui.allocate_exact_size(size, Sense::drag());
-        places::note(ui.ctx(), "mesh view", rect);
-        let density = ui.ctx().pixels_per_point();
-        let scale = density.min((MOST_PIXELS / (size.x * size.y)).sqrt());
-        let pixels = [size.x, size.y].map(|side| (side * scale).max(1.0) as usize);
-        self.turn(ui, &response, f64::from(scale), pixels);
-        let painter = ui.painter_at(rect);
-        painter.rect_filled(rect, 6.0, palette.button);
-        let (Some(made), Some(view)) = (&self.made, &self.view) else {
-            let text = match &self.trouble {
-                Some(_) => "No mesh",
-                None => "The mesh is being made …",
-            };
-            let font = egui::TextStyle::Body.resolve(ui.style());
-            painter.text(
-                rect.center(),
-                egui::Align2::CENTER_CENTER,
-                text,
-                font,
-                palette.weak,
-            );
-            return;
-        };
-        let background = channels(palette.button);
-        if self.is_stale || self.frame.size() != pixels {
-            self.frame.resize(pixels);
-            let [right, up, back] = view.axes();
-            let look = Look {
-                light: (right * -0.4 + up * 0.6 + back * 0.7).as_vec3(),
-                wireframe: self.wireframe && made.surface.triangles.len() <= MOST_EDGES,
-                background,
-                edge: background.map(|channel| 0.4 * channel),
-                ..Look::default()
-            };
-            self.frame.draw(view, &made.surface, &look);
-            let image = ColorImage::from_rgba_unmultiplied(pixels, self.frame.rgba());
-            match &mut self.texture {
-                Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                None => {
-                    let options = TextureOptions::LINEAR;
-                    self.texture = Some(ui.ctx().load_texture("mesh view", image, options));
-                }
-            }
-            self.is_stale = false;
-        }
-        if let Some(texture) = &self.texture {
-            let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-            painter.image(texture.id(), rect, whole, Color32::WHITE);
-        }
-    }
-
-    /// Follows the pointer: the first button turns, another one shifts, wheel and two fingers zoom.
-    fn turn(&mut self, ui: &Ui, response: &Response, scale: f64, pixels: [usize; 2]) {
-        let Some(view) = &mut self.view else {
-            return;
-        };
-        let before = *view;
-        let moved = response.drag_delta();
-        if let Some(at) = response.interact_pointer_pos()
-            && moved != Vec2::ZERO
-        {
-            if response.dragged_by(egui::PointerButton::Primary) {
-                let half = 0.5 * response.rect.width().min(response.rect.height());
-                let place = |at: egui::Pos2| {
-                    let from_middle = (at - response.rect.center()) / half;
-                    [f64::from(from_middle.x), -f64::from(from_middle.y)]
-                };
-                view.turn(place(at - moved), place(at));
+            let scene = if shape.first_frame {
+                let (project, assets) = (session.project(), session.assets());
+                Some(rats::compile_at(project, assets, 0.0).scene)
             } else {
-                view.shift([moved.x, moved.y].map(|way| f64::from(way) * scale), pixels);
-            }
-        }
-        if response.contains_pointer() {
-            let (scroll, pinch) =
-                ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-            view.zoom(f64::from(pinch) * libm::exp(f64::from(scroll) * 0.003));
-        }
-        self.is_stale |= *view != before;
-    }
-
-    /// Shows the settings, and what the mesh is like. Returns whether the settings are not just being changed.
-    fn panel(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) -> bool {
-        let palette = theme::palette(ui.visuals());
-        let mut settled = true;
-        ui.spacing_mut().item_spacing.y = 6.0;
-        ui.horizontal_wrapped(|ui| {
-            for (format, title, tip) in FORMATS {
-                let chosen = self.order.format == format;
-                let button = ui.selectable_label(chosen, title).on_hover_text(tip);
-                places::note(ui.ctx(), format!("mesh format {title}"), button.rect);
-                if button.clicked() {
-                    self.order.format = format;
-                }
-            }
-        });
-        ui.label(RichText::new("Longest side").color(palette.weak).size(12.5));
-        let side = DragValue::new(&mut self.order.size)
-            .range(SIZES[0]..=SIZES[1])
-            .speed(1.0)
-            .max_decimals(2)
-            .suffix(" mm");
-        let side = ui.add(side);
-        places::note(ui.ctx(), "mesh size", side.rect);
-        settled &= !side.dragged() && !side.has_focus();
-        ui.label(RichText::new("Detail").color(palette.weak).size(12.5));
-        // To the right it is finer.
-        let mut detail = -libm::log10(self.order.tolerance);
-        let range = -libm::log10(TOLERANCES[1])..=-libm::log10(TOLERANCES[0]);
-        let slider = egui::Slider::new(&mut detail, range)
-            .show_value(false)
-            .trailing_fill(true);
-        let slider = ui.add(slider);
-        places::note(ui.ctx(), "mesh detail", slider.rect);
-        if slider.changed() {
-            self.order.tolerance = libm::pow(10.0, -detail);
-        }
-        settled &= !slider.dragged() && !slider.is_pointer_button_down_on();
-        let off = millimetres(self.order.tolerance * self.order.size);
-        ui.label(RichText::new(format!("at most {off} from the surface")).size(12.5));
-        let union = ui
-            .checkbox(&mut self.order.union, "Join bodies that overlap")
-            .on_hover_text("One shell instead of several that go through each other");
-        places::note(ui.ctx(), "mesh union", union.rect);
-        let wires = ui.checkbox(&mut self.wireframe, "Show the triangles");
-        places::note(ui.ctx(), "mesh wireframe", wires.rect);
-        self.is_stale |= wires.changed();
-        ui.separator();
-        self.state(ui, commands);
-        settled
-    }
-
-    /// Shows progress, or what the mesh is like and the button that saves it.
-    fn state(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let palette = theme::palette(ui.visuals());
-        if let Some(job) = self.running.iter().find(|job| job.taker.is_none()) {
-            let bar = ui.add(ProgressBar::new(job.fraction).desired_width(220.0));
-            places::note(ui.ctx(), "mesh progress", bar.rect);
-            let stop = ui.button("Stop");
-            places::note(ui.ctx(), "stop mesh", stop.rect);
-            if stop.clicked() {
-                let text = String::from("Stopped. Choose less detail, or close this window.");
-                self.trouble = Some((job.order, job.generation, text));
-                self.stop();
-            }
-            return;
-        }
-        if let Some((order, _, reason)) = &self.trouble
-            && *order == self.order
-        {
-            ui.label(RichText::new(sentence(reason)).color(palette.error));
-            return;
-        }
-        let Some(made) = self.made.as_ref().filter(|made| made.order == self.order) else {
-            return;
-        };
-        let facts = &made.facts;
-        let bytes = made.files.iter().map(|file| file.bytes.len()).sum();
-        let [x, y, z] = facts.sides.map(millimetres);
-        let mut lines = vec![
-            format!(
-                "{} triangles, {}",
-                thousands(facts.triangles),
-                asset::size(bytes)
-            ),
-            format!("{x} × {y} × {z}"),
-        ];
-        if facts.is_closed {
-            let shells = match facts.shells {
-                1 => String::from("one closed shell"),
-                shells => format!("{shells} closed shells"),
+                session.scene()
             };
-            lines.push(format!("{:.4} cm³, {shells}", facts.volume / 1000.0));
+            let Some(scene) = scene else {
+                return;
+            };
+            let is_other = |made: &Made| {
+                made.shape.generation != shape.generation
+                    || made.shape.first_frame != shape.first_frame
+            };
+            if scene.elements.len() <= MOST_COATED && self.made.as_ref().is_none_or(is_other) {
+                let job = Job::Coat(Box::new(CoatJob {
+                    scene: scene.clone(),
+                    bound: COAT,
+                    coatings: Vec::new(),
+                }));
+                // No mesh that is asked for is taken for it.
+                let tolerance = f64::INFINITY;
+                self.run(job, Purpose::Coat(Shape { tolerance, ..shape }));
+            }
+            let purpose = Purpose::Shape(shape);
+            self.submit(scene, order, name.to_owned(), None, purpose);
+            return;
+        }
+        let is_written = matches!(&self.written, Some((of, _)) if *of == wanted);
+        let written = |job: &Running| matches!(&job.purpose, Purpose::File(of) if *of == wanted);
+        let filmed = |filming: &Filming| matches!(&filming.next, Next::File(of) if *of == wanted);
+        if is_written || self.running.iter().any(written) || self.filming.iter().any(filmed) {
+            return;
+        }
+        self.stop();
+        if order.rig {
+            self.filming
+                .push(filming(session, wanted.film, Next::File(wanted)));
         } else {
-            lines.push(String::from("not closed: a printer may refuse it"));
+            self.write(wanted, None);
         }
-        if facts.undecided + facts.unproved > 0 {
-            lines.push(format!(
-                "not proved in {} places",
-                thousands(facts.undecided + facts.unproved)
-            ));
+    }
+
+    /// How far the mesh of the dialog's settings is.
+    pub(crate) fn state(&self, session: &Session, film: Film) -> State<'_> {
+        let wanted = self.wanted(session, film);
+        let Wanted { shape, order, .. } = wanted;
+        if let Some((of, reason)) = &self.trouble
+            && of.shape == shape
+            && of.order == order
+        {
+            return State::Trouble(reason);
         }
-        for line in lines.iter().chain(&facts.notes) {
-            ui.label(RichText::new(sentence(line)).size(13.0).color(palette.text));
+        if let (Some(made), Some((of, written))) = (&self.made, &self.written)
+            && made.shape == shape
+            && *of == wanted
+        {
+            return State::Done(&made.facts, written);
         }
-        ui.add_space(4.0);
-        let save = Button::new(RichText::new("Save").color(palette.on_accent).size(14.5))
-            .fill(palette.accent)
-            .min_size(vec2(120.0, 30.0));
-        let save = ui.add(save);
-        places::note(ui.ctx(), "save mesh", save.rect);
-        if save.clicked() {
-            commands.push(Command::SaveMesh);
+        let own = |job: &&Running| matches!(job.purpose, Purpose::Shape(_) | Purpose::File(_));
+        if let Some(job) = self.running.iter().find(own) {
+            return State::Making(job.fraction);
         }
+        let filmed = |filming: &&Filming| matches!(filming.next, Next::File(_));
+        if let Some(filming) = self.filming.iter().find(filmed) {
+            return State::Making(filming.scenes.len() as f32 / filming.film.count.max(1) as f32);
+        }
+        State::Idle
+    }
+
+    /// How much longer the model's lengths are in the present settings than in the facts of its mesh.
+    pub(crate) fn growth(&self, facts: &MeshFacts) -> f64 {
+        let longest = facts.sides.into_iter().fold(0.0, f64::max);
+        self.order.size / longest
     }
 
     /// The files of the mesh on show.
     #[must_use]
-    pub fn files(&self) -> &[ExportedFile] {
-        self.made.as_ref().map_or(&[], |made| &made.files)
+    pub fn files(&self) -> &[mesh::ExportedFile] {
+        self.written
+            .as_ref()
+            .map_or(&[], |(_, written)| &written.files)
     }
-}
 
-/// The formats as the dialog lists them: best known first.
-const FORMATS: [(Format, &str, &str); 5] = [
-    (
-        Format::Stl,
-        "STL",
-        "Every printer's program takes it; no colours",
-    ),
-    (
-        Format::ThreeMf,
-        "3MF",
-        "For printers: millimetres and colours",
-    ),
-    (
-        Format::Glb,
-        "GLB",
-        "For Blender, games and the web: colours and materials",
-    ),
-    (
-        Format::Obj,
-        "OBJ",
-        "Old and known everywhere; its materials are a second file",
-    ),
-    (
-        Format::Ply,
-        "PLY",
-        "For measuring programs: colours of vertices",
-    ),
-];
-
-/// Colours as they are shown, 0 … 1.
-fn channels(color: Color32) -> [f32; 3] {
-    [color.r(), color.g(), color.b()].map(|channel| f32::from(channel) / 255.0)
-}
-
-/// A length in words.
-fn millimetres(length: f64) -> String {
-    if length >= 100.0 {
-        format!("{length:.0} mm")
-    } else if length >= 1.0 {
-        format!("{length:.1} mm")
-    } else {
-        format!("{length:.3} mm")
-    }
-}
-
-/// A number with its thousands apart.
-fn thousands(number: usize) -> String {
-    let digits = number.to_string();
-    let mut apart = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            apart.push('\u{202f}');
+    /// The state for scripts; `None` before anything was made.
+    #[must_use]
+    pub fn report(&self, session: &Session, film: Film) -> Option<report::Mesh> {
+        let shown = self.made.as_ref();
+        let state = self.state(session, film);
+        if shown.is_none() && matches!(state, State::Idle) {
+            return None;
         }
-        apart.push(digit);
+        let bytes = |written: &Written| written.files.iter().map(|file| file.bytes.len()).sum();
+        Some(report::Mesh {
+            running: matches!(state, State::Making(_)),
+            shown: shown.map_or(0, |made| made.surface.triangles.len()),
+            triangles: match state {
+                State::Done(facts, _) => Some(facts.triangles),
+                _ => None,
+            },
+            bytes: match state {
+                State::Done(_, written) => Some(bytes(written)),
+                _ => None,
+            },
+            said: match state {
+                State::Trouble(reason) => Some(reason.to_owned()),
+                _ => None,
+            },
+        })
     }
-    apart
 }
 
-/// A text that begins with a capital letter.
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
+/// Frames of a session's work, to be asked for.
+fn filming(session: &Session, film: Option<Film>, next: Next) -> Filming {
+    let still = Film { count: 1, rate: 1 };
+    let film = film.filter(|_| session.is_animated()).unwrap_or(still);
+    Filming {
+        project: session.project().clone(),
+        assets: session.assets().to_vec(),
+        film: Film {
+            count: film.count.clamp(1, MAX_FRAMES),
+            rate: film.rate.max(1),
+        },
+        scenes: Vec::new(),
+        next,
+    }
 }
 
 /// The parts of a mesh as one surface to be drawn.
@@ -632,7 +677,8 @@ mod tests {
         let given = Rc::new(RefCell::new(None));
         let place = given.clone();
         let taker = Box::new(move |result| *place.borrow_mut() = Some(result));
-        export.make_for(&session(text), "ball", order, taker);
+        let film = Film { count: 5, rate: 12 };
+        export.make_for(&session(text), film, "ball", order, taker);
         let deadline = Instant::now() + Duration::from_secs(60);
         while given.borrow().is_none() {
             assert!(Instant::now() < deadline);
@@ -677,11 +723,109 @@ mod tests {
         }
     }
 
+    const ARM: &str = "var y = 0 += 0.2\nsurface s, diffuse Red, radius 0.3\n\
+        skeleton s, ARM { node A <0 0 0> node B <2 0 0> node C <4 y 0> curve A B C }\n";
+
     #[test]
-    fn numbers_are_easy_to_read() {
-        assert_eq!(thousands(1_234_567), "1\u{202f}234\u{202f}567");
-        assert_eq!(thousands(12), "12");
-        assert_eq!(millimetres(0.1), "0.100 mm");
-        assert_eq!(sentence("no surface"), "No surface");
+    fn script_gets_joints_and_motion() {
+        let order = Order {
+            format: Format::Glb,
+            tolerance: 1e-2,
+            rig: true,
+            ..Order::default()
+        };
+        let bytes = made_for_a_script(ARM, order).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        for word in ["\"skins\"", "\"animations\"", "JOINTS_0", "WEIGHTS_0"] {
+            assert!(text.contains(word), "{word}");
+        }
+        let nothing = made_for_a_script(BALL, order).unwrap_err();
+        assert!(nothing.contains("no skeleton"), "{nothing}");
+        let other = Order {
+            format: Format::Stl,
+            ..order
+        };
+        assert!(made_for_a_script(ARM, other).unwrap_err().contains("GLB"));
+    }
+
+    /// Follows the settings until their file is there or cannot be had. Returns how many jobs were begun.
+    fn follow(export: &mut MeshExport, session: &Session) -> usize {
+        let film = Film { count: 5, rate: 12 };
+        let deadline = Instant::now() + Duration::from_secs(120);
+        let mut begun = std::collections::BTreeSet::new();
+        loop {
+            assert!(Instant::now() < deadline);
+            export.follow(session, film, "model");
+            begun.extend(export.running.iter().map(|job| job.id));
+            if matches!(
+                export.state(session, film),
+                State::Done(..) | State::Trouble(_)
+            ) {
+                return begun.len();
+            }
+            std::thread::sleep(Duration::from_millis(1));
+            export.tick();
+        }
+    }
+
+    #[test]
+    fn another_format_or_size_makes_no_new_triangles() {
+        let (ball, arm) = (session(BALL), session(ARM));
+        let mut export = MeshExport::new(|| {});
+        // Coat, mesh, file.
+        assert_eq!(follow(&mut export, &ball), 3);
+        assert_eq!(export.files()[0].name, "model.stl");
+        export.order.format = Format::ThreeMf;
+        assert_eq!(follow(&mut export, &ball), 1);
+        assert_eq!(export.files()[0].name, "model.3mf");
+        export.order.size = 30.0;
+        export.order.format = Format::Stl;
+        assert_eq!(follow(&mut export, &ball), 1);
+        let mesh = mesh::read("a.stl", &export.files()[0].bytes).unwrap();
+        let side = mesh.bounds().size().max_element();
+        assert!((side - 30.0).abs() < 0.1, "{side}");
+        // A coarser one has something to show already.
+        export.order.tolerance = 4e-3;
+        assert_eq!(follow(&mut export, &ball), 2);
+        // Another model; joints need no new triangles either.
+        export.order.format = Format::Glb;
+        let glb = |export: &MeshExport| export.files()[0].bytes.clone();
+        let mut arm = arm;
+        assert_eq!(arm.generation(), ball.generation());
+        arm.set_film_frame(0);
+        export = MeshExport::new(|| {});
+        export.order = Order {
+            format: Format::Glb,
+            tolerance: 1e-2,
+            ..Order::default()
+        };
+        assert_eq!(follow(&mut export, &arm), 2);
+        let plain = glb(&export);
+        export.order.rig = true;
+        assert_eq!(follow(&mut export, &arm), 1);
+        assert!(glb(&export).len() > plain.len() + 16 * 4);
+        // In another frame the film's first one is meshed.
+        arm.set_film_frame(3);
+        arm.compile();
+        let rigged = glb(&export);
+        follow(&mut export, &arm);
+        assert_eq!(glb(&export), rigged);
+    }
+
+    #[test]
+    fn stopping_is_not_undone_until_one_asks() {
+        let ball = session(BALL);
+        let film = Film { count: 5, rate: 12 };
+        let mut export = MeshExport::new(|| {});
+        export.order.tolerance = 3e-4;
+        export.follow(&ball, film, "ball");
+        export.stop_asked(&ball, film);
+        export.follow(&ball, film, "ball");
+        assert!(export.running.is_empty());
+        assert!(matches!(export.state(&ball, film), State::Trouble(_)));
+        export.again();
+        export.order.tolerance = 1e-2;
+        follow(&mut export, &ball);
+        assert!(matches!(export.state(&ball, film), State::Done(..)));
     }
 }

@@ -1,6 +1,6 @@
 //! Between the app and what is outside its window: serving requests, and telling how things are.
 
-use crate::app::App;
+use crate::app::{App, Dialog};
 use crate::command::Command;
 use crate::notice::Notice;
 use crate::render::pass_label;
@@ -45,7 +45,7 @@ impl App {
             Request::Mesh(order, taker) => {
                 let name = work::file_stem(&self.work.name);
                 self.mesh_export
-                    .make_for(&self.work.session, &name, order, taker);
+                    .make_for(&self.work.session, self.film(), &name, order, taker);
             }
             Request::Cancel => self.renderer.cancel(),
             Request::Again => self.renderer.again(now),
@@ -92,7 +92,7 @@ impl App {
     }
 
     pub(crate) fn report(&mut self, ctx: &Context) {
-        let session = &self.work.session;
+        let (session, film) = (&self.work.session, self.film());
         let mut outbox = self.parts.outbox.borrow_mut();
         let state = &mut outbox.report;
         let progress = self.renderer.progress();
@@ -123,6 +123,9 @@ impl App {
         state.saved = !self.parts.shelf.borrow().is_dirty();
         state.reading = self.reading.current().map(|(name, _)| name.to_owned());
         state.fit = self.fitting.report();
+        state.mesh = (self.dialog == Some(Dialog::Mesh))
+            .then(|| self.mesh_export.report(session, film))
+            .flatten();
         state.drawing = self.pencil.tool().map(crate::pencil::Tool::id);
         state.frame = session.is_animated().then(|| session.film_frame());
         let text = (session.revision(), session.is_compiled());

@@ -48,6 +48,8 @@ pub struct Report {
     pub reading: Option<String>,
     /// The fit of a mesh that runs, or was last.
     pub fit: Option<Fit>,
+    /// The mesh of the dialog, once one was asked for.
+    pub mesh: Option<Mesh>,
     /// The frame on show of an animated work.
     pub frame: Option<u32>,
     /// The tool for drawing that is in hand: `draw`, `move` or `cut`.
@@ -58,6 +60,22 @@ pub struct Report {
     pub name: String,
     /// Whether all changes are written to the browser's storage.
     pub saved: bool,
+}
+
+/// The model as a mesh.
+#[derive(Clone, Debug, Default, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Mesh {
+    /// Whether the one that was asked for is being made.
+    pub running: bool,
+    /// Triangles on show.
+    pub shown: usize,
+    /// Triangles of the one that was asked for.
+    pub triangles: Option<usize>,
+    /// Length of its files.
+    pub bytes: Option<usize>,
+    /// Why there is none.
+    pub said: Option<String>,
 }
 
 /// A fit of a mesh.

@@ -1,6 +1,6 @@
 //! Sculpting in the page: which text of strokes is open in the place (crate `modeling`), how one begins, and what it writes.
 
-use crate::app::{App, Dialog};
+use crate::app::{App, Dialog, Tab};
 use crate::asset::{self, Kind};
 use crate::command::Command;
 use crate::mesh_export::Order;
@@ -57,8 +57,11 @@ fn load(start: Option<&Asset>, name: &str) -> Result<mesh::TriangleMesh, String>
     mesh::read(&asset.name, &asset.bytes).map_err(|error| error.to_string())
 }
 
+/// The colour of clay.
+const CLAY: &str = "<0.78 0.62 0.5>";
+
 /// The lines that show a sculpture, of a material whose name the text does not have.
-fn shown(text: &str, file: &str) -> String {
+fn shown(text: &str, file: &str, diffuse: &str) -> String {
     let is_free = |name: &str| !text.contains(name);
     let name = (1..)
         .map(|n| match n {
@@ -67,9 +70,7 @@ fn shown(text: &str, file: &str) -> String {
         })
         .find(|name| is_free(name))
         .unwrap_or_default();
-    format!(
-        "surface {name}, diffuse <0.78 0.62 0.5>, specular White, shine 20\nmesh {name} {file}\n"
-    )
+    format!("surface {name}, diffuse {diffuse}, specular White, shine 20\nmesh {name} {file}\n")
 }
 
 /// A text whose `mesh` command for a file shows it in another way; `None` if it has no such command.
@@ -184,7 +185,7 @@ impl App {
             text: format!("strokes 1\n{start}\n"),
         };
         let result = if is_new {
-            let main = format!("{STUDIO}\n{}", shown("", &name));
+            let main = format!("{STUDIO}\n{}", shown("", &name, CLAY));
             let main = File {
                 name: String::from("main.rat"),
                 text: main,
@@ -206,7 +207,7 @@ impl App {
                 if !main.text.ends_with('\n') {
                     main.text.push('\n');
                 }
-                main.text += &shown(&main.text, &name);
+                main.text += &shown(&main.text, &name, CLAY);
             }
             files.push(strokes);
             let put = self.work.session.put_files(files, now);
@@ -227,13 +228,16 @@ impl App {
             // As large as the shapes that one may begin with.
             size: 2.0,
             union: true,
+            rig: false,
         };
         let requests = self.parts.requests.clone();
         let taker = Box::new(move |result| requests.ask(Request::SculptModel(result)));
         let text = String::from("The model is being meshed; then you can sculpt it.");
         self.notice = Some(Notice::done(text, now));
         let session = &self.work.session;
-        self.mesh_export.make_for(session, "model", order, taker);
+        let film = self.film();
+        self.mesh_export
+            .make_for(session, film, "model", order, taker);
     }
 
     /// Opens the mesh of the model as a new work.
@@ -246,7 +250,14 @@ impl App {
                 text,
             };
             let strokes = text(FIRST, String::from("strokes 1\nstart file model.ply\n"));
-            let main = text("main.rat", format!("{STUDIO}\n{}", shown("", FIRST)));
+            // Colours of the model, which the file has for each vertex, take the place of clay's.
+            let head = &asset.bytes[..asset.bytes.len().min(400)];
+            let is_coloured = head.windows(5).any(|word| word == b" red\n");
+            let diffuse = if is_coloured { "White" } else { CLAY };
+            let main = text(
+                "main.rat",
+                format!("{STUDIO}\n{}", shown("", FIRST, diffuse)),
+            );
             let project = Project {
                 name,
                 texts: vec![main, strokes],
@@ -308,6 +319,7 @@ impl App {
                 flesh,
                 edge,
             },
+            modeling::Command::Fit => Command::FitSculpture(name.clone()),
             modeling::Command::Close => Command::CloseSculpt,
             modeling::Command::New => Command::NewSculpture,
             modeling::Command::SetTheme(choice) => Command::SetTheme(choice),
@@ -362,6 +374,17 @@ impl App {
             ),
             Err(refused) => Notice::trouble(refused.to_string()),
         });
+    }
+
+    /// Shows the panel that fits meshes, with the mesh of a sculpture chosen if a text shows it.
+    pub(crate) fn fit_sculpture(&mut self, name: &str) {
+        self.sculpting = None;
+        self.fitting.open = true;
+        self.tab = Tab::Fit;
+        let session = &self.work.session;
+        if session.is_compiled() {
+            self.fitting.choose(session, name);
+        }
     }
 
     /// The dialog that asks how to begin.
@@ -472,7 +495,10 @@ mod tests {
             };
             let project = rats::Project {
                 files: vec![
-                    file("main.rat", format!("{STUDIO}{}", shown("", "a.strokes"))),
+                    file(
+                        "main.rat",
+                        format!("{STUDIO}{}", shown("", "a.strokes", CLAY)),
+                    ),
                     file("a.strokes", format!("strokes 1\n{start}\n")),
                 ],
             };
@@ -518,6 +544,8 @@ mod tests {
         let hard = grown(&balls, "a.strokes", Flesh::Hard, 0.4).unwrap();
         assert!(hard.ends_with("\nmesh Clay a.strokes\n"), "{hard}");
         assert_eq!(grown(text, "b.strokes", Flesh::Hard, 0.4), None);
-        assert!(shown("surface Clay, diffuse Red\n", "b.strokes").starts_with("surface Clay2,"));
+        assert!(
+            shown("surface Clay, diffuse Red\n", "b.strokes", CLAY).starts_with("surface Clay2,")
+        );
     }
 }

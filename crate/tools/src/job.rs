@@ -1,9 +1,11 @@
 //! Running jobs.
 
 use crate::fitting;
-use crate::message::{CoatJob, Coated, Job, MeshFacts, MeshJob, Meshed, Output};
+use crate::message::{
+    CoatJob, Coated, Job, MeshFacts, MeshJob, Meshed, Output, RigJob, WriteJob, Written,
+};
 use core::ops::ControlFlow;
-use mesh::{Export, Part, TriangleMesh};
+use mesh::{Aabb, Export, Format, Part, TriangleMesh};
 
 /// Progress of a running job.
 pub struct Progress<'a> {
@@ -101,6 +103,7 @@ pub fn run(job: Job, progress: &mut Progress<'_>) -> Result<Output, String> {
             })))
         }
         Job::Mesh(job) => mesh_scene(*job, progress).map(|meshed| Output::Meshed(Box::new(meshed))),
+        Job::Write(job) => write(*job).map(Output::Written),
     }
 }
 
@@ -111,11 +114,9 @@ fn mesh_scene(job: MeshJob, progress: &mut Progress<'_>) -> Result<Meshed, Strin
         format,
         name,
         size,
+        rig,
     } = job;
-    let is_sound = size > 0.0 && size.is_finite();
-    if !is_sound {
-        return Err("the size must be a positive number of millimetres".into());
-    }
+    check(size, format, rig.as_ref())?;
     let mut report = |step: mesher::Step| {
         progress.report(0.95 * step.fraction);
         ControlFlow::Continue(())
@@ -146,28 +147,92 @@ fn mesh_scene(job: MeshJob, progress: &mut Progress<'_>) -> Result<Meshed, Strin
     }
     let parts = model.parts.into_iter().map(|part| (part.name, part.mesh));
     let parts: Vec<(String, TriangleMesh)> = parts.collect();
-    let files = match format {
-        None => Vec::new(),
+    let (written, parts) = match format {
+        None => (Written::default(), parts),
         Some(format) => {
             let export = Export {
                 name,
-                parts: parts
-                    .iter()
-                    .map(|(name, mesh)| Part {
-                        name: name.clone(),
-                        mesh: mesh.clone(),
-                    })
-                    .collect(),
+                parts: named(parts),
                 millimetres,
             };
-            export.write(format).map_err(|error| error.to_string())?
+            let written = write_export(&export, format, rig.as_ref())?;
+            let parts = export.parts.into_iter().map(|part| (part.name, part.mesh));
+            (written, parts.collect())
         }
     };
     progress.report(1.0);
     Ok(Meshed {
-        files,
+        written,
         parts,
         facts,
+    })
+}
+
+/// Tells what is wrong with the wishes for a file.
+fn check(size: f64, format: Option<Format>, rig: Option<&RigJob>) -> Result<(), String> {
+    let is_sound = size > 0.0 && size.is_finite();
+    if !is_sound {
+        return Err("the size must be a positive number of millimetres".into());
+    }
+    if rig.is_some() && format != Some(Format::Glb) {
+        return Err("joints are written to GLB files only".into());
+    }
+    Ok(())
+}
+
+fn named(parts: Vec<(String, TriangleMesh)>) -> Vec<Part> {
+    let part = |(name, mesh)| Part { name, mesh };
+    parts.into_iter().map(part).collect()
+}
+
+fn write(job: WriteJob) -> Result<Written, String> {
+    let WriteJob {
+        parts,
+        format,
+        name,
+        size,
+        rig,
+    } = job;
+    check(size, Some(format), rig.as_ref())?;
+    let bounds = parts.iter().map(|(_, mesh)| mesh.bounds());
+    let bounds = bounds.fold(Aabb::EMPTY, |all, own| all.union(&own));
+    let export = Export {
+        name,
+        parts: named(parts),
+        millimetres: size / bounds.size().max_element(),
+    };
+    write_export(&export, format, rig.as_ref())
+}
+
+fn write_export(
+    export: &Export,
+    format: Format,
+    wanted: Option<&RigJob>,
+) -> Result<Written, String> {
+    let Some(RigJob { scenes, rate }) = wanted else {
+        let files = export.write(format).map_err(|error| error.to_string())?;
+        return Ok(Written {
+            files,
+            ..Written::default()
+        });
+    };
+    let Some(first) = scenes.first() else {
+        return Err("there is no scene to rig".into());
+    };
+    // A file has shares for the parts that have triangles.
+    let parts = export.parts.iter();
+    let parts = parts.filter(|part| !part.mesh.triangles.is_empty());
+    let meshes: Vec<(Option<u32>, &TriangleMesh)> = parts
+        .map(|part| (rig::body_of(first, &part.name), &part.mesh))
+        .collect();
+    let rig = rig::rig(scenes, *rate, &meshes)?;
+    let file = export
+        .write_rigged(&rig)
+        .map_err(|error| error.to_string())?;
+    Ok(Written {
+        files: vec![file],
+        joints: rig.joints.len(),
+        frames: rig.frames.len(),
     })
 }
 
@@ -214,6 +279,7 @@ mod tests {
             format: Some(mesh::Format::Glb),
             name: "ball".into(),
             size: 50.0,
+            rig: None,
         }
     }
 
@@ -235,9 +301,50 @@ mod tests {
             "{sides:?}"
         );
         assert!(meshed.facts.is_closed && meshed.facts.shells == 1 && meshed.facts.unproved == 0);
-        assert_eq!(meshed.files[0].name, "ball.glb");
-        let again = mesh::read("ball.glb", &meshed.files[0].bytes).unwrap();
+        assert_eq!(meshed.written.files[0].name, "ball.glb");
+        let again = mesh::read("ball.glb", &meshed.written.files[0].bytes).unwrap();
         assert_eq!(again.triangles.len(), meshed.facts.triangles);
+    }
+
+    #[test]
+    fn mesh_that_is_written_later_is_the_same_file() {
+        let meshed = |format| match run(
+            Job::Mesh(Box::new(MeshJob {
+                format,
+                ..ball(3.0)
+            })),
+            &mut Progress::silent(),
+        ) {
+            Ok(Output::Meshed(meshed)) => *meshed,
+            other => panic!("{other:?}"),
+        };
+        let (at_once, later) = (meshed(Some(Format::Stl)), meshed(None));
+        assert_eq!(later.parts, at_once.parts);
+        assert!(later.written.files.is_empty());
+        let job = WriteJob {
+            parts: later.parts,
+            format: Format::Stl,
+            name: "ball".into(),
+            size: 50.0,
+            rig: None,
+        };
+        let wrong = WriteJob {
+            rig: Some(RigJob {
+                scenes: vec![ball(3.0).scene],
+                rate: 12.0,
+            }),
+            ..job.clone()
+        };
+        let written = run(Job::Write(Box::new(job)), &mut Progress::silent());
+        assert_eq!(written, Ok(Output::Written(at_once.written)));
+        let message = run(Job::Write(Box::new(wrong.clone())), &mut Progress::silent());
+        assert!(message.unwrap_err().contains("GLB"));
+        let boneless = WriteJob {
+            format: Format::Glb,
+            ..wrong
+        };
+        let message = run(Job::Write(Box::new(boneless)), &mut Progress::silent());
+        assert!(message.unwrap_err().contains("no skeleton"));
     }
 
     #[test]

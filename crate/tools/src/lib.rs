@@ -29,5 +29,5 @@ pub mod message;
 pub use job::{Progress, run};
 pub use message::{
     Answer, CoatJob, Coated, Controls, FitJob, FitStep, Job, MeshFacts, MeshJob, Meshed, Output,
-    Request,
+    Request, RigJob, WriteJob, Written,
 };

@@ -31,6 +31,8 @@ pub enum Job {
     Fit(Box<FitJob>),
     /// Mesh a scene.
     Mesh(Box<MeshJob>),
+    /// Write a mesh that was made before to a file.
+    Write(Box<WriteJob>),
     /// Coat the skeletons of a scene.
     Coat(Box<CoatJob>),
 }
@@ -105,13 +107,50 @@ pub struct MeshJob {
     pub name: String,
     /// Length of the model's longest side in the file, millimetres.
     pub size: f64,
+    /// Joints for the file, if it is GLB.
+    pub rig: Option<RigJob>,
+}
+
+/// The scenes that joints and their motion come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RigJob {
+    /// The scene that was meshed, and those of the frames after it, of which [`rig::skeletons_of`] is enough.
+    pub scenes: Vec<Scene>,
+    /// Frames of a second.
+    pub rate: f64,
+}
+
+/// A mesh to be written to a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WriteJob {
+    /// The parts with their names, as [`Meshed::parts`].
+    pub parts: Vec<(String, TriangleMesh)>,
+    /// Format of the file.
+    pub format: Format,
+    /// Name of the file without its ending.
+    pub name: String,
+    /// Length of the longest side of all parts' box in the file, millimetres.
+    pub size: f64,
+    /// Joints for the file, if it is GLB.
+    pub rig: Option<RigJob>,
+}
+
+/// The files of a mesh.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Written {
+    /// The files: one, or two for OBJ with materials.
+    pub files: Vec<ExportedFile>,
+    /// Joints of the rig.
+    pub joints: usize,
+    /// Frames of its motion.
+    pub frames: usize,
 }
 
 /// A scene's mesh as files and for the eye.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Meshed {
-    /// The files: one, or two for OBJ with materials; none if no format was wanted.
-    pub files: Vec<ExportedFile>,
+    /// The files; none if no format was wanted.
+    pub written: Written,
     /// The parts with their names, in units of the scene.
     pub parts: Vec<(String, TriangleMesh)>,
     /// Facts of all parts together.
@@ -158,6 +197,8 @@ pub enum Output {
     Fit(FitStep),
     /// Of [`Job::Mesh`].
     Meshed(Box<Meshed>),
+    /// Of [`Job::Write`].
+    Written(Written),
     /// Of [`Job::Coat`].
     Coated(Box<Coated>),
 }

@@ -69,17 +69,40 @@ impl<'a> Palette<'a> {
         match self.by_name.get(name.text) {
             Some(&index) if !self.surfaces[index].used => self.surfaces[index] = surface,
             _ => {
-                if self.surfaces.len() >= MAX_MATERIALS {
-                    return Err(Problem::new(
-                        name.span.clone(),
-                        format!("there are more than {MAX_MATERIALS} materials"),
-                    ));
-                }
+                self.refuse_more(name)?;
                 self.by_name.insert(name.text, self.surfaces.len());
                 self.surfaces.push(surface);
             }
         }
         Ok(())
+    }
+
+    /// Adds a copy of a material, without a name, whose colours are multiplied by another.
+    ///
+    /// # Errors
+    /// If there are too many.
+    pub fn tinted(&mut self, name: &Name<'_>, material: usize, tint: Rgb) -> Outcome<usize> {
+        self.refuse_more(name)?;
+        let mut surface = self.surfaces[material].clone();
+        let finish = &mut surface.finish;
+        for (k, tint) in tint.into_iter().enumerate() {
+            finish.ambient[k] *= tint;
+            finish.diffuse[k] *= tint;
+        }
+        self.surfaces[material].used = true;
+        self.surfaces.push(surface);
+        Ok(self.surfaces.len() - 1)
+    }
+
+    /// An error at a name if there are as many materials as there can be.
+    fn refuse_more(&self, name: &Name<'_>) -> Outcome<()> {
+        if self.surfaces.len() < MAX_MATERIALS {
+            return Ok(());
+        }
+        Err(Problem::new(
+            name.span.clone(),
+            format!("there are more than {MAX_MATERIALS} materials"),
+        ))
     }
 
     /// Where a material of this name was made, if nothing has come of it yet.

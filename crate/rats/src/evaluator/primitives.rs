@@ -3,6 +3,7 @@
 use super::implicit_mesh;
 use super::model::Part;
 use super::state::{Evaluator, Flow};
+use super::tints;
 use crate::Severity;
 use crate::geometry::{self, ThreePoints, Transform};
 use crate::given::Given;
@@ -487,11 +488,13 @@ fn add_mesh<'a>(
     let material = run.material(name)?;
     run.scope
         .step(mesh.triangles.len() as u64, &command.word_span)?;
+    let tinted = tints::materials(&mut run.palette, name, material, mesh)?;
     let first = run.model.parts.len();
     // Each triangle is one of many from here.
     run.repeating += 1;
     let mut result = Ok(());
-    for shape in assets::shapes(mesh) {
+    for (index, shape) in assets::shapes(mesh).enumerate() {
+        let material = tinted.as_ref().map_or(material, |own| own[index]);
         let shape = match transform {
             Some(transform) => transform.apply(&shape),
             None => shape,

@@ -136,7 +136,7 @@ pub static OPTIONS: &[CommandSpec] = &[
         ])
         .options(o::METABALLS)
         .default("robust")
-        .details("`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL or GLB (`gem.obj` is built in). A text of the project with the ending `.strokes` is a mesh, too, made by strokes of tools (Sculpt writes them). Soft: each triangle is a skeleton. \
+        .details("`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL or GLB (`gem.obj` is built in). A text of the project with the ending `.strokes` is a mesh, too, made by strokes of tools (Sculpt writes them). Where the mesh has colours (of vertices), or is painted, they are multiplied with the material's diffuse and ambient. Soft: each triangle is a skeleton. \
             `mesh sn file.obj metaballs triangular d0 k` makes a soft surface of any material around the mesh: a shell of the thickness d0 on both sides of each facet, \
             the sharper the larger k; `metaballs spherical k` makes it of balls around the facets, good for many small and even ones. k times the mean edge should be 10 or more. `mesh robust`, as RATS has it, changes nothing here: faces are always checked.")
         .example(clay!("eyep 3 4 3\nfov 30\nvup 0 0 1\nmesh Clay gem.obj")),

@@ -1,0 +1,106 @@
+//! Colours of a mesh's vertices as tints of its material: each triangle gets a material of its own colour. Colours are
+//! rounded, so that a painted mesh needs few materials.
+
+use super::palette::Palette;
+use crate::problem::Outcome;
+use crate::reader::Name;
+use mesh::TriangleMesh;
+use scene::Rgb;
+use std::collections::BTreeMap;
+
+/// Steps of a channel. A mesh with too many colours for the first is rounded to the next.
+const STEPS: [f32; 3] = [32.0, 16.0, 8.0];
+/// Most tints of a mesh; with the last of [`STEPS`] there are no more.
+const MOST: usize = 1000;
+
+/// A rounded colour: steps of the channels' square roots, which are about as even to the eye.
+type Tint = [u8; 3];
+
+fn rounded(mesh: &TriangleMesh, colors: &[Rgb], steps: f32) -> Option<Vec<Tint>> {
+    let mut seen = std::collections::BTreeSet::new();
+    let mut tints = Vec::with_capacity(mesh.triangles.len());
+    for triangle in &mesh.triangles {
+        let corners = triangle.map(|i| colors.get(i as usize).copied().unwrap_or([1.0; 3]));
+        let tint = [0, 1, 2].map(|k| {
+            let sum: f32 = corners.iter().map(|color| color[k]).sum();
+            // A number that is none counts as 0.
+            ((sum / 3.0).clamp(0.0, 1.0).sqrt() * steps).round() as u8
+        });
+        seen.insert(tint);
+        if seen.len() > MOST {
+            return None;
+        }
+        tints.push(tint);
+    }
+    Some(tints)
+}
+
+/// The material of each triangle of a mesh with colours; `None` if it has none, or nothing but white.
+///
+/// # Errors
+/// If there are too many materials.
+pub fn materials(
+    palette: &mut Palette<'_>,
+    name: &Name<'_>,
+    material: usize,
+    mesh: &TriangleMesh,
+) -> Outcome<Option<Vec<usize>>> {
+    let Some(colors) = &mesh.colors else {
+        return Ok(None);
+    };
+    let found = STEPS
+        .into_iter()
+        .find_map(|steps| Some((steps, rounded(mesh, colors, steps)?)));
+    let Some((steps, tints)) = found else {
+        return Ok(None);
+    };
+    let white = [steps as u8; 3];
+    if tints.iter().all(|tint| *tint == white) {
+        return Ok(None);
+    }
+    let mut made = BTreeMap::from([(white, material)]);
+    let mut all = Vec::with_capacity(tints.len());
+    for tint in tints {
+        let index = match made.get(&tint) {
+            Some(index) => *index,
+            None => {
+                let color = tint.map(|step| {
+                    let root = f32::from(step) / steps;
+                    root * root
+                });
+                let index = palette.tinted(name, material, color)?;
+                made.insert(tint, index);
+                index
+            }
+        };
+        all.push(index);
+    }
+    Ok(Some(all))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn many_colours_are_rounded_to_few() {
+        let count = 40_000u32;
+        let mut mesh = TriangleMesh::new(
+            vec![DVec3::ZERO; count as usize],
+            (0..count).map(|i| [i; 3]).collect(),
+        );
+        let sides = [34, 35, 36];
+        let step = |i: u32, k: usize| i / [1, 34, 34 * 35][k] % sides[k];
+        let channel = |i: u32, k: usize| step(i, k) as f32 / 36.0;
+        let colors: Vec<Rgb> = (0..count)
+            .map(|i| [0, 1, 2].map(|k| channel(i, k)))
+            .collect();
+        assert!(rounded(&mesh, &colors, STEPS[0]).is_none());
+        assert!(rounded(&mesh, &colors, STEPS[2]).is_some());
+        mesh.triangles.truncate(3);
+        let strange = [[f32::NAN, 2.0, -1.0], [1.0; 3], [0.25; 3]];
+        let tints = rounded(&mesh, &strange, 32.0).unwrap();
+        assert_eq!(tints, [[0, 32, 0], [32; 3], [16; 3]]);
+    }
+}
