@@ -4,7 +4,7 @@ use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
 use crate::intake::Taken;
 use crate::notice::Notice;
-use crate::pencil::{Pencil, Tool, page};
+use crate::pencil::{Pencil, page, tool::Tool};
 use crate::project_file::{self, Project};
 use crate::tray::item::Item;
 use crate::{asset, examples, picture, platform, share, work};

@@ -3,7 +3,7 @@
 
 use crate::asset::Asset;
 use crate::film::Playback;
-use crate::pencil::Tool;
+use crate::pencil::tool::Tool;
 use crate::recording::Kind;
 use crate::settings::Show;
 use crate::{examples, size, theme};

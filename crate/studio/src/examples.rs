@@ -93,7 +93,8 @@ const GROWN: &str = "Grown by commands";
 const CURVES: &str = "Curves with flesh";
 const FIRST: &str = "First steps";
 const MATTER: &str = "Light and matter";
-const SCULPTED: &str = crate::sculpting::GROUP;
+/// The group of sculptures.
+pub const SCULPTED: &str = "Sculpted";
 const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.

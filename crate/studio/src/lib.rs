@@ -48,6 +48,7 @@ pub mod marks;
 pub mod mesh_export;
 mod mesh_panel;
 pub mod notice;
+mod numerals;
 mod outside;
 pub mod pad;
 pub mod pencil;

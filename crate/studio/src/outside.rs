@@ -126,7 +126,7 @@ impl App {
         state.mesh = (self.dialog == Some(Dialog::Mesh))
             .then(|| self.mesh_export.report(session, film))
             .flatten();
-        state.drawing = self.pencil.tool().map(crate::pencil::Tool::id);
+        state.drawing = self.pencil.tool().map(crate::pencil::tool::Tool::id);
         state.frame = session.is_animated().then(|| session.film_frame());
         let text = (session.revision(), session.is_compiled());
         if self.reported != Some(text) {

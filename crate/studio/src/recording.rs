@@ -208,7 +208,7 @@ impl Recording {
         let mut words = format!("Frame {} of {}", frame + 1, self.count);
         if frame > 0 {
             let left = (now - self.begun) / f64::from(frame) * f64::from(self.count - frame);
-            words.push_str(&format!(" · {} left", crate::status::duration(left)));
+            words.push_str(&format!(" · {} left", crate::numerals::duration(left)));
         }
         words
     }

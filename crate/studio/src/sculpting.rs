@@ -39,9 +39,6 @@ light <0.35 0.35 0.42> point, position -6 -3 3
 /// The name of the first sculpture of a work.
 const FIRST: &str = "sculpture.strokes";
 
-/// The group of examples that are sculptures.
-pub const GROUP: &str = "Sculpted";
-
 /// The mesh file that a text of strokes of the session starts from.
 fn start_of(session: &Session, name: &str, text: &str) -> Option<Asset> {
     let wanted = rats::start_file(text)?;
@@ -469,7 +466,7 @@ impl App {
         heading(ui, "An example, stroke by stroke");
         ui.horizontal_wrapped(|ui| {
             for (index, example) in examples::ALL.iter().enumerate() {
-                if example.group == GROUP && choice(ui, example.title) {
+                if example.group == crate::examples::SCULPTED && choice(ui, example.title) {
                     commands.push(Command::OpenExample(index));
                     commands.push(Command::ShowSculpt);
                 }

@@ -1,6 +1,6 @@
 //! The strip with the tools of drawing, under the picture.
 
-use super::{THICKNESS, Tool, page};
+use super::{THICKNESS, page, tool::Tool};
 use crate::app::App;
 use crate::command::Command;
 use crate::icon::{self, Icon};

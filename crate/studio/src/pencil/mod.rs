@@ -10,6 +10,7 @@ mod edits;
 mod grip;
 pub mod page;
 mod paint;
+pub mod tool;
 
 pub use drawn::Drawn;
 
@@ -24,34 +25,8 @@ use glam::DVec3;
 use grip::Grip;
 use scene::Shape;
 use sketch::{Mark, Stroke};
+use tool::Tool;
 use tracer::Picker;
-
-/// What the hand does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tool {
-    /// Strokes become limbs.
-    #[default]
-    Draw,
-    /// Nodes are moved, and made thicker or thinner.
-    Move,
-    /// Limbs are cut, nodes and curves taken away.
-    Cut,
-}
-
-impl Tool {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Draw, Self::Move, Self::Cut];
-
-    /// Its name in the page handle's status.
-    #[must_use]
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Draw => "draw",
-            Self::Move => "move",
-            Self::Cut => "cut",
-        }
-    }
-}
 
 /// Thickness of strokes, points of a picture 640 points wide: least and most.
 pub const THICKNESS: [f32; 2] = [3.0, 60.0];

@@ -1,7 +1,7 @@
 //! What drawing shows over the picture: the flesh of a stroke, bones and knobs, the hint.
 
-use super::Tool;
 use super::drawn::Drawn;
+use super::tool::Tool;
 use crate::hands::Sight;
 use crate::places;
 use egui::epaint::{Mesh, PathShape};
