@@ -303,6 +303,10 @@ impl Mesh {
         };
         let coarser: Vec<Vec<Level>> = model.parts.iter().map(coarser).collect::<Result<_, _>>()?;
         for i in 0..self.lod {
+            if coarser.iter().all(|levels| i >= levels.len()) {
+                eprintln!("there are {i} coarser levels: fewer triangles would not show the shape");
+                break;
+            }
             let mut error = 0.0_f64;
             let parts = model.parts.iter().zip(&coarser).map(|(p, levels)| {
                 // The coarsest there is.

@@ -12,6 +12,8 @@ use tracer::Picker;
 
 /// Lines that are tried for each point: a thin scene is met by few.
 const TRIES: usize = 400;
+/// Largest noise: coordinates of point clouds are read up to a million times that.
+const MOST_NOISE: f64 = 1e6;
 /// Most points and views.
 const MOST_POINTS: usize = 200_000;
 const MOST_VIEWS: u32 = 36;
@@ -68,6 +70,11 @@ impl Scan {
         if let Some(path) = &self.output {
             let points = sample(&picker, middle, radius, self.points, self.seed)?;
             let points = disturbance.apply(&points);
+            if points.is_empty() {
+                return Err(String::from(
+                    "the gap leaves out all points: ask for more `--points`, or a smaller `--gap`",
+                ));
+            }
             let bytes = if ends_with(path, "ply") {
                 ply(&points)
             } else {
@@ -103,8 +110,8 @@ impl Scan {
 
     fn check(&self) -> Result<(), String> {
         let share = |value: f64| (0.0..1.0).contains(&value);
-        if !(self.noise.is_finite() && self.noise >= 0.0) {
-            return Err(String::from("--noise must be a number from 0 on"));
+        if !(0.0..=MOST_NOISE).contains(&self.noise) {
+            return Err(format!("--noise must be a number from 0 to {MOST_NOISE:e}"));
         }
         if !share(self.outliers) || !share(self.gap) {
             return Err(String::from(

@@ -25,6 +25,12 @@ impl Share {
             camera: None,
         };
         let fragment = link::encode(&shared).map_err(|error| error.to_string())?;
+        for asset in &loaded.assets {
+            eprintln!(
+                "a link carries texts only: `{}` has to be opened in the page beside it",
+                asset.name
+            );
+        }
         println!("{}#{fragment}", self.page);
         Ok(clean)
     }

@@ -119,7 +119,11 @@ fn controls(text: &str, options: &[Chosen<'_>]) -> Outcome<Vec<Control>> {
         } else {
             return Err(Problem::new(
                 chosen.span.clone(),
-                "there is no control point before this `move`",
+                if controls.is_empty() {
+                    "there is no control point before this `move`"
+                } else {
+                    "the control point before this `move` has been moved already"
+                },
             )
             .hint("each move stands behind its point: `control <0 0 0> move <0 0 1>`"));
         }
