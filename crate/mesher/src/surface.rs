@@ -86,6 +86,8 @@ pub fn polygonize(
     }
     let hull = extent(function, domain, threads, &mut progress.part(0.0, 0.02))?;
     let hull = hull.ok_or(MeshError::Nothing)?;
+    // Cells of larger tolerances may not see the shape at all, and a mesh within a smaller one is within a larger one, too.
+    let tolerance = tolerance.min(LARGEST * (hull.max - hull.min).max_element());
     // The surface does not touch the boundary of the hull, unless that of the domain.
     let room = 0.02 * (hull.max - hull.min).max_element() + tolerance;
     let forest = Forest::new(
@@ -214,6 +216,8 @@ impl Start<'_> {
     }
 }
 
+/// Largest tolerance that is worked with, in sizes of the surface.
+const LARGEST: f64 = 0.02;
 /// Cells are at least half so large, in tolerances: smaller ones take minutes where surfaces touch. Parts of a surface that are smaller
 /// than they may be missing; where they leave the topology open, they are told.
 const FINEST: f64 = 4.0;
