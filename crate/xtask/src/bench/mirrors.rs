@@ -23,13 +23,13 @@ const CASES: [Case; 2] = [
     Case {
         scene: "flake-820",
         title: "sphereflake 820, mirrored",
-        material: "ambient 0, diffuse 0.3 0.25 0.2, reflective 0.6 0.55 0.5",
+        material: "ambient 0 0 0, diffuse 0.3 0.25 0.2, reflective 0.6 0.55 0.5",
         finish: "pigment { rgb <0.3,0.25,0.2> } finish { ambient 0 diffuse 1 reflection { rgb <0.6,0.55,0.5> } }",
     },
     Case {
         scene: "coral",
         title: "coral of glass",
-        material: "ambient 0, diffuse 0 0 0, transparent 90%, reflective 10%, index 1.5",
+        material: "ambient 0 0 0, diffuse 0 0 0, transparent 90%, reflective 10%, index 1.5",
         finish: "pigment { rgbf <0.9,0.9,0.9,1> } finish { ambient 0 diffuse 0 reflection { rgb 0.1 } } interior { ior 1.5 }",
     },
 ];
