@@ -16,7 +16,7 @@ use glam::DVec3;
 use judges::{Distances, Random, crossings, manifold, on_surface};
 use mesh::{Topology, TriangleMesh, self_intersections};
 use mesher::{MeshError, Model, Progress, Tolerance, Wishes, mesh_scene};
-use random::{KINDS, Kind, Trial};
+use random::{KINDS, Trial};
 use scene::{Scene, Surface};
 use std::ops::ControlFlow;
 use std::path::Path;
