@@ -54,6 +54,8 @@ struct Plan {
     vertex: Option<Vertex>,
     /// The faces that change, with their new distances from the surface.
     faces: Vec<(FaceId, f32)>,
+    /// The new loss of that vertex.
+    loss: f64,
 }
 
 /// How many faces are not proved to be near the surface at all, and how many only to be farther than the tolerance.
@@ -96,6 +98,8 @@ pub struct Improver<'a> {
     vertices: Vec<Vertex>,
     is_fixed: Vec<bool>,
     errors: Vec<f32>,
+    /// How far each vertex, and those that were merged into it, may be from where the mesh was before edits that left triangles unproved.
+    losses: Vec<f64>,
     /// What became of the last attempt to prove a face that is not proved to be within the tolerance, since it changed.
     attempts: Vec<Attempt>,
     guard: Guard,
@@ -158,6 +162,7 @@ impl<'a> Improver<'a> {
             changed: vec![1; vertices.len()],
             refused: BTreeMap::new(),
             attempts: vec![Attempt::None; mesh.face_slots()],
+            losses: vec![0.0; mesh.vertex_slots()],
             guard,
             mesh,
             vertices,
@@ -558,9 +563,11 @@ impl<'a> Improver<'a> {
                 return None;
             }
             let faces = self.prove_more(&faces, &corners, before)?;
+            let loss = self.loss(&ends, &faces, &corners)?;
             Some(Plan {
                 vertex: Some(vertex),
                 faces,
+                loss,
             })
         };
         let [at_u, at_v] = ends.map(|v| self.vertices[v.index()]);
@@ -616,6 +623,7 @@ impl<'a> Improver<'a> {
         Some(Plan {
             vertex: Some(vertex),
             faces: plan,
+            loss: 0.0,
         })
     }
 
@@ -658,6 +666,39 @@ impl<'a> Improver<'a> {
             proved.push((*f, distance));
         }
         Some(proved)
+    }
+
+    /// The loss of a vertex in the place of others, with its new faces: none if all are proved, `None` if it is too large, or if one of them
+    /// looks inwards. Without it many
+    /// small edits where nothing is proved could remove whole parts of the surface.
+    fn loss(
+        &self,
+        replaced: &[VertexId],
+        faces: &[(FaceId, f32)],
+        corners: &[[Vertex; 3]],
+    ) -> Option<f64> {
+        let is_far = |(_, distance): &(FaceId, f32)| *distance > self.tolerance as f32;
+        if !faces.iter().any(is_far) {
+            return Some(0.0);
+        }
+        let looks_in = |corners: &[Vertex; 3]| {
+            let [a, b, c] = corners.map(|vertex| vertex.position);
+            let out: DVec3 = corners.iter().map(Vertex::normal).sum();
+            (b - a).cross(c - a).dot(out) <= 0.0
+        };
+        if corners.iter().any(looks_in) {
+            return None;
+        }
+        let lost = |v: &VertexId| {
+            let position = self.mesh.position(*v);
+            let distances = corners.iter().map(|corners| {
+                let corners = corners.map(|vertex| vertex.position);
+                mesh::closest_point(&corners, position).distance(position)
+            });
+            self.losses[v.index()] + distances.fold(f64::INFINITY, f64::min)
+        };
+        let loss = replaced.iter().map(lost).fold(0.0, f64::max);
+        (loss <= self.tolerance).then_some(loss)
     }
 
     /// How many of some faces are not proved to be near the surface.
@@ -724,6 +765,7 @@ impl<'a> Improver<'a> {
         Some(Plan {
             vertex: None,
             faces: proved,
+            loss: 0.0,
         })
     }
 
@@ -745,9 +787,14 @@ impl<'a> Improver<'a> {
         };
         let allowed = if helps { before } else { allowed };
         let proved = self.prove_more(&faces, &corners, allowed)?;
+        let ends = [mesh.origin(h), mesh.target(h)];
         Some(Plan {
             vertex: Some(m),
             faces: proved,
+            loss: ends
+                .map(|v| self.losses[v.index()])
+                .into_iter()
+                .fold(0.0, f64::max),
         })
     }
 
@@ -779,9 +826,11 @@ impl<'a> Improver<'a> {
                 .collect();
             if !is_proved {
                 let proved = self.prove_more(&faces, &corners, unproved)?;
+                let loss = self.loss(&[v], &proved, &corners)?;
                 return Some(Plan {
                     vertex: Some(vertex),
                     faces: proved,
+                    loss,
                 });
             }
             // Better by a little, or as fair where the vertex has to come to the surface.
@@ -794,6 +843,7 @@ impl<'a> Improver<'a> {
             Some(Plan {
                 vertex: Some(vertex),
                 faces: proved,
+                loss: 0.0,
             })
         })
     }
@@ -919,6 +969,7 @@ impl<'a> Improver<'a> {
                     return None;
                 }
                 self.vertices[v.index()] = vertex;
+                self.losses[v.index()] = plan.loss;
                 v
             }
             (Edit::Move(v), Some(vertex)) => {
@@ -926,6 +977,7 @@ impl<'a> Improver<'a> {
                     return None;
                 }
                 self.vertices[v.index()] = vertex;
+                self.losses[v.index()] = plan.loss;
                 v
             }
             (Edit::Split(h), Some(vertex)) => {
@@ -934,6 +986,8 @@ impl<'a> Improver<'a> {
                 };
                 self.vertices.resize(self.mesh.vertex_slots(), vertex);
                 self.vertices[v.index()] = vertex;
+                self.losses.resize(self.mesh.vertex_slots(), plan.loss);
+                self.losses[v.index()] = plan.loss;
                 self.is_fixed.resize(self.mesh.vertex_slots(), false);
                 self.is_fixed[v.index()] = false;
                 self.guard.set_guarded(v, false);

@@ -33,12 +33,14 @@
 //!   the topology of the surface; `space.rs` evaluates the function by the terms that matter in a place;
 //! - `march.rs` makes triangles of the interpolant's level set, and lids where a box cuts it off;
 //! - `improve.rs` makes them fewer and better, as long as `certify.rs` proves each to be within the tolerance;
+//! - `measure.rs` measures distances where proofs fail;
 //! - `surface.rs` does all that for one function ([`polygonize`]), `model.rs` for a scene ([`mesh_scene`]) with the help of
 //!   `solids.rs` (hard shapes), `level.rs` (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
 //!
-//! What is not proved: at kinks (profiles, creases between bodies), where the gradient jumps, and where a surface touches itself, no
-//! triangle can be proved however small it is, and the mesh may cut itself there. Such triangles are counted as `unproved`,
-//! crossings are told, and parts of a surface smaller than two tolerances may be missing.
+//! What is not proved: at kinks (profiles, creases between bodies), where the gradient jumps, where a surface touches itself, and where it
+//! has parts of a few tolerances' size, no triangle can be proved. Such triangles are counted as `unproved`; samples measure their
+//! distance. They do not cut each other: there `guard.rs` refuses each edit that an exact test finds to do so, with `boxes.rs` for the
+//! search. Parts of a surface smaller than two tolerances may be missing.
 //!
 //! [`Coating`] is another kind of mesh, which follows a skeleton that is dragged: `cages.rs` has its rays, `coating.rs` their ends.
 //!
