@@ -361,7 +361,7 @@ fn faults_are_told() {
         let row = judge(kind, 60, 900, near);
         assert!(2 * row.invented > row.hits, "{kind:?} {row:?}");
         let none = |t: &mut Option<f64>, number: usize| {
-            if number % 2 == 0 {
+            if number.is_multiple_of(2) {
                 *t = None;
             }
         };
