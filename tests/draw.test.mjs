@@ -60,9 +60,10 @@ test('an animal is drawn on a phone in eight strokes and a tap', async () => {
   const feet = pairs.filter((curve) => curve.at(-1)[1] < Math.min(...all[0].map(([, y]) => y)) - 0.5);
   assert.equal(feet.length, 4, text);
   assert.equal(text.match(/^sphere /gm)?.length, 2, text);
-  // It stands.
+  // It stands: the ground is under its lowest foot.
   const ground = Number(text.match(/^ground .* height (.*)$/m)[1]);
-  assert.ok(feet.every((curve) => Math.abs(curve.at(-1)[1] - ground) < 0.4), text);
+  const lowest = Math.min(...feet.map((curve) => curve.at(-1)[1]));
+  assert.ok(lowest > ground && lowest < ground + 0.3, text);
   assert.ok(hand.gestures <= 30);
   const status = await sinew.finished();
   assert.equal(status.errors, 0);
