@@ -627,9 +627,7 @@ fn surface(parts: &[(String, TriangleMesh)], is_closed: bool) -> Surface {
             .extend(mesh.positions.iter().map(|p| p.as_vec3()));
         match &mesh.colors {
             Some(colors) => all.colors.extend(colors.iter().map(|c| c.map(encoded))),
-            None => all
-                .colors
-                .extend(std::iter::repeat_n(clay, mesh.positions.len())),
+            None => all.colors.extend(of_materials(mesh, clay)),
         }
         let triangles = mesh.triangles.iter().map(|t| t.map(|i| first + i));
         all.triangles.extend(triangles);
@@ -642,6 +640,24 @@ fn surface(parts: &[(String, TriangleMesh)], is_closed: bool) -> Surface {
         all.edges = edges.filter(|[a, b]| a < b || !is_closed).collect();
     }
     all
+}
+
+/// A colour for each vertex of a mesh that has none: its material's, else another.
+fn of_materials(mesh: &TriangleMesh, other: [f32; 3]) -> Vec<[f32; 3]> {
+    let mut colors = vec![other; mesh.positions.len()];
+    for group in &mesh.groups {
+        let Some(material) = &group.material else {
+            continue;
+        };
+        let color = material.color.map(encoded);
+        let range = group.triangles.start as usize..group.triangles.end as usize;
+        for triangle in mesh.triangles.get(range).unwrap_or_default() {
+            for vertex in triangle {
+                colors[*vertex as usize] = color;
+            }
+        }
+    }
+    colors
 }
 
 /// A channel of linear light as sRGB shows it, closely enough for a view.
