@@ -93,6 +93,7 @@ mod coloured;
 mod digger;
 mod dug;
 mod exposure;
+mod far_march;
 mod flesh;
 mod free;
 mod function;

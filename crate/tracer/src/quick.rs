@@ -445,6 +445,7 @@ impl Soft {
             alive,
             tolerance: self.tolerance(near) as f32,
             noise,
+            start: None,
         };
         // Not by `ray_blobs()`, which would borrow `tops`, too.
         let blobs = RayBlobs {

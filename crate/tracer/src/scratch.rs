@@ -1,4 +1,5 @@
 //! Working space of one thread for following packets of rays.
+use crate::far_march::FarWork;
 use crate::flesh::{Active, Flesh};
 use crate::layout::PACKET;
 use crate::quick::Quick;
@@ -15,6 +16,7 @@ pub struct Scratch {
     pub(crate) active: Active,
     pub(crate) flesh: Flesh,
     pub(crate) quick: Quick,
+    pub(crate) far: FarWork,
     /// Evaluations of one primitive's field at one point, so far.
     pub evaluations: u64,
     /// Evaluations that were made for a single ray.

@@ -249,6 +249,14 @@ impl World {
                 if alive == 0 {
                     break;
                 }
+                let soft = &self.soft;
+                let entered =
+                    soft.far_first(body, &rays, &limits, alive, Quest::Entry, scratch);
+                if let Some(met) = entered {
+                    dark |= met;
+                    alive &= !met;
+                    continue;
+                }
                 let at = match slabs.iter().position(|(own, _)| *own == body) {
                     Some(at) => at,
                     None => {
