@@ -12,10 +12,10 @@
 //! A segment is a sum of such points, and a Gaussian has |G′| = G. With a ramp r the field is `g·r`, so that −(gr)″ is at
 //! most `−g″·r + 2|g′||r′|` between the ramp's kinks; in a kink the slope falls by no more than `g·|r′|`.
 use crate::bone::{Bone, Segment};
+use crate::inverse::POLE2;
 use crate::ramp::Ramp;
 use crate::real::Scalar;
 use crate::term::{Evaluate, Frame, Prepared};
-use crate::inverse::POLE2;
 use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI};
 use glam::DVec3;

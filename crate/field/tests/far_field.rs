@@ -184,6 +184,34 @@ fn work_is_about_linear() {
     assert!(many[1] < 2.0 * few[1], "{few:?} {many:?}");
 }
 
+/// Where only the surface counts, the cells that are left empty have a field below T, and most of space is such.
+#[test]
+fn empty_cells_hold_no_surface() {
+    let mut n = Numbers(9);
+    let (mut empty, mut highest) = (0, 0.0f64);
+    for kernel in ENDLESS {
+        let primitives: Vec<Primitive> = (0..100)
+            .map(|i| primitive(kernel, i % 2, 0.02, &mut n))
+            .collect();
+        let field = FarField::new(&primitives, DVec3::ZERO, 2.0).surface_only();
+        for _ in 0..200 {
+            let place = 2.0 * n.vector();
+            let cell = descend(&field, &primitives, place, 6);
+            if !cell.is_empty {
+                continue;
+            }
+            empty += 1;
+            for _ in 0..20 {
+                let within = (cell.center + n.vector() * cell.reach()).to_array();
+                let value: f64 = primitives.iter().map(|p| p.value(within)).sum();
+                assert!(value <= cell.most && cell.most < 1.0, "{kernel:?} {value}");
+                highest = highest.max(value);
+            }
+        }
+    }
+    assert!(empty > 200 && highest > 0.3, "{empty} {highest}");
+}
+
 /// A field of cells depends on the primitives alone, not on the order in which cells are asked for.
 #[test]
 fn cells_are_the_same_in_any_order() {

@@ -12,8 +12,8 @@
 //! hide is searched again among all points in double precision.
 use crate::beam::Beam;
 use crate::blob_march::{
-    Backdrop, Bounded, LEVEL, MarchRays, Marched, RayBlob, RayBlobs, RayInterval, march_before, mask,
-    values,
+    Backdrop, Bounded, LEVEL, MarchRays, Marched, RayBlob, RayBlobs, RayInterval, march_before,
+    mask, values,
 };
 use crate::flesh::{Flesh, NEAR_ENOUGH};
 use crate::layout::PACKET;
@@ -29,7 +29,7 @@ use wide::f32x8;
 /// Fewest points for which this way pays.
 const FEWEST: usize = 64;
 /// Near points up to which a cell is not divided.
-const FEW_NEAR: usize = 24;
+const FEW_NEAR: usize = 48;
 /// Largest error of all spans in a cell together, in T.
 const OF_SPANS: f64 = 3e-5 * THRESHOLD;
 /// Largest error of a cell's polynomial; beyond it rounding is too large for this way.
@@ -156,7 +156,7 @@ impl FarBody {
         let points: Option<Vec<FarPoint>> = primitives.iter().map(point).collect();
         Some(Self {
             points: points?,
-            field: FarField::new(primitives, center, ROOM * radius),
+            field: FarField::new(primitives, center, ROOM * radius).surface_only(),
             first,
             finish,
             power,
@@ -189,6 +189,8 @@ impl FarBody {
         let root = self.field.root(primitives);
         let (mut alive, mut met) = (query.alive, 0);
         let mut t = from;
+        // The present cell and those that contain it, the largest first.
+        let mut path = vec![root];
         let mut cells = 0;
         while t < to {
             for (lane, limit) in query.limits.iter().enumerate() {
@@ -211,7 +213,13 @@ impl FarBody {
             if width(root.half) > room * root.half {
                 return None;
             }
-            let mut cell = root;
+            // Back to the smallest cell that still holds the beam.
+            while let [_, .., cell] = &path[..]
+                && (!cell.holds(place) || width(cell.half) > room * cell.half)
+            {
+                path.pop();
+            }
+            let mut cell = path[path.len() - 1];
             let empty = loop {
                 if cell.most < THRESHOLD - ROUNDING {
                     break true;
@@ -224,6 +232,7 @@ impl FarBody {
                     break false;
                 }
                 cell = self.field.part(primitives, cell, cell.part_of(place));
+                path.push(cell);
             };
             let end = leaves(&beam.axis, t, cell).at_most(to);
             if !empty {
@@ -292,8 +301,7 @@ impl FarBody {
         };
         let start = -half;
         let behind = Bounded::new(&backdrop);
-        let (value, slope) =
-            values::<false, _>(blobs, behind, start, alive, &mut work.evaluations);
+        let (value, slope) = values::<false, _>(blobs, behind, start, alive, &mut work.evaluations);
         let inside = f32x8::splat(LEVEL).simd_le(value).to_bitmask() & alive;
         if inside != 0 && first {
             return None;
@@ -415,8 +423,8 @@ impl FarBody {
                 for (sum, end) in weak.iter_mut().zip(&ends) {
                     let [x, y, z]: [f32x8; 3] = core::array::from_fn(|i| end[i] - place[i]);
                     let square = f32x8::splat(point.scale * point.scale);
-                    let inverse = f32x8::splat(1.0)
-                        / (softening + square * (x * x + y * y + z * z));
+                    let inverse =
+                        f32x8::splat(1.0) / (softening + square * (x * x + y * y + z * z));
                     let value = f32x8::splat(point.amplitude) * self.decay(inverse);
                     let [dx, dy, dz] = piece.direction;
                     let pace = x * dx + y * dy + z * dz;
@@ -449,10 +457,7 @@ impl FarBody {
         }
         let slope = f32x8::splat(self.power as f32);
         let [[a, da], [b, db]] = weak;
-        Some((
-            piece.backdrop([a, da * slope, b, db * slope]),
-            error,
-        ))
+        Some((piece.backdrop([a, da * slope, b, db * slope]), error))
     }
 
     /// The kernel, given `1/(ε² + u²)`.
@@ -549,8 +554,7 @@ impl FarBody {
         let near_enough = f32x8::splat(0.5 * NEAR_ENOUGH);
         let finest = f32x8::splat(ROUNDING as f32);
         for _ in 0..MOST_REFINING {
-            let (value, slope) =
-                values::<false, _>(blobs, behind, at, met, &mut work.evaluations);
+            let (value, slope) = values::<false, _>(blobs, behind, at, met, &mut work.evaluations);
             let excess = value - f32x8::splat(THRESHOLD as f32);
             let over = excess.simd_ge(f32x8::splat(0.0));
             high = over.select(at, high);
@@ -565,8 +569,7 @@ impl FarBody {
             let good = low.simd_le(newton) & newton.simd_le(high);
             at = good.select(newton, f32x8::splat(0.5) * (low + high));
         }
-        let place: [f32x8; 3] =
-            core::array::from_fn(|i| piece.origin[i] + piece.direction[i] * at);
+        let place: [f32x8; 3] = core::array::from_fn(|i| piece.origin[i] + piece.direction[i] * at);
         let local = piece.local(place);
         let scale = f32x8::splat(1.0 / piece.cell.reach() as f32);
         let jet = piece.cell.expansion.jet(local, f32x8::splat);
@@ -582,8 +585,8 @@ impl FarBody {
         }
         work.evaluations += 8 * piece.cell.near.len() as u64;
         let steep = gradient.iter().fold(f32x8::splat(0.0), |s, g| s + *g * *g);
-        let moved = (steep.sqrt() * f32x8::splat(tolerance as f32))
-            .simd_lt(f32x8::splat(error as f32));
+        let moved =
+            (steep.sqrt() * f32x8::splat(tolerance as f32)).simd_lt(f32x8::splat(error as f32));
         if moved.to_bitmask() & met != 0 {
             return None;
         }
@@ -619,7 +622,9 @@ impl<'a> Piece<'a> {
     /// Converts a place relative to the middle to the coordinates of the cell's expansion.
     fn local(&self, place: [f32x8; 3]) -> [f32x8; 3] {
         let scale = 1.0 / self.cell.reach();
-        let shift = ((self.middle - self.cell.center) * scale).as_vec3().to_array();
+        let shift = ((self.middle - self.cell.center) * scale)
+            .as_vec3()
+            .to_array();
         let scale = f32x8::splat(scale as f32);
         core::array::from_fn(|i| f32x8::splat(shift[i]) + place[i] * scale)
     }
@@ -666,5 +671,6 @@ fn leaves(axis: &Ray, t: f64, cell: &Cell) -> f64 {
         }
     }
     // Rounding may leave the start a little outside.
-    end.at_least(t + 1e-6 * cell.half).at_most(t + 3.5 * cell.half)
+    end.at_least(t + 1e-6 * cell.half)
+        .at_most(t + 3.5 * cell.half)
 }

@@ -263,13 +263,7 @@ impl World {
 
     /// Replaces what the rays of some lanes meet by nearer points on the surface of a body of very many points that never end.
     /// Returns false if this is not the way.
-    pub fn meet_far(
-        &self,
-        body: u32,
-        alive: u32,
-        seen: &mut Seen,
-        scratch: &mut Scratch,
-    ) -> bool {
+    pub fn meet_far(&self, body: u32, alive: u32, seen: &mut Seen, scratch: &mut Scratch) -> bool {
         let limits = seen.limits();
         let met = self
             .soft

@@ -250,8 +250,7 @@ impl World {
                     break;
                 }
                 let soft = &self.soft;
-                let entered =
-                    soft.far_first(body, &rays, &limits, alive, Quest::Entry, scratch);
+                let entered = soft.far_first(body, &rays, &limits, alive, Quest::Entry, scratch);
                 if let Some(met) = entered {
                     dark |= met;
                     alive &= !met;

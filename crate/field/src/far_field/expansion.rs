@@ -11,7 +11,7 @@ use wide::f32x8;
 /// Nodes along each axis.
 pub const NODES: usize = 5;
 /// Nodes of a box.
-const ALL: usize = NODES * NODES * NODES;
+const ALL: usize = NODES * PLANE;
 /// Vectors of eight that hold a value for each node.
 pub const VECTORS: usize = ALL.div_ceil(8);
 /// Largest total degree.
@@ -86,13 +86,25 @@ pub fn nodes() -> [[f32x8; 3]; VECTORS] {
     })
 }
 
-/// Multiplies the values along an axis by a matrix.
-fn apply(matrix: &Matrix, axis: usize, values: &mut [f64; ALL]) {
-    let step = [1, NODES, NODES * NODES][axis];
-    for start in (0..ALL).filter(|i| i / step % NODES == 0) {
-        let old: [f64; NODES] = core::array::from_fn(|i| values[start + i * step]);
-        for (row, i) in matrix.iter().zip(0..) {
-            values[start + i * step] = (0..NODES).map(|k| row[k] * old[k]).sum();
+/// Nodes of a plane.
+const PLANE: usize = NODES * NODES;
+
+/// Multiplies the values along each axis by a matrix.
+fn apply(matrix: &Matrix, values: &mut [f64; ALL]) {
+    // Along the last axis, whose planes are rows of memory; then the axes change places, and after three times are as before.
+    for _ in 0..3 {
+        let mut rows = [[0.0; PLANE]; NODES];
+        for (row, factors) in rows.iter_mut().zip(matrix) {
+            for (plane, factor) in values.chunks_exact(PLANE).zip(factors) {
+                for (sum, value) in row.iter_mut().zip(plane) {
+                    *sum += factor * value;
+                }
+            }
+        }
+        for (at, own) in values.chunks_exact_mut(NODES).enumerate() {
+            for (value, row) in own.iter_mut().zip(&rows) {
+                *value = row[at];
+            }
         }
     }
 }
@@ -122,7 +134,7 @@ impl Expansion {
             }
         }
         let tables = tables();
-        (0..3).for_each(|axis| apply(&tables.chebyshev, axis, &mut all));
+        apply(&tables.chebyshev, &mut all);
         let (mut dropped, mut size) = (0.0, 0.0);
         for (node, value) in all.iter_mut().enumerate() {
             let degree = node % NODES + node / NODES % NODES + node / (NODES * NODES);
@@ -134,7 +146,7 @@ impl Expansion {
         }
         let first = all[0];
         let change = size - first.abs();
-        (0..3).for_each(|axis| apply(&tables.powers, axis, &mut all));
+        apply(&tables.powers, &mut all);
         let mut terms = [0.0; TERMS];
         let mut next = 0;
         let mut largest = 0.0;

@@ -8,16 +8,16 @@
 //! # The bound
 //!
 //! The kernels that never end are `G = (ε² + u²)^(−e/2)`, with e = 1, 2, 3 for the inverse, the squared and the cubed kernel, and
-//! e = 4, ε = 1 for Cauchy's. Along a straight line that is the generating function's root of the Gegenbauer polynomials, so that
-//! its derivatives are `n!·C_n(cos θ)·b^(−e−n)`, at most `(e)_n·b^(−e−n)` with `b² = ε² + u²` and `(e)_n = e(e+1)…(e+n−1)`. By Banach's
-//! theorem on symmetric multilinear forms the same number bounds mixed derivatives of order n. A skeleton adds up such terms.
-//! With A = 1 − I, the error of interpolation along an axis at n Chebyshev nodes of an interval of half length w,
-//! `|A f| ≤ 2(w/2)ⁿ/n!·|f⁽ⁿ⁾|`, and interpolation along all three is off by
-//! `ΣA₁ − ΣA₁A₂ + A₁A₂A₃`, at most
+//! e = 4, ε = 1 for Cauchy's. Along a straight line that is the generating function's root of the Gegenbauer polynomials
+//! `C_n` of order e/2: its n-th derivative is `±n!·C_n(cos θ)·b^(−e−n)` with `b² = ε² + u²`, where `b·cos θ` is the position
+//! along the line. A skeleton adds up such terms. With A = 1 − I, the error of interpolation along an axis at n = 5 Chebyshev nodes of
+//! an interval of half length w, `|A f| ≤ 2(w/2)ⁿ/n!·|f⁽ⁿ⁾|`. Interpolation along all three axes, in any order, is off by
+//! `A₁f + I₁A₂f + I₁I₂A₃f`, and |I| ≤ Λ, so that the error is at most
 //!
-//! `M·(6·(e)₅/5!·q⁵ + 12·(e)₁₀/(5!)²·q¹⁰ + 8·(e)₁₅/(5!)³·q¹⁵)`, `q = s·w/2b`,
+//! `2M·q⁵·(c₁ + Λc₂ + Λ²c₃)`, `q = s·w/2b`, `c₁ ≥ c₂ ≥ c₃`,
 //!
-//! where M bounds the field and s is the width parameter. Interpolation of the parent's polynomial is exact.
+//! where M bounds the field, s is the width parameter, and cᵢ bounds |C₅(cos θ)| for the lines along axis i. |C₅| is small up to a
+//! certain cosine, which at most one axis exceeds as seen from far away. Interpolation of the parent's polynomial is exact.
 //!
 //! Kernels that end, the Gaussian and primitives with a profile are near wherever they are not negligible.
 mod expansion;
@@ -34,11 +34,11 @@ use wide::f32x8;
 /// difference.
 pub const LOOSE: f64 = 1.5;
 /// Largest error of a cell's polynomial, in T.
-pub const MOST_ERROR: f64 = 5e-5 * THRESHOLD;
+pub const MOST_ERROR: f64 = 1e-4 * THRESHOLD;
 /// Part of what is left of [`MOST_ERROR`] that one more cell may use up.
-const PORTION: f64 = 0.5;
+const PORTION: f64 = 0.25;
 /// Error up to which a primitive is far, as a part of what the cell may use up, at first.
-const FIRST_SHARE: f64 = 0.125;
+const FIRST_SHARE: f64 = 0.06;
 /// Largest number of halvings of that.
 const MOST_HALVINGS: u32 = 24;
 /// Number of values in a partial sum of single precision.
@@ -47,6 +47,8 @@ const PARTIAL_SUM: usize = 32;
 const ROUNDING: [f64; 2] = [2e-6, 6e-8];
 /// Rounding of coordinates in single precision, in the world and in a primitive's own frame, relative to them.
 const MISPLACED: f64 = 2.5e-7;
+/// Part of T by which bounds must be below it.
+const BELOW: f64 = 1e-5;
 
 /// A primitive as others see it from afar.
 #[derive(Clone, Debug)]
@@ -65,8 +67,9 @@ struct Source {
     bound: Option<Box<Bound>>,
     adds: bool,
     kernel: Kernel,
-    /// Whether it has an expansion.
-    endless: bool,
+    /// The kernel's exponent and softening; an exponent of 0 tells that there is no expansion.
+    power: i32,
+    softening: f64,
 }
 
 /// A primitive as seen from a box.
@@ -78,17 +81,18 @@ struct Seen {
     error: f64,
     /// Its largest slope over its size, about, where its place is rounded to single precision.
     steep: f64,
-    /// Whether it has an expansion.
-    expands: bool,
 }
 
 /// The hierarchy of a list of primitives.
 #[derive(Debug)]
 pub struct FarField {
     sources: Vec<Source>,
+    points: Option<Points>,
     center: DVec3,
     half: f64,
     nodes: [[f32x8; 3]; VECTORS],
+    /// Whether cells in which the field is below T are left empty.
+    surface_only: bool,
     root: OnceLock<Box<Cell>>,
 }
 
@@ -109,6 +113,8 @@ pub struct Cell {
     pub far_most: f64,
     /// Upper bound on the whole field.
     pub most: f64,
+    /// Whether there is nothing but this bound, since it is below T ([`FarField::surface_only`]).
+    pub is_empty: bool,
     children: [OnceLock<Box<Cell>>; 8],
 }
 
@@ -119,9 +125,10 @@ impl Source {
         let ball = primitive.skeleton.bounding_sphere();
         let (center, around) = ball.unwrap_or((DVec3::ZERO, f64::INFINITY));
         let plain = !bound.has_profile() && ball.is_some() && whole.is_finite();
-        let endless = plain && power(primitive.kernel).is_some();
+        let kernel = power(primitive.kernel).filter(|_| plain);
+        let (power, softening) = kernel.unwrap_or_default();
         let term = &primitive.prepared.double;
-        let is_point = endless && matches!(term.form.bone, Bone::Point);
+        let is_point = power > 0 && matches!(term.form.bone, Bone::Point);
         Self {
             center,
             around,
@@ -131,7 +138,8 @@ impl Source {
             point: is_point.then_some(term.amplitude as f32),
             adds: bound.adds(),
             kernel: primitive.kernel,
-            endless,
+            power,
+            softening,
             bound: (!is_point).then(|| Box::new(bound)),
         }
     }
@@ -149,27 +157,25 @@ impl Source {
             magnitude = bound.magnitude(near);
             steep = bound.relative_slope(near);
         }
-        let Some((power, softening)) = power(self.kernel).filter(|_| self.endless) else {
+        if self.power == 0 {
             return Seen {
                 magnitude,
                 error: magnitude,
                 steep,
-                expands: false,
             };
-        };
+        }
         let u = distance * self.width;
-        let b = (softening + u * u).sqrt();
+        let b = (self.softening + u * u).sqrt();
         let inverse = 1.0 / b;
-        let own = self.whole * (0..power).fold(1.0, |product, _| product * inverse);
+        let own = self.whole * (0..self.power).fold(1.0, |product, _| product * inverse);
         let magnitude = magnitude.at_most(own);
         let q = 0.5 * self.finest * half * inverse;
-        let five = q * q * q * q * q;
-        let [a, b, c] = FACTORS[power as usize - 1];
+        // The parts of a skeleton are seen along different lines.
+        let factor = GEGENBAUER[self.power as usize - 1].factor(3);
         Seen {
             magnitude,
-            error: own * five * (a + five * (b + five * c)),
+            error: own * (q * q * q * q * q) * factor,
             steep,
-            expands: true,
         }
     }
 }
@@ -189,37 +195,172 @@ pub fn power(kernel: Kernel) -> Option<(i32, f64)> {
     }
 }
 
-/// `6·(e)₅/5!`, `12·(e)₁₀/(5!)²` and `8·(e)₁₅/(5!)³` for e = 1 to 4.
-const FACTORS: [[f64; 3]; 4] = [factors(1), factors(2), factors(3), factors(4)];
+/// Bounds on the Gegenbauer polynomial C₅ of order e/2, e = 1 to 4: everywhere, and up to a cosine.
+#[derive(Clone, Copy)]
+struct Gegenbauer {
+    /// Value at 1, the largest.
+    high: f64,
+    /// Largest size up to the cosine …
+    low: f64,
+    /// … with this square.
+    square: f64,
+}
 
-const fn factors(power: u32) -> [f64; 3] {
-    let mut rising = [1.0; 3];
-    let mut all = 1.0;
-    let mut n = 0;
-    while n < 15 {
-        all *= (power + n) as f64;
-        n += 1;
-        if n % 5 == 0 {
-            rising[n as usize / 5 - 1] = all;
+const GEGENBAUER: [Gegenbauer; 4] = [
+    Gegenbauer {
+        high: 1.0,
+        low: 0.42,
+        square: 0.91,
+    },
+    Gegenbauer {
+        high: 6.0,
+        low: 1.44,
+        square: 0.833,
+    },
+    Gegenbauer {
+        high: 21.0,
+        low: 3.3,
+        square: 0.767,
+    },
+    Gegenbauer {
+        high: 56.0,
+        low: 6.2,
+        square: 0.71,
+    },
+];
+
+/// Lebesgue's constant of one axis.
+const LAMBDA: f64 = 1.99;
+
+impl Gegenbauer {
+    /// `2(c₁ + Λc₂ + Λ²c₃)`, of which so many axes may exceed the cosine.
+    fn factor(self, high: usize) -> f64 {
+        let of = |axis: usize| if axis < high { self.high } else { self.low };
+        2.0 * (of(0) + LAMBDA * of(1) + LAMBDA * LAMBDA * of(2))
+    }
+}
+
+/// All primitives side by side, if they are points of one kernel.
+#[derive(Debug)]
+struct Points {
+    /// Place, width parameter, bound on the field over the kernel.
+    place: [Vec<f32>; 3],
+    scale: Vec<f32>,
+    whole: Vec<f32>,
+    power: i32,
+    softening: f32,
+    /// Largest coordinate of a place.
+    furthest: f64,
+    /// [`Gegenbauer::factor`] for 0 to 3 axes.
+    factors: [f32; 4],
+    square: f32,
+}
+
+impl Points {
+    /// `None` if the sources are anything else.
+    fn of(sources: &[Source]) -> Option<Self> {
+        let power = sources.first()?.power;
+        let plain = |s: &Source| s.point.is_some() && s.power == power;
+        if !sources.iter().all(plain) {
+            return None;
+        }
+        let all = |of: &dyn Fn(&Source) -> f64| sources.iter().map(|s| of(s) as f32).collect();
+        let furthest = sources.iter().map(|s| s.center.abs().max_element());
+        let bounds = GEGENBAUER[power as usize - 1];
+        Some(Self {
+            place: core::array::from_fn(|i| all(&|s| s.center[i])),
+            scale: all(&|s| s.finest),
+            whole: all(&|s| s.whole),
+            power,
+            softening: sources[0].softening as f32,
+            furthest: furthest.fold(0.0, f64::max),
+            factors: core::array::from_fn(|high| bounds.factor(high) as f32),
+            square: bounds.square as f32,
+        })
+    }
+
+    /// Bounds on sizes and errors of some points in a box, rounded upwards.
+    fn seen(&self, center: DVec3, half: f64, candidates: &[u32], seen: &mut Vec<Seen>) {
+        let coordinates = self.furthest + center.abs().max_element();
+        // Places are rounded.
+        let wide = half * (1.0 + 1e-6) + MISPLACED * coordinates;
+        let half = f32x8::splat(wide as f32);
+        let center = center.as_vec3().to_array().map(f32x8::splat);
+        let (zero, one) = (f32x8::splat(0.0), f32x8::splat(1.0));
+        let softening = f32x8::splat(self.softening);
+        let square = f32x8::splat(self.square * (1.0 - 1e-4));
+        let rest = f32x8::splat(1.0 - self.square * (1.0 - 1e-4));
+        let [f0, f1, f2, f3] = self.factors.map(f32x8::splat);
+        let up = f32x8::splat(1.0 + 1e-4);
+        for block in candidates.chunks(8) {
+            let gather = |row: &[f32]| {
+                let of = |lane: usize| row[block[lane.min(block.len() - 1)] as usize];
+                f32x8::new(core::array::from_fn(of))
+            };
+            let (scale, whole) = (gather(&self.scale), gather(&self.whole));
+            // In kernel widths, squared.
+            let widths = scale * scale;
+            let away: [f32x8; 3] =
+                core::array::from_fn(|i| (gather(&self.place[i]) - center[i]).abs());
+            let outside = away
+                .map(|x| (x - half).fast_max(zero))
+                .map(|x| x * x * widths);
+            let [x, y, z] = outside;
+            let base = softening + x + y + z;
+            let inverse = one / base;
+            let size = match self.power {
+                1 => inverse.sqrt(),
+                2 => inverse,
+                3 => inverse * inverse.sqrt(),
+                _ => inverse * inverse,
+            };
+            let size = whole * size * up;
+            let inner = f32x8::splat(0.25) * half * half * widths * inverse;
+            let five = inner * inner * inner.sqrt();
+            // cos² = X²/(X² + R²), with the largest X and the least R in the box.
+            let mut high = zero;
+            for (own, outside) in away.iter().zip(outside) {
+                let most = *own + half;
+                let steep = (square * (base - outside)).simd_lt(rest * (most * most * widths));
+                high += steep.select(one, zero);
+            }
+            let factor = f32x8::splat(0.5).simd_lt(high).select(f1, f0);
+            let factor = f32x8::splat(1.5).simd_lt(high).select(f2, factor);
+            let factor = f32x8::splat(2.5).simd_lt(high).select(f3, factor);
+            let error = size * five * factor * up;
+            let (size, error) = (size.to_array(), error.to_array());
+            seen.extend((0..block.len()).map(|lane| Seen {
+                magnitude: f64::from(size[lane]),
+                error: f64::from(error[lane]),
+                steep: 0.0,
+            }));
         }
     }
-    [
-        6.0 * rising[0] / 120.0,
-        12.0 * rising[1] / (120.0 * 120.0),
-        8.0 * rising[2] / (120.0 * 120.0 * 120.0),
-    ]
 }
 
 impl FarField {
     /// The hierarchy of some primitives in a cube of space with this half side.
     #[must_use]
     pub fn new(primitives: &[Primitive], center: DVec3, half: f64) -> Self {
+        let sources: Vec<Source> = primitives.iter().map(Source::of).collect();
         Self {
-            sources: primitives.iter().map(Source::of).collect(),
+            points: Points::of(&sources),
+            sources,
             center,
             half,
             nodes: expansion::nodes(),
+            surface_only: false,
             root: OnceLock::new(),
+        }
+    }
+
+    /// The same for those who look for the surface alone: where bounds show that the field is below T, cells have no list, no
+    /// polynomial and no parts, and cost next to nothing.
+    #[must_use]
+    pub fn surface_only(self) -> Self {
+        Self {
+            surface_only: true,
+            ..self
         }
     }
 
@@ -231,14 +372,30 @@ impl FarField {
         })
     }
 
-    /// One of the eight parts of a cell: bit i of the number tells that it is the upper half along axis i.
+    /// One of the eight parts of a cell that is not empty: bit i of the number tells that it is the upper half along axis i.
     pub fn part<'c>(&self, primitives: &[Primitive], of: &'c Cell, number: usize) -> &'c Cell {
+        if of.is_empty {
+            return of;
+        }
         of.children[number].get_or_init(|| {
             let half = 0.5 * of.half;
             let side = |axis: usize| if number >> axis & 1 == 0 { -half } else { half };
             let center = of.center + DVec3::new(side(0), side(1), side(2));
             Box::new(self.cell(primitives, center, half, &of.near, Some(of)))
         })
+    }
+
+    /// Some primitives as seen from a box.
+    fn seen(&self, center: DVec3, half: f64, candidates: &[u32]) -> Vec<Seen> {
+        let Some(points) = &self.points else {
+            let seen = candidates.iter();
+            return seen
+                .map(|&i| self.sources[i as usize].seen(center, half))
+                .collect();
+        };
+        let mut seen = Vec::with_capacity(candidates.len());
+        points.seen(center, half, candidates, &mut seen);
+        seen
     }
 
     /// Makes a cell from those primitives that are near its parent.
@@ -252,10 +409,24 @@ impl FarField {
     ) -> Cell {
         let loose = LOOSE * half;
         let inherited = parent.map_or(0.0, |parent| parent.error);
-        let seen: Vec<Seen> = candidates
-            .iter()
-            .map(|&i| self.sources[i as usize].seen(center, loose))
-            .collect();
+        let seen = self.seen(center, loose, candidates);
+        let adding = candidates.iter().zip(&seen);
+        let adding = adding.filter(|(i, _)| self.sources[**i as usize].adds);
+        let bound = parent.map_or(0.0, |parent| parent.far_most)
+            + adding.map(|(_, seen)| seen.magnitude).sum::<f64>();
+        if self.surface_only && bound < THRESHOLD * (1.0 - BELOW) {
+            return Cell {
+                center,
+                half,
+                near: Vec::new(),
+                expansion: Expansion::ZERO,
+                error: inherited,
+                far_most: bound,
+                most: bound,
+                is_empty: true,
+                children: Default::default(),
+            };
+        }
         let portion = PORTION * (MOST_ERROR - inherited).at_least(0.0);
         let mut share = FIRST_SHARE * portion;
         for _ in 0..MOST_HALVINGS {
@@ -272,7 +443,7 @@ impl FarField {
             let source = &self.sources[i as usize];
             if seen.error <= share {
                 error += seen.error;
-                if seen.expands {
+                if source.power > 0 {
                     sums.add(source, &primitives[i as usize], seen);
                 }
             } else {
@@ -291,6 +462,7 @@ impl FarField {
                 error,
                 far_most: error,
                 most: near_most + error,
+                is_empty: false,
                 children: Default::default(),
             };
         }
@@ -306,6 +478,7 @@ impl FarField {
             error,
             far_most,
             most: near_most + far_most,
+            is_empty: false,
             children: Default::default(),
         }
     }
@@ -428,10 +601,50 @@ impl Cell {
         above(0) | above(1) | above(2)
     }
 
+    /// Whether a place is in the cell.
+    #[inline]
+    #[must_use]
+    pub fn holds(&self, place: DVec3) -> bool {
+        (place - self.center).abs().max_element() <= self.half
+    }
+
     /// Half the side of the box in which the expansion holds.
     #[inline]
     #[must_use]
     pub fn reach(&self) -> f64 {
         LOOSE * self.half
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The bounds on Gegenbauer polynomials: everywhere, and up to the cosine, where they are nearly reached.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn gegenbauer_polynomials_are_bounded() {
+        for (bounds, e) in GEGENBAUER.iter().zip(1..) {
+            let order = 0.5 * f64::from(e);
+            let polynomial = |x: f64| {
+                let (mut before, mut own) = (1.0, 2.0 * order * x);
+                for n in 2..=5 {
+                    let n = f64::from(n);
+                    let next = 2.0 * x * (n + order - 1.0) * own - (n + 2.0 * order - 2.0) * before;
+                    (before, own) = (own, next / n);
+                }
+                own.abs()
+            };
+            let (mut low, mut high) = (0.0f64, 0.0f64);
+            for i in 0..=10_000 {
+                let x = f64::from(i) * 1e-4;
+                high = high.max(polynomial(x));
+                if x * x <= bounds.square {
+                    low = low.max(polynomial(x));
+                }
+            }
+            assert!(high <= bounds.high * (1.0 + 1e-12), "{e}: {high}");
+            assert!(low <= bounds.low && low > 0.9 * bounds.low, "{e}: {low}");
+        }
     }
 }
