@@ -711,6 +711,7 @@ mod tests {
             alive: 255,
             tolerance: 5e-5,
             noise,
+            start: None,
         }
     }
 

@@ -674,3 +674,103 @@ fn leaves(axis: &Ray, t: f64, cell: &Cell) -> f64 {
     end.at_least(t + 1e-6 * cell.half)
         .at_most(t + 3.5 * cell.half)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scratch::Scratch;
+    use crate::soft::Soft;
+    use crate::tests::common::{Numbers, clothe, element, empty, soft};
+    use field::Kernel;
+    use scene::{Element, Shape};
+
+    /// Balls in a cloud, in the scene's own places.
+    fn cloud(kernel: Kernel, count: u32, numbers: &mut Numbers) -> Soft {
+        let mut scene = empty();
+        clothe(&mut scene, vec![soft(-4.0, 1.0)]);
+        for _ in 0..count {
+            let shape = Shape::Sphere {
+                center: numbers.vector(),
+                radius: numbers.between(0.02, 0.07),
+            };
+            scene.elements.push(Element {
+                kernel,
+                ..element(shape, 0)
+            });
+        }
+        let surfaces = scene.soft_surfaces();
+        let mut soft = Soft::new(scene, surfaces);
+        soft.pixel = 2e-3;
+        soft
+    }
+
+    /// Packets of rays take this way, and meet what single rays meet that are traced exactly.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn packets_meet_what_exact_rays_meet() {
+        let mut numbers = Numbers(21);
+        for kernel in [Kernel::Cauchy, Kernel::Squared, Kernel::Cubed] {
+            let soft = cloud(kernel, 200, &mut numbers);
+            let mut scratch = Scratch::default();
+            let (mut taken, mut hits, mut differ) = (0, 0, 0);
+            for _ in 0..60 {
+                let eye = numbers.vector().normalize() * 4.0;
+                let aim = numbers.vector() * 0.9;
+                let rays: [Ray; PACKET] = core::array::from_fn(|_| Ray {
+                    origin: eye,
+                    direction: (aim + numbers.vector() * 4e-3 - eye).normalize(),
+                });
+                let limits = [f64::INFINITY; PACKET];
+                let met = soft.far_first(0, &rays, &limits, 255, Quest::First, &mut scratch);
+                let entered = soft.far_first(0, &rays, &limits, 255, Quest::Entry, &mut scratch);
+                let Some(met) = met else { continue };
+                taken += 1;
+                // Rays start outside. Grazing ones may be told differently, as without noise.
+                let entered = entered.expect("the same way");
+                differ += (entered ^ met).count_ones();
+                for (lane, ray) in rays.iter().enumerate() {
+                    let exact = soft.crossings(0, ray).first().copied();
+                    assert_eq!(met >> lane & 1 != 0, exact.is_some(), "{kernel:?} {ray:?}");
+                    let Some((t, gradient)) = exact else { continue };
+                    hits += 1;
+                    let flesh = &scratch.far.flesh;
+                    // The second query has not changed the first one's samples.
+                    let off = (flesh.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
+                    assert!(off < 2e-4 * gradient.length(), "{kernel:?} {off}");
+                    let told = flesh.gradients()[lane];
+                    assert!(told.distance(gradient) < 0.02 * gradient.length());
+                }
+            }
+            assert!(taken > 50 && hits > 100, "{kernel:?} {taken} {hits}");
+            assert!(differ <= 2, "{kernel:?} {differ}");
+        }
+    }
+
+    /// A ray that starts inside is left to the general way, and an end before the surface hides it.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn starts_and_ends_of_rays_count() {
+        let mut numbers = Numbers(4);
+        let soft = cloud(Kernel::Cauchy, 100, &mut numbers);
+        let center = soft.primitives[0].blob_middle();
+        let mut scratch = Scratch::default();
+        let mut first = |origin: DVec3, limit: f64| {
+            let ray = Ray {
+                origin,
+                direction: DVec3::X,
+            };
+            soft.far_first(
+                0,
+                &[ray; PACKET],
+                &[limit; PACKET],
+                255,
+                Quest::First,
+                &mut scratch,
+            )
+        };
+        assert_eq!(first(center, f64::INFINITY), None);
+        let outside = DVec3::new(-5.0, center.y, center.z);
+        assert_eq!(first(outside, f64::INFINITY), Some(255));
+        assert_eq!(first(outside, 1.0), Some(0));
+    }
+}
