@@ -73,7 +73,7 @@ struct Source {
 }
 
 /// A primitive as seen from a box.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Seen {
     /// Bound on its size in the box.
     magnitude: f64,
@@ -645,6 +645,82 @@ mod tests {
             }
             assert!(high <= bounds.high * (1.0 + 1e-12), "{e}: {high}");
             assert!(low <= bounds.low && low > 0.9 * bounds.low, "{e}: {low}");
+        }
+    }
+
+    /// Interpolation of a single point's field at the nodes of a box is no further off than its bound, which is nearly reached.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn interpolants_of_points_are_within_their_bounds() {
+        use crate::{BlobScale, Shaping, Skeleton};
+        let mut state = 6u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
+        };
+        let nodes: [f64; 5] =
+            core::array::from_fn(|i| libm::cos(core::f64::consts::PI * (2 * i + 1) as f64 / 10.0));
+        // Lagrange's polynomials.
+        let weights = |x: f64| -> [f64; 5] {
+            core::array::from_fn(|i| {
+                let others = (0..5).filter(|j| *j != i);
+                others
+                    .map(|j| (x - nodes[j]) / (nodes[i] - nodes[j]))
+                    .product()
+            })
+        };
+        for kernel in [
+            Kernel::Inverse,
+            Kernel::Squared,
+            Kernel::Cubed,
+            Kernel::Cauchy,
+        ] {
+            let (mut tightest, mut checked) = (0.0f64, 0);
+            for case in 0..400 {
+                let mut direction = DVec3::new(next(), next(), next()).normalize();
+                if case % 2 == 0 {
+                    // Nearly along an axis.
+                    direction = (DVec3::X + 0.1 * direction).normalize();
+                }
+                let center = direction * (1.5 + 2.0 * next().abs());
+                let shaping = Shaping {
+                    kernel,
+                    radius: 0.05 + 0.5 * next().abs(),
+                    blobbiness: -2.0,
+                    blob_scale: BlobScale::Relative,
+                    strength: 1.0,
+                    influence: 1e-3,
+                    taper: None,
+                };
+                let point = Primitive::new(Skeleton::Point { center }, &shaping, None);
+                let point = point.expect("flesh");
+                let half = 0.6;
+                let points = Points::of(&[Source::of(&point)]).expect("a point");
+                let mut seen = Vec::new();
+                points.seen(DVec3::ZERO, half, &[0], &mut seen);
+                let value = |x: f64, y: f64, z: f64| point.value([x, y, z].map(|c| c * half));
+                for _ in 0..6 {
+                    let place = [next(), next(), next()];
+                    let [u, v, w] = place.map(weights);
+                    let mut told = 0.0;
+                    for k in 0..5 {
+                        for j in 0..5 {
+                            for i in 0..5 {
+                                let own = value(nodes[i], nodes[j], nodes[k]);
+                                told += u[i] * v[j] * w[k] * own;
+                            }
+                        }
+                    }
+                    let want = value(place[0], place[1], place[2]);
+                    assert!(want.abs() <= seen[0].magnitude, "{kernel:?} {seen:?}");
+                    let off = (told - want).abs();
+                    let most = seen[0].error;
+                    assert!(off <= most, "{kernel:?} {center}: {off} > {most}");
+                    tightest = tightest.max(off / most);
+                    checked += 1;
+                }
+            }
+            assert!(tightest > 0.1 && checked == 2400, "{kernel:?}: {tightest}");
         }
     }
 }
