@@ -39,7 +39,7 @@ for (const kind of Object.keys(KINDS)) {
       await browser?.close();
     });
 
-    test('the page opens with the cowrie, drawn by what the browser has', async () => {
+    test('the page opens with the still life at the tide line, drawn by what the browser has', async () => {
       await sinew.page.waitForSelector('#loading', { state: 'detached' });
       const status = await sinew.finished();
       await sinew.keep('opened');
@@ -47,11 +47,11 @@ for (const kind of Object.keys(KINDS)) {
       assert.equal(status.errors, 0);
       assert.equal(status.failure, null);
       assert.ok(status.workers >= 1);
-      assert.equal(await sinew.text(), await example('cowrie'));
+      assert.equal(await sinew.text(), await example('tide'));
       assert.ok(colours(await sinew.screen()) > 100, 'the window is not blank');
     });
 
-    test('the cowrie is the one that the program draws', async () => {
+    test('the picture is the one that the program draws', async () => {
       await sinew.resize(...SIZE);
       const [traced, expected] = [await sinew.image(), await native(await sinew.text(), SIZE)];
       const difference = meanDeltaE(traced, expected);

@@ -10,7 +10,8 @@ const SIZES = {
   phone: { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
 };
 const LESSONS = [
-  'kernels', 'convolution', 'slice', 'grid', 'profiles', 'chart', 'superposition', 'spans', 'contact', 'fitting',
+  'kernels', 'convolution', 'slice', 'grid', 'profiles', 'chart', 'superposition', 'spans', 'contact', 'sculpting', 'fitting',
+  'textures',
 ];
 /** A text of the visitor's own. */
 const OWN = '# mine\nframesize 64 48\nsurface s diffuse Gold, blobbiness -2\nsphere s 1 0 0 0\n';
@@ -127,7 +128,7 @@ for (const [size, options] of Object.entries(SIZES)) {
         // Leaving leads to the editor, with what a first visit shows there.
         await sinew.click('lab back');
         await sinew.page.waitForFunction(() => sinew.lab() === null);
-        assert.equal(await sinew.text(), await example('cowrie'));
+        assert.equal(await sinew.text(), await example('tide'));
         assert.deepEqual(sinew.troubles, []);
       });
     }

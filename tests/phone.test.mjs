@@ -36,7 +36,7 @@ for (const colorScheme of ['dark', 'light']) {
     assert.ok(colours(await sinew.screen('picture')) > 100, 'the picture is seen');
     const overflow = await sinew.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     assert.ok(overflow <= 0, 'nothing sticks out');
-    assert.equal(await sinew.text(), await example('cowrie'));
+    assert.equal(await sinew.text(), await example('tide'));
     assert.deepEqual(sinew.troubles, []);
     await sinew.close();
   });

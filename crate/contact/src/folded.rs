@@ -1,7 +1,8 @@
 //! A skeleton's local convolution whose folds press each other flat.
 use crate::Bulge;
-use field::local::Two;
-use field::{Ball, Enclosure, Implicit, Jet, Local, THRESHOLD};
+use crate::squashed::bounded;
+use field::local::{Bounds, Two};
+use field::{Ball, Enclosure, Implicit, Jet, Local, Part, THRESHOLD, Variation};
 use glam::DVec3;
 use std::sync::Arc;
 use wide::f32x8;
@@ -28,11 +29,43 @@ impl Folded {
             bulge,
         }
     }
+
+    /// Bounds in a ball, not narrowed by the value at its centre.
+    fn bounds(&self, ball: Ball) -> Bounds {
+        let Two { first, second } = self.local.enclose_two(ball, Some(self.bulge.start()));
+        let Some(second) = second else { return first };
+        let spread = self.bulge.spread(second.value);
+        // f₂ ≤ f₁, so that g lowers nothing but what is inside.
+        let inside = second.value[1] > THRESHOLD && first.value[1] > THRESHOLD;
+        let low = first.value[0];
+        let lowest = if inside && low > THRESHOLD {
+            0.5 * (low + THRESHOLD)
+        } else {
+            low
+        };
+        let slope = first.slope + bounded(spread.slope, second.slope);
+        Bounds {
+            value: [
+                (low + spread.value[0]).max(lowest),
+                first.value[1] + spread.value[1].max(0.0),
+            ],
+            slope,
+            curvature: first.curvature
+                + bounded(spread.curvature, second.slope * second.slope)
+                + bounded(spread.slope, second.curvature),
+            // Inside there is a crease beside the sheet.
+            jump: match inside {
+                true => 2.0 * slope,
+                false => first.jump + bounded(spread.slope, second.jump),
+            },
+        }
+    }
 }
 
 impl Implicit for Folded {
     fn jet(&self, point: DVec3) -> Jet<f64> {
-        let (first, second) = self.local.two(point);
+        // Below its start the bulge is 0.
+        let (first, second) = self.local.two_above(point, self.bulge.start());
         let Some(second) = second else { return first };
         let (deformed, slope) = self.bulge.jet(second.value);
         if first.value > THRESHOLD && second.value > THRESHOLD {
@@ -60,33 +93,16 @@ impl Implicit for Folded {
     }
 
     fn enclose(&self, ball: Ball) -> Enclosure {
-        let Two { first, second } = self.local.enclose_two(ball, true);
-        let Some(second) = second else { return first };
-        let spread = self.bulge.spread(second.value);
-        let bounded = |factor: f64, bound: f64| if factor == 0.0 { 0.0 } else { factor * bound };
-        // f₂ ≤ f₁, so that g lowers nothing but what is inside.
-        let inside = second.value[1] > THRESHOLD && first.value[1] > THRESHOLD;
-        let low = first.value[0];
-        let lowest = if inside && low > THRESHOLD {
-            0.5 * (low + THRESHOLD)
-        } else {
-            low
-        };
-        let all = Enclosure {
-            value: [
-                (low + spread.value[0]).max(lowest),
-                first.value[1] + spread.value[1].max(0.0),
-            ],
-            slope: first.slope + bounded(spread.slope, second.slope),
-            curvature: if inside {
-                f64::INFINITY
-            } else {
-                first.curvature
-                    + bounded(spread.curvature, second.slope * second.slope)
-                    + bounded(spread.slope, second.curvature)
-            },
-        };
-        all.about(&self.jet(ball.center), ball.radius)
+        let bounds = self.bounds(ball).enclosure();
+        bounds.about(&self.jet(ball.center), ball.radius)
+    }
+
+    fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
+        self.bounds(ball).variation()
+    }
+
+    fn most(&self, ball: Ball) -> f64 {
+        self.local.most(ball) + self.height
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {

@@ -1,5 +1,6 @@
 //! A function deformed by those that its surface touches.
 use crate::Bulge;
+use field::local::Bounds;
 use field::{Ball, Enclosure, Implicit, Jet, Part, Real, THRESHOLD, Variation};
 use glam::DVec3;
 use std::sync::Arc;
@@ -15,6 +16,8 @@ pub struct Squashed {
     partners: Vec<Partner>,
     /// The greatest height of a bulge.
     height: f64,
+    /// Where all partners are below it, nothing changes.
+    start: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -41,6 +44,7 @@ impl Squashed {
         let heights = partners.iter().map(|partner| partner.bulge.height());
         Self {
             height: heights.fold(0.0, f64::max),
+            start,
             own,
             partners,
         }
@@ -52,50 +56,59 @@ impl Squashed {
     }
 
     /// Bounds on the deformation in a ball; `None` if there is none.
-    fn deformation(&self, ball: Ball) -> Option<Enclosure> {
-        let apart = |reach: &Option<Ball>| {
-            reach.is_some_and(|reach| {
-                reach.center.distance(ball.center) > reach.radius + ball.radius
-            })
+    fn deformation(&self, ball: Ball) -> Option<Bounds> {
+        let apart = |partner: &&Partner| {
+            let is_far =
+                |reach: Ball| reach.center.distance(ball.center) > reach.radius + ball.radius;
+            partner.reach.is_some_and(is_far) || partner.function.most(ball) < self.start
         };
-        let near = self.partners.iter().filter(|p| !apart(&p.reach));
-        let near: Vec<_> = near.map(|p| (p, p.function.enclose(ball))).collect();
-        let floor = near.iter().map(|(_, e)| e.value[0]);
+        let near = self.partners.iter().filter(|partner| !apart(partner));
+        let near = near.map(|partner| {
+            let bounds = partner.function.variation(None, ball);
+            let at_center = partner.function.jet(ball.center);
+            (partner, bounds.about(&at_center, ball.radius))
+        });
+        let near: Vec<(&Partner, Variation)> = near.collect();
+        let floor = near.iter().map(|(_, bounds)| bounds.range.value[0]);
         let floor = floor.fold(f64::NEG_INFINITY, f64::max);
         // Those that may be the largest somewhere in the ball.
-        let largest = near.iter().filter(|(_, e)| e.value[1] >= floor);
-        let mut all: Option<Enclosure> = None;
+        let largest = near.iter().filter(|(_, b)| b.range.value[1] >= floor);
+        let mut all: Option<Bounds> = None;
         let (mut candidates, mut active) = (0, 0);
         let (mut first, mut same) = (None, true);
-        for (partner, own) in largest {
-            let [low, high] = own.value;
-            let spread = partner.bulge.spread([low.max(floor), high]);
-            let deformed = Enclosure {
+        for (partner, bounds) in largest {
+            let Enclosure { value, slope, .. } = bounds.range;
+            let spread = partner.bulge.spread([value[0].max(floor), value[1]]);
+            let stepped = bounds.step > 0.0 && spread.slope > 0.0;
+            let unless = |not: bool, bound: f64| if not { f64::INFINITY } else { bound };
+            let deformed = Bounds {
                 value: spread.value,
-                slope: bounded(spread.slope, own.slope),
-                curvature: bounded(spread.curvature, own.slope * own.slope)
-                    + bounded(spread.slope, own.curvature),
+                slope: unless(stepped, bounded(spread.slope, slope)),
+                curvature: bounded(spread.curvature, slope * slope)
+                    + bounded(spread.slope, bounds.curvature),
+                jump: unless(stepped, bounded(spread.slope, bounds.jump)),
             };
             same &= *first.get_or_insert(partner.bulge) == partner.bulge;
             candidates += 1;
             active += usize::from(spread.value != [0.0; 2] || spread.slope > 0.0);
-            all = Some(all.map_or(deformed, |all| Enclosure {
+            all = Some(all.map_or(deformed, |all| Bounds {
                 value: [
                     all.value[0].min(deformed.value[0]),
                     all.value[1].max(deformed.value[1]),
                 ],
                 slope: all.slope.max(deformed.slope),
                 curvature: all.curvature.max(deformed.curvature),
+                jump: all.jump.max(deformed.jump),
             }));
         }
         let mut all = all?;
         // Where two partners tie the gradient jumps, and the value, too, if their bulges differ.
         let jumps = !same && candidates > 1 && active > 0;
-        if jumps || active > 1 {
-            all.curvature = f64::INFINITY;
-        }
         if jumps {
             all.slope = f64::INFINITY;
+        }
+        if jumps || active > 1 {
+            all.jump = 2.0 * all.slope;
         }
         Some(all)
     }
@@ -133,7 +146,7 @@ fn pressed<'a, R: Real>(
 }
 
 /// The product of two bounds, of which 0 stays 0 whatever the other is.
-fn bounded(factor: f64, bound: f64) -> f64 {
+pub(crate) fn bounded(factor: f64, bound: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { factor * bound }
 }
 
@@ -163,7 +176,7 @@ impl Implicit for Squashed {
         match self.deformation(ball) {
             None => own,
             Some(deformation) => own
-                .plus(deformation)
+                .plus(deformation.enclosure())
                 .about(&self.jet(ball.center), ball.radius),
         }
     }
@@ -194,8 +207,12 @@ impl Implicit for Squashed {
         }
         match self.deformation(ball) {
             None => own,
-            Some(deformation) => own.plus(Variation::rough(deformation)),
+            Some(deformation) => own.plus(deformation.variation()),
         }
+    }
+
+    fn most(&self, ball: Ball) -> f64 {
+        self.own.most(ball) + self.height
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {

@@ -99,6 +99,16 @@ impl Implicit for Blend {
         functions.fold(sum, Variation::plus)
     }
 
+    fn most(&self, ball: Ball) -> f64 {
+        // A sum of primitives has no bound that is cheaper than the whole.
+        let sum = match self.sum.primitives.len() {
+            0 => 0.0,
+            _ => self.sum.most(ball),
+        };
+        let functions = self.parts.iter().map(|part| part.function.most(ball));
+        functions.fold(sum, |all, most| all + most)
+    }
+
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
         self.sum.shares(point, out);
         for Part { function, first } in &self.parts {

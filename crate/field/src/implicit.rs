@@ -127,6 +127,27 @@ impl Variation {
         }
     }
 
+    /// Bounds with the range of values narrowed by Taylor's theorem about the centre of the ball, as [`Enclosure::about`] does; where
+    /// there are kinks the slope may change by their jumps besides.
+    #[must_use]
+    pub fn about(mut self, at_center: &Jet<f64>, radius: f64) -> Self {
+        if self.step > 0.0 {
+            return self;
+        }
+        let slope = DVec3::from_array(at_center.gradient).length() + self.jump;
+        let second = (slope + 0.5 * self.curvature * radius) * radius;
+        // Slopes that are no numbers bound nothing.
+        let reach = (self.range.slope * radius).min(second) + 1e-12 * (1.0 + at_center.value.abs());
+        let [low, high] = self.range.value;
+        if reach >= 0.0 {
+            self.range.value = [
+                low.max(at_center.value - reach),
+                high.min(at_center.value + reach),
+            ];
+        }
+        self
+    }
+
     /// Bounds on a function of which no more is known than this: its second derivative may jump, and its gradient too if it has
     /// no curvature.
     #[must_use]
@@ -162,6 +183,11 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
 
     /// Proven bounds on the function in a ball.
     fn enclose(&self, ball: Ball) -> Enclosure;
+
+    /// A bound on the largest value in a ball that costs less than [`Implicit::enclose`], or infinity.
+    fn most(&self, _ball: Ball) -> f64 {
+        f64::INFINITY
+    }
 
     /// Appends each element's share of the value at a point, as pairs of an element's number and its positive part of the
     /// value, in the order of the elements: the weights by which their colours are mixed. An element whose part is 0 or

@@ -319,6 +319,34 @@ fn the_field_is_the_largest_stretch() {
     assert!(compared > 40, "{compared}");
 }
 
+/// Cells of space that know which places matter change nothing, down to the last bit.
+#[test]
+fn cells_leave_nothing_out() {
+    let mut random = Random::new(75);
+    let (mut seconds, mut all) = (0, 0);
+    for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
+        for _ in 0..4 {
+            let figure = figure(&mut random, kernel);
+            let local = figure.local();
+            for _ in 0..400 {
+                let point = near(&figure, &mut random, 0.7);
+                // Below the faintest level all terms are asked.
+                let (first, second) = local.two(point);
+                assert_eq!(local.jet(point), first);
+                let level = 0.1;
+                let (own, other) = local.two_above(point, level);
+                assert_eq!(own, first);
+                all += 1;
+                if let Some(second) = second.filter(|second| second.value >= level) {
+                    assert_eq!(other, Some(second));
+                    seconds += 1;
+                }
+            }
+        }
+    }
+    assert!(seconds * 50 > all, "{seconds} of {all}");
+}
+
 #[test]
 fn gradients_are_derivatives() {
     let mut random = Random::new(72);
@@ -362,7 +390,7 @@ fn bounds_hold_in_balls() {
                 let center = near(&figure, &mut random, 0.7);
                 let radius = random.decades(-4.0, -0.5);
                 let ball = Ball { center, radius };
-                let Two { first, second } = local.enclose_two(ball, true);
+                let Two { first, second } = local.enclose_two(ball, Some(0.0));
                 all += 1;
                 finite += u32::from(first.slope.is_finite());
                 for _ in 0..12 {
@@ -392,12 +420,12 @@ fn bounds_hold_in_balls() {
                         assert!(steep <= second.slope * (1.0 + 1e-9), "{steep} {second:?}");
                     }
                     assert!(other.is_none() || second.is_some());
-                    if first.curvature.is_finite() {
-                        // The gradient changes by no more than the second derivative times the distance.
+                    if first.jump.is_finite() {
+                        // The gradient changes by no more than the second derivative times the distance, and its jumps.
                         let center = local.jet(center);
                         let change =
                             DVec3::from_array(own.gradient) - DVec3::from_array(center.gradient);
-                        let most = first.curvature * radius;
+                        let most = first.curvature * radius + first.jump;
                         assert!(
                             change.length() <= most * (1.0 + 1e-6) + 1e-7,
                             "{change} {most}"

@@ -123,7 +123,7 @@ pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
         ),
         (Cauchy, Bone::Arc) => (
             "F = r₀ ∫ dφ/(A − B cos φ)²,   A = 1+r₀²+ρ²+z²,   B = 2r₀ρ",
-            "the integral is elementary; its arctangent is continued around the circle",
+            "the integral is elementary; its angle δ runs from 0 to π without a branch",
         ),
         (Gauss, Bone::Arc) => (
             "F = r₀ · exp(−(r₀−ρ)²−z²) · ∫ exp(−2r₀ρ(1−cos φ)) dφ",

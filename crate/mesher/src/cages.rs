@@ -39,7 +39,38 @@ pub struct Cage {
     pub spokes: Vec<Spoke>,
     /// Triangles, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// The lines that it is around, and lines of other cages beside. A ray ends where another line is nearer: its surface is met by rays
+    /// of that line, and beyond, edges between rays would be webs across a bend or between limbs.
+    pub lines: Vec<Line>,
 }
+
+/// A straight part of a skeleton.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Its ends.
+    pub ends: [DVec3; 2],
+    /// Radii there.
+    pub radii: [f64; 2],
+    /// Whether it belongs to the cage.
+    pub is_own: bool,
+}
+
+impl Line {
+    /// Distance of a point in radii.
+    fn distance(&self, point: DVec3) -> f64 {
+        let [a, b] = self.ends;
+        let along = b - a;
+        let share = (point - a).dot(along) / along.length_squared();
+        let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
+        let radius = self.radii[0] + share * (self.radii[1] - self.radii[0]);
+        (a + along * share).distance(point) / radius
+    }
+}
+
+/// How much nearer another line must be to end a ray, as a share.
+const NEARER: f64 = 1e-6;
+/// Halvings of the interval in which a ray ends.
+const HALVINGS: usize = 20;
 
 /// A point of a line, with the radius around it.
 type Place = (DVec3, f64);
@@ -54,14 +85,82 @@ fn spoke(origin: DVec3, direction: DVec3, radius: f64, reach: f64) -> Spoke {
 }
 
 impl Cage {
+    /// Where a ray of the cage ends: at its reach, or where another line is nearer than those that it starts from.
+    #[must_use]
+    pub fn end(&self, spoke: &Spoke) -> f64 {
+        let is_start = |line: &Line| line.is_own && line.distance(spoke.origin) < 1e-6;
+        let starts: Vec<&Line> = self.lines.iter().filter(|line| is_start(line)).collect();
+        let is_near = |line: &&Line| {
+            let [a, b] = line.ends;
+            let room = 2.0 * spoke.reach + 0.5 * a.distance(b);
+            a.midpoint(b).distance_squared(spoke.origin) < room * room && !is_start(line)
+        };
+        let others: Vec<&Line> = self.lines.iter().filter(is_near).collect();
+        if starts.is_empty() || others.is_empty() {
+            return spoke.reach;
+        }
+        let least = |lines: &[&Line], point: DVec3| {
+            let distances = lines.iter().map(|line| line.distance(point));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        let is_beyond = |t: f64| {
+            let point = spoke.origin + spoke.direction * t;
+            least(&others, point) < (1.0 - NEARER) * least(&starts, point)
+        };
+        let (mut low, mut high) = (0.0, 0.0);
+        while !is_beyond(high) {
+            if high >= spoke.reach {
+                return spoke.reach;
+            }
+            (low, high) = (high, (high + 0.5 * spoke.step).min(spoke.reach));
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            *(if is_beyond(middle) {
+                &mut high
+            } else {
+                &mut low
+            }) = middle;
+        }
+        low
+    }
+
     /// The cages around straight lines, each given by its two ends with their radii: lines that meet end to end are one piece, and
     /// where three or more meet, pieces end.
     #[must_use]
     pub fn around_lines(lines: &[[Place; 2]]) -> Vec<Self> {
-        chains(lines)
-            .iter()
-            .filter_map(|(places, is_closed, ends)| tube(places, *is_closed, *ends))
-            .collect()
+        let chains = chains(lines);
+        let lines_of = |(places, is_closed, _): &(Vec<Place>, bool, [End; 2])| -> Vec<Line> {
+            let next = places
+                .iter()
+                .skip(1)
+                .chain(places.first().filter(|_| *is_closed));
+            let line = |(a, b): (&Place, &Place)| Line {
+                ends: [a.0, b.0],
+                radii: [a.1, b.1],
+                is_own: true,
+            };
+            places.iter().zip(next).map(line).collect()
+        };
+        let all: Vec<Vec<Line>> = chains.iter().map(lines_of).collect();
+        let mut cages = Vec::new();
+        for (i, (places, is_closed, ends)) in chains.iter().enumerate() {
+            let Some(mut cage) = tube(places, *is_closed, *ends) else {
+                continue;
+            };
+            // Those that meet an end of it.
+            let (first, last) = (places[0].0, places[places.len() - 1].0);
+            let meets = |line: &&Line| line.ends.contains(&first) || line.ends.contains(&last);
+            let others = all.iter().enumerate().filter(|(j, _)| *j != i);
+            let others = others.flat_map(|(_, lines)| lines.iter().filter(meets));
+            let others = others.map(|line| Line {
+                is_own: false,
+                ..*line
+            });
+            cage.lines = all[i].iter().copied().chain(others).collect();
+            cages.push(cage);
+        }
+        cages
     }
 
     /// The cage around a point: an icosahedron.
@@ -97,6 +196,7 @@ impl Cage {
         Self {
             spokes: spokes.collect(),
             triangles,
+            lines: Vec::new(),
         }
     }
 
@@ -164,6 +264,7 @@ impl Cage {
                 .map(|(p, n)| spoke(*p, (*n * turn).normalize_or(DVec3::Z), radius, REACH))
                 .collect(),
             triangles,
+            lines: Vec::new(),
         })
     }
 

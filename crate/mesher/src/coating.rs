@@ -15,8 +15,12 @@ use mesh::TriangleMesh;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Deepest level to which edges are split.
-const DEEPEST: u32 = 6;
+/// Most times that triangles are divided.
+const DEEPEST: u32 = 8;
+/// Edges between rays that are nearer to each other than this share of their steps are not split: the surface jumps between them …
+const ALIKE: f64 = 1.0 / 32.0;
+/// … and than this one where one ray stays inside.
+const ALIKE_INSIDE: f64 = 0.5;
 /// Vertices are brought so near to the surface, as a share of the bound on |f − T|.
 const CLOSE: f64 = 0.1;
 /// Steps of Newton's method from a known place before the ray is searched from its start.
@@ -69,7 +73,7 @@ pub struct Coat {
     pub evaluations: u64,
     /// Vertices whose ray does not leave the surface within its reach: they are inside, where other shells cover them.
     pub buried: usize,
-    /// The largest |f − T| in the middle of an edge with an end on the surface.
+    /// The largest |f − T| in the middle of an edge with both ends on the surface.
     pub excess: f64,
 }
 
@@ -144,13 +148,13 @@ impl Work<'_> {
         let mut vertices: Vec<Vertex> = Vec::with_capacity(cage.spokes.len());
         for (i, spoke) in cage.spokes.iter().enumerate() {
             let number = mixed((number as u64) << 32 | i as u64);
-            vertices.push(self.meet(*spoke, number, None));
+            vertices.push(self.meet(cage, *spoke, number, None));
         }
         let mut done: Vec<[u32; 3]> = Vec::new();
         let mut open = cage.triangles.clone();
         for depth in 0..=DEEPEST {
             let may_split = depth < DEEPEST && done.len() + 4 * open.len() <= most;
-            let middles = self.split(&mut vertices, &open, may_split);
+            let middles = self.split(cage, &mut vertices, &open, may_split);
             let of_edge = |a: u32, b: u32| {
                 let edge = [a.min(b), a.max(b)];
                 let found = middles.binary_search_by_key(&edge, |(edge, _)| *edge);
@@ -177,6 +181,7 @@ impl Work<'_> {
     /// Splits the edges of some triangles that need it, and returns those with their new vertices, sorted.
     fn split(
         &mut self,
+        cage: &Cage,
         vertices: &mut Vec<Vertex>,
         triangles: &[[u32; 3]],
         may_split: bool,
@@ -196,7 +201,7 @@ impl Work<'_> {
             }
             let middle = a.position.midpoint(b.position);
             let excess = (self.jet(middle).value - THRESHOLD).abs();
-            if may_split && excess > (self.bound)(middle) {
+            if may_split && !are_alike(&a, &b) && excess > (self.bound)(middle) {
                 let direction = a.spoke.direction + b.spoke.direction;
                 let spoke = Spoke {
                     origin: a.spoke.origin.midpoint(b.spoke.origin),
@@ -205,10 +210,10 @@ impl Work<'_> {
                     reach: 0.5 * (a.spoke.reach + b.spoke.reach),
                 };
                 let number = mixed(a.number.min(b.number) ^ mixed(a.number.max(b.number)));
-                let vertex = self.meet(spoke, number, Some(0.5 * (a.along + b.along)));
+                let vertex = self.meet(cage, spoke, number, Some(0.5 * (a.along + b.along)));
                 middles.push((edge, vertices.len() as u32));
                 vertices.push(vertex);
-            } else {
+            } else if !(a.is_buried || b.is_buried) {
                 self.coat.excess = self.coat.excess.max(excess);
             }
         }
@@ -216,12 +221,13 @@ impl Work<'_> {
     }
 
     /// The vertex of a ray: from where it was last, else from a guess, else from the skeleton outwards.
-    fn meet(&mut self, spoke: Spoke, number: u64, guess: Option<f64>) -> Vertex {
+    fn meet(&mut self, cage: &Cage, spoke: Spoke, number: u64, guess: Option<f64>) -> Vertex {
+        let end = cage.end(&spoke);
         let start = self.before.get(&number).copied().or(guess);
         let near = start
-            .filter(|t| *t > 0.0 && *t < spoke.reach)
-            .and_then(|t| self.follow(&spoke, t));
-        let (along, jet, is_buried) = near.unwrap_or_else(|| self.search(&spoke));
+            .filter(|t| *t > 0.0 && *t < end)
+            .and_then(|t| self.follow(&spoke, end, t));
+        let (along, jet, is_buried) = near.unwrap_or_else(|| self.search(&spoke, end));
         self.known.insert(number, along);
         Vertex {
             spoke,
@@ -238,7 +244,7 @@ impl Work<'_> {
     }
 
     /// Newton's method along a ray from a place near the surface.
-    fn follow(&mut self, spoke: &Spoke, start: f64) -> Option<(f64, Jet<f64>, bool)> {
+    fn follow(&mut self, spoke: &Spoke, end: f64, start: f64) -> Option<(f64, Jet<f64>, bool)> {
         let mut along = start;
         for _ in 0..STEPS {
             let at = spoke.origin + spoke.direction * along;
@@ -254,7 +260,7 @@ impl Work<'_> {
             }
             let step = (-excess / slope).clamp(-spoke.step, spoke.step);
             along += step;
-            if !(along > 0.0 && along < spoke.reach) {
+            if !(along > 0.0 && along < end) {
                 return None;
             }
         }
@@ -262,7 +268,7 @@ impl Work<'_> {
     }
 
     /// The first place where a ray leaves the inside: in steps, then between two of them.
-    fn search(&mut self, spoke: &Spoke) -> (f64, Jet<f64>, bool) {
+    fn search(&mut self, spoke: &Spoke, end: f64) -> (f64, Jet<f64>, bool) {
         let at = |along: f64| spoke.origin + spoke.direction * along;
         let mut low = (0.0, self.jet(at(0.0)));
         // A skeleton without a surface around it: the vertex stays on it. Not so for NaN.
@@ -273,10 +279,10 @@ impl Work<'_> {
         let mut high = low;
         while high.1.value > THRESHOLD {
             low = high;
-            if low.0 >= spoke.reach {
+            if low.0 >= end {
                 return (low.0, low.1, true);
             }
-            let next = (low.0 + spoke.step).min(spoke.reach);
+            let next = (low.0 + spoke.step).min(end);
             high = (next, self.jet(at(next)));
         }
         for _ in 0..NARROWINGS {
@@ -300,6 +306,18 @@ impl Work<'_> {
         }
         (low.0, low.1, false)
     }
+}
+
+/// Whether two rays are so near to each other that no ray is put between them.
+fn are_alike(a: &Vertex, b: &Vertex) -> bool {
+    let turn = a.spoke.direction.distance(b.spoke.direction) * a.along.max(b.along);
+    let apart = a.spoke.origin.distance(b.spoke.origin) + turn;
+    let share = if a.is_buried || b.is_buried {
+        ALIKE_INSIDE
+    } else {
+        ALIKE
+    };
+    apart < share * a.spoke.step.min(b.spoke.step)
 }
 
 /// The parts of a triangle some edges of which are split: a–b, b–c, c–a.

@@ -2,12 +2,15 @@
 //! [proved](crate::certify) to be near the surface.
 //!
 //! Rounds: edits that do not touch each other are chosen in an order that depends on the mesh alone, planned on several
-//! threads, and applied one after the other.
+//! threads, and applied one after the other. Where nothing may be provable, at kinks and where the surface touches itself, an edit
+//! is refused if an exact test finds that a new triangle meets another one ([`crate::guard`]).
 
 use crate::certify::{Vertex, distance, is_hopeless, project};
+use crate::forest::Forest;
+use crate::guard::{Corner, Guard};
 use crate::march::Raw;
 use crate::options::{MeshError, Progress};
-use crate::parallel::map;
+use crate::parallel::map_told;
 use crate::space::Space;
 use glam::DVec3;
 use mesh::{FaceId, HalfEdgeId, HalfEdgeMesh, TriangleMesh, VertexId};
@@ -69,6 +72,18 @@ impl Unproved {
     }
 }
 
+/// What became of an attempt to prove a face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Attempt {
+    /// There was none.
+    #[default]
+    None,
+    /// It failed.
+    Failed,
+    /// Nor would a smaller face there be proved.
+    Hopeless,
+}
+
 /// A mesh that is being improved.
 pub struct Improver<'a> {
     space: &'a Space<'a>,
@@ -80,6 +95,9 @@ pub struct Improver<'a> {
     vertices: Vec<Vertex>,
     is_fixed: Vec<bool>,
     errors: Vec<f32>,
+    /// What became of the last attempt to prove a face that is not proved to be within the tolerance, since it changed.
+    attempts: Vec<Attempt>,
+    guard: Guard,
     /// The round in which something around a vertex has changed.
     changed: Vec<u32>,
     /// The round in which an edit of an edge or a vertex was refused.
@@ -93,12 +111,13 @@ pub struct Improved {
     pub mesh: TriangleMesh,
     /// The largest proved distance of a triangle from the surface, of those within the tolerance.
     pub error: f64,
-    /// Number of triangles that are not proved to be within the tolerance.
-    pub unproved: usize,
+    /// Whether a triangle is not proved to be within the tolerance.
+    pub is_unproved: Vec<bool>,
 }
 
 impl<'a> Improver<'a> {
-    /// Takes a mesh over, with the tolerance of the result and its own.
+    /// Takes a mesh over, with the tolerance of the result and its own. Either all edits are kept from making the mesh cut itself, or
+    /// those where proofs may fail.
     ///
     /// # Errors
     /// If it is no manifold.
@@ -107,6 +126,7 @@ impl<'a> Improver<'a> {
         raw: Raw,
         [tolerance, coarse]: [f64; 2],
         threads: usize,
+        guards_all: bool,
     ) -> Result<Self, MeshError> {
         let Raw {
             vertices,
@@ -122,6 +142,13 @@ impl<'a> Improver<'a> {
         let positions = vertices.iter().map(|v| v.position).collect();
         let mesh = HalfEdgeMesh::from_triangles(&TriangleMesh::new(positions, triangles))
             .map_err(|error| MeshError::Failed(error.to_string()))?;
+        let guard = if guards_all {
+            Guard::new(&mesh, |_| true)
+        } else {
+            Guard::new(&mesh, |v| {
+                is_fixed[v.index()] || may_be_unproved(&space.forest, mesh.position(v))
+            })
+        };
         Ok(Self {
             space,
             tolerance,
@@ -129,6 +156,8 @@ impl<'a> Improver<'a> {
             threads,
             changed: vec![1; vertices.len()],
             refused: vec![0; mesh.half_edge_slots()],
+            attempts: vec![Attempt::None; mesh.face_slots()],
+            guard,
             mesh,
             vertices,
             is_fixed,
@@ -161,7 +190,7 @@ impl<'a> Improver<'a> {
         let errors = || mesh.faces().map(|f| self.errors[f.index()]);
         let tolerance = self.tolerance;
         let is_proved = |error: &f32| *error <= tolerance as f32;
-        let unproved = errors().filter(|error| !is_proved(error)).count();
+        let is_unproved = errors().map(|error| !is_proved(&error)).collect();
         let error = errors().filter(is_proved).fold(0.0, f32::max);
         // Rounding to single precision is no part of it.
         let error = f64::from(error).min(tolerance);
@@ -173,7 +202,7 @@ impl<'a> Improver<'a> {
         Ok(Improved {
             mesh,
             error,
-            unproved,
+            is_unproved,
         })
     }
 
@@ -197,7 +226,7 @@ impl<'a> Improver<'a> {
             }
             edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let edits = edges.into_iter().map(|(_, h)| Edit::Collapse(h));
-            let done = self.do_round(edits.collect());
+            let done = self.do_round(edits.collect(), progress)?;
             if done * 200 < self.mesh.face_count() {
                 break;
             }
@@ -216,7 +245,7 @@ impl<'a> Improver<'a> {
             }
             edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let edits = edges.into_iter().map(|(_, h)| Edit::Flip(h));
-            if self.do_round(edits.collect()) * 200 < self.mesh.face_count() {
+            if self.do_round(edits.collect(), progress)? * 200 < self.mesh.face_count() {
                 break;
             }
         }
@@ -232,7 +261,7 @@ impl<'a> Improver<'a> {
             }
             moves.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let edits = moves.into_iter().map(|(_, v)| Edit::Move(v));
-            self.do_round(edits.collect());
+            self.do_round(edits.collect(), progress)?;
         }
         Ok(())
     }
@@ -242,7 +271,7 @@ impl<'a> Improver<'a> {
         let (mut least, mut stalled) = (usize::MAX, 0);
         for round in 0..SETTLE_ROUNDS {
             progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
-            let far = self.unproved();
+            let far = self.unproved(progress)?;
             // All kinds of remedies have been tried without much success.
             if far.len() < least - least / 20 {
                 (least, stalled) = (far.len(), 0);
@@ -263,23 +292,26 @@ impl<'a> Improver<'a> {
                 break;
             }
             // Another round tries other edits: that nothing was done in this one does not end it.
-            self.do_round(edits);
+            self.do_round(edits, progress)?;
         }
         for round in 0..RESCUE_ROUNDS {
             progress.at(round as f32 / RESCUE_ROUNDS as f32)?;
-            if self.rescue() == 0 {
+            if self.rescue(progress)? == 0 {
                 break;
             }
         }
-        self.unproved();
+        self.unproved(progress)?;
         Ok(())
     }
 
     /// Tries every edit at each of the faces that are left, one after the other, until one helps. Returns how many were helped.
-    fn rescue(&mut self) -> usize {
+    fn rescue(&mut self, progress: &mut Progress<'_>) -> Result<usize, MeshError> {
         let mut done = 0;
-        let far = self.unproved();
-        for f in far.into_iter().take(MOST_RESCUED) {
+        let far = self.unproved(progress)?;
+        for (i, f) in far.into_iter().take(MOST_RESCUED).enumerate() {
+            if i % 16 == 0 {
+                progress.again()?;
+            }
             let is_left = self.mesh.has_face(f) && self.errors[f.index()] > self.tolerance as f32;
             if !is_left {
                 continue;
@@ -309,7 +341,7 @@ impl<'a> Improver<'a> {
                 }
             }
         }
-        done
+        Ok(done)
     }
 
     /// Whether an edit leaves the vertices of lids where they are.
@@ -326,30 +358,30 @@ impl<'a> Improver<'a> {
     }
 
     /// The faces that are not proved to be within the tolerance, also after another attempt, but might be if they were others.
-    fn unproved(&mut self) -> Vec<FaceId> {
+    fn unproved(&mut self, progress: &mut Progress<'_>) -> Result<Vec<FaceId>, MeshError> {
         let tolerance = self.tolerance as f32;
         let faces = self.mesh.faces();
         let far: Vec<FaceId> = faces
             .filter(|f| self.errors[f.index()] > tolerance && !self.is_fixed_face(*f))
             .collect();
+        let is_new = |f: &FaceId| self.attempts[f.index()] == Attempt::None;
+        let new: Vec<FaceId> = far.iter().copied().filter(is_new).collect();
         let this = &*self;
-        let proved = map(self.threads, &far, |f| {
+        let proved = map_told(self.threads, &new, progress, |f| {
             let corners = this.corners(*f).map(|v| this.vertices[v.index()]);
             let proved = distance(this.space, corners.each_ref(), this.tolerance);
-            (
-                proved,
-                proved.is_none() && is_hopeless(this.space, &corners, this.tolerance),
-            )
-        });
-        let mut unproved = Vec::new();
-        for (f, (proved, is_hopeless)) in far.into_iter().zip(proved) {
+            let is_hopeless = proved.is_none() && is_hopeless(this.space, &corners, this.tolerance);
+            (proved, is_hopeless)
+        })?;
+        for (f, (proved, is_hopeless)) in new.into_iter().zip(proved) {
             match proved {
                 Some(distance) => self.errors[f.index()] = distance as f32,
-                None if is_hopeless => {}
-                None => unproved.push(f),
+                None if is_hopeless => self.attempts[f.index()] = Attempt::Hopeless,
+                None => self.attempts[f.index()] = Attempt::Failed,
             }
         }
-        unproved
+        let has_failed = |f: &FaceId| self.attempts[f.index()] == Attempt::Failed;
+        Ok(far.into_iter().filter(has_failed).collect())
     }
 
     fn is_fixed_face(&self, f: FaceId) -> bool {
@@ -399,7 +431,11 @@ impl<'a> Improver<'a> {
 
     /// Plans those of some edits, in their order, that do not touch each other, and applies those that are good. Returns how
     /// many.
-    fn do_round(&mut self, edits: Vec<Edit>) -> usize {
+    fn do_round(
+        &mut self,
+        edits: Vec<Edit>,
+        progress: &mut Progress<'_>,
+    ) -> Result<usize, MeshError> {
         self.round += 1;
         let mut is_taken = vec![false; self.mesh.vertex_slots()];
         let mut chosen = Vec::new();
@@ -413,7 +449,7 @@ impl<'a> Improver<'a> {
             }
         }
         let this = &*self;
-        let plans = map(self.threads, &chosen, |edit| this.plan(*edit));
+        let plans = map_told(self.threads, &chosen, progress, |edit| this.plan(*edit))?;
         let mut done = 0;
         for (edit, plan) in chosen.into_iter().zip(plans) {
             let is_done = plan.is_some_and(|plan| self.apply(edit, &plan));
@@ -424,7 +460,7 @@ impl<'a> Improver<'a> {
                 self.refused[twin.index()] = self.round;
             }
         }
-        done
+        Ok(done)
     }
 
     /// The vertices that an edit depends on.
@@ -768,31 +804,115 @@ impl<'a> Improver<'a> {
         angles.fold(1.0, f64::min)
     }
 
+    /// The triangles that an edit makes, in the place of which faces. A vertex that is new has the number after all others.
+    fn changes(&self, edit: Edit, vertex: Option<Vertex>) -> (Vec<[Corner; 3]>, Vec<FaceId>) {
+        let mesh = &self.mesh;
+        let corner = |v: VertexId| Corner {
+            number: v.index() as u32,
+            position: mesh.position(v),
+        };
+        let own = |v: VertexId| Corner {
+            position: vertex.map_or(mesh.position(v), |vertex| vertex.position),
+            ..corner(v)
+        };
+        match edit {
+            Edit::Collapse(h) | Edit::Merge(h) => {
+                let (u, v) = (mesh.origin(h), mesh.target(h));
+                let beside = [mesh.face(h), mesh.face(mesh.twin(h))];
+                let around = |v: VertexId| {
+                    let faces = mesh.vertex_faces(v);
+                    faces.filter(move |f| !beside.contains(&Some(*f)))
+                };
+                let kept: Vec<FaceId> = around(u).chain(around(v)).collect();
+                let end = |w: VertexId| if w == u || w == v { own(v) } else { corner(w) };
+                let triangles = kept.iter().map(|f| self.corners(*f).map(end));
+                let triangles = triangles.collect();
+                (
+                    triangles,
+                    kept.into_iter()
+                        .chain(beside.into_iter().flatten())
+                        .collect(),
+                )
+            }
+            Edit::Move(v) => {
+                let faces: Vec<FaceId> = mesh.vertex_faces(v).collect();
+                let end = |w: VertexId| if w == v { own(v) } else { corner(w) };
+                let triangles = faces.iter().map(|f| self.corners(*f).map(end));
+                (triangles.collect(), faces)
+            }
+            Edit::Flip(h) | Edit::Split(h) => {
+                let [p, q, r, s] = self.diamond(h).map(corner);
+                let faces = [mesh.face(h), mesh.face(mesh.twin(h))];
+                let triangles = match (edit, vertex) {
+                    (Edit::Split(_), Some(vertex)) => {
+                        let m = Corner {
+                            number: mesh.vertex_slots() as u32,
+                            position: vertex.position,
+                        };
+                        vec![[p, m, r], [m, q, r], [q, m, s], [m, p, s]]
+                    }
+                    _ => vec![[s, r, p], [r, s, q]],
+                };
+                (triangles, faces.into_iter().flatten().collect())
+            }
+        }
+    }
+
+    /// Does an edit as planned. Returns whether that was possible: the mesh has to stay a manifold, and not to cut itself.
     fn apply(&mut self, edit: Edit, plan: &Plan) -> bool {
+        let mut touched = Vec::new();
+        self.touched(edit, &mut touched);
+        if !touched.iter().any(|v| self.guard.is_guarded(*v)) {
+            return self.change(edit, plan).is_some();
+        }
+        let (triangles, gone) = self.changes(edit, plan.vertex);
+        if !self.guard.is_free(&self.mesh, &triangles, &gone) {
+            return false;
+        }
+        let ends = touched[..2].iter().any(|v| self.guard.is_guarded(*v));
+        let center = self.change(edit, plan);
+        if let (Some(v), Edit::Collapse(_) | Edit::Merge(_) | Edit::Split(_)) = (center, edit) {
+            self.guard.set_guarded(v, ends);
+        }
+        let around = center.into_iter().flat_map(|v| self.mesh.vertex_faces(v));
+        let changed: Vec<FaceId> = gone.iter().copied().chain(around).collect();
+        for f in changed {
+            if self.mesh.has_face(f) {
+                self.guard.set(&self.mesh, f);
+            } else {
+                self.guard.remove(f);
+            }
+        }
+        center.is_some()
+    }
+
+    /// Changes the mesh as planned, if it stays a manifold. Returns the vertex in the middle of the change, or an end of a flipped edge.
+    fn change(&mut self, edit: Edit, plan: &Plan) -> Option<VertexId> {
         let center = match (edit, plan.vertex) {
             (Edit::Collapse(h) | Edit::Merge(h), Some(vertex)) => {
                 let v = self.mesh.target(h);
                 if self.mesh.collapse_edge(h, vertex.position).is_err() {
-                    return false;
+                    return None;
                 }
                 self.vertices[v.index()] = vertex;
                 v
             }
             (Edit::Move(v), Some(vertex)) => {
                 if self.mesh.set_position(v, vertex.position).is_err() {
-                    return false;
+                    return None;
                 }
                 self.vertices[v.index()] = vertex;
                 v
             }
             (Edit::Split(h), Some(vertex)) => {
                 let Ok(v) = self.mesh.bisect_edge(h, vertex.position) else {
-                    return false;
+                    return None;
                 };
                 self.vertices.resize(self.mesh.vertex_slots(), vertex);
                 self.vertices[v.index()] = vertex;
                 self.is_fixed.resize(self.mesh.vertex_slots(), false);
                 self.is_fixed[v.index()] = false;
+                self.guard.set_guarded(v, false);
                 self.changed.resize(self.mesh.vertex_slots(), self.round);
                 self.refused.resize(self.mesh.half_edge_slots(), 0);
                 self.errors.resize(self.mesh.face_slots(), 0.0);
@@ -801,30 +921,47 @@ impl<'a> Improver<'a> {
                     .iter()
                     .map(|(_, distance)| *distance)
                     .fold(0.0, f32::max);
+                self.attempts.resize(self.mesh.face_slots(), Attempt::None);
                 for f in self.mesh.vertex_faces(v) {
                     self.errors[f.index()] = farthest;
+                    self.attempts[f.index()] = Attempt::None;
                 }
-                return true;
+                return Some(v);
             }
             (Edit::Flip(h), _) => {
                 if self.mesh.flip_edge(h).is_err() {
-                    return false;
+                    return None;
                 }
                 let opposite = self.mesh.target(h);
                 self.changed[opposite.index()] = self.round;
                 self.mesh.origin(h)
             }
-            _ => return false,
+            _ => return None,
         };
         for (face, distance) in &plan.faces {
             self.errors[face.index()] = *distance;
+            self.attempts[face.index()] = Attempt::None;
         }
         self.changed[center.index()] = self.round;
         for n in self.mesh.neighbors(center) {
             self.changed[n.index()] = self.round;
         }
-        true
+        Some(center)
     }
+}
+
+/// Whether proofs may fail at a place: in cells that leave the topology open or where the gradient jumps, or beside such cells.
+pub fn may_be_unproved(forest: &Forest, position: DVec3) -> bool {
+    let own = &forest.cells[forest.leaf_at(position) as usize];
+    let size = forest.size(own.level);
+    let is_open = |offset: DVec3| {
+        let cell = &forest.cells[forest.leaf_at(position + offset * size) as usize];
+        cell.undecided || cell.bounds.is_stuck
+    };
+    let around = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    around
+        .into_iter()
+        .any(|offset| is_open(offset) || is_open(-offset))
 }
 
 /// Sine of the smallest angle of a triangle.

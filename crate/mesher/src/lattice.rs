@@ -5,7 +5,8 @@
 //! two triangles, which make tetrahedra with the centres on both sides. So all tetrahedra fit together face to face.
 
 use crate::forest::{Forest, NONE, Side};
-use crate::parallel::map;
+use crate::options::{MeshError, Progress};
+use crate::parallel::map_told;
 use crate::refine::NUDGE;
 use crate::space::Space;
 use field::THRESHOLD;
@@ -72,7 +73,17 @@ impl Lattice {
     }
 
     /// Evaluates the function at all vertices of the tetrahedra of some cells where that was not done.
-    pub fn extend(&mut self, space: &Space<'_>, cells: &[u32], tolerance: f64, threads: usize) {
+    ///
+    /// # Errors
+    /// If the caller cancels.
+    pub fn extend(
+        &mut self,
+        space: &Space<'_>,
+        cells: &[u32],
+        tolerance: f64,
+        threads: usize,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), MeshError> {
         let mut wanted: Vec<(Key, u32)> = Vec::new();
         for node in cells {
             let mut add = |key| wanted.push((key, *node));
@@ -87,7 +98,7 @@ impl Lattice {
         wanted.sort_unstable();
         wanted.dedup_by_key(|(key, _)| *key);
         wanted.retain(|(key, _)| self.keys.binary_search(key).is_err());
-        let values = map(threads, &wanted, |(key, node)| {
+        let values = map_told(threads, &wanted, progress, |(key, node)| {
             let cell = &space.forest.cells[*node as usize];
             let jet = space.jet(cell.part, space.forest.position(unpack(*key)));
             let gradient = DVec3::from_array(jet.gradient);
@@ -104,12 +115,13 @@ impl Lattice {
                 -least
             };
             (value, gradient)
-        });
+        })?;
         let mut all: Vec<(Key, (f64, DVec3))> =
             self.keys.drain(..).zip(self.values.drain(..)).collect();
         all.extend(wanted.iter().map(|(key, _)| *key).zip(values));
         all.sort_unstable_by_key(|(key, _)| *key);
         (self.keys, self.values) = all.into_iter().unzip();
+        Ok(())
     }
 }
 

@@ -44,14 +44,17 @@
 //!
 //! Results have the same bits everywhere, whatever the number of threads.
 
+mod boxes;
 mod cages;
 mod certify;
 mod coating;
 mod forest;
+mod guard;
 mod improve;
 mod lattice;
 mod level;
 mod march;
+mod measure;
 mod model;
 mod options;
 mod paint;

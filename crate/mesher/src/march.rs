@@ -5,7 +5,8 @@
 use crate::certify::{Vertex, root};
 use crate::forest::{Forest, NONE, Side};
 use crate::lattice::{Key, Lattice, boundary_triangles, tetrahedra, unpack};
-use crate::parallel::map;
+use crate::options::{MeshError, Progress};
+use crate::parallel::map_told;
 use crate::refine::crossing;
 use crate::space::Space;
 
@@ -14,7 +15,7 @@ use crate::space::Space;
 type Place = u64;
 
 /// The mesh before it is improved.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Raw {
     /// Vertices: on edges of the lattice where the surface crosses those, and at corners of lids.
     pub vertices: Vec<Vertex>,
@@ -128,14 +129,23 @@ fn lids(
 
 /// The level set of the interpolant in all cells. Leaves that are wholly inside have lids, too: `lattice` is extended by
 /// their vertices.
-pub fn march(space: &Space<'_>, lattice: &Lattice, threads: usize) -> Raw {
+///
+/// # Errors
+/// If the caller cancels.
+pub fn march(
+    space: &Space<'_>,
+    lattice: &Lattice,
+    threads: usize,
+    progress: &mut Progress<'_>,
+) -> Result<Raw, MeshError> {
     let forest = &space.forest;
     let cells = crossing(forest);
-    let mut triangles: Vec<([Place; 3], bool)> =
-        map(threads, &cells, |node| in_cell(forest, lattice, *node))
-            .into_iter()
-            .flatten()
-            .collect();
+    let mut triangles: Vec<([Place; 3], bool)> = map_told(threads, &cells, progress, |node| {
+        in_cell(forest, lattice, *node)
+    })?
+    .into_iter()
+    .flatten()
+    .collect();
     // Vertices of lids away from the surface are not in the lattice: they are numbered after it.
     let mut beyond: Vec<Key> = Vec::new();
     let inside: Vec<u32> = (0..forest.cells.len() as u32)
@@ -172,23 +182,23 @@ pub fn march(space: &Space<'_>, lattice: &Lattice, threads: usize) -> Raw {
         };
         forest.position(unpack(key))
     };
-    let vertices = map(threads, &places, |place| {
+    let vertices = map_told(threads, &places, progress, |place| {
         let [a, b] = [(place >> 32) as u32, *place as u32];
         if a == b {
             return Vertex::new(at(a), &space.jet_at(at(a)));
         }
         let values = [a, b].map(|i| lattice.value(i));
         root(space, [at(a), at(b)], values, MARGIN)
-    });
+    })?;
     let index = |place: &Place| match places.binary_search(place) {
         Ok(i) | Err(i) => i as u32,
     };
-    Raw {
+    Ok(Raw {
         vertices,
         triangles: triangles
             .iter()
             .map(|(p, _)| p.each_ref().map(index))
             .collect(),
         is_lid: triangles.iter().map(|(_, is_lid)| *is_lid).collect(),
-    }
+    })
 }

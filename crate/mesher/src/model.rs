@@ -8,13 +8,11 @@ use crate::paint::Paint;
 use crate::solids::{Solid, tessellate};
 use crate::surface::{SurfaceMesh as Mesh, box_of, extent, polygonize};
 use crate::unite;
+use core::ops::ControlFlow;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Topology, TriangleMesh};
 use scene::{Element, Scene, Shape, Surface};
 use serde::{Deserialize, Serialize};
-
-/// Crossings of triangles with which a search for them ends.
-const MOST_CROSSINGS: usize = 100;
 
 /// How far the mesh may be from the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,8 +92,10 @@ pub struct ModelPart {
     pub unproved: usize,
     /// Triangles before they were made fewer.
     pub raw_triangles: usize,
-    /// Pairs of triangles that cut or touch each other, a hundred at most. Where all triangles are proved there are none; else the
-    /// mesh was searched.
+    /// Largest distances that samples found where triangles are not proved: from mesh to surface, and back.
+    pub measured: [f64; 2],
+    /// Pairs of triangles that cut or touch each other, a hundred at most: none but where vertices are nearer to each other than
+    /// numbers can tell.
     pub crossings: usize,
 }
 
@@ -155,8 +155,8 @@ pub fn mesh_scene(
             &mut progress,
         )?;
     }
-    let progress = &mut progress.part(0.0, 1.0).in_phase(Phase::Solids);
-    progress.at(0.85)?;
+    let progress = &mut progress.part(0.85, 1.0).in_phase(Phase::Solids);
+    progress.at(0.0)?;
     for body in 0..scene.bodies.len() as u32 {
         let elements = plan
             .hard
@@ -171,7 +171,7 @@ pub fn mesh_scene(
         }
     }
     if wishes.union {
-        unite(&mut model)?;
+        unite(&mut model, progress)?;
     }
     model.parts.retain(|part| !part.mesh.triangles.is_empty());
     if model.parts.is_empty() {
@@ -199,7 +199,13 @@ pub fn coat_scene(scene: &Scene, bound: f64, coatings: &mut Vec<Coating>) -> Vec
     let coated = surfaces.iter().zip(coatings).map(|(surface, coating)| {
         let cages = Cage::of_surface(scene, surface);
         let mut coat = coating.update(surface.function(), &cages, &|_| bound);
-        Paint::new(scene, surface).apply(&mut coat.mesh, 1);
+        let paint = Paint::new(scene, surface);
+        // Nothing cancels it.
+        let _ = paint.apply(
+            &mut coat.mesh,
+            1,
+            &mut Progress::new(&mut |_| ControlFlow::Continue(())),
+        );
         CoatedBody {
             name: name_of(scene, surface.body(), ""),
             coat,
@@ -409,6 +415,8 @@ fn soft_part(
         error,
         undecided,
         unproved,
+        measured,
+        crossings,
         raw_triangles,
         evaluations,
         is_cut,
@@ -418,18 +426,12 @@ fn soft_part(
         Err(MeshError::Nothing) => return Ok(()),
         Err(other) => return Err(other),
     };
-    let crossings = if unproved > 0 || is_cut {
-        mesh::self_intersections(&mesh, MOST_CROSSINGS).map_or(0, |found| found.pairs.len())
-    } else {
-        0
-    };
     if crossings > 0 {
         model.notes.push(format!(
-            "{name}: {crossings}{} pairs of triangles cut each other, near kinks or where the surface touches itself",
-            if crossings == MOST_CROSSINGS { " or more" } else { "" }
+            "{name}: {crossings} pairs of triangles or more touch each other: the tolerance is too small for the numbers' precision",
         ));
     }
-    Paint::new(scene, surface).apply(&mut mesh, wishes.threads);
+    Paint::new(scene, surface).apply(&mut mesh, wishes.threads, progress)?;
     model.evaluations += evaluations;
     if is_cut {
         model.notes.push(format!(
@@ -447,8 +449,10 @@ fn soft_part(
     }
     if unproved > 0 {
         model.notes.push(format!(
-            "{name}: of {unproved} of {} triangles the distance from the surface is not proved",
-            mesh.triangles.len()
+            "{name}: of {unproved} of {} triangles the distance from the surface is not proved; samples found {:.2e} from mesh to surface and {:.2e} back",
+            mesh.triangles.len(),
+            measured[0],
+            measured[1],
         ));
     }
     model.parts.push(ModelPart {
@@ -458,6 +462,7 @@ fn soft_part(
         error,
         undecided,
         unproved,
+        measured,
         raw_triangles,
         crossings,
     });
@@ -479,6 +484,7 @@ fn hard_parts<'a>(
     let mut error = 0.0_f64;
     for element in elements {
         body = element.body;
+        progress.again()?;
         let solid = match &element.shape {
             Shape::Quadric(quadric) => Solid {
                 shells: Vec::new(),
@@ -503,7 +509,7 @@ fn hard_parts<'a>(
         match shells.len() {
             0 => {}
             1 => closed.add(&shells[0], element.finish),
-            _ => closed.add(&unite::union(&shells)?, element.finish),
+            _ => closed.add(&unite::union(&shells, progress)?, element.finish),
         }
         for sheet in solid.sheets.iter().filter(|m| is_sound(m)) {
             open.add(sheet, element.finish);
@@ -536,6 +542,7 @@ fn hard_parts<'a>(
             error,
             undecided: Vec::new(),
             unproved: 0,
+            measured: [0.0; 2],
             raw_triangles: 0,
             crossings: 0,
         });
@@ -627,7 +634,7 @@ fn without_cavities(mesh: &TriangleMesh) -> TriangleMesh {
 }
 
 /// Joins all closed parts.
-fn unite(model: &mut Model) -> Result<(), MeshError> {
+fn unite(model: &mut Model, progress: &mut Progress<'_>) -> Result<(), MeshError> {
     let (closed, open): (Vec<_>, Vec<_>) = core::mem::take(&mut model.parts)
         .into_iter()
         .partition(|part| part.is_closed);
@@ -638,7 +645,7 @@ fn unite(model: &mut Model) -> Result<(), MeshError> {
             .collect();
         model.parts.push(ModelPart {
             name: "union".into(),
-            mesh: unite::union(&meshes)?,
+            mesh: unite::union(&meshes, progress)?,
             is_closed: true,
             error: closed.iter().map(|part| part.error).fold(0.0, f64::max),
             undecided: closed
@@ -646,6 +653,12 @@ fn unite(model: &mut Model) -> Result<(), MeshError> {
                 .flat_map(|part| part.undecided.clone())
                 .collect(),
             unproved: closed.iter().map(|part| part.unproved).sum(),
+            measured: [0, 1].map(|i| {
+                closed
+                    .iter()
+                    .map(|part| part.measured[i])
+                    .fold(0.0, f64::max)
+            }),
             raw_triangles: closed.iter().map(|part| part.raw_triangles).sum(),
             crossings: 0,
         });

@@ -124,6 +124,8 @@ pub struct Progress<'a> {
     from: f32,
     to: f32,
     phase: Phase,
+    /// The last fraction reported.
+    last: f32,
 }
 
 impl<'a> Progress<'a> {
@@ -134,6 +136,7 @@ impl<'a> Progress<'a> {
             from: 0.0,
             to: 1.0,
             phase: Phase::default(),
+            last: 0.0,
         }
     }
 
@@ -145,6 +148,7 @@ impl<'a> Progress<'a> {
             to: self.from + to * span,
             report: self.report,
             phase: self.phase,
+            last: self.from + from * span,
         }
     }
 
@@ -160,7 +164,16 @@ impl<'a> Progress<'a> {
     /// If the caller cancels.
     pub fn at(&mut self, fraction: f32) -> Result<(), MeshError> {
         let fraction = self.from + fraction.clamp(0.0, 1.0) * (self.to - self.from);
-        let phase = self.phase;
+        self.last = self.last.max(fraction);
+        self.again()
+    }
+
+    /// Reports the same fraction once more: something is being done that takes its time.
+    ///
+    /// # Errors
+    /// If the caller cancels.
+    pub fn again(&mut self) -> Result<(), MeshError> {
+        let (fraction, phase) = (self.last, self.phase);
         match (self.report)(Step { fraction, phase }) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(MeshError::Cancelled),

@@ -1,6 +1,7 @@
 //! Colours and materials of meshes.
 
-use crate::parallel::map;
+use crate::options::{MeshError, Progress};
+use crate::parallel::map_told;
 use glam::DVec3;
 use mesh::{Group, Material, TriangleMesh, roughness_from_phong};
 use scene::{Finish, Scene, Surface};
@@ -45,7 +46,15 @@ impl<'a> Paint<'a> {
     }
 
     /// Gives a mesh one group with the material that most primitives have, and vertex colours if there are several materials.
-    pub fn apply(&self, mesh: &mut TriangleMesh, threads: usize) {
+    ///
+    /// # Errors
+    /// If the caller cancels.
+    pub fn apply(
+        &self,
+        mesh: &mut TriangleMesh,
+        threads: usize,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), MeshError> {
         let mut counts = vec![0; self.materials.len()];
         self.of.iter().for_each(|i| counts[*i as usize] += 1);
         // The first of the most frequent ones.
@@ -56,8 +65,10 @@ impl<'a> Paint<'a> {
             triangles: 0..mesh.triangles.len() as u32,
         }];
         if self.materials.len() > 1 {
-            mesh.colors = Some(map(threads, &mesh.positions, |p| self.color(*p)));
+            let colors = map_told(threads, &mesh.positions, progress, |p| self.color(*p))?;
+            mesh.colors = Some(colors);
         }
+        Ok(())
     }
 
     fn color(&self, point: DVec3) -> [f32; 3] {

@@ -1,5 +1,28 @@
 //! A map over a slice by several threads, with the same result for any number of them.
 
+use crate::options::{MeshError, Progress};
+
+/// Items between two reports.
+const BATCH: usize = 1024;
+
+/// The same as [`map`], with reports of the last progress in between, so that a long computation can be cancelled.
+///
+/// # Errors
+/// If the caller cancels.
+pub fn map_told<T: Sync, R: Send>(
+    threads: usize,
+    items: &[T],
+    progress: &mut Progress<'_>,
+    f: impl Fn(&T) -> R + Sync,
+) -> Result<Vec<R>, MeshError> {
+    let mut results = Vec::with_capacity(items.len());
+    for batch in items.chunks(BATCH) {
+        progress.again()?;
+        results.extend(map(threads, batch, &f));
+    }
+    Ok(results)
+}
+
 /// Items below which no threads are started.
 const FEW: usize = 64;
 

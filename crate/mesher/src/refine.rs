@@ -9,7 +9,7 @@
 use crate::forest::{Bounds, Cell, Forest, NONE, Side};
 use crate::lattice::Lattice;
 use crate::options::{MeshError, Progress};
-use crate::parallel::map;
+use crate::parallel::map_told;
 use crate::space::{SLACK, Space};
 use field::{Ball, Part, THRESHOLD, Variation};
 use glam::DVec3;
@@ -120,7 +120,9 @@ pub fn extent(
             .map(|i| space.forest.cells[*i as usize])
             .collect();
         // No cell is good enough for a tolerance of 0.
-        let looks = map(threads, &cells, |cell| look(&space, cell, [0.0; 2]));
+        let looks = map_told(threads, &cells, progress, |cell| {
+            look(&space, cell, [0.0; 2])
+        })?;
         let mut hull = Aabb::EMPTY;
         let mut crossing = Vec::new();
         for (node, Look { side, part, .. }) in open.iter().zip(looks) {
@@ -191,7 +193,7 @@ pub fn refine(
             progress,
             &mut fraction,
         )?;
-        look_beside(space, tolerances, threads);
+        look_beside(space, tolerances, threads, progress)?;
         let crossing = crossing(&space.forest);
         // Each becomes about ten triangles, which are there before they are made fewer.
         if crossing.len() > max_cells / 2 {
@@ -201,10 +203,10 @@ pub fn refine(
             });
         }
         progress.at(fraction)?;
-        lattice.extend(space, &crossing, tolerances[0], threads);
-        let failing = map(threads, &crossing, |node| {
+        lattice.extend(space, &crossing, tolerances[0], threads, progress)?;
+        let failing = map_told(threads, &crossing, progress, |node| {
             failing(space, &lattice, *node, tolerances[0])
-        });
+        })?;
         let mut failing: Vec<u32> = failing.into_iter().flatten().collect();
         failing.sort_unstable();
         failing.dedup();
@@ -258,7 +260,9 @@ fn look_at_all(
                 .iter()
                 .map(|i| space.forest.cells[*i as usize])
                 .collect();
-            let looks = map(threads, &leaves, |cell| look(space, cell, tolerances));
+            let looks = map_told(threads, &leaves, progress, |cell| {
+                look(space, cell, tolerances)
+            })?;
             for (node, look) in batch.iter().zip(looks) {
                 let cell = &mut space.forest.cells[*node as usize];
                 cell.side = look.side;
@@ -302,7 +306,12 @@ fn fitting(forest: &Forest) -> Option<f64> {
 }
 
 /// Computes bounds for leaves without the surface that share a face with one that has it.
-fn look_beside(space: &mut Space<'_>, tolerances: [f64; 2], threads: usize) {
+fn look_beside(
+    space: &mut Space<'_>,
+    tolerances: [f64; 2],
+    threads: usize,
+    progress: &mut Progress<'_>,
+) -> Result<(), MeshError> {
     let forest = &space.forest;
     let mut open = Vec::new();
     for node in crossing(forest) {
@@ -326,12 +335,15 @@ fn look_beside(space: &mut Space<'_>, tolerances: [f64; 2], threads: usize) {
     open.sort_unstable();
     open.dedup();
     let cells: Vec<Cell> = open.iter().map(|i| forest.cells[*i as usize]).collect();
-    let looks = map(threads, &cells, |cell| look(space, cell, tolerances));
+    let looks = map_told(threads, &cells, progress, |cell| {
+        look(space, cell, tolerances)
+    })?;
     for (node, look) in open.into_iter().zip(looks) {
         let cell = &mut space.forest.cells[node as usize];
         cell.bounds = look.bounds;
         cell.has_bounds = true;
     }
+    Ok(())
 }
 
 /// The leaves that the surface may cross.

@@ -1,8 +1,9 @@
 //! The mesh of one function.
 
 use crate::forest::{Forest, NONE};
-use crate::improve::Improver;
-use crate::march::march;
+use crate::improve::{Improved, Improver};
+use crate::march::{Raw, march};
+use crate::measure;
 use crate::options::{MeshError, Options, Phase, Progress};
 use crate::refine;
 use crate::space::Space;
@@ -20,6 +21,12 @@ pub struct SurfaceMesh {
     pub error: f64,
     /// Triangles that are not proved to be within the tolerance: near undecided cells and kinks.
     pub unproved: usize,
+    /// Largest distances that samples found near those: of unproved triangles from the surface, and of the surface from the mesh. Zeros if
+    /// all is proved.
+    pub measured: [f64; 2],
+    /// Pairs of triangles that cut or touch each other, a hundred at most: none but where vertices are nearer to each other than
+    /// numbers can tell.
+    pub crossings: usize,
     /// Centres of the cells in which the topology of the surface is not proved before it is meshed: none if all is. If all triangles
     /// are proved, components of the surface may be missing there that are as small as a cell; the others have the topology of
     /// the mesh.
@@ -111,7 +118,7 @@ pub fn polygonize(
     .map_err(too_many)?;
     let mut progress = progress.part(0.0, 1.0).in_phase(Phase::Triangles);
     progress.at(0.4)?;
-    let raw = march(&space, &lattice, threads);
+    let raw = march(&space, &lattice, threads, &mut progress)?;
     drop(lattice);
     if raw.triangles.is_empty() {
         return Err(MeshError::Nothing);
@@ -131,8 +138,13 @@ pub fn polygonize(
     let cells = refine::crossing(forest).len();
     let raw_triangles = raw.triangles.len();
     let is_cut = raw.is_lid.contains(&true);
-    let improver = Improver::new(&space, raw, [tolerance, coarse], threads)?;
-    let improved = improver.run(&mut progress.part(0.4, 1.0))?;
+    let start = Start {
+        space: &space,
+        raw,
+        tolerances: [tolerance, coarse],
+        threads,
+    };
+    let (improved, crossings) = start.improved(is_cut, &mut progress.part(0.4, 0.98))?;
     if improved.mesh.triangles.len() > max_triangles {
         return Err(MeshError::TooMany {
             limit: max_triangles,
@@ -142,10 +154,15 @@ pub fn polygonize(
             ),
         });
     }
+    let mut progress = progress.part(0.98, 1.0);
+    let measured = measure::distances(&space, &start.raw, &improved, threads, &mut progress)?;
+    let unproved = improved.is_unproved.iter().filter(|is| **is).count();
     Ok(SurfaceMesh {
         mesh: improved.mesh,
         error: improved.error,
-        unproved: improved.unproved,
+        unproved,
+        measured,
+        crossings,
         undecided,
         finest,
         cells,
@@ -153,6 +170,48 @@ pub fn polygonize(
         is_cut,
         evaluations: space.evaluations(),
     })
+}
+
+/// Crossings of triangles with which a search for them ends.
+const MOST_CROSSINGS: usize = 100;
+
+/// A mesh that was not yet improved.
+struct Start<'a> {
+    space: &'a Space<'a>,
+    raw: Raw,
+    tolerances: [f64; 2],
+    threads: usize,
+}
+
+impl Start<'_> {
+    /// The improved mesh, with its number of crossings. Each change is kept from making any where proofs may fail; if there are some
+    /// nonetheless, a second attempt does so everywhere, and takes longer.
+    fn improved(
+        &self,
+        is_cut: bool,
+        progress: &mut Progress<'_>,
+    ) -> Result<(Improved, usize), MeshError> {
+        let attempt = |guards_all: bool, progress: &mut Progress<'_>| {
+            let raw = self.raw.clone();
+            let improver =
+                Improver::new(self.space, raw, self.tolerances, self.threads, guards_all)?;
+            let improved = improver.run(&mut progress.part(0.0, 0.95))?;
+            // A mesh of which all is proved has none.
+            let is_proved = !is_cut && !improved.is_unproved.contains(&true);
+            if is_proved {
+                return Ok((improved, 0));
+            }
+            progress.at(0.95)?;
+            let found = mesh::self_intersections(&improved.mesh, MOST_CROSSINGS);
+            let crossings = found.map_or(0, |found| found.pairs.len() + found.flat.len());
+            Ok((improved, crossings.min(MOST_CROSSINGS)))
+        };
+        let (improved, crossings) = attempt(false, &mut progress.part(0.0, 0.7))?;
+        if crossings == 0 {
+            return Ok((improved, 0));
+        }
+        attempt(true, &mut progress.part(0.7, 1.0))
+    }
 }
 
 /// Cells are at least half so large, in tolerances: smaller ones take minutes where surfaces touch. Parts of a surface that are smaller

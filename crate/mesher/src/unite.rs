@@ -1,10 +1,13 @@
 //! Boolean unions and convex hulls, by `manifold-rust`.
 
-use crate::options::MeshError;
+use crate::options::{MeshError, Progress};
 use glam::DVec3;
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64, OpType};
 use mesh::TriangleMesh;
+
+/// Meshes that are united in one step.
+const TOGETHER: usize = 8;
 
 /// Numbers of a vertex: position, normal, colour.
 const PROPERTIES: usize = 9;
@@ -43,10 +46,22 @@ fn manifold(mesh: &TriangleMesh) -> Result<Manifold, MeshError> {
 /// The union of closed meshes, with colours and normals; where two surfaces meet, normals are 0.
 ///
 /// # Errors
-/// If one is no closed manifold.
-pub fn union(meshes: &[TriangleMesh]) -> Result<TriangleMesh, MeshError> {
-    let manifolds = meshes.iter().map(manifold).collect::<Result<Vec<_>, _>>()?;
-    let united = Manifold::batch_boolean(&manifolds, OpType::Add);
+/// If one is no closed manifold, or if the caller cancels.
+pub fn union(
+    meshes: &[TriangleMesh],
+    progress: &mut Progress<'_>,
+) -> Result<TriangleMesh, MeshError> {
+    let mut manifolds = meshes.iter().map(manifold).collect::<Result<Vec<_>, _>>()?;
+    // Some at a time, so that each step is short.
+    while manifolds.len() > 1 {
+        let mut larger = Vec::new();
+        for some in manifolds.chunks(TOGETHER) {
+            progress.again()?;
+            larger.push(Manifold::batch_boolean(some, OpType::Add));
+        }
+        manifolds = larger;
+    }
+    let united = manifolds.pop().unwrap_or_default();
     if !matches!(united.status(), Error::NoError) {
         return Err(MeshError::Failed(format!(
             "the meshes cannot be united: {:?}",

@@ -1,7 +1,7 @@
 //! Scenes: random ones over all kernels and primitives, and the examples, judged by others.
 //!
-//! By default a small sample. `SINEW_MESHES=all` meshes all examples and 200 random scenes, `SINEW_MESHES=NAME` one example, and prints a
-//! line for each: `SINEW_MESHES=all cargo test --release -p mesher --test scenes -- --nocapture`.
+//! By default a small sample. `SINEW_MESHES=all` meshes all examples and 200 random scenes, `SINEW_MESHES=NAME` one example, `SINEW_MESHES=NUMBER`
+//! one random scene, and prints a line for each: `SINEW_MESHES=all cargo test --release -p mesher --test scenes -- --nocapture`.
 
 #[path = "../../tracer/tests/common/mod.rs"]
 mod common;
@@ -39,6 +39,8 @@ struct Row {
     triangles: usize,
     undecided: usize,
     unproved: usize,
+    /// What the mesher found by samples where nothing is proved, in tolerances.
+    measured: [f64; 2],
     /// Of sampled points, in tolerances.
     off: [f64; 2],
     unknown: usize,
@@ -77,6 +79,8 @@ fn judge(scene: &Scene, care: Care) -> Result<Row, String> {
         row.triangles += mesh.triangles.len();
         row.undecided += part.undecided.len();
         row.unproved += part.unproved;
+        let measured = part.measured.map(|distance| distance / model.tolerance);
+        row.measured = [0, 1].map(|i| row.measured[i].max(measured[i]));
         if !part.is_closed {
             continue;
         }
@@ -84,12 +88,8 @@ fn judge(scene: &Scene, care: Care) -> Result<Row, String> {
         let is_hard = part.name.ends_with("hard");
         if !is_hard {
             let crossings = self_intersections(mesh, 10).map_err(|error| error.to_string())?;
-            // Where a triangle is not proved, at kinks and where the surface touches itself, the mesh may cut itself: that is told.
-            let is_proved = part.unproved == 0 && part.undecided.is_empty();
-            let is_told = crossings.is_free() == (part.crossings == 0);
-            if !is_told || (is_proved && !crossings.is_free()) {
-                let told = part.crossings;
-                return Err(format!("{name}: it cuts itself {crossings:?}, {told} told"));
+            if !crossings.is_free() || part.crossings > 0 {
+                return Err(format!("{name}: it cuts itself {crossings:?}"));
             }
         }
         if part.error > model.tolerance {
@@ -260,10 +260,12 @@ fn told(name: &str, result: &Result<Row, String>) -> bool {
     match result {
         Ok(row) if row.empty => println!("{name}: nothing there"),
         Ok(row) => println!(
-            "{name}: {} triangles, {} undecided, {} unproved, off {:.2} {:.2}, {} unknown, {:.2} s",
+            "{name}: {} triangles, {} undecided, {} unproved ({:.2} {:.2}), off {:.2} {:.2}, {} unknown, {:.2} s",
             row.triangles,
             row.undecided,
             row.unproved,
+            row.measured[0],
+            row.measured[1],
             row.off[0],
             row.off[1],
             row.unknown,
@@ -276,7 +278,9 @@ fn told(name: &str, result: &Result<Row, String>) -> bool {
 
 #[test]
 fn random_scenes() {
-    let is_all = wanted().is_some_and(|wanted| wanted == "all");
+    let wanted = wanted();
+    let is_all = wanted.as_deref() == Some("all");
+    let only: Option<usize> = wanted.and_then(|wanted| wanted.parse().ok());
     let (count, care) = if is_all {
         (
             200,
@@ -289,9 +293,9 @@ fn random_scenes() {
         )
     } else {
         (
-            9,
+            26,
             Care {
-                relative: 2e-2,
+                relative: 1e-2,
                 samples: 10,
                 rays: 4,
                 genus: false,
@@ -302,7 +306,8 @@ fn random_scenes() {
     for number in 0..count {
         let kernel = Kernel::ALL[number % Kernel::ALL.len()];
         let kind = KINDS[(number * 5) % KINDS.len()];
-        if !is_all && kind == Kind::Cluster {
+        let is_wanted = only.map_or(is_all || kind != Kind::Cluster, |only| only == number);
+        if !is_wanted {
             continue;
         }
         let scene = Trial::new(kernel, kind, 40_000 + number as u64, 0).scene;

@@ -1,12 +1,11 @@
 //! What pointer, pen, fingers and keys do in the place.
 
-use crate::brush::{Brush, Doing, round, rounded};
-use crate::place::{Command, Outside, Sculpting, Turning};
+use crate::brush::{Doing, round, rounded};
+use crate::grip::{Modal, Ongoing, Setting, State};
+use crate::state::{Command, Outside, Sculpting, Turning};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 use glam::{DQuat, DVec3};
 use sculpt::{PathPoint, Refinement, RegionChange, Stroke};
-use std::rc::Rc;
-use viewport::{Frame, Surface, View};
 
 /// Seconds after which a second finger ends a stroke in place of giving it up.
 const FIRM: f64 = 0.4;
@@ -14,74 +13,6 @@ const FIRM: f64 = 0.4;
 const DEPTH: f64 = 0.4;
 /// Points of movement that double the tool in S and F.
 const DOUBLE: f32 = 140.0;
-
-/// What the hand does.
-#[derive(Default)]
-pub struct Hand {
-    /// Where the tool is shown.
-    shown: Option<DVec3>,
-    doing: State,
-    /// Where a key has asked to grab the mesh, or to take a point as the centre of rotation.
-    grabs: Option<Pos2>,
-    centers: Option<Pos2>,
-}
-
-#[derive(Default)]
-enum State {
-    #[default]
-    Idle,
-    Stroke(Box<Ongoing>),
-    Turn(Pos2),
-    Shift(Pos2),
-    Modal(Box<Modal>),
-    /// Two fingers; nothing begins until all are lifted.
-    Fingers,
-}
-
-/// A stroke that is being made.
-struct Ongoing {
-    doing: Doing,
-    reverses: bool,
-    /// What was seen when it began: a push goes along the surface that was there, not into its own dent.
-    seen: Option<(Frame, Rc<Surface>, View)>,
-    /// Of the point that was taken hold of.
-    depth: f64,
-    grip: DVec3,
-    normal: DVec3,
-    axis: Option<usize>,
-    last: PathPoint,
-    began: f64,
-    /// Whether it goes on without a button until a click.
-    is_free: bool,
-}
-
-/// Something of the tool that is set by moving.
-struct Modal {
-    what: Setting,
-    from: Pos2,
-    before: Brush,
-    axis: Option<usize>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Setting {
-    Turn,
-    Scale,
-    Size,
-    Range,
-}
-
-impl Hand {
-    /// The place of the tool, if it is shown.
-    pub fn shown(&self) -> Option<DVec3> {
-        self.shown
-    }
-
-    /// Whether the view turns now.
-    pub fn turns(&self) -> bool {
-        matches!(self.doing, State::Turn(_) | State::Fingers)
-    }
-}
 
 /// One line on what a hand can do now.
 pub fn hint(place: &Sculpting, narrow: bool) -> String {

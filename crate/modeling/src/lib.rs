@@ -20,13 +20,16 @@
 mod brush;
 mod document;
 mod drawn;
+mod grip;
 mod hand;
 mod keys;
 mod panel;
 mod place;
+mod state;
 
 pub use brush::{Brush, Doing};
 pub use document::Document;
 pub use drawn::surface_of;
 pub use keys::KEYS;
-pub use place::{Command, Flesh, Outside, Sculpting, show};
+pub use place::show;
+pub use state::{Command, Flesh, Outside, Sculpting};

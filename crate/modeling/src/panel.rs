@@ -1,7 +1,7 @@
 //! The controls: tool, decay, refinements, region, stages.
 
 use crate::brush::{Doing, round};
-use crate::place::{Command, Flesh, Sculpting, Turning};
+use crate::state::{Command, Flesh, Sculpting, Turning};
 use egui::{Button, Color32, Rect, Response, RichText, ScrollArea, Sense, Slider, Ui, pos2, vec2};
 use glam::{DQuat, DVec3};
 use sculpt::{

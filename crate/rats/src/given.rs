@@ -4,7 +4,7 @@
 //! is the one place that knows what a command takes. The few commands with a form of their own (`var`,
 //! the method of a `texture`) read their own part with the functions of [`crate::reader`].
 
-use crate::commands::{Arity, Kind, OptionSpec, Parameter};
+use crate::commands::{Arity, Kind, Names, OptionSpec, Parameter};
 use crate::operands::Share;
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
@@ -196,6 +196,17 @@ impl<'a> Given<'a> {
     }
 }
 
+/// Refuses a node's name that is a word of the block: in a `curve` it would begin another option.
+fn refuse_option(name: &Name<'_>, options: &'static [OptionSpec]) -> Outcome<()> {
+    let is_same = |option: &&OptionSpec| option.name.eq_ignore_ascii_case(name.text);
+    let Some(option) = options.iter().find(is_same) else {
+        return Ok(());
+    };
+    let message = format!("a node cannot be called `{}`", name.text);
+    let hint = format!("`{}` is a word of this command: add a digit", option.name);
+    Err(Problem::new(name.span.clone(), message).hint(hint))
+}
+
 impl<'a> Reader<'_, 'a> {
     /// All operands and options of a command, to its end.
     ///
@@ -255,6 +266,9 @@ impl<'a> Reader<'_, 'a> {
                 }
                 let start = self.start();
                 let operand = self.operand_of(parameter)?;
+                if let (Kind::New(Names::Node), Operand::Name(name)) = (parameter.kind, &operand) {
+                    refuse_option(name, options)?;
+                }
                 given.operands.push(Filled {
                     parameter: parameter.name,
                     operand,
@@ -303,11 +317,9 @@ impl<'a> Reader<'_, 'a> {
             | Kind::Value => !self.is_option_next(options),
             Kind::Word(words) => self.is_option_next(words),
             Kind::Copy(_) => self.datum() == Some(Datum::Sign(b'=')),
-            Kind::Known(crate::commands::Names::Texture) => self.datum() == Some(Datum::Sign(b'+')),
+            Kind::Known(Names::Texture) => self.datum() == Some(Datum::Sign(b'+')),
             // Nodes and objects have short names, which are the beginnings of many words.
-            Kind::Known(crate::commands::Names::Node | crate::commands::Names::Object) => {
-                !self.is_whole_option_next(options)
-            }
+            Kind::Known(Names::Node | Names::Object) => !self.is_whole_option_next(options),
             Kind::Block => false,
             _ => !self.is_option_next(options),
         }
@@ -355,7 +367,7 @@ impl<'a> Reader<'_, 'a> {
                 }
                 Operand::Name(self.known_name(what)?)
             }
-            Kind::Known(crate::commands::Names::Texture) => {
+            Kind::Known(Names::Texture) => {
                 self.sign(b'+');
                 Operand::Name(self.known_name(what)?)
             }

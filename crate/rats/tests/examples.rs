@@ -234,6 +234,7 @@ const EXAMPLES: &[&str] = &[
     "starfish-f",
     "stem-flakes",
     "still-life",
+    "tide",
     "time-map",
     "touching",
     "tshape",

@@ -1,5 +1,5 @@
 //! The cost of a step of a tool: the same brush, in vertices, on 10,000 and on 1,000,000 faces, and a step that touches 2,000
-//! vertices against a plain pass over as many. Medians; best run with `--release`.
+//! vertices against a plain pass over as many. Medians, a JSON object a line; best run with `--release`, or by `cargo xtask bench sculpt`.
 
 use glam::DVec3;
 use sculpt::{Action, Clay, Decay, Drag, Form, PathPoint, Shape, Start, Sweep, Tool};
@@ -11,9 +11,9 @@ fn ball(faces: u32) -> Clay {
     Clay::of_shape(&Start::new(Shape::Sphere, n)).expect("a ball")
 }
 
-/// A tool on the ball's equator whose range holds about so many vertices.
+/// A tool whose range holds about so many vertices of the ball where it touches it.
 fn sweep(clay: &Clay, action: Action, vertices: f64) -> Sweep {
-    // A cap of the height h has a share of h / 2 of the ball.
+    // A cap of the height h has a share of h / 2 of the ball, and the radius √(2 h).
     let share = vertices / clay.mesh().vertex_count() as f64;
     let radius = (4.0 * share).sqrt();
     let mut sweep = Sweep::new(action, Tool::new(Form::Sphere, DVec3::splat(0.6 * radius)));
@@ -22,31 +22,43 @@ fn sweep(clay: &Clay, action: Action, vertices: f64) -> Sweep {
     sweep
 }
 
-/// The median seconds of a step, and how many vertices moved in one.
-fn step(clay: &mut Clay, sweep: &Sweep) -> (f64, usize) {
-    let mut times = Vec::new();
-    let mut moved = 0;
+/// The median seconds of a step for each vertex that it and the step before move, that of a step, and the median number of these vertices. The steps are
+/// in proportion to the tool, so that on any number of faces the same happens.
+fn step(clay: &mut Clay, sweep: &Sweep) -> (f64, f64, usize) {
+    let radius = sweep.range / 0.4;
+    let mut seen = Vec::new();
     for k in 0..31 {
         let angle = 0.2 * f64::from(k);
         let place = |t: f64| DVec3::new(libm::cos(angle) * t, libm::sin(angle) * t, 0.0);
-        let before: Vec<DVec3> = clay
-            .mesh()
-            .vertices()
-            .map(|v| clay.mesh().position(v))
-            .collect();
+        // Pushed and smoothed from just above, pulled from within.
+        let [from, to] = match sweep.action {
+            Action::Pull => [1.0, 1.0 + 0.1 * radius],
+            _ => [1.0 + 0.2 * radius, 1.0 + 0.1 * radius],
+        };
+        let before: Vec<DVec3> = positions(clay);
         let mut drag = Drag::new(clay, sweep);
-        if sweep.action == Action::Pull {
-            drag.step(clay, PathPoint::new(place(1.0)));
-        }
+        // As on a stroke, the step before has brought what is touched into the processor's cache.
+        drag.step(clay, PathPoint::new(place(from)));
         let start = Instant::now();
-        drag.step(clay, PathPoint::new(place(1.02)));
-        times.push(start.elapsed().as_secs_f64());
+        drag.step(clay, PathPoint::new(place(to)));
+        let seconds = start.elapsed().as_secs_f64();
+        let moved = positions(clay)
+            .iter()
+            .zip(&before)
+            .filter(|(a, b)| a != b)
+            .count();
         drag.finish(clay);
-        let after = clay.mesh().vertices().map(|v| clay.mesh().position(v));
-        moved = after.zip(&before).filter(|(a, b)| a != *b).count();
+        if moved > 0 {
+            seen.push((seconds / moved as f64, seconds, moved));
+        }
     }
-    times.sort_by(f64::total_cmp);
-    (times[times.len() / 2], moved)
+    seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    seen[seen.len() / 2]
+}
+
+fn positions(clay: &Clay) -> Vec<DVec3> {
+    let mesh = clay.mesh();
+    mesh.vertices().map(|v| mesh.position(v)).collect()
 }
 
 /// The median seconds of a pass that adds a vector to so many positions.
@@ -68,24 +80,25 @@ fn pass(count: usize) -> f64 {
 }
 
 fn main() {
-    let mut small = ball(10_000);
-    let mut large = ball(1_000_000);
     for (name, action) in [
         ("push", Action::Push),
         ("pull", Action::Pull),
         ("smooth", Action::Smooth),
     ] {
         for vertices in [200.0, 2000.0] {
+            // Whole balls: a tool meets nothing where an earlier one has left a dent.
+            let [mut small, mut large] = [10_000, 1_000_000].map(ball);
             let of_small = sweep(&small, action, vertices);
-            let (a, moved_a) = step(&mut small, &of_small);
+            let (each_a, a, moved_a) = step(&mut small, &of_small);
             let of_large = sweep(&large, action, vertices);
-            let (b, moved_b) = step(&mut large, &of_large);
-            let plain = pass(moved_b.max(1));
+            let (each_b, b, moved_b) = step(&mut large, &of_large);
+            let plain = pass(moved_b);
             println!(
-                "{name}: {moved_a} vertices of 10⁴ faces {:.3} ms, {moved_b} of 10⁶ {:.3} ms: {:.2} times a vertex; {:.1} plain passes",
+                "{{\"action\": \"{name}\", \"small\": {moved_a}, \"small_ms\": {:.4}, \"large\": {moved_b}, \"large_ms\": {:.4}, \
+                 \"times\": {:.3}, \"passes\": {:.1}}}",
                 1e3 * a,
                 1e3 * b,
-                (b / moved_b as f64) / (a / moved_a as f64),
+                each_b / each_a,
                 b / plain,
             );
         }

@@ -66,14 +66,8 @@ impl Block {
             let is = |name| word.eq_ignore_ascii_case(name);
             token.kind == TokenKind::Word && (is("node") || is("curve"))
         };
-        let starts = (0..inside.len()).filter(|i| begins(&inside[*i]));
-        // A node may be called `node`.
-        let starts: Vec<usize> = starts.fold(Vec::new(), |mut starts, at| {
-            if starts.last().is_none_or(|last| last + 1 < at) {
-                starts.push(at);
-            }
-            starts
-        });
+        // No node may be called as such a word.
+        let starts: Vec<usize> = (0..inside.len()).filter(|i| begins(&inside[*i])).collect();
         for (i, &start) in starts.iter().enumerate() {
             let end = starts.get(i + 1).copied().unwrap_or(inside.len());
             let item = &inside[start..end];

@@ -11,8 +11,10 @@ use std::ops::Range;
 pub enum Start {
     /// At a node of its own.
     Free,
-    /// At a node that is there. At the end of a single curve it goes on along that one.
+    /// At a node that is there.
     Node(usize),
+    /// At a node that is there. If that is the end of a single curve then this one is made longer.
+    End(usize),
     /// On a curve between two of its nodes, where it gets a new one.
     Between {
         /// The curve's index.
@@ -55,7 +57,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
         let start = match &limb.start {
             Start::Free => None,
             Start::Same => Some(before.clone()?),
-            Start::Node(index) => Some(block.nodes.get(*index)?.name.clone()),
+            Start::Node(index) | Start::End(index) => Some(block.nodes.get(*index)?.name.clone()),
             Start::Between {
                 curve,
                 span,
@@ -75,7 +77,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
         }
         let first = start.clone().or_else(|| own.first().cloned())?;
         let end = match &limb.start {
-            Start::Node(_) => end_of_curve(&block, &first),
+            Start::End(_) => end_of_curve(&block, &first),
             _ => None,
         };
         // Two new curves that begin at one end branch there.

@@ -61,9 +61,9 @@ const WAYS: [(&str, usize); 7] = [
         "surface a, radius 1\ndefine limb x {\n  skeleton a, part { node A <x 0 0> node B <x 1 0> curve A B }\n}\nlimb 9\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  curve C E\n}\nobject group\n  skeleton a, t { node A <0 9 0> node B <2 9 0> curve A B }\nclose\n",
         1,
     ),
-    // A node called as the word is.
+    // A node whose name begins as the word does.
     (
-        "surface a, radius 1\nskeleton a, s {\n  node node <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve node B C\n  curve B D\n  curve C E\n}\n",
+        "surface a, radius 1\nskeleton a, s {\n  node nodes <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve nodes B C\n  curve B D\n  curve C E\n}\n",
         0,
     ),
     // Letters of several bytes.
@@ -223,7 +223,7 @@ fn curves_and_nodes_are_taken_away_and_come() {
         let limbs = [
             limb(between(0.75)),
             limb(between(0.25)),
-            limb(Start::Node(3)),
+            limb(Start::End(3)),
         ];
         let more = extend(&text, span, &limbs, 0.01).unwrap();
         let left = changed(&text, which, &more);

@@ -46,10 +46,10 @@ fn a_block_is_read() {
     assert_eq!(&TEXT[block.nodes[1].span.clone()], "node neck <1 0 0>");
     assert_eq!(&TEXT[block.curves[1].span.clone()], "curve neck foot");
     assert_eq!(&TEXT[block.close..], "}\nrotate animal 0 90 0\n");
-    let text = "skeleton a, b { node node <0 0 0> node b <1 0 0> curve node b }";
+    let text = "skeleton a, b { node nodes <0 0 0> node b <1 0 0> curve nodes b }";
     let block = Block::read(text, 0..text.len()).unwrap();
     assert_eq!((block.nodes.len(), block.curves.len()), (2, 1));
-    assert_eq!(block.curves[0].names[0].0, "node");
+    assert_eq!(block.curves[0].names[0].0, "nodes");
     for bad in [
         "",
         "sphere a 1, 0 0 0",
@@ -69,14 +69,20 @@ fn a_limb_goes_on_or_branches() {
         nodes: vec![node(4.0, 0.5), node(5.126, 0.0)],
     };
     let lines = "    node n5 <4 0.5 0> radius 0.25\n    node n6 <5.13 0 0> radius 0.25\n";
-    let text = added(&[limb(Start::Node(2))]);
+    let text = added(&[limb(Start::End(2))]);
     assert!(text.contains("curve head neck tail n5 n6\n"), "{text}");
     assert!(
         text.contains(&format!("curve neck foot\n{lines}}}")),
         "{text}"
     );
-    let text = added(&[limb(Start::Node(0))]);
+    let text = added(&[limb(Start::End(0))]);
     assert!(text.contains("curve n6 n5 head neck tail\n"), "{text}");
+    // Or branches there, at a corner.
+    let text = added(&[limb(Start::Node(2))]);
+    assert!(
+        text.contains(&format!("{lines}    curve tail n5 n6\n}}")),
+        "{text}"
+    );
     let text = added(&[limb(Start::Node(1))]);
     assert!(
         text.contains(&format!("{lines}    curve neck n5 n6\n}}")),
@@ -99,7 +105,7 @@ fn a_limb_goes_on_or_branches() {
     assert!(text.contains("    curve n5 n6 n7\n"), "{text}");
     assert!(text.contains("    curve n5 n8 n9\n}"), "{text}");
     // Both sides of an end: one goes on, the other branches.
-    let text = added(&[limb(Start::Node(3)), limb(Start::Same)]);
+    let text = added(&[limb(Start::End(3)), limb(Start::Same)]);
     assert!(text.contains("curve neck foot n5 n6\n"), "{text}");
     assert!(text.contains("    curve foot n7 n8\n}"), "{text}");
     let nowhere = extend(TEXT, span(), &[limb(Start::Node(9))], 0.01);

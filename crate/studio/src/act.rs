@@ -289,7 +289,7 @@ impl App {
                 self.opened_or(ctx, result);
             }
             Command::DrawNew => {
-                let text = page::fresh(self.is_high(ctx));
+                let text = page::fresh(self.ratio(ctx));
                 let result = self.work.open_page(text);
                 self.opened_or(ctx, result);
                 self.pencil.take(Some(Tool::Draw));
@@ -322,7 +322,7 @@ impl App {
         let is_one = session.project().files.len() == 1 && session.assets().is_empty();
         if is_one && page::is_empty(session.text(0)) {
             session.set_camera(None);
-            let text = page::fresh(self.is_high(ctx));
+            let text = page::fresh(self.ratio(ctx));
             self.carry_out(ctx, Command::Step { file: 0, text }, now);
         } else if matches!(self.work.origin, work::Origin::Example | work::Origin::Link)
             && !Pencil::has_skeleton(session)
@@ -331,10 +331,18 @@ impl App {
         }
     }
 
-    /// Whether a picture to draw on has more height than width.
-    fn is_high(&self, ctx: &Context) -> bool {
+    /// Height of the picture to draw on, to its width: on a narrow page it has all the place between the bars.
+    fn ratio(&self, ctx: &Context) -> f64 {
         let size = ctx.content_rect().size();
-        size.y > size.x
+        if size.y <= size.x {
+            return 0.75;
+        }
+        let bars = if crate::screen::is_narrow(ctx) {
+            150.0
+        } else {
+            300.0
+        };
+        f64::from((size.y - bars).max(1.0) / size.x.max(1.0))
     }
 
     /// Shows a notice if an edit was refused.

@@ -60,15 +60,6 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
     });
     window.add_event_listener_with_callback("keydown", keys.as_ref().unchecked_ref())?;
     keys.forget();
-    // A pen's pressure, which the window's own events do not tell.
-    let pen = Closure::<dyn Fn(web_sys::PointerEvent)>::new(|event: web_sys::PointerEvent| {
-        platform::note_pen(&event);
-    });
-    for event in ["pointerdown", "pointermove"] {
-        let pen = pen.as_ref().unchecked_ref();
-        window.add_event_listener_with_callback_and_bool(event, pen, true)?;
-    }
-    pen.forget();
     platform::watch_pens();
     // A page that goes out of sight may never come back; phones end it without another word.
     for event in ["pagehide", "visibilitychange"] {

@@ -98,7 +98,8 @@ const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 51] = [
+pub const ALL: [Example; 52] = [
+    example!(SEA, "Tide line", "a cowrie, two starfish and pebbles", "tide"),
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -230,7 +231,8 @@ mod tests {
     #[test]
     fn links_lead_to_examples() {
         let found = |hash: &str| of_hash(hash).map(find);
-        assert_eq!(found("#example=cowrie"), Some(Some(0)));
+        assert_eq!(found("#example=tide"), Some(Some(0)));
+        assert_eq!(found("#example=cowrie"), Some(Some(1)));
         assert_eq!(found("#example=no-such"), Some(None));
         assert_eq!(found("#example"), None);
         assert_eq!(found("#lab=kernels"), None);

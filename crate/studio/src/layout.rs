@@ -10,8 +10,8 @@ use crate::settings::Show;
 use crate::theme::{self, STRIP};
 use crate::view::{self, Grasp, Scenery};
 use crate::{
-    bar, download, files, fit_panel, intake, notice, pencil, places, platform, problems, screen,
-    size, sliders, status, timeline, tray,
+    bar, download, files, fit_panel, intake, lamp, notice, pencil, places, platform, problems,
+    screen, size, sliders, status, timeline, tray,
 };
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
@@ -418,8 +418,18 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
             touch: app.touch == Some(true),
         };
         app.pencil.show(ui, rect, &picture, &around, commands);
+        if let Some(pair) = app.pencil.other(session)
+            && session.enabled()
+            && pencil::bar::turn(ui, rect, pair)
+        {
+            app.pencil.turn(session, commands);
+        }
     } else {
         app.hands.show(ui, rect, &picture, &around, commands);
+        let is_well = session.enabled() && session.is_compiled() && session.errors() == 0;
+        if is_well && app.dialog.is_none() && lamp::is_dark(&session.compiled().scene) {
+            lamp::show(ui, rect, session, commands);
+        }
         if session.enabled() && app.dialog.is_none() {
             pencil::bar::start(ui, rect, commands);
         }
@@ -427,6 +437,11 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     if let Some(notice) = &app.notice {
         notice::show(ui, place, notice, commands);
     }
+    let noted = places::all(ui.ctx());
+    let lying = ["notice", "draw other"]
+        .iter()
+        .filter_map(|name| noted.get(*name));
+    app.pencil.keep_off(lying.copied().collect());
 }
 
 /// A narrow page below the bar.

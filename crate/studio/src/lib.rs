@@ -42,6 +42,7 @@ pub mod history;
 pub mod indent;
 pub mod intake;
 pub mod keyboard;
+pub mod lamp;
 pub mod layout;
 pub mod marks;
 pub mod mesh_export;

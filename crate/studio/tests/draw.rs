@@ -112,7 +112,7 @@ fn strokes_become_a_body_and_limbs_in_pairs() {
 fn a_stroke_from_an_end_goes_on_and_one_that_ends_on_flesh_grows_from_there() {
     let mut window = body();
     let count = skeletons(&window.text())[0].nodes.len();
-    stroke(&mut window, &[(0.7, 0.5), (0.8, 0.3)]);
+    stroke(&mut window, &[(0.7, 0.5), (0.82, 0.42)]);
     let text = window.text();
     let skeleton = &skeletons(&text)[0];
     assert_eq!(skeleton.curves.len(), 1, "{text}");
@@ -132,6 +132,114 @@ fn a_stroke_from_an_end_goes_on_and_one_that_ends_on_flesh_grows_from_there() {
         skeleton.curves[0].contains(&skeleton.curves[1][0]),
         "{text}"
     );
+}
+
+/// Height of the ground in a text.
+fn ground(text: &str) -> f64 {
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("ground "))
+        .unwrap();
+    line.rsplit(' ').next().unwrap().parse().unwrap()
+}
+
+#[test]
+fn legs_grow_beside_an_end_and_the_tail_goes_on_from_it() {
+    let mut window = body();
+    // Down from the end: legs, which the ground goes down with.
+    let lying = ground(&window.text());
+    stroke(&mut window, &[(0.305, 0.51), (0.3, 0.72)]);
+    let text = window.text();
+    let legs = skeletons(&text)[0].clone();
+    assert_eq!(legs.curves.len(), 3, "{text}");
+    let low = legs
+        .nodes
+        .iter()
+        .map(|n| n.position.y - n.radius)
+        .fold(f64::INFINITY, f64::min);
+    assert!(
+        ground(&text) < lying - 0.3 && (ground(&text) - low).abs() < 0.1,
+        "{text}"
+    );
+    // Their plane is at least the body's radius away.
+    let foot = legs.nodes[legs.curves[1][legs.curves[1].len() - 1]];
+    assert!(
+        foot.position.x.abs() > 0.8 * legs.nodes[legs.curves[0][0]].radius,
+        "{text}"
+    );
+    // Out from the same end: a tail, in the mirror.
+    stroke(&mut window, &[(0.3, 0.5), (0.2, 0.45), (0.15, 0.4)]);
+    let text = window.text();
+    let tail = skeletons(&text)[0].clone();
+    assert_eq!(tail.curves.len(), 4, "{text}");
+    for node in &tail.nodes[legs.nodes.len()..] {
+        assert_eq!(node.position.x, 0.0, "{text}");
+    }
+    assert!(
+        tail.curves
+            .iter()
+            .filter(|along| along.contains(&tail.curves[3][0]))
+            .count()
+            >= 3
+    );
+}
+
+#[test]
+fn a_stroke_round_a_corner_leaves_the_flesh_as_it_is() {
+    let mut window = body();
+    let before = skeletons(&window.text())[0].clone();
+    stroke(&mut window, &[(0.7, 0.5), (0.71, 0.25)]);
+    let text = window.text();
+    let after = skeletons(&text)[0].clone();
+    assert_eq!(after.curves.len(), 2, "{text}");
+    assert_eq!(after.curves[0], before.curves[0]);
+    assert_eq!(after.nodes[..before.nodes.len()], before.nodes);
+    assert!(before.curves[0].contains(&after.curves[1][0]), "{text}");
+    assert!(
+        after.nodes.iter().all(|node| node.position.x == 0.0),
+        "{text}"
+    );
+    // A short stroke along the last one is a head, thicker than its neck.
+    let neck = after.nodes[after.nodes.len() - 1];
+    stroke(&mut window, &[(0.71, 0.25), (0.713, 0.16)]);
+    let head = skeletons(&window.text())[0].clone();
+    let tip = head.nodes[head.nodes.len() - 1];
+    assert!(tip.radius > 1.3 * neck.radius, "{}", window.text());
+}
+
+#[test]
+fn the_last_stroke_is_made_a_pair_or_single() {
+    let mut window = body();
+    stroke(&mut window, &[(0.5, 0.5), (0.5, 0.3)]);
+    let pair = window.text();
+    assert_eq!(skeletons(&pair)[0].curves.len(), 3, "{pair}");
+    let turn = window.place("draw other").center();
+    window.click(turn);
+    window.steps(3);
+    let single = window.text();
+    let fin = skeletons(&single)[0].clone();
+    assert_eq!(fin.curves.len(), 2, "{single}");
+    assert!(
+        fin.nodes.iter().all(|node| node.position.x == 0.0),
+        "{single}"
+    );
+    window.click(turn);
+    window.steps(3);
+    assert_eq!(window.text(), pair);
+    window.click(turn);
+    window.steps(3);
+    assert_eq!(window.text(), single);
+    // Still one step.
+    window.key(Modifiers::COMMAND, Key::Z);
+    window.steps(3);
+    assert_eq!(skeletons(&window.text())[0].curves.len(), 1);
+    // Of a text that something else changed nothing is turned: the place belongs to the picture again.
+    let text = window.text();
+    window.press(turn, true);
+    window.steps(1);
+    window.press(turn, false);
+    window.steps(3);
+    assert_eq!(window.text(), text);
 }
 
 #[test]

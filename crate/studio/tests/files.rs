@@ -55,7 +55,7 @@ impl egui::DroppedFile for Dropped {
 #[test]
 fn a_text_dropped_on_an_example_is_a_new_work_and_on_own_work_a_tab() {
     let mut window = Window::open(1000.0, 700.0);
-    assert_eq!(names(&window), ["cowrie.rat"]);
+    assert_eq!(names(&window), ["tide.rat"]);
     let file = Dropped(PathBuf::from("/home/me/bone.rat"), TEXT.as_bytes().to_vec());
     window
         .harness

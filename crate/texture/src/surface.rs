@@ -86,16 +86,28 @@ pub fn blend(parts: &[(f64, Surface)]) -> Option<Surface> {
         }
     };
     let sum: f64 = parts.iter().map(|&(w, _)| share(w)).sum();
-    let mean = |of: &dyn Fn(&Surface) -> f64| {
-        parts
-            .iter()
-            .map(|(w, surface)| share(*w) / sum * of(surface))
-            .sum::<f64>()
-    };
-    let colour = |of: &dyn Fn(&Surface) -> Vec3| {
-        Vec3::from_array([0, 1, 2].map(|i| mean(&|surface| f64::from(of(surface)[i])) as f32))
-    };
-    let normal = DVec3::from_array([0, 1, 2].map(|i| mean(&|surface| surface.normal[i])));
+    let mut colours = [[0.0; 3]; 5];
+    let (mut index, mut shine, mut normal) = (0.0, 0.0, DVec3::ZERO);
+    for (weight, surface) in parts {
+        let share = share(*weight) / sum;
+        let own = [
+            surface.diffuse,
+            surface.ambient,
+            surface.specular,
+            surface.reflective,
+            surface.transparent,
+        ];
+        for (sums, colour) in colours.iter_mut().zip(own) {
+            for (sum, channel) in sums.iter_mut().zip(colour.to_array()) {
+                *sum += share * f64::from(channel);
+            }
+        }
+        index += share * f64::from(surface.index);
+        shine += share * f64::from(surface.shine);
+        normal += share * surface.normal;
+    }
+    let [diffuse, ambient, specular, reflective, transparent] =
+        colours.map(|colour| Vec3::from_array(colour.map(|channel| channel as f32)));
     let strongest = parts.iter().fold(&parts[0], |best, part| {
         if counts(part.0) > counts(best.0) {
             part
@@ -104,13 +116,13 @@ pub fn blend(parts: &[(f64, Surface)]) -> Option<Surface> {
         }
     });
     Some(Surface {
-        diffuse: colour(&|s| s.diffuse),
-        ambient: colour(&|s| s.ambient),
-        specular: colour(&|s| s.specular),
-        reflective: colour(&|s| s.reflective),
-        transparent: colour(&|s| s.transparent),
-        index: mean(&|s| f64::from(s.index)) as f32,
-        shine: mean(&|s| f64::from(s.shine)) as f32,
+        diffuse,
+        ambient,
+        specular,
+        reflective,
+        transparent,
+        index: index as f32,
+        shine: shine as f32,
         normal: normal.normalize_or(strongest.1.normal),
     })
 }

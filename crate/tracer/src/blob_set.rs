@@ -2,11 +2,14 @@
 use crate::beam::Beam;
 use crate::hierarchy::Hierarchy;
 use crate::nearby::{Extent, NearBlob, Nearby, Other};
-use crate::soft::NEXT_TO_NOTHING;
 use field::{Blob, ChainBlob, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::ops::Range;
+
+/// Largest sum of the fields that slabs leave out of their lists, in T: below the accuracy of root isolation, which uses those
+/// lists.
+pub const NEXT_TO_NOTHING: f64 = 1e-10;
 
 /// Field, as a fraction of T divided by the number of primitives, at which a blob's reach ends.
 const BLOBS_LEFT_OUT: f64 = 2e-6;

@@ -195,6 +195,7 @@ fn follow(
         let mut packet = Seen {
             rays: core::array::from_fn(|i| shots[i.min(shots.len() - 1)].ray),
             costs: [1.0; PACKET],
+            used: shots.len(),
             ..Seen::default()
         };
         packet.hits[..hits.len()].copy_from_slice(hits);

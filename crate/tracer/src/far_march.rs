@@ -15,11 +15,10 @@ use crate::blob_march::{
     Backdrop, Bounded, LEVEL, MarchRays, Marched, RayBlob, RayBlobs, RayInterval, march_before,
     mask, values,
 };
-use crate::flesh::{Flesh, NEAR_ENOUGH};
 use crate::layout::PACKET;
-use crate::quick::{COARSEST_OF_BLOBS, FINEST};
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator};
+use crate::surface_samples::{COARSEST_OF_BLOBS, FINEST, NEAR_ENOUGH, SurfaceSamples};
 use crate::walk::Quest;
 use field::far_field::{Cell, DEGREE, LOOSE, power};
 use field::{Blob, Cut, FarField, Primitive, Real, THRESHOLD};
@@ -90,7 +89,7 @@ pub struct FarWork {
     strong: Vec<u32>,
     weak: Vec<u32>,
     /// Surface samples at the hits of the last packet.
-    pub flesh: Flesh,
+    pub flesh: SurfaceSamples,
     pub evaluations: u64,
     /// Rays searched again in double precision.
     pub doubts: u64,
@@ -678,7 +677,6 @@ fn leaves(axis: &Ray, t: f64, cell: &Cell) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
     use crate::soft::Soft;
     use crate::tests::common::{Numbers, clothe, element, empty, soft};
     use field::Kernel;
@@ -711,7 +709,7 @@ mod tests {
         let mut numbers = Numbers(21);
         for kernel in [Kernel::Cauchy, Kernel::Squared, Kernel::Cubed] {
             let soft = cloud(kernel, 200, &mut numbers);
-            let mut scratch = Scratch::default();
+            let mut work = FarWork::default();
             let (mut taken, mut hits, mut differ) = (0, 0, 0);
             for _ in 0..60 {
                 let eye = numbers.vector().normalize() * 4.0;
@@ -721,8 +719,8 @@ mod tests {
                     direction: (aim + numbers.vector() * 4e-3 - eye).normalize(),
                 });
                 let limits = [f64::INFINITY; PACKET];
-                let met = soft.far_first(0, &rays, &limits, 255, Quest::First, &mut scratch);
-                let entered = soft.far_first(0, &rays, &limits, 255, Quest::Entry, &mut scratch);
+                let met = soft.far_first(0, &rays, &limits, 255, Quest::First, &mut work);
+                let entered = soft.far_first(0, &rays, &limits, 255, Quest::Entry, &mut work);
                 let Some(met) = met else { continue };
                 taken += 1;
                 // Rays start outside. Grazing ones may be told differently, as without noise.
@@ -733,7 +731,7 @@ mod tests {
                     assert_eq!(met >> lane & 1 != 0, exact.is_some(), "{kernel:?} {ray:?}");
                     let Some((t, gradient)) = exact else { continue };
                     hits += 1;
-                    let flesh = &scratch.far.flesh;
+                    let flesh = &work.flesh;
                     // The second query has not changed the first one's samples.
                     let off = (flesh.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
                     assert!(off < 2e-4 * gradient.length(), "{kernel:?} {off}");
@@ -753,7 +751,7 @@ mod tests {
         let mut numbers = Numbers(4);
         let soft = cloud(Kernel::Cauchy, 100, &mut numbers);
         let center = soft.primitives[0].blob_middle();
-        let mut scratch = Scratch::default();
+        let mut work = FarWork::default();
         let mut first = |origin: DVec3, limit: f64| {
             let ray = Ray {
                 origin,
@@ -765,7 +763,7 @@ mod tests {
                 &[limit; PACKET],
                 255,
                 Quest::First,
-                &mut scratch,
+                &mut work,
             )
         };
         assert_eq!(first(center, f64::INFINITY), None);

@@ -6,72 +6,18 @@
 use crate::blob_march::mask;
 use crate::lanes::Lanes;
 use crate::layout::PACKET;
-use crate::quick::FINEST;
 use crate::ray::Ray;
 use crate::scratch::Scratch;
 use crate::slabs::{Slabs, Spent};
 use crate::soft::Soft;
-use crate::walk::Found;
+use crate::surface_samples::{FINEST, NEAR_ENOUGH, SurfaceSamples};
+use crate::walk::{Bundle, Found, Quest, Walk};
 use field::{Jet, Real, THRESHOLD};
 use glam::DVec3;
 use wide::f32x8;
 
-/// Samples of the surface at the hits of a packet.
-#[derive(Default)]
-pub struct Flesh {
-    /// Ray parameter of each hit, refined.
-    pub t: [f64; PACKET],
-    /// Gradient of the field.
-    pub gradient: [f32x8; 3],
-    /// Finishes, with each one's share of the (positive) field in every lane.
-    pub weights: Vec<(u32, f32x8)>,
-}
-
-impl Flesh {
-    /// The gradients of the field, hit by hit.
-    pub fn gradients(&self) -> [DVec3; PACKET] {
-        let gradient = self.gradient.map(f32x8::to_array);
-        core::array::from_fn(|i| DVec3::from_array([0, 1, 2].map(|k| f64::from(gradient[k][i]))))
-    }
-}
-
 /// Half the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)).
 const COARSEST_OF_SPANS: f64 = 1e-4;
-
-/// Primitives that are evaluated at a packet's hits.
-#[derive(Default)]
-pub(crate) struct Active {
-    /// Primitive and lanes, a bit each.
-    list: Vec<(u32, u32)>,
-    /// For each primitive the packet in which it was last listed, and its index there.
-    stamps: Vec<(u32, u32)>,
-    stamp: u32,
-}
-
-impl Active {
-    /// Lists the primitives that count in some slabs, each for its lanes; with `shared` also those that interpolants stand for.
-    fn collect(&mut self, slabs: &Slabs<'_>, places: &[(u32, u32)], shared: bool, count: usize) {
-        self.stamps.resize(count, (0, 0));
-        self.stamp = self.stamp.wrapping_add(1);
-        if self.stamp == 0 {
-            self.stamps.fill((0, 0));
-            self.stamp = 1;
-        }
-        self.list.clear();
-        for &(slab, lanes) in places {
-            slabs.each(slab, shared, |p| {
-                let (stamp, at) = &mut self.stamps[p as usize];
-                if *stamp == self.stamp {
-                    self.list[*at as usize].1 |= lanes;
-                } else {
-                    (*stamp, *at) = (self.stamp, self.list.len() as u32);
-                    self.list.push((p, lanes));
-                }
-            });
-        }
-        self.list.sort_unstable();
-    }
-}
 
 /// A packet's hits, before refinement.
 struct Hits<'a> {
@@ -92,6 +38,23 @@ struct Hits<'a> {
 }
 
 impl Soft {
+    /// Returns the crossings of a bundle with a body's surface, by traversing the slabs of its beam.
+    pub fn walk(
+        &self,
+        body: u32,
+        slabs: &mut Slabs<'_>,
+        bundle: Bundle<'_>,
+        quest: Quest,
+        scratch: &mut Scratch,
+    ) -> Vec<Found> {
+        slabs.tidy();
+        let sight = self.sight(&self.bodies[body as usize]);
+        let (found, evaluations) =
+            Walk::<f32x8>::new(sight, slabs, bundle, quest, &mut scratch.memory).run();
+        scratch.evaluations += evaluations;
+        found
+    }
+
     /// Moves the hits of a packet onto the surface and samples it there; the result is `scratch.flesh`. Lanes without a hit are
     /// meaningless. Ray parameters are counted from `base`.
     pub fn flesh(
@@ -173,7 +136,13 @@ impl Soft {
     }
 
     /// Returns the hits that an error of the field may move by more than half the tolerance, a bit each.
-    fn off(&self, hits: &Hits<'_>, flesh: &Flesh, base: f64, error: &[f64; PACKET]) -> u32 {
+    fn off(
+        &self,
+        hits: &Hits<'_>,
+        flesh: &SurfaceSamples,
+        base: f64,
+        error: &[f64; PACKET],
+    ) -> u32 {
         let gradients = flesh.gradients();
         (0..PACKET).fold(0, |all, i| {
             let tolerance = 0.1 * self.pixel * (base + flesh.t[i]);
@@ -328,6 +297,3 @@ impl Soft {
 const MOST_POLISHING: usize = 3;
 /// Most primitives with which hits are refined in double precision.
 const MOST_EXACT: usize = 1 << 16;
-/// Difference of the field from T within which normal and colours are those of the surface: they change by about 0.1 % on the way
-/// there, less than a picture shows.
-pub const NEAR_ENOUGH: f32 = 1e-3;

@@ -1,9 +1,10 @@
 //! Bodies whose surface is that of any implicit function: certified root isolation along single rays.
 //!
 //! On a piece of a ray with the middle m and the half-length h Taylor's theorem says
-//! `|f(m+x) − f(m) − f′(m)·x| ≤ C·x²/2`, where C bounds the curvature in the ball around the piece. So a piece has no crossing
-//! if the function's range in that ball leaves the threshold out, or if `|f(m) − T| > |f′(m)|·h + C·h²/2`; and at most one if
-//! `|f′(m)| > C·h`, which the signs at its ends then tell. Any other piece is halved, down to a resolution.
+//! `|f(m+x) − f(m) − f′(m)·x| ≤ C·x²/2 + J·|x|`, where C bounds the curvature in the ball around the piece, and J the jumps of the
+//! gradient. So a piece has no crossing if the function's range in that ball leaves the threshold out, or if
+//! `|f(m) − T| > (|f′(m)| + J)·h + C·h²/2`; and at most one if `|f′(m)| > C·h + J`, which the signs at its ends then tell. Any other
+//! piece is halved, down to a resolution.
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::unit::Unit;
@@ -107,21 +108,27 @@ pub(crate) fn crossings(
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let center = ray.at(middle);
         let radius = half * (1.0 + 1e-9) + 4e-16 * (center.abs().max_element() + middle);
-        let enclosure = function.enclose(Ball { center, radius });
+        let ball = Ball { center, radius };
+        if function.most(ball) < THRESHOLD {
+            continue;
+        }
+        let bounds = function.variation(None, ball);
         evaluations += 1;
-        let [least, most] = enclosure.value;
+        let [least, most] = bounds.range.value;
         if least > THRESHOLD || most < THRESHOLD {
             continue;
         }
         let jet = function.jet(center);
         let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
-        let bend = enclosure.curvature * radius;
-        let change = (slope.abs() + 0.5 * bend) * radius + VALUE_ERROR * (1.0 + jet.value.abs());
-        if (jet.value - THRESHOLD).abs() > change {
+        // How much the slope may change between the middle and another point of the piece.
+        let bend = bounds.curvature * radius + bounds.jump;
+        let change = (slope.abs() + 0.5 * bounds.curvature * radius + bounds.jump) * radius;
+        let change = change.min(bounds.range.slope * radius) + bounds.step;
+        if (jet.value - THRESHOLD).abs() > change + VALUE_ERROR * (1.0 + jet.value.abs()) {
             continue;
         }
         // False if the bound is infinite.
-        let monotone = slope.abs() > bend;
+        let monotone = slope.abs() > bend && bounds.step == 0.0;
         if !monotone && b - a > along.resolution && left > 0 {
             left -= 1;
             stack.push([middle, b]);

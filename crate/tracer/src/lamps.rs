@@ -51,6 +51,14 @@ pub(crate) struct Received {
     pub lit: u32,
 }
 
+impl Received {
+    /// The share of its light that the ground shows: that which nothing shadows, all where no light reaches at all.
+    pub fn of_ground(&self) -> Vec3 {
+        let share = self.light / self.free.max(Vec3::splat(1e-6));
+        Vec3::select(self.free.cmpgt(Vec3::ZERO), share, Vec3::ONE)
+    }
+}
+
 impl Draw {
     /// Two numbers in [0, 1) for a purpose; `None` for the middle.
     fn numbers(self, branch: u32, purpose: Purpose) -> Option<[f64; 2]> {

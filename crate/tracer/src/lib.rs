@@ -120,6 +120,7 @@ mod nearby;
 mod paths;
 mod pick;
 pub mod picture;
+mod plain;
 mod quick;
 mod ray;
 pub mod reference;
@@ -142,6 +143,7 @@ mod solids;
 mod spans;
 mod square;
 mod stats;
+mod surface_samples;
 #[cfg(test)]
 mod tests;
 pub mod tile;

@@ -1,7 +1,9 @@
 //! The material of surface points: of which elements it is mixed, and which medium is behind.
 use crate::material::Look;
+use crate::material::join_pieces;
 use crate::media::Way;
 use crate::rich::Rich;
+use crate::soft::MakeUp;
 use crate::world::{Owner, SurfacePoint, World};
 use glam::DVec3;
 
@@ -20,11 +22,18 @@ impl World {
                 finish
             }
             Owner::Soft(body) => {
-                let (only, first) = rich.only[body as usize];
-                if only && materials.is_even(first) {
+                let MakeUp {
+                    is_even,
+                    first,
+                    is_pieced,
+                } = rich.make_up[body as usize];
+                if is_even && materials.is_even(first) {
                     return materials.plain(first, hit.normal);
                 }
                 self.soft.shares(body, hit.position, &mut shares);
+                if is_pieced {
+                    join_pieces(&mut shares);
+                }
                 first
             }
             Owner::Function(number) => {
@@ -42,10 +51,11 @@ impl World {
                         share,
                     )
                 }));
+                join_pieces(&mut shares);
                 first
             }
         };
-        let mixed = materials.mixed(shares, hit.position, hit.normal);
+        let mixed = materials.mixed(&shares, hit.position, hit.normal);
         mixed.unwrap_or_else(|| materials.plain(first, hit.normal))
     }
 

@@ -150,36 +150,33 @@ impl Materials {
 
     /// The material where some elements, each given with its finish and its share, make a surface; shares need not sum to
     /// 1. Rays pass by as the element with the largest share says.
-    pub fn mixed(
-        &self,
-        mut shares: Vec<(u32, u32, f64)>,
-        point: DVec3,
-        normal: DVec3,
-    ) -> Option<Look> {
-        // Pieces of a limb are one element.
-        shares.sort_unstable_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
-        shares.dedup_by(|next, kept| {
-            let same = (next.0, next.1) == (kept.0, kept.1);
-            if same {
-                kept.2 += next.2;
-            }
-            same
-        });
+    pub fn mixed(&self, shares: &[(u32, u32, f64)], point: DVec3, normal: DVec3) -> Option<Look> {
         let most = shares.iter().map(|s| s.2).fold(0.0, f64::max);
         let counts = |s: &&(u32, u32, f64)| s.2 > NEGLIGIBLE * most || shares.len() == 1;
-        let looks = shares
-            .iter()
-            .filter(counts)
-            .map(|&(element, finish, share)| {
-                let look = self.of_element(finish, element, point, normal);
-                (share, look)
-            });
-        let looks: Vec<(f64, Look)> = looks.collect();
-        let parts: Vec<(f64, Surface)> = looks.iter().map(|(s, l)| (*s, l.surface)).collect();
-        let total: f64 = looks.iter().map(|(s, _)| s).sum();
-        let (_, strongest) = looks.iter().reduce(|a, b| if b.0 > a.0 { b } else { a })?;
-        let spread = |(share, look): &(f64, Look)| share / total * f64::from(look.dispersion);
-        let dispersion = looks.iter().map(spread).sum::<f64>() as f32;
+        let mut parts: Vec<(f64, Surface)> = Vec::new();
+        // The finishes of those parts that stand for all elements of an even finish.
+        let mut even: Vec<(u32, usize)> = Vec::new();
+        let mut strongest: Option<(f64, Skip)> = None;
+        let (mut total, mut dispersion) = (0.0, 0.0);
+        for &(element, finish, share) in shares.iter().filter(counts) {
+            let material = &self.finishes[finish as usize];
+            total += share;
+            dispersion += share * f64::from(material.dispersion);
+            if strongest.is_none_or(|(most, _)| share > most) {
+                strongest = Some((share, material.skip));
+            }
+            if !self.is_even(finish) {
+                let surface = self.of_element(finish, element, point, normal).surface;
+                parts.push((share, surface));
+            } else if let Some(&(_, part)) = even.iter().find(|(own, _)| *own == finish) {
+                parts[part].0 += share;
+            } else {
+                even.push((finish, parts.len()));
+                parts.push((share, self.plain(finish, normal).surface));
+            }
+        }
+        let (_, skip) = strongest?;
+        let dispersion = (dispersion / total) as f32;
         Some(Look {
             surface: blend(&parts)?,
             dispersion: if dispersion.is_finite() {
@@ -187,9 +184,21 @@ impl Materials {
             } else {
                 0.0
             },
-            skip: strongest.skip,
+            skip,
         })
     }
+}
+
+/// Adds up the shares of pieces of one element, as those of a limb.
+pub(crate) fn join_pieces(shares: &mut Vec<(u32, u32, f64)>) {
+    shares.sort_unstable_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    shares.dedup_by(|next, kept| {
+        let same = (next.0, next.1) == (kept.0, kept.1);
+        if same {
+            kept.2 += next.2;
+        }
+        same
+    });
 }
 
 /// Whether pictures of a finish need more than Phong's model.

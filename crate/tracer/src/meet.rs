@@ -4,7 +4,6 @@
 //! other functions are asked one after the other, each only as far as the rays still go.
 use crate::beam::Beam;
 use crate::beams::Beams;
-use crate::flesh::Flesh;
 use crate::function::{FunctionBody, RayQuery, crossings, range};
 use crate::hard::Crossing;
 use crate::layout::PACKET;
@@ -17,6 +16,7 @@ use crate::shade::Finish;
 use crate::slabs::Slabs;
 use crate::square::Square;
 use crate::stats::Stats;
+use crate::surface_samples::SurfaceSamples;
 use crate::walk::{Bundle, Quest};
 use crate::workspace::Workspace;
 use crate::world::{SurfacePoint, World};
@@ -29,6 +29,8 @@ pub(crate) struct Seen {
     pub hits: [Option<SurfacePoint>; PACKET],
     /// What finding them cost.
     pub costs: [f32; PACKET],
+    /// The first of them count, so many; the others repeat some ray.
+    pub used: usize,
 }
 
 impl Default for Seen {
@@ -41,6 +43,7 @@ impl Default for Seen {
             rays: [ray; PACKET],
             hits: [None; PACKET],
             costs: [0.0; PACKET],
+            used: PACKET,
         }
     }
 }
@@ -229,7 +232,7 @@ impl World {
         let Scratch {
             quick, evaluations, ..
         } = &mut work.scratch;
-        let mut tell = |looked: Looked, flesh: &Flesh| {
+        let mut tell = |looked: Looked, flesh: &SurfaceSamples| {
             *evaluations += looked.evaluations;
             if looked.met != 0 {
                 self.soft_points(
@@ -265,9 +268,15 @@ impl World {
     /// Returns false if this is not the way.
     pub fn meet_far(&self, body: u32, alive: u32, seen: &mut Seen, scratch: &mut Scratch) -> bool {
         let limits = seen.limits();
-        let met = self
-            .soft
-            .far_first(body, &seen.rays, &limits, alive, Quest::First, scratch);
+        let met = self.soft.far_first(
+            body,
+            &seen.rays,
+            &limits,
+            alive,
+            Quest::First,
+            &mut scratch.far,
+        );
+        scratch.evaluations += core::mem::take(&mut scratch.far.evaluations);
         let Some(met) = met else { return false };
         if met != 0 {
             let flesh = &scratch.far.flesh;
@@ -331,7 +340,7 @@ impl World {
         &self,
         body: u32,
         rays: &[Ray; PACKET],
-        flesh: &Flesh,
+        flesh: &SurfaceSamples,
         base: f64,
         met: u32,
         hits: &mut [Option<SurfacePoint>; PACKET],

@@ -6,6 +6,7 @@
 use crate::air::GroundPoint;
 use crate::free::FreeRay;
 use crate::lamps::{Draw, Receiver};
+use crate::layout::PACKET;
 use crate::material::Look;
 use crate::media::Media;
 use crate::meet::Seen;
@@ -26,7 +27,7 @@ const MOST_SKIPPED: u32 = 64;
 const MOST_RAYS: usize = 512;
 
 /// Key of samples that see the ground.
-const GROUND: u32 = 1 << 31;
+pub(crate) const GROUND: u32 = 1 << 31;
 
 /// Kind of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,7 +91,8 @@ impl World {
                 cost: seen.costs[i],
                 ..Sample::BLANK
             }));
-            for (i, (ray, hit)) in seen.rays.iter().zip(&seen.hits).enumerate() {
+            let rays = seen.rays.iter().zip(&seen.hits).take(seen.used);
+            for (i, (ray, hit)) in rays.enumerate() {
                 let path = Path {
                     ray: *ray,
                     weight: Vec3::ONE,
@@ -105,7 +107,7 @@ impl World {
                 wave.push((path, *hit));
             }
         }
-        let most = MOST_RAYS * wave.len();
+        let most = MOST_RAYS * PACKET * seen.len();
         while !wave.is_empty() {
             let [mirrored, passed] = self.shade(rich, &wave, &mut samples, work, stats);
             wave.clear();
@@ -133,7 +135,7 @@ impl World {
         &self,
         rich: &Rich,
         wave: &[(Path, Option<SurfacePoint>)],
-        samples: &mut [[Sample; crate::layout::PACKET]],
+        samples: &mut [[Sample; PACKET]],
         work: &mut Workspace,
         stats: &mut Stats,
     ) -> [Vec<Path>; 2] {
@@ -143,7 +145,16 @@ impl World {
             let mut path = *path;
             let (k, i) = path.owner;
             let sample = &mut samples[k][i];
-            let (ground, clear) = self.through_air(rich, &mut path, hit.as_ref(), sample);
+            let is_in_air = path.media.is_air();
+            let ray = path.ray;
+            let (ground, clear) = self.through_air(
+                rich,
+                &ray,
+                is_in_air,
+                hit.as_ref(),
+                &mut path.weight,
+                sample,
+            );
             if let Some(ground) = ground {
                 receivers.push(self.on_ground(&path, &ground));
                 stops.push(Stop {
@@ -186,11 +197,7 @@ impl World {
             let sample = &mut samples[k][i];
             sample.colour += match stop.ground {
                 None => stop.path.weight * received.light,
-                Some(colour) => {
-                    let share = received.light / received.free.max(Vec3::splat(1e-6));
-                    let lit = received.free.cmpgt(Vec3::ZERO);
-                    colour * Vec3::select(lit, share, Vec3::ONE)
-                }
+                Some(colour) => colour * received.of_ground(),
             };
             if stop.path.kind == Kind::Pixel {
                 sample.key ^= received.lit;
@@ -199,36 +206,38 @@ impl World {
         [mirrored, passed]
     }
 
-    /// Adds what a path sees on its way, and behind it if it meets nothing. Returns the ground where that is nearer than its hit, and
-    /// the share of the hit's light that is left.
-    fn through_air(
+    /// Adds what a ray sees on its way, and behind it if it meets nothing, times a share, which the ray loses light from up to the ground.
+    /// Returns the ground where that is nearer than its hit, and the share of the hit's light that is left.
+    pub fn through_air(
         &self,
         rich: &Rich,
-        path: &mut Path,
+        ray: &Ray,
+        is_in_air: bool,
         hit: Option<&SurfacePoint>,
+        weight: &mut Vec3,
         sample: &mut Sample,
     ) -> (Option<GroundPoint>, f32) {
         let air = &rich.air;
-        let (origin, direction) = (self.unit.world(path.ray.origin), path.ray.direction);
+        let (origin, direction) = (self.unit.world(ray.origin), ray.direction);
         let limit = hit.map_or(f64::INFINITY, |hit| self.unit.length(hit.t));
-        let ground = if path.media.is_air() {
+        let ground = if is_in_air {
             air.ground(origin, direction, limit)
         } else {
             None
         };
         let length = ground.map_or(limit, |ground| ground.t);
         // There is no fog inside of bodies.
-        let (clear, glow) = if path.media.is_air() {
+        let (clear, glow) = if is_in_air {
             air.passes(origin, direction, length)
         } else {
             (1.0, Vec3::ZERO)
         };
-        sample.colour += path.weight * glow;
+        sample.colour += *weight * glow;
         if let Some(ground) = &ground {
-            path.weight *= clear;
-            sample.colour += path.weight * (1.0 - ground.cover) * air.background(direction);
+            *weight *= clear;
+            sample.colour += *weight * (1.0 - ground.cover) * air.background(direction);
         } else if hit.is_none() {
-            sample.colour += path.weight * clear * air.background(direction);
+            sample.colour += *weight * clear * air.background(direction);
         }
         (ground, clear)
     }

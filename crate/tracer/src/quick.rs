@@ -4,12 +4,12 @@
 //! near a packet for each; then [`march`](crate::blob_march::march) follows the packet's rays.
 use crate::beam::Beam;
 use crate::blob_march::{MarchRays, Marched, RayBlob, RayBlobs, RayInterval, extremes, march};
-use crate::flesh::{Flesh, NEAR_ENOUGH};
 use crate::lanes::least;
 use crate::layout::PACKET;
 use crate::nearby::{Marks, Nearby, Other, marked};
 use crate::ray::Ray;
 use crate::soft::Soft;
+use crate::surface_samples::{COARSEST_OF_BLOBS, FINEST, NEAR_ENOUGH, SurfaceSamples};
 use crate::walk::Quest;
 use field::{Cut, Real};
 use glam::DVec3;
@@ -37,7 +37,7 @@ pub struct Quick {
     /// Blobs near a packet, without those of excluded bodies: body and index, in this order.
     members: Vec<(u32, u32)>,
     /// Surface samples at the hits of the last packet; parameters are counted from its list's base.
-    pub flesh: Flesh,
+    pub flesh: SurfaceSamples,
 }
 
 /// Where the rays of a packet are within the reach of blobs.
@@ -161,11 +161,6 @@ pub struct Looked {
     /// Evaluations of blobs, for one ray each.
     pub evaluations: u64,
 }
-
-/// Half the least and the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), or less, in units of the scene.
-pub const FINEST: f64 = 1e-6;
-/// See [`FINEST`].
-pub const COARSEST_OF_BLOBS: f64 = 5e-5;
 
 /// Largest number of Newton steps from a packet's hits onto the surface.
 const MOST_REFINING: usize = 12;
@@ -354,7 +349,7 @@ impl Soft {
         exact: &dyn Fn() -> [Ray; PACKET],
         asked: Asked<'_>,
         work: &mut Quick,
-        mut tell: impl FnMut(Looked, &Flesh) -> ([f64; PACKET], u32),
+        mut tell: impl FnMut(Looked, &SurfaceSamples) -> ([f64; PACKET], u32),
     ) -> Vec<u32> {
         let mut left = Vec::new();
         if near.len() == 0 || !near.mark(&rays.beam, LEFT_OUT_OF_PACKETS, &mut work.marks) {

@@ -76,6 +76,9 @@ impl Sampler {
                     corner(packet.left, packet.top).distance(corner(packet.right, packet.bottom));
                 let seen = &seen[..owners.len()];
                 match &self.world.rich {
+                    Some(rich) if rich.is_direct && !self.soft_light => {
+                        self.world.shine_in_air(rich, seen, across, work, stats);
+                    }
                     Some(rich) => {
                         let draw = |packet: usize, lane: usize| {
                             let (owner, first, _) = owners[packet];
@@ -164,6 +167,7 @@ impl Sampler {
             if rich || seen.something() {
                 // The last ones are repeated.
                 seen.hits[count..].fill(None);
+                seen.used = count;
                 owners.push((owner, first, count));
             } else {
                 sum.0 += self.nothing().colour * count as f32;

@@ -1,7 +1,7 @@
 //! What pictures need beyond Phong's model on a background of one colour; scenes that do without are drawn without.
 use crate::air::Air;
 use crate::material::{Materials, is_plain, lets_light_through};
-use crate::soft::Soft;
+use crate::soft::{MakeUp, Soft};
 use crate::solids::Solids;
 use crate::unit::{Unit, lowest};
 use glam::{DVec3, Vec3};
@@ -17,6 +17,8 @@ pub(crate) struct Rich {
     pub air: Air,
     /// Whether light may pass some surface.
     pub see_through: bool,
+    /// Whether no ray leaves a surface except straight to lights, and no surface has textures.
+    pub is_direct: bool,
     /// Most reflections and refractions of a ray.
     pub max_depth: u32,
     /// Shares of light below which rays are not sent.
@@ -24,22 +26,26 @@ pub(crate) struct Rich {
     /// Whether lights have a size.
     pub penumbra: bool,
     tone: Tone,
-    /// For each soft body the only finish of its elements, if they have one, and the first.
-    pub only: Vec<(bool, u32)>,
+    /// For each soft body what its materials are made of.
+    pub make_up: Vec<MakeUp>,
     /// For each solid that encloses no space, its medium's key: the same for all with one finish in one object.
     pub sheets: Vec<Option<u32>>,
 }
 
+/// Whether surfaces get light from lights only and are of even materials that neither mirror nor let light pass.
+fn is_direct(scene: &Scene) -> bool {
+    scene.finishes.iter().all(is_plain) && scene.sky.is_none()
+}
+
 /// Whether a scene needs nothing beyond Phong's model.
 fn does_without(scene: &Scene) -> bool {
-    let settings = &scene.settings;
-    let sized = settings.penumbra && scene.lights.iter().any(|light| light.size > 0.0);
-    scene.finishes.iter().all(is_plain)
-        && matches!(scene.background, Background::Colour(_))
-        && (scene.sky, scene.ground, scene.fog) == (None, None, None)
-        && scene.clouds.is_empty()
-        && settings.tone == Tone::None
+    let sized = scene.settings.penumbra && scene.lights.iter().any(|light| light.size > 0.0);
+    is_direct(scene)
         && !sized
+        && matches!(scene.background, Background::Colour(_))
+        && (scene.ground, scene.fog) == (None, None)
+        && scene.clouds.is_empty()
+        && scene.settings.tone == Tone::None
         && scene.lens.aperture <= 0.0
         && scene.moments.is_empty()
 }
@@ -59,6 +65,7 @@ impl Rich {
         Self {
             materials: Materials::new(scene),
             air: Air::new(world, lowest(world), middle, unit.length(1.0)),
+            is_direct: is_direct(world),
             see_through: scene.finishes.iter().enumerate().any(passed),
             max_depth: settings.max_depth.min(Settings::MAX_DEPTH),
             vanish: if settings.vanish >= 0.0 {
@@ -68,14 +75,14 @@ impl Rich {
             },
             penumbra: settings.penumbra,
             tone: settings.tone,
-            only: Vec::new(),
+            make_up: Vec::new(),
             sheets: sheets(scene, solids),
         }
     }
 
     /// Completes it by what is known of the convolution surfaces.
     pub fn with(mut self, soft: &Soft) -> Self {
-        self.only = soft.only_finishes();
+        self.make_up = soft.make_ups();
         self
     }
 

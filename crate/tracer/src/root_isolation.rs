@@ -11,7 +11,7 @@ use crate::kinks::Kinks;
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::slabs::LARGE_TERM;
-use crate::spans::{Node, Span};
+use crate::spans::{KnownPart, Node, Span};
 use core::ops::Range;
 use field::bound::SpanLength;
 use field::{Bound, Cut, Primitive, THRESHOLD};
@@ -39,15 +39,6 @@ const SUM_ROUNDING: f64 = 1e-12;
 /// by the second derivative; for the fourth it is 3.08), and the slope's own Bernstein coefficients are 3/length times the
 /// differences of the cubic's. So the field is monotone where those are larger than the bound times this.
 pub const STEEP: f64 = 1.34;
-
-/// A part of the field along an interval of a ray, interpolated in place of its primitives.
-pub struct KnownPart<'a> {
-    /// Value and slope at a parameter.
-    pub node: &'a dyn Fn(f64) -> Node<f64>,
-    /// Bound on the error of the cubic between the interval's ends, and so, times about four over the length, on that of its slope.
-    /// Left out terms may have a larger slope: where the field is within `off` of T, it may cross T three times instead of once.
-    pub off: f64,
-}
 
 /// Error of the [`KnownPart`]; 0 without one.
 #[derive(Clone, Copy, Debug, Default)]

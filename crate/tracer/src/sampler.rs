@@ -104,20 +104,28 @@ impl Sampler {
                 };
                 self.world
                     .meet(square, [i, j], &rays, &mut seen, work, stats);
+                let across = |seen: &Seen| {
+                    let [first, .., last] = &seen.rays;
+                    let across = first.direction.distance(last.direction);
+                    if scale > 1 { SPARSE * across } else { across }
+                };
                 if let Some(rich) = self.needs_more_light(&seen) {
                     if !seen.something() {
                         seen.rays = exact();
                     }
+                    let across = across(&seen);
                     let seen = core::slice::from_ref(&seen);
-                    let draw = |_, _| Draw::Middle;
-                    self.world.illuminate(rich, seen, &draw, work, stats);
+                    if rich.is_direct {
+                        self.world.shine_in_air(rich, seen, across, work, stats);
+                    } else {
+                        let draw = |_, _| Draw::Middle;
+                        self.world.illuminate(rich, seen, &draw, work, stats);
+                    }
                     for ((x, y), sample) in pixels.into_iter().zip(&work.samples[0]) {
                         samples.set(x, y, *sample);
                     }
                 } else if seen.something() {
-                    let [first, .., last] = &seen.rays;
-                    let across = first.direction.distance(last.direction);
-                    let across = if scale > 1 { SPARSE * across } else { across };
+                    let across = across(&seen);
                     let seen = core::slice::from_ref(&seen);
                     self.world.shine(seen, across, work, stats);
                     for ((x, y), sample) in pixels.into_iter().zip(&work.samples[0]) {

@@ -1,9 +1,9 @@
 //! Working space of one thread for following packets of rays.
 use crate::far_march::FarWork;
-use crate::flesh::{Active, Flesh};
 use crate::layout::PACKET;
 use crate::quick::Quick;
 use crate::slabs::Space;
+use crate::surface_samples::{ActivePrimitives, SurfaceSamples};
 use crate::walk::Memories;
 use wide::f32x8;
 
@@ -13,8 +13,8 @@ pub struct Scratch {
     pub(crate) memory: Memories<f32x8>,
     /// Allocations of slabs that are no longer needed.
     pub(crate) spaces: Vec<Space>,
-    pub(crate) active: Active,
-    pub(crate) flesh: Flesh,
+    pub(crate) active: ActivePrimitives,
+    pub(crate) flesh: SurfaceSamples,
     pub(crate) quick: Quick,
     pub(crate) far: FarWork,
     /// Evaluations of one primitive's field at one point, so far.

@@ -4,7 +4,6 @@
 //! way: the rays from one patch of the surface have one list of lumps, or the slabs of one beam.
 use crate::beam::Beam;
 use crate::beams::Beams;
-use crate::flesh::Flesh;
 use crate::layout::PACKET;
 use crate::meet::Seen;
 use crate::nearby::Nearby;
@@ -15,6 +14,7 @@ use crate::scratch::Scratch;
 use crate::shade::{clamped, towards};
 use crate::slabs::{Slabs, Space};
 use crate::stats::Stats;
+use crate::surface_samples::SurfaceSamples;
 use crate::walk::{Bundle, Quest};
 use crate::workspace::{Shadow, State, Workspace};
 use crate::world::World;
@@ -101,7 +101,7 @@ impl World {
     }
 
     /// Finds out which rays to a light have something between them and the light.
-    fn look_for_shadows(
+    pub fn look_for_shadows(
         &self,
         shadows: &mut [Shadow],
         across: f64,
@@ -249,8 +249,9 @@ impl World {
                 if alive == 0 {
                     break;
                 }
-                let soft = &self.soft;
-                let entered = soft.far_first(body, &rays, &limits, alive, Quest::Entry, scratch);
+                let (soft, far) = (&self.soft, &mut scratch.far);
+                let entered = soft.far_first(body, &rays, &limits, alive, Quest::Entry, far);
+                scratch.evaluations += core::mem::take(&mut far.evaluations);
                 if let Some(met) = entered {
                     dark |= met;
                     alive &= !met;
@@ -364,7 +365,7 @@ impl World {
             };
         }
         let (limits, mut dark) = (*asked.limits, 0);
-        let tell = |looked: Looked, _: &Flesh| {
+        let tell = |looked: Looked, _: &SurfaceSamples| {
             *evaluations += looked.evaluations;
             dark |= looked.met;
             (limits, asked.alive & !dark)

@@ -16,7 +16,7 @@ use crate::clusters::{Clusters, Members};
 use crate::kinks::Kinks;
 use crate::ray::Ray;
 use crate::shared::{CORNERS, Cell, Shared, Sums};
-use crate::spans::Node;
+use crate::spans::{KnownPart, Node};
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
 use field::{Cut, Primitive, THRESHOLD};
@@ -113,13 +113,20 @@ pub struct Terms<'a> {
 pub struct Afar {
     blocks: Vec<(Cell, Shared)>,
     /// Bound on their error, together with that of the terms left out.
-    pub off: f64,
+    off: f64,
 }
 
 impl Afar {
+    /// Calls `f` with the interpolants along a ray, as the known part of the field there.
+    pub fn along<R>(&self, ray: &Ray, f: impl FnOnce(&KnownPart<'_>) -> R) -> R {
+        f(&KnownPart {
+            node: &|t| self.node(ray, t),
+            off: self.off,
+        })
+    }
+
     /// Value and slope along a ray at t.
-    #[must_use]
-    pub fn node(&self, ray: &Ray, t: f64) -> Node<f64> {
+    fn node(&self, ray: &Ray, t: f64) -> Node<f64> {
         let place = ray.at(t).to_array();
         let direction = ray.direction.to_array();
         self.blocks
@@ -1262,11 +1269,11 @@ mod tests {
         }
     }
 
-    /// The listed primitives and the interpolants of the rest add up to the field within `Afar::off`, on all rays of the beam.
+    /// The listed primitives and the interpolants of the rest add up to the field within the bound told, on all rays of the beam.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn near_primitives_and_interpolants_add_up_to_the_field() {
-        let (mut seen, mut shared, mut largest) = (0, 0, 0.0f64);
+        let (mut seen, mut shared, mut noisy, mut largest) = (0, 0, 0, 0.0f64);
         for soft in [
             cloud(0.02, 1.0, 0.0),
             cloud(0.1, 1.0, 0.0),
@@ -1294,6 +1301,22 @@ mod tests {
                 };
                 let mut list = Vec::new();
                 let afar = slabs.near(index, &mut list);
+                let told = afar.blocks.len();
+                if told > 0 {
+                    // Rounding of the interpolants is part of the bound. It is far below its own bound here: a larger one is set.
+                    let noise = slabs.nodes[index as usize].noise_of_shared;
+                    slabs.nodes[index as usize].noise_of_shared = SHARP_INTERPOLANT;
+                    let louder = slabs.near(index, &mut Vec::new());
+                    let of_own =
+                        louder.blocks.len() == told && !slabs.slab(index).shared.is_empty();
+                    if of_own {
+                        let more = louder.off - afar.off;
+                        let added = SHARP_INTERPOLANT - noise;
+                        assert!((more - added).abs() < 1e-12, "{index}: {more} {added}");
+                        noisy += 1;
+                    }
+                    slabs.nodes[index as usize].noise_of_shared = noise;
+                }
                 seen += 1;
                 shared += usize::from(!afar.blocks.is_empty());
                 for lean in [[0.0, 0.0], [0.9, 0.0], [-0.6, 0.6]] {
@@ -1301,8 +1324,10 @@ mod tests {
                     let direction = (beam.axis.direction + aside).normalize();
                     let origin = beam.axis.at(base) + aside * base;
                     let ray = Ray { origin, direction };
-                    let [left, right] = [from, to].map(|t| afar.node(&ray, t));
-                    let span = Span::hermite(left, right, to - from);
+                    let (span, off) = afar.along(&ray, |known| {
+                        let [left, right] = [from, to].map(known.node);
+                        (Span::hermite(left, right, to - from), known.off)
+                    });
                     for i in 0..=8 {
                         let x = f64::from(i) / 8.0;
                         let place = ray.at(from + x * (to - from)).to_array();
@@ -1315,7 +1340,7 @@ mod tests {
                         // Rounding is bounded where the field is about T.
                         if (all - THRESHOLD).abs() < 1.0 {
                             let apart = (told - all).abs();
-                            let most = afar.off + 1e-8;
+                            let most = off + 1e-8;
                             assert!(apart <= most, "{index}: {apart} > {most}");
                             largest = largest.max(apart / most);
                         }
@@ -1328,8 +1353,8 @@ mod tests {
         }
         // The bound is not much larger than the error.
         assert!(
-            4 * shared > seen && largest > 0.2,
-            "{seen} {shared} {largest}"
+            4 * shared > seen && noisy > 20 && largest > 0.2,
+            "{seen} {shared} {noisy} {largest}"
         );
     }
 }

@@ -1,9 +1,9 @@
 //! The convolution surfaces of all bodies, prepared: finds the primitives near a beam, and where its rays cross a body's surface.
 use crate::beam::Beam;
 use crate::beams::Beams;
-use crate::blob_set::BlobSet;
+use crate::blob_set::{BlobSet, NEXT_TO_NOTHING};
 use crate::clusters::Clusters;
-use crate::far_march::{FarBody, FarQuery};
+use crate::far_march::{FarBody, FarQuery, FarWork};
 use crate::hierarchy::Hierarchy;
 use crate::kinks::Kinks;
 use crate::layout::PACKET;
@@ -11,15 +11,13 @@ use crate::nearby::{Nearby, Other};
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator};
 use crate::roots::bracketed;
-use crate::scratch::Scratch;
 use crate::slabs::{Precision, Slabs, Space, Terms};
-use crate::walk::{Bundle, Found, Memories, Quest, Walk};
+use crate::walk::{Bundle, Memories, Quest, Walk};
 use field::{Bound, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::{Scene, SoftSurface};
 use std::ops::Range;
 use std::sync::OnceLock;
-use wide::f32x8;
 
 /// The convolution surfaces of a scene's bodies.
 ///
@@ -66,6 +64,17 @@ pub(crate) struct SoftBody {
     far: OnceLock<Option<Box<FarBody>>>,
 }
 
+/// What the material of a body's surface is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MakeUp {
+    /// Whether all primitives have one finish.
+    pub is_even: bool,
+    /// The first primitive's finish.
+    pub first: u32,
+    /// Whether some element consists of several primitives.
+    pub is_pieced: bool,
+}
+
 /// Data that is made at first use, for bodies that are not all blobs.
 struct Groups {
     /// Balls such that the field is below T outside all of them.
@@ -76,10 +85,6 @@ struct Groups {
 
 /// Largest sum of the fields left out, of all primitives that are no blobs, in T.
 const OTHERS_LEFT_OUT: f64 = 1e-5;
-
-/// Largest sum of the fields that slabs leave out of their lists, in T: below the accuracy of root isolation, which uses those
-/// lists.
-pub const NEXT_TO_NOTHING: f64 = 1e-10;
 
 /// End of rays along infinitely wide primitives, in units of the scene's size.
 const FAR: f64 = 1e4;
@@ -201,13 +206,20 @@ impl Soft {
             .get_or_init(|| self.primitives.iter().map(Bound::new).collect())
     }
 
-    /// For each body whether all its primitives have one finish, and the first's finish.
-    pub fn only_finishes(&self) -> Vec<(bool, u32)> {
-        let only = |body: &SoftBody| {
-            let own = &self.finish[body.range.start as usize..body.range.end as usize];
-            (own.iter().all(|finish| *finish == own[0]), own[0])
+    /// What the materials of each body's surface are made of.
+    pub fn make_ups(&self) -> Vec<MakeUp> {
+        let make_up = |body: &SoftBody| {
+            let range = body.range.start as usize..body.range.end as usize;
+            let own = &self.finish[range.clone()];
+            let mut elements = self.element[range].to_vec();
+            elements.sort_unstable();
+            MakeUp {
+                is_even: own.iter().all(|finish| *finish == own[0]),
+                first: own[0],
+                is_pieced: elements.windows(2).any(|pair| pair[0] == pair[1]),
+            }
         };
-        self.bodies.iter().map(only).collect()
+        self.bodies.iter().map(make_up).collect()
     }
 
     /// Appends the elements that add to a body's field at a point: element, finish and field.
@@ -330,7 +342,7 @@ impl Soft {
     }
 
     /// Finds the first crossings of rays with the surface of a body of very many points that never end; for [`Quest::Entry`] only
-    /// whether there is one. Returns the rays that cross, a bit each, with the surface there in `scratch.far`, whose parameters are the
+    /// whether there is one. Returns the rays that cross, a bit each, with the surface there in `work`, whose parameters are the
     /// rays' own. `None` if the body is no such one, or this is not the way for these rays.
     pub fn far_first(
         &self,
@@ -339,7 +351,7 @@ impl Soft {
         limits: &[f64; PACKET],
         alive: u32,
         quest: Quest,
-        scratch: &mut Scratch,
+        work: &mut FarWork,
     ) -> Option<u32> {
         let body = &self.bodies[body as usize];
         let far = self.far(body)?;
@@ -350,11 +362,7 @@ impl Soft {
             quest,
             pixel: self.pixel,
         };
-        let work = &mut scratch.far;
-        let resolution = self.precision.resolution;
-        let met = far.first(self.sight(body), &query, resolution, work);
-        scratch.evaluations += core::mem::take(&mut work.evaluations);
-        met
+        far.first(self.sight(body), &query, self.precision.resolution, work)
     }
 
     fn groups<'a>(&self, body: &'a SoftBody) -> &'a Groups {
@@ -383,7 +391,7 @@ impl Soft {
         }
     }
 
-    fn sight<'a>(&'a self, body: &'a SoftBody) -> BoundedTerms<'a> {
+    pub fn sight<'a>(&'a self, body: &'a SoftBody) -> BoundedTerms<'a> {
         BoundedTerms {
             primitives: &self.primitives,
             bounds: self.bounds(),
@@ -464,23 +472,6 @@ impl Soft {
                 bodies.push(body);
             }
         }
-    }
-
-    /// Returns the crossings of a bundle with a body's surface, by traversing the slabs of its beam.
-    pub fn walk(
-        &self,
-        body: u32,
-        slabs: &mut Slabs<'_>,
-        bundle: Bundle<'_>,
-        quest: Quest,
-        scratch: &mut Scratch,
-    ) -> Vec<Found> {
-        slabs.tidy();
-        let sight = self.sight(&self.bodies[body as usize]);
-        let (found, evaluations) =
-            Walk::<f32x8>::new(sight, slabs, bundle, quest, &mut scratch.memory).run();
-        scratch.evaluations += evaluations;
-        found
     }
 
     /// Returns where a ray first enters a body's surface on a short interval, in double precision, and the number of evaluations. The

@@ -147,6 +147,15 @@ impl Span<f64> {
     }
 }
 
+/// A part of the field along an interval of a ray, interpolated in place of its primitives.
+pub struct KnownPart<'a> {
+    /// Value and slope at a parameter.
+    pub node: &'a dyn Fn(f64) -> Node<f64>,
+    /// Bound on the error of the cubic between the interval's ends, and so, times about four over the length, on that of its slope.
+    /// Left out terms may have a larger slope: where the field is within `off` of T, it may cross T three times instead of once.
+    pub off: f64,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -8,7 +8,7 @@ use crate::stats::Stats;
 use crate::tile::{Pass, Tile};
 use field::{Profile, Wave};
 use glam::DVec3;
-use scene::{Scene, Shape};
+use scene::{Background, Cloud, Fog, Ground, Light, LightKind, Scene, Shape, Tone};
 
 const SIZE: u32 = 72;
 
@@ -126,4 +126,73 @@ fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
         plain < doubted && 2 * doubted < 3 * plain,
         "{plain} {doubted}"
     );
+}
+
+/// Scenes without secondary rays are shaded without paths, and look as they do with them, whatever else is in the air.
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn light_without_paths_is_the_same_as_with_them() {
+    let (mut ground, mut lit) = (0, 0);
+    for seed in 0..8 {
+        let mut scene = common::blend(seed, 4);
+        scene.settings.samples = 3;
+        scene.settings.tone = Tone::Filmic;
+        scene.background = Background::Gradient(vec![[0.2, 0.4, 0.9], [0.9, 0.8, 0.6]]);
+        scene.ground = (seed % 4 != 3).then_some(Ground {
+            colour: [0.7, 0.6, 0.5],
+            height: None,
+        });
+        scene.fog = (seed % 3 == 1).then_some(Fog {
+            colour: [0.6; 3],
+            distance: 9.0,
+            height: None,
+        });
+        if seed % 2 == 0 {
+            scene.clouds.push(Cloud {
+                colour: [0.5, 0.4, 0.1],
+                position: DVec3::new(0.5, 0.3, 0.2),
+                radius: 0.8,
+                density: 0.5,
+            });
+        }
+        scene.lights.push(Light {
+            shadow: seed % 2 == 1,
+            ..Light::new(
+                LightKind::Distant {
+                    towards: DVec3::new(-0.3, 0.8, 0.4),
+                },
+                [0.3, 0.3, 0.4],
+            )
+        });
+        // Seen from above.
+        scene.camera.eye = DVec3::new(0.0, 2.0, 4.0);
+        let mut picture = Picture::new(&scene, [SIZE; 2]);
+        let whole = Tile {
+            x: 0,
+            y: 0,
+            width: SIZE,
+            height: SIZE,
+        };
+        let trace = |picture: &Picture, pass| {
+            let mut stats = Stats::default();
+            let pixels = picture.trace(whole, pass, &|| false, &mut stats);
+            (pixels.expect("nobody asked to stop"), stats)
+        };
+        let passes = [Pass::Coarse, Pass::Full, Pass::Smooth];
+        let direct = passes.map(|pass| trace(&picture, pass));
+        let rich = picture.sampler.world.rich.as_mut().expect("it has a tone");
+        assert!(rich.is_direct);
+        rich.is_direct = false;
+        for ((direct, stats), pass) in direct.iter().zip(passes) {
+            let (paths, other) = trace(&picture, pass);
+            let off = direct.iter().zip(&paths).filter(|(a, b)| a != b);
+            // Rays at the very edge of a shadow are grouped otherwise.
+            let off = off.count();
+            assert!(off <= 12, "{seed} {pass:?}: {off} channels differ");
+            assert_eq!(stats.primary_rays, other.primary_rays);
+            lit += stats.shadow_rays;
+        }
+        ground += usize::from(scene.ground.is_some());
+    }
+    assert!(ground == 6 && lit > 50_000, "{ground} {lit}");
 }

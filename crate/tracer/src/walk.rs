@@ -6,7 +6,7 @@
 //! ends when every ray has its crossing, so that nothing behind the first hit is interpolated.
 use crate::lanes::Lanes;
 use crate::ray::Ray;
-use crate::root_isolation::{Along, BoundedTerms, KnownPart, RootIsolator, STEEP};
+use crate::root_isolation::{Along, BoundedTerms, RootIsolator, STEEP};
 use crate::slabs::{Parts, Slabs, Which};
 use crate::spans::{Node, Span};
 use field::{Primitive, THRESHOLD};
@@ -399,11 +399,10 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 ray: self.rays[lane.min(self.rays.len() - 1)],
                 resolution: self.slabs.resolution(),
             };
-            let known = KnownPart {
-                node: &|t| afar.node(&along.ray, t),
-                off: afar.off,
-            };
-            let told = self.isolator.crossings_with(&along, interval, &known);
+            let isolator = &mut self.isolator;
+            let told = afar.along(&along.ray, |known| {
+                isolator.crossings_with(&along, interval, known)
+            });
             let spent = core::mem::take(&mut self.isolator.evaluations);
             self.work += spent as usize;
             self.evaluations += spent;

@@ -200,6 +200,92 @@ fn a_prism_reflects_totally() {
     assert!(draw(&scene, [8, 8]).iter().all(|p| *p == [0, 0, 255]));
 }
 
+/// A prism whose index is near that of total reflection at 45°, √2: blue is reflected, red passes.
+#[test]
+fn colours_part_at_total_reflection() {
+    let mut scene = dark();
+    // Parallel light, nearly: an angle of a tenth of a degree would change the limit by 0.003.
+    (scene.camera.eye, scene.camera.fov) = (DVec3::Z * 60.0, 0.2);
+    let (a, b, c) = (
+        DVec3::new(-1.0, 0.0, 1.0),
+        DVec3::new(1.0, 0.0, 1.0),
+        DVec3::new(-1.0, 0.0, -1.0),
+    );
+    let y = DVec3::Y * 2.0;
+    let mut corners = vec![[a - y, b - y, c - y], [a + y, b + y, c + y]];
+    for (p, q) in [(a, b), (b, c), (c, a)] {
+        corners.push([p - y, q - y, q + y]);
+        corners.push([p - y, q + y, p + y]);
+    }
+    scene.finishes.push(glass(1.4142));
+    scene.finishes[1].dispersion = 0.1;
+    for corners in corners {
+        scene.elements.push(Element {
+            finish: 1,
+            ..Element::new(Shape::Triangle {
+                corners,
+                radius: 0.0,
+            })
+        });
+    }
+    // Only what has been reflected totally comes here; red goes below it.
+    let glow = Finish {
+        ambient: [1.0; 3],
+        ..black()
+    };
+    let wall = Shape::Box {
+        center: DVec3::X * -4.0,
+        axes: [DVec3::X * 0.1, y, DVec3::Z],
+    };
+    add(&mut scene, wall, glow);
+    let middle = draw(&scene, [9, 9])[40];
+    assert_eq!([middle[0], middle[2]], [0, 255], "{middle:?}");
+    // Without dispersion all three are on one side.
+    scene.finishes[1].dispersion = 0.0;
+    let [r, g, b] = draw(&scene, [9, 9])[40];
+    assert!(r == g && g == b, "{r} {g} {b}");
+}
+
+/// A ball of glass in a slab of water: each surface lies between the two media on its sides.
+#[test]
+fn a_body_in_another_bends_light_by_both_indices() {
+    const WATER: f64 = 1.33;
+    for (index, soft) in [(1.5_f32, false), (1.0, false), (1.5, true)] {
+        let mut scene = dark();
+        ruler(&mut scene, -3.0, 2.0);
+        let center = DVec3::ZERO;
+        let axes = [DVec3::X * 9.0, DVec3::Y * 9.0, DVec3::Z * 1.5];
+        add(&mut scene, Shape::Box { center, axes }, glass(1.33));
+        let shape = ball(DVec3::ZERO, 1.0);
+        if soft {
+            add_soft(&mut scene, shape, glass(index));
+        } else {
+            add(&mut scene, shape, glass(index));
+        }
+        let path = |origin: DVec3, direction: DVec3| {
+            let at = origin + direction * (1.5 - origin.z) / direction.z;
+            let inner = bend(direction, DVec3::Z, 1.0, WATER)?;
+            let b = at.dot(inner);
+            let root = b * b - at.length_squared() + 1.0;
+            if root < 0.5 {
+                return None;
+            }
+            let at = at + inner * (-b - root.sqrt());
+            let index = f64::from(index);
+            let within = bend(inner, at, WATER, index)?;
+            let at = at - within * 2.0 * within.dot(at);
+            let inner = bend(within, -at, index, WATER)?;
+            let at = at + inner * (-1.5 - at.z) / inner.z;
+            let out = bend(inner, DVec3::Z, WATER, 1.0)?;
+            // Grazing rays show the ruler's divisions too small.
+            (out.z < -0.4).then_some((at, out))
+        };
+        let bound = if soft { 6.0 } else { 1.5 };
+        let count = compare(&scene, 2.0, (0, bound), path);
+        assert!(count > 100, "{count}");
+    }
+}
+
 #[test]
 fn a_mirror_shows_what_the_mirrored_eye_sees() {
     let mut scene = dark();

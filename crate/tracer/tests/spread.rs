@@ -121,24 +121,60 @@ fn a_penumbra_is_the_share_of_the_disc_that_is_seen() {
         DVec3::new(0.0, 40.0, 2.0),
         DVec3::new(-40.0, 0.0, 2.0),
     ];
-    let [free, shadowed] = [None, Some(edge)].map(|blocker| {
-        let mut scene = floor(blocker);
-        scene.settings.penumbra = true;
-        let position = DVec3::Z * 4.0;
-        scene.lights.push(Light {
-            size: 1.0,
-            ..Light::new(LightKind::Point { position }, [1.0; 3])
+    let (position, towards) = (DVec3::Z * 4.0, DVec3::Z);
+    // The line of sight to the edge, half way up, meets the light's height at −x; a distant light's disc, which is at the distance 1,
+    // at −x/2.
+    for (kind, size, reach) in [
+        (LightKind::Point { position }, 1.0, 1.0),
+        (LightKind::Distant { towards }, 0.3, 0.6),
+    ] {
+        let [free, shadowed] = [None, Some(edge)].map(|blocker| {
+            let mut scene = floor(blocker);
+            scene.settings.penumbra = true;
+            scene.lights.push(Light {
+                size,
+                ..Light::new(kind, [1.0; 3])
+            });
+            columns(&draw_pass(&scene, SIZE, Pass::Smooth), SIZE[0])
         });
-        columns(&draw_pass(&scene, SIZE, Pass::Smooth), SIZE[0])
-    });
-    let pixel = 6.0 / scale(&dark(), SIZE);
-    for x in 0..SIZE[0] as usize {
-        // The line of sight to the edge, half way up, meets the light's height at −x.
-        let c = ((x as f64 + 0.5 - 16.0) * pixel).clamp(-1.0, 1.0);
-        let want = 0.5 + (c * (1.0 - c * c).sqrt() + libm::asin(c)) / PI;
-        let got = shadowed[x] / free[x];
-        assert!((got - want).abs() < 0.02, "{c}: {got} {want}");
+        let pixel = 6.0 / scale(&dark(), SIZE);
+        for x in 0..SIZE[0] as usize {
+            let c = ((x as f64 + 0.5 - 16.0) * pixel / reach).clamp(-1.0, 1.0);
+            let want = 0.5 + (c * (1.0 - c * c).sqrt() + libm::asin(c)) / PI;
+            let got = shadowed[x] / free[x];
+            assert!((got - want).abs() < 0.02, "{kind:?} {c}: {got} {want}");
+        }
     }
+}
+
+/// The cosine's law within the cone, and the edge's polynomial of the angle.
+#[test]
+fn a_spot_lights_its_cone() {
+    const SIZE: [u32; 2] = [40, 40];
+    let (position, angle, edge) = (DVec3::new(0.2, -0.1, 3.0), 24.0, 9.0);
+    let mut scene = floor(None);
+    let kind = LightKind::Spot {
+        position,
+        direction: DVec3::NEG_Z,
+        angle,
+        edge,
+    };
+    scene.lights.push(Light::new(kind, [1.0; 3]));
+    let (mut full, mut soft, mut dark) = (0, 0, 0);
+    for (pixel, (origin, direction)) in draw(&scene, SIZE).iter().zip(rays(&scene, SIZE)) {
+        let point = origin - direction * (origin.z / direction.z);
+        let across = libm::hypot(point.x - position.x, point.y - position.y);
+        let off = libm::atan2(across, position.z);
+        let inner = ((angle - off.to_degrees()) / edge).clamp(0.0, 1.0);
+        let share = inner * inner * (3.0 - 2.0 * inner);
+        full += u32::from(share == 1.0);
+        soft += u32::from(share > 0.0 && share < 1.0);
+        dark += u32::from(share == 0.0);
+        let want = 255.0 * share * libm::cos(off);
+        let got = f64::from(pixel[1]);
+        assert!((got - want).abs() <= 1.0, "{point}: {got} {want}");
+    }
+    assert!(full > 50 && soft > 50 && dark > 50, "{full} {soft} {dark}");
 }
 
 /// Against the sum over directions spread as their cosine, each met with the wall by hand.

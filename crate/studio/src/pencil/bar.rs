@@ -60,6 +60,54 @@ pub fn start(ui: &mut Ui, picture: Rect, commands: &mut Vec<Command>) {
     }
 }
 
+/// The button on the picture that makes the last stroke one of a pair, or single.
+pub fn turn(ui: &mut Ui, picture: Rect, pair: bool) -> bool {
+    let palette = theme::palette(ui.visuals());
+    let (word, tip) = if pair {
+        (
+            "Make it a pair",
+            "Let the last stroke grow on the other side, too",
+        )
+    } else {
+        (
+            "Only one",
+            "Keep the last stroke in the middle, without another one on the other side",
+        )
+    };
+    let font = FontId::proportional(14.0);
+    let galley = ui
+        .painter()
+        .layout_no_wrap(word.to_owned(), font, palette.text);
+    let size = vec2(galley.size().x + 54.0, 38.0);
+    let place = Rect::from_min_size(picture.left_bottom() + vec2(10.0, -10.0 - size.y), size);
+    if !picture.contains_rect(place) {
+        return false;
+    }
+    let response = ui.interact(place, ui.scope_id().with("other stroke"), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, word));
+    places::note(ui.ctx(), "draw other", place);
+    let fill = if response.hovered() {
+        palette.hover
+    } else {
+        palette.button
+    };
+    ui.painter()
+        .rect_filled(place, CornerRadius::same(19), fill);
+    let ink = Stroke::new(1.6, palette.text);
+    icon::paint(
+        ui.painter(),
+        Icon::Mirror,
+        place.left_center() + vec2(23.0, 0.0),
+        ink,
+    );
+    let at = place.left_center() + vec2(39.0, -0.5 * galley.size().y);
+    ui.painter().galley(at, galley, palette.text);
+    response
+        .on_hover_text(tip)
+        .on_hover_cursor(egui::CursorIcon::PointingHand)
+        .clicked()
+}
+
 /// Shows the strip in all of `ui`.
 pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     places::note(ui.ctx(), "draw tools", ui.max_rect());

@@ -180,10 +180,38 @@ impl Drawn {
         knobs
     }
 
-    /// Whether a node is the free end of a curve.
+    /// Whether a node is an open end: one curve ends there and nothing goes on, but for limbs beside the mirror x = 0 where the
+    /// curve is in it.
     #[must_use]
     pub fn is_end(&self, node: usize) -> bool {
-        self.meetings[node] == 1
+        self.before(node).is_some()
+    }
+
+    /// The node before an open end; `None` if the node is none.
+    #[must_use]
+    pub fn before(&self, node: usize) -> Option<usize> {
+        let pairs = self
+            .skeleton
+            .curves
+            .iter()
+            .flat_map(|along| along.windows(2));
+        let beside = pairs.filter_map(|ends| match (ends[0] == node, ends[1] == node) {
+            (true, false) => Some(ends[1]),
+            (false, true) => Some(ends[0]),
+            _ => None,
+        });
+        let is_flat = self.is_flat(node);
+        let mut along =
+            beside.filter(|other| self.meetings[node] == 1 || is_flat && self.is_flat(*other));
+        let before = along.next();
+        before.filter(|_| along.next().is_none())
+    }
+
+    /// Whether a node lies in the mirror x = 0.
+    #[must_use]
+    pub fn is_flat(&self, node: usize) -> bool {
+        let own = self.skeleton.nodes[node];
+        own.position.x.abs() <= 0.05 * own.radius
     }
 
     /// A node's radius in the world.

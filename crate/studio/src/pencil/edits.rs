@@ -4,12 +4,12 @@ use super::drawn::{Drawn, Spot, node_at, spot_at};
 use super::page;
 use crate::hands::Sight;
 use crate::session::Session;
-use egui::{Pos2, pos2};
+use egui::{Pos2, Vec2, pos2};
 use glam::{DAffine3, DVec3};
 use rats::Project;
 use scene::Rgb;
 use skeleton::Node;
-use sketch::{Limb, Sample, Start, Stroke};
+use sketch::{Limb, Mark, Sample, Start, Stroke};
 
 /// Thickness of a long stroke at its free end, in shares of that at its root. A short one is a head or a paw, and as thick all along.
 const TIP: f64 = 0.6;
@@ -17,6 +17,11 @@ const TIP: f64 = 0.6;
 const SHORT: [f64; 2] = [3.5, 9.0];
 /// Thickness of the ends of a stroke that begins in the air, in shares of that of its middle.
 const ENDS: f64 = 0.75;
+/// Least distances of the limbs of a pair from the mirror, in radii of the brush and of the flesh that they grow from.
+const APART: [f64; 2] = [1.2, 0.85];
+/// A short stroke from an end is a head or a paw: lengths in radii at which it begins to be thicker, is thickest, and no longer is;
+/// and how thick it is then.
+const EGG: ([f64; 3], f64) = ([1.5, 5.0, 9.0], 1.7);
 /// Radius at no and at full pressure of a pen, in shares of the brush's.
 const PRESSED: [f64; 2] = [0.3, 1.5];
 /// Least cosine of the angle between the line of sight and the mirror's normal at which strokes are drawn on the mirror itself.
@@ -51,6 +56,8 @@ pub enum Root {
     Free,
     /// A node: index of the skeleton, of the node.
     Node(usize, usize),
+    /// The same, an open end whose curve goes on.
+    End(usize, usize),
     /// A place of a curve.
     Spot(Spot),
 }
@@ -72,6 +79,55 @@ pub struct Begin {
     pub to_world: DAffine3,
 }
 
+/// What is known of a stroke when its beginning is looked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wish {
+    /// Where it goes on the screen; `None` if it has not gone anywhere yet.
+    pub heading: Option<Vec2>,
+    /// Whether it is to be one of a pair; `None` to decide that by its beginning and heading.
+    pub pair: Option<bool>,
+}
+
+/// Cosine of the angle between an end's direction and a stroke's below which the stroke has a curve of its own: the flesh keeps its
+/// corner.
+const STRAIGHT: f32 = 0.6;
+/// The one below which a stroke that goes down from an end is a leg, and not the end's continuation.
+const SIDEWAYS: f32 = 0.4;
+/// The one below which any stroke goes back, and grows beside the end.
+const BACK: f32 = -0.3;
+
+/// How a stroke leaves an open end: along its curve, round a corner, or as something that grows there.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Leave {
+    On,
+    Corner,
+    Beside,
+}
+
+fn leave(drawn: &Drawn, node: usize, sight: &Sight, heading: Option<Vec2>) -> Leave {
+    let seen = |node: usize| {
+        let position = drawn.skeleton.nodes[node].position;
+        sight.screen(drawn.to_world.transform_point3(position))
+    };
+    let out = drawn.before(node).and_then(|before| {
+        let out = seen(node)? - seen(before)?;
+        (out.length() > 1.0).then(|| out.normalized())
+    });
+    let (Some(out), Some(heading)) = (out, heading) else {
+        return Leave::On;
+    };
+    let heading = heading.normalized();
+    let cosine = out.dot(heading);
+    let is_flat = drawn.is_flat(node);
+    if cosine < BACK || is_flat && cosine < SIDEWAYS && heading.y > 0.5 {
+        Leave::Beside
+    } else if cosine < STRAIGHT {
+        Leave::Corner
+    } else {
+        Leave::On
+    }
+}
+
 /// The skeleton that a stroke from nowhere belongs to: the last one that drawing can change, of the brush's colour if it has one.
 #[must_use]
 pub fn target(all: &[Drawn], colour: Option<Rgb>) -> Option<usize> {
@@ -83,7 +139,8 @@ fn is_colour(own: Rgb, wanted: Option<Rgb>) -> bool {
     wanted.is_none_or(|wanted| own.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 2e-3))
 }
 
-/// Where a stroke begins that is put down at a place of the screen. `meets` says where a ray from the eye meets shapes that are no
+/// Where a stroke begins that is put down at a place of the screen. From an open end it goes on, unless it goes down or back from
+/// there; from elsewhere on flesh that the mirror cuts it is one of a pair. `meets` says where a ray from the eye meets shapes that are no
 /// skeletons; `home` is the depth of strokes on an empty page.
 #[must_use]
 pub fn begin(
@@ -91,6 +148,7 @@ pub fn begin(
     sight: &Sight,
     at: Pos2,
     brush: &Brush,
+    wish: Wish,
     home: DVec3,
     meets: impl FnOnce() -> Option<DVec3>,
 ) -> Begin {
@@ -100,14 +158,22 @@ pub fn begin(
     } else {
         (12.0, 4.0)
     };
-    let end = node_at(all, sight, at, end_reach, true);
+    let single = !brush.mirror || wish.pair == Some(false);
+    let end = node_at(all, sight, at, end_reach, true).and_then(|(index, node)| {
+        let leave = leave(&all[index], node, sight, wish.heading);
+        let is_beside = match wish.pair {
+            Some(pair) if all[index].is_flat(node) => pair,
+            _ => leave == Leave::Beside,
+        };
+        (!is_beside).then_some((index, node, leave == Leave::On))
+    });
     let spot = if end.is_none() {
-        spot_at(all, sight, at, extra)
+        spot_at(all, sight, at, extra).or_else(|| spot_at(all, sight, at, end_reach))
     } else {
         None
     };
     let model = end
-        .map(|(drawn, _)| drawn)
+        .map(|(drawn, ..)| drawn)
         .or(spot.map(|spot| spot.drawn))
         .or_else(|| target(all, brush.colour).or_else(|| target(all, None)));
     let (to_world, growth) = model.map_or((DAffine3::IDENTITY, 1.0), |index| {
@@ -127,11 +193,15 @@ pub fn begin(
         pair,
         to_world,
     };
-    if let Some((index, node)) = end {
+    if let Some((index, node, goes_on)) = end {
         let place = all[index].knobs[node].0;
         let flat = brush.mirror && faces && is_middle(place);
-        let root = Root::Node(index, node);
-        return made(root, Some(place), place, brush.mirror && !flat, flat);
+        let root = if goes_on {
+            Root::End(index, node)
+        } else {
+            Root::Node(index, node)
+        };
+        return made(root, Some(place), place, !single && !flat, flat);
     }
     if let Some(spot) = spot {
         let drawn = &all[spot.drawn];
@@ -145,8 +215,14 @@ pub fn begin(
         };
         // Within the flesh, but towards the eye, so that limbs of both sides stand apart.
         let mut through = spot.place.lerp(spot.surface, 0.6);
-        if brush.mirror && faces {
-            let least = (1.1 * radius(through) / growth).max(1e-9);
+        let flat = single && brush.mirror && faces && is_middle(place);
+        if flat {
+            let mut inside = own(place);
+            inside.x = 0.0;
+            through = to_world.transform_point3(inside);
+        } else if !single && faces {
+            let apart = (APART[0] * radius(through)).max(APART[1] * spot.radius);
+            let least = (apart / growth).max(1e-9);
             let mut inside = own(through);
             if inside.x.abs() < least {
                 let side = if inside.x.abs() > 0.2 * least {
@@ -160,7 +236,7 @@ pub fn begin(
         }
         // Seen from the side, both stay as far from the mirror all along.
         let along = brush.mirror && faces;
-        let mut begin = made(root, Some(place), through, brush.mirror, along);
+        let mut begin = made(root, Some(place), through, !single, along);
         if drawn.block.is_none() {
             begin.root = Root::Free;
         }
@@ -168,7 +244,7 @@ pub fn begin(
     }
     if let Some(met) = meets() {
         let inside = met + ahead * (0.4 * radius(met));
-        return made(Root::Free, Some(inside), inside, brush.mirror, false);
+        return made(Root::Free, Some(inside), inside, !single, false);
     }
     let middle = model.map_or(home, |index| all[index].middle());
     let flat = brush.mirror && faces;
@@ -178,7 +254,7 @@ pub fn begin(
         inside.x = 0.0;
         through = to_world.transform_point3(inside);
     }
-    made(Root::Free, None, through, brush.mirror && !flat, flat)
+    made(Root::Free, None, through, !single && !flat, flat)
 }
 
 impl Begin {
@@ -223,15 +299,20 @@ impl Begin {
             along.push(along[along.len() - 1] + pair[0].0.distance(pair[1].0));
         }
         let length = along[along.len() - 1].max(f64::MIN_POSITIVE);
-        let long = (length / self.radius.max(f64::MIN_POSITIVE) - SHORT[0]) / (SHORT[1] - SHORT[0]);
+        let radii = length / self.radius.max(f64::MIN_POSITIVE);
+        let long = (radii - SHORT[0]) / (SHORT[1] - SHORT[0]);
         let tip = 1.0 + (TIP - 1.0) * long.clamp(0.0, 1.0);
+        let egg = match self.root {
+            Root::End(..) => egg(radii),
+            _ => 1.0,
+        };
         let sample = |((position, pressure), along): (&(DVec3, Option<f32>), &f64)| {
             let share = along / length;
             let thick = match pressure {
                 Some(pressure) => {
                     PRESSED[0] + (PRESSED[1] - PRESSED[0]) * f64::from(pressure.clamp(0.0, 1.0))
                 }
-                None if self.place.is_some() => 1.0 + (tip - 1.0) * share,
+                None if self.place.is_some() => egg * (1.0 + (tip - 1.0) * share),
                 None => ENDS + (1.0 - ENDS) * libm::sin(share * std::f64::consts::PI),
             };
             Sample {
@@ -251,6 +332,28 @@ impl Begin {
     }
 }
 
+/// How much thicker a stroke from an end is, of so many radii.
+fn egg(radii: f64) -> f64 {
+    let ([none, most, long], thick) = EGG;
+    let share = if radii < most {
+        (radii - none) / (most - none)
+    } else {
+        (long - radii) / (long - most)
+    };
+    1.0 + (thick - 1.0) * share.clamp(0.0, 1.0)
+}
+
+/// Where a stroke goes: from its beginning to its middle. `None` while it is short.
+#[must_use]
+pub fn heading(stroke: &Stroke) -> Option<Vec2> {
+    let marks = stroke.marks();
+    let at = |mark: &Mark| pos2(mark.at[0], mark.at[1]);
+    let start = at(&marks[0]);
+    let half = 0.5 * stroke.reach();
+    let mark = marks.iter().find(|mark| start.distance(at(mark)) >= half)?;
+    (half >= 6.0).then(|| at(mark) - start)
+}
+
 /// Turns a stroke round that begins in the air and ends on flesh: it grows from there. Gives how it begins then.
 #[must_use]
 pub fn turned(
@@ -259,15 +362,22 @@ pub fn turned(
     brush: &Brush,
     begin: Begin,
     stroke: &Stroke,
+    pair: Option<bool>,
     home: DVec3,
 ) -> (Begin, Stroke) {
     if begin.place.is_some() {
         return (begin, stroke.clone());
     }
-    let last = stroke.marks()[stroke.marks().len() - 1].at;
-    let other = self::begin(all, sight, pos2(last[0], last[1]), brush, home, || None);
+    let reversed = stroke.reversed();
+    let start = reversed.marks()[0].at;
+    let wish = Wish {
+        heading: heading(&reversed),
+        pair,
+    };
+    let at = pos2(start[0], start[1]);
+    let other = self::begin(all, sight, at, brush, wish, home, || None);
     if other.place.is_some() {
-        (other, stroke.reversed())
+        (other, reversed)
     } else {
         (begin, stroke.clone())
     }
@@ -286,7 +396,7 @@ pub fn draw(
 ) -> Option<Change> {
     // A skeleton of another colour is another one.
     let rooted = match begin.root {
-        Root::Node(index, _) => Some(index),
+        Root::Node(index, _) | Root::End(index, _) => Some(index),
         Root::Spot(spot) => Some(spot.drawn),
         Root::Free => None,
     };
@@ -374,6 +484,7 @@ fn start_at(drawn: &Drawn, begin: &Begin) -> Option<Start> {
     match begin.root {
         Root::Free => None,
         Root::Node(_, node) => Some(Start::Node(node)),
+        Root::End(_, node) => Some(Start::End(node)),
         Root::Spot(spot) => Some(Start::Between {
             curve: spot.curve,
             span: spot.span,
@@ -388,7 +499,7 @@ fn twin_start(drawn: &Drawn, index: usize, start: &Start, begin: &Begin) -> Opti
     let place = begin.place?;
     let own = drawn.own(place);
     let radius = match start {
-        Start::Node(node) => drawn.skeleton.nodes[*node].radius,
+        Start::Node(node) | Start::End(node) => drawn.skeleton.nodes[*node].radius,
         Start::Between { node, .. } => node.radius,
         _ => return None,
     };
@@ -397,7 +508,10 @@ fn twin_start(drawn: &Drawn, index: usize, start: &Start, begin: &Begin) -> Opti
     }
     let there = own * DVec3::new(-1.0, 1.0, 1.0);
     if let Some(node) = drawn.node_near(there, 0.3 * radius) {
-        return Some(Start::Node(node));
+        return Some(match start {
+            Start::End(_) => Start::End(node),
+            _ => Start::Node(node),
+        });
     }
     let place = drawn.to_world.transform_point3(there);
     let spot = drawn.spot_near(index, place, 1.5 * radius * drawn.growth)?;
@@ -453,7 +567,26 @@ fn number(x: f64, grain: f64) -> String {
     if short == "-0" { "0" } else { short }.to_owned()
 }
 
-/// Whether a change makes no new mistakes; else what is wrong with it.
+/// The text with the ground of the page under the lowest flesh: what is drawn stands. Unchanged if the text has another ground.
+#[must_use]
+pub fn grounded(text: &str, all: &[Drawn]) -> String {
+    let Some(range) = page::ground(text) else {
+        return text.to_owned();
+    };
+    let lows = all.iter().flat_map(Drawn::limbs).flatten();
+    let low = lows
+        .map(|(place, radius)| place.y - radius)
+        .fold(f64::INFINITY, f64::min);
+    if !low.is_finite() {
+        return text.to_owned();
+    }
+    let height = number(low, 0.1);
+    format!("{}{height}{}", &text[..range.start], &text[range.end..])
+}
+
+/// Whether a change makes no new mistakes; else what is wrong with it. Gives the change with the ground under it, and what the text
+/// makes.
+
 ///
 /// # Errors
 /// Says why the change cannot be made: the compiler's message.
@@ -481,7 +614,8 @@ pub fn checked(
         let why = new.map_or("the text would have a mistake", |d| &d.message);
         return Err(format!("This cannot be drawn here: {why}."));
     }
-    Ok((change, project, compiled))
+    let text = grounded(&change.text, &Drawn::all(&project, &compiled));
+    Ok((Change { text, ..change }, project, compiled))
 }
 
 /// Makes a change, and then what is the same on the other side of the mirror, in one step. `again` gets the skeletons after the first.

@@ -60,17 +60,12 @@ pub struct Grip {
 pub fn twin(drawn: &Drawn, node: usize) -> Option<usize> {
     let own = drawn.skeleton.nodes[node];
     let there = own.position * DVec3::new(-1.0, 1.0, 1.0);
-    if is_flat(drawn, node) {
+    if drawn.is_flat(node) {
         return None;
     }
     drawn
         .node_near(there, 0.15 * own.radius)
         .filter(|other| *other != node)
-}
-
-fn is_flat(drawn: &Drawn, node: usize) -> bool {
-    let own = drawn.skeleton.nodes[node];
-    own.position.x.abs() <= 0.05 * own.radius
 }
 
 impl Grip {
@@ -83,7 +78,7 @@ impl Grip {
             drawn: index,
             node,
             twin: if mirror { twin(drawn, node) } else { None },
-            flat: mirror && is_flat(drawn, node),
+            flat: mirror && drawn.is_flat(node),
             target: drawn.to_world.transform_point3(place),
             at,
         }
@@ -106,8 +101,18 @@ impl Grip {
             return None;
         }
         self.at = at;
-        self.target = sight.moved(self.target, by, false);
+        let before = self.target;
+        self.target = sight.moved(before, by, false);
         if self.flat {
+            // In the mirror, and still under the pointer if that is seen from the side.
+            let mirror = drawn.to_world.matrix3.inverse().transpose() * DVec3::X;
+            let eye = sight.projection.eye;
+            let ray = (self.target - eye).normalize_or_zero();
+            let slope = ray.dot(mirror.normalize_or_zero());
+            if slope.abs() > 0.3 {
+                let far = (before - eye).dot(mirror.normalize_or_zero()) / slope;
+                self.target = eye + ray * far;
+            }
             let mut own = drawn.own(self.target);
             own.x = 0.0;
             self.target = drawn.to_world.transform_point3(own);

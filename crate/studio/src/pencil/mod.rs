@@ -18,7 +18,7 @@ use crate::hands::Sight;
 use crate::session::Session;
 use crate::{places, platform};
 use drawn::{Spot, crossing, node_at, spot_at};
-use edits::{Begin, Brush, Change, Root};
+use edits::{Begin, Brush, Change, Root, Wish};
 use egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui, pos2};
 use glam::DVec3;
 use grip::Grip;
@@ -80,6 +80,22 @@ pub struct Pencil {
     /// The scene of a revision and frame of the film, ready for rays.
     picker: Option<((u64, u32), Picker)>,
     grip: grip::Handles,
+    /// The last stroke as it would be otherwise.
+    other: Option<Other>,
+    /// Where something lies on the picture, which a press is for.
+    off: Vec<Rect>,
+}
+
+/// What the last stroke would be as one of a pair if it is single, or single.
+struct Other {
+    /// Revision of the text with the last stroke; `None` until that is made.
+    revision: Option<u64>,
+    /// The text with the last stroke.
+    now: String,
+    /// The text with the other one, in its place.
+    change: Change,
+    /// Whether that is a pair.
+    pair: bool,
 }
 
 enum Gesture {
@@ -122,6 +138,8 @@ impl Default for Pencil {
             over: None,
             picker: None,
             grip: grip::Handles::default(),
+            other: None,
+            off: Vec::new(),
         }
     }
 }
@@ -141,6 +159,36 @@ impl Pencil {
         if tool != Some(Tool::Move) {
             self.chosen = None;
         }
+    }
+
+    /// Says where something lies on the picture: no stroke begins there.
+    pub fn keep_off(&mut self, places: Vec<Rect>) {
+        self.off = places;
+    }
+
+    /// What the last stroke can be made, while the text is as that left it: `true` for one of a pair, `false` for a single one.
+    #[must_use]
+    pub fn other(&self, session: &Session) -> Option<bool> {
+        let other = self.other.as_ref().filter(|_| self.gesture.is_none())?;
+        (other.revision == Some(session.revision())).then_some(other.pair)
+    }
+
+    /// Makes the last stroke what it would be otherwise.
+    pub fn turn(&mut self, session: &Session, commands: &mut Vec<Command>) {
+        let Some(other) = self.other.as_mut() else {
+            return;
+        };
+        if other.revision != Some(session.revision()) {
+            return;
+        }
+        std::mem::swap(&mut other.now, &mut other.change.text);
+        commands.push(Command::Undo);
+        commands.push(Command::Step {
+            file: other.change.file,
+            text: other.now.clone(),
+        });
+        other.pair = !other.pair;
+        other.revision = None;
     }
 
     /// Another work is open.
@@ -208,6 +256,13 @@ impl Pencil {
         }
         let key = (session.revision(), session.film_frame());
         if self.made != Some(key) {
+            self.other = self.other.take().filter(|other| {
+                let file = other.change.file;
+                file < session.project().files.len() && session.text(file) == other.now
+            });
+            if let Some(other) = &mut self.other {
+                other.revision = Some(key.0);
+            }
             self.made = Some(key);
             self.all = Drawn::all(session.project(), session.compiled());
             let there = |found: &(usize, usize)| {
@@ -323,12 +378,12 @@ impl Pencil {
                 );
             }
         }
-        let notice = places::all(ui.ctx()).get("notice").copied();
+        let off = self.off.clone();
         let free = |at: Pos2| {
             rect.contains(at)
                 && !around.covered
                 && !space
-                && !notice.is_some_and(|notice| notice.contains(at))
+                && !off.iter().any(|place| place.contains(at))
                 && ui
                     .ctx()
                     .layer_id_at(at)
@@ -352,12 +407,12 @@ impl Pencil {
                     self.press(sight, around, pos, commands);
                 }
                 Event::PointerMoved(at) => {
+                    moved = Some(at);
                     if let Some(Gesture::Stroke(stroke, _) | Gesture::Cut(stroke)) =
                         &mut self.gesture
                     {
                         stroke.push(mark(at));
                     }
-                    moved = Some(at);
                 }
                 Event::PointerButton {
                     pos,
@@ -386,7 +441,7 @@ impl Pencil {
         let session = around.session;
         match self.tool {
             Some(Tool::Draw) => {
-                let begin = self.begin(session, sight, at, around.touch);
+                let begin = self.begin(session, sight, at, Wish::default(), around.touch);
                 self.gesture = Some(Gesture::Stroke(Stroke::begin(mark(at)), Box::new(begin)));
             }
             Some(Tool::Cut) => self.gesture = Some(Gesture::Cut(Stroke::begin(mark(at)))),
@@ -412,27 +467,49 @@ impl Pencil {
         }
     }
 
-    fn begin(&mut self, session: &Session, sight: &Sight, at: Pos2, touch: bool) -> Begin {
+    fn begin(
+        &mut self,
+        session: &Session,
+        sight: &Sight,
+        at: Pos2,
+        wish: Wish,
+        touch: bool,
+    ) -> Begin {
         let brush = self.brush(touch);
         let home = session.camera().target;
         let all = std::mem::take(&mut self.all);
-        let begin = edits::begin(&all, sight, at, &brush, home, || {
+        let begin = edits::begin(&all, sight, at, &brush, wish, home, || {
             let is_skeleton = |element: u32| all.iter().any(|d| d.element == element as usize);
-            let hit = self.met(session, sight, at)?;
+            let hit = self.met(session, sight, at, 0.0)?;
             (!hit.element.is_some_and(is_skeleton)).then_some(hit.position)
         });
         self.all = all;
         begin
     }
 
-    /// Where a place of the screen is on what is seen there.
-    fn met(&mut self, session: &Session, sight: &Sight, at: Pos2) -> Option<tracer::Hit> {
+    /// Where a place of the screen is on what is seen there, or at most `around` points beside it.
+    fn met(
+        &mut self,
+        session: &Session,
+        sight: &Sight,
+        at: Pos2,
+        around: f32,
+    ) -> Option<tracer::Hit> {
         let key = (session.revision(), session.film_frame());
         if self.picker.as_ref().is_none_or(|(made, _)| *made != key) {
             self.picker = Some((key, Picker::new(&session.compiled().scene)));
         }
         let (_, picker) = self.picker.as_ref()?;
-        picker.pick(sight.projection.eye, sight.direction(at))
+        let rings = [0.0, 0.5, 1.0].map(|share| share * around);
+        let places = rings.into_iter().flat_map(|out| {
+            let turns = if out > 0.0 { 8 } else { 1 };
+            (0..turns).map(move |turn| {
+                at + out * egui::Vec2::angled(turn as f32 * std::f32::consts::FRAC_PI_4)
+            })
+        });
+        places
+            .into_iter()
+            .find_map(|at| picker.pick(sight.projection.eye, sight.direction(at)))
     }
 
     fn drag(&mut self, sight: &Sight, around: &Around<'_>, at: Pos2, commands: &mut Vec<Command>) {
@@ -453,6 +530,19 @@ impl Pencil {
             Some(Gesture::Bend(from, spot)) if from.distance(at) > 4.0 => {
                 let (from, spot) = (*from, *spot);
                 self.bend(around.session, sight, from, spot, commands);
+            }
+            // Which way it leaves an end tells what it is.
+            Some(Gesture::Stroke(stroke, begin)) if begin.place.is_some() => {
+                let start = stroke.marks()[0].at;
+                let wish = Wish {
+                    heading: edits::heading(stroke),
+                    pair: None,
+                };
+                let start = pos2(start[0], start[1]);
+                let begin = self.begin(around.session, sight, start, wish, around.touch);
+                if let Some(Gesture::Stroke(_, held)) = &mut self.gesture {
+                    **held = begin;
+                }
             }
             Some(Gesture::Rim) => {
                 let Some((center, rim)) = self.rim(sight) else {
@@ -529,10 +619,11 @@ impl Pencil {
         match self.gesture.take() {
             Some(Gesture::Stroke(mut stroke, begin)) => {
                 stroke.push(mark(at));
+                self.other = None;
                 let result = if stroke.reach() < still {
                     self.tap(session, sight, around.touch, at, &begin)
                 } else {
-                    self.limb(session, sight, around.touch, &stroke, *begin)
+                    self.limb(session, sight, around.touch, &stroke)
                 };
                 step(result, commands);
             }
@@ -544,7 +635,20 @@ impl Pencil {
                     self.cut(session, sight, &stroke, commands);
                 }
             }
-            Some(Gesture::Grip(_) | Gesture::Rim) => commands.push(Command::Release),
+            Some(Gesture::Grip(_) | Gesture::Rim) => {
+                // What is drawn by the last move stands in the text already; the ground follows in the same step.
+                for drawn in self.all.iter().take(1) {
+                    let text = session.text(drawn.file);
+                    let new = edits::grounded(text, &self.all);
+                    if session.is_compiled() && new != text {
+                        commands.push(Command::SetText {
+                            file: drawn.file,
+                            text: new,
+                        });
+                    }
+                }
+                commands.push(Command::Release);
+            }
             Some(Gesture::Bend(..)) | None => {}
         }
     }
@@ -558,7 +662,8 @@ impl Pencil {
         at: Pos2,
         begin: &Begin,
     ) -> Option<Result<Change, String>> {
-        let hit = self.met(session, sight, at)?;
+        let reach = if touch { 16.0 } else { 5.0 };
+        let hit = self.met(session, sight, at, reach)?;
         let colour = self
             .colour
             .map_or(page::COLOURS[7].1, |index| page::COLOURS[index].1);
@@ -574,27 +679,56 @@ impl Pencil {
 
     /// A limb along a stroke.
     fn limb(
-        &self,
+        &mut self,
         session: &Session,
         sight: &Sight,
         touch: bool,
         stroke: &Stroke,
-        begin: Begin,
     ) -> Option<Result<Change, String>> {
+        let (change, is_pair) = self.grown(session, sight, touch, stroke, None)?;
+        let change = match edits::checked(session, change) {
+            Ok((change, ..)) => change,
+            Err(why) => return Some(Err(why)),
+        };
+        if self.mirror
+            && let Some((other, pair)) = self.grown(session, sight, touch, stroke, Some(!is_pair))
+            && pair != is_pair
+            && let Ok((other, ..)) = edits::checked(session, other)
+            && other.file == change.file
+        {
+            self.other = Some(Other {
+                revision: None,
+                now: change.text.clone(),
+                change: other,
+                pair,
+            });
+        }
+        Some(Ok(change))
+    }
+
+    /// The text with a limb along a stroke, and whether it is one of a pair. `pair`: whether it is to be.
+    fn grown(
+        &mut self,
+        session: &Session,
+        sight: &Sight,
+        touch: bool,
+        stroke: &Stroke,
+        pair: Option<bool>,
+    ) -> Option<(Change, bool)> {
         let brush = self.brush(touch);
         let home = session.camera().target;
-        let (begin, stroke) = edits::turned(&self.all, sight, &brush, begin, stroke, home);
+        let start = stroke.marks()[0].at;
+        let wish = Wish {
+            heading: edits::heading(stroke),
+            pair,
+        };
+        let begin = self.begin(session, sight, pos2(start[0], start[1]), wish, touch);
+        let (begin, stroke) = edits::turned(&self.all, sight, &brush, begin, stroke, pair, home);
         let samples = begin.samples(sight, &stroke);
         let point = sight.point(begin.plane.0);
-        let change = edits::draw(
-            session.project(),
-            &self.all,
-            &begin,
-            &samples,
-            &brush,
-            point,
-        )?;
-        Some(edits::checked(session, change).map(|(change, ..)| change))
+        let project = session.project();
+        let change = edits::draw(project, &self.all, &begin, &samples, &brush, point)?;
+        Some((change, begin.pair))
     }
 
     /// Takes away what is tapped: a node, a curve or a bead.
@@ -607,7 +741,7 @@ impl Pencil {
         commands: &mut Vec<Command>,
     ) {
         let reach = if touch { 20.0 } else { 9.0 };
-        if let Some(hit) = self.met(session, sight, at)
+        if let Some(hit) = self.met(session, sight, at, 0.0)
             && let Some(element) = hit.element
         {
             let scene = &session.compiled().scene;
@@ -871,7 +1005,7 @@ impl Pencil {
 
     fn stroke_colour(&self, begin: &Begin) -> scene::Rgb {
         let own = match begin.root {
-            Root::Node(index, _) => Some(index),
+            Root::Node(index, _) | Root::End(index, _) => Some(index),
             Root::Spot(spot) => Some(spot.drawn),
             Root::Free => edits::target(&self.all, None),
         };
@@ -919,7 +1053,7 @@ impl Pencil {
                 return "Draw from the flesh: a limb · right button turns · wheel zooms";
             }
             return if around.touch {
-                "Draw from the flesh: a limb · tap it: an eye · two fingers turn"
+                "From the flesh: a limb · tap it: an eye"
             } else {
                 "Draw from the flesh: a limb · right button turns"
             };
@@ -959,6 +1093,6 @@ fn step(result: Option<Result<Change, String>>, commands: &mut Vec<Command>) {
 fn mark(at: Pos2) -> Mark {
     Mark {
         at: [at.x, at.y],
-        pressure: platform::pressure(),
+        pressure: platform::pen_pressure(),
     }
 }

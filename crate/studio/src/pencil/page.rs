@@ -14,15 +14,27 @@ pub const COLOURS: [(&str, Rgb); 8] = [
     ("Night", [0.07, 0.07, 0.09]),
 ];
 
-/// The text of an empty page to draw on: seen from the side, so that what is drawn in pairs lies to the left and right of it. `high`:
-/// for a place that is higher than wide.
+/// The ground of the page, up to its height.
+const GROUND: &str = "ground <0.72 0.70 0.62>, height ";
+
+/// The text of an empty page to draw on: seen from the side and a little from before, so that what is drawn in pairs lies to the left
+/// and right of it. `ratio`: height of its place to width.
 #[must_use]
-pub fn fresh(high: bool) -> String {
-    let (frame, eye, angles) = if high {
-        ("480 600", "9.4 2.2 3.2", "39.2 48")
+pub fn fresh(ratio: f64) -> String {
+    let ratio = if ratio.is_finite() {
+        ratio.clamp(0.75, 1.7)
     } else {
-        ("640 480", "8.2 1.9 2.8", "46.8 36")
+        0.75
     };
+    let is_high = ratio > 1.0;
+    let (width, eye, across) = if is_high {
+        (480.0, "8.8 2.3 4.6", 39.2_f64)
+    } else {
+        (640.0, "7.7 2 4", 46.8)
+    };
+    let height = 10.0 * libm::round(0.1 * width * ratio);
+    let up = libm::tan(0.5 * across.to_radians()) * height / width;
+    let up = libm::round(20.0 * libm::atan(up).to_degrees()) / 10.0;
     let skin = surface(COLOURS[0].1, true);
     format!(
         "\
@@ -30,18 +42,31 @@ pub fn fresh(high: bool) -> String {
 eyep {eye}
 vrp 0 0.1 0
 vup 0 1 0
-fov {angles}
-framesize {frame}
+fov {across} {up}
+framesize {width} {height}
 sample 2
 
 background <0.78 0.86 0.92> to <0.93 0.93 0.90>
 light <1 0.96 0.9>, position 7 9 3
 light <0.3 0.34 0.4>, position 2 4 -9
-ground <0.72 0.70 0.62>, height -1.5
+{GROUND}-1.5
 
 surface Skin, {skin}
 "
     )
+}
+
+/// Bytes of the height of the page's ground. `None` if a text has no such ground, or no plain number there.
+#[must_use]
+pub fn ground(text: &str) -> Option<std::ops::Range<usize>> {
+    let starts = text.match_indices(GROUND).map(|(at, _)| at);
+    let start = starts
+        .filter(|at| *at == 0 || text[..*at].ends_with('\n'))
+        .map(|at| at + GROUND.len())
+        .next()?;
+    let line = text[start..].lines().next()?;
+    line.parse::<f64>().ok()?;
+    Some(start..start + line.len())
 }
 
 /// The fields of a material: soft, or hard and shining.

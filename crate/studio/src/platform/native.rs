@@ -31,12 +31,6 @@ pub fn pen_pressure() -> Option<f32> {
 /// Says whether each frame keeps the tracer waiting.
 pub fn set_frames_dear(_dear: bool) {}
 
-/// Pressure of the pen that touches the page now.
-#[must_use]
-pub fn pressure() -> Option<f32> {
-    None
-}
-
 /// Milliseconds since 1970.
 #[must_use]
 pub fn unix_time() -> f64 {

@@ -23,47 +23,25 @@ thread_local! {
     static PEN: std::cell::Cell<Option<f32>> = const { std::cell::Cell::new(None) };
 }
 
-/// The pressure of a pen on the page, 0 … 1; `None` without a pen.
+/// The pressure of the pen that touches the page, or that touched it last, 0 … 1; `None` for a mouse or a finger.
 #[must_use]
 pub fn pen_pressure() -> Option<f32> {
     PEN.get()
 }
 
-/// Notes what a pointer event says about a pen.
-pub fn note_pen(event: &web_sys::PointerEvent) {
-    let pressure = event.pressure();
-    if event.pointer_type() != "pen" {
-        PEN.set(None);
-    } else if pressure > 0.0 {
-        // Lifted it keeps the last one, for the end of its stroke.
-        PEN.set(Some(pressure));
-    }
-}
-
-/// Says whether each frame keeps the tracer waiting.
-pub fn set_frames_dear(dear: bool) {
-    crate::frames::dear(dear);
-}
-
-thread_local! {
-    /// Pressure of the pen that touches the page.
-    static PRESSURE: std::cell::Cell<Option<f32>> = const { std::cell::Cell::new(None) };
-}
-
-/// Pressure of the pen that touches the page now, 0 … 1; `None` for a mouse or a finger.
-#[must_use]
-pub fn pressure() -> Option<f32> {
-    PRESSURE.get()
-}
-
-/// Listens to pens from now on. Where the browser does not tell, strokes have an even thickness.
+/// Listens to pens from now on, whose pressure the window's own events do not tell.
 pub fn watch_pens() {
     let listen = Closure::<dyn Fn(web_sys::PointerEvent)>::new(|event: web_sys::PointerEvent| {
-        let is_pen = event.pointer_type() == "pen" && event.pressure() > 0.0;
-        PRESSURE.set(is_pen.then(|| event.pressure()));
+        let pressure = event.pressure();
+        if event.pointer_type() != "pen" {
+            PEN.set(None);
+        } else if pressure > 0.0 {
+            // Lifted it keeps the last one, for the end of its stroke.
+            PEN.set(Some(pressure));
+        }
     });
     for name in ["pointerdown", "pointermove"] {
-        // Before the canvas has it.
+        // Before the canvas has it. Where the browser refuses, strokes have an even thickness.
         let _ = window().add_event_listener_with_callback_and_bool(
             name,
             listen.as_ref().unchecked_ref(),
@@ -71,6 +49,11 @@ pub fn watch_pens() {
         );
     }
     listen.forget();
+}
+
+/// Says whether each frame keeps the tracer waiting.
+pub fn set_frames_dear(dear: bool) {
+    crate::frames::dear(dear);
 }
 
 /// Milliseconds since 1970.

@@ -39,7 +39,10 @@ impl Digger for Hermite {
             });
         }
         let (rays, limits) = (packet.rays, packet.limits);
-        if let Some(met) = soft.far_first(body, rays, limits, packet.alive, quest, scratch) {
+        let far = &mut scratch.far;
+        let met = soft.far_first(body, rays, limits, packet.alive, quest, far);
+        scratch.evaluations += core::mem::take(&mut far.evaluations);
+        if let Some(met) = met {
             let t = scratch.far.flesh.t;
             return core::array::from_fn(|i| {
                 let t = if quest == Quest::Entry { 0.0 } else { t[i] };

@@ -21,12 +21,12 @@ macro_rules! examples {
 }
 
 /// Names and texts of the examples.
-pub const EXAMPLES: [(&str, &str); 43] = examples![
+pub const EXAMPLES: [(&str, &str); 44] = examples![
     "agate-shell" "blends" "coral-crab" "coral-tree" "cowrie" "drops" "falling" "fireflies" "flakes" "floppy-ears"
     "fog-stones" "generators" "glass-drops" "hermite-crab" "icicle" "jelly" "octopus" "pebbles" "planets" "sea-urchin"
     "seahorse" "seaweed" "shell-1" "shell-2" "shell-3" "snail" "sphereflake" "spinal-starecase" "squeeze" "starfish"
-    "starfish-a" "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "stem-flakes" "still-life" "time-map"
-    "touching" "tshape" "urchin-patterns" "wrinkles"
+    "starfish-a" "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "stem-flakes" "still-life" "tide"
+    "time-map" "touching" "tshape" "urchin-patterns" "wrinkles"
 ];
 
 macro_rules! bench {

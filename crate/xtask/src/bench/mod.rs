@@ -19,6 +19,7 @@ mod peers;
 mod povray;
 mod profile;
 mod scenes;
+mod sculpt;
 mod series;
 mod wasm;
 
@@ -56,6 +57,8 @@ pub enum Part {
     Fit,
     /// Meshes against another mesher.
     Meshes,
+    /// A step of a sculpting tool.
+    Sculpt,
 }
 
 /// Result of a part: its rows of the table of goals, and its section of the page.
@@ -153,6 +156,7 @@ fn title(part: Part) -> &'static str {
         Part::Fields => "Fields",
         Part::Fit => "Fitted meshes",
         Part::Meshes => "Meshes",
+        Part::Sculpt => "Sculpting",
     }
 }
 
@@ -170,6 +174,7 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
         Part::Fields => fields::measure().map(|piece| (Vec::new(), piece)),
         Part::Fit => fit::measure(),
         Part::Meshes => meshes::measure(),
+        Part::Sculpt => sculpt::measure(),
     };
     (title(part), result)
 }

@@ -53,11 +53,16 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
         said.push(format!("{package} {count}"));
     }
     let mut said = format!("tests passed: {}", said.join(", "));
-    // In a browser only where that is asked for: there tests of the mathematics take long.
-    if packages.contains(&TESTED_IN_BROWSER) && *chosen != Chosen::All {
-        let count = watch.step("browser", || in_browser(&runner, &binaries, chosen.test()))?;
-        said += &match count {
-            Some(count) => format!(", {TESTED_IN_BROWSER} in a browser {count}"),
+    let all = *chosen == Chosen::All;
+    let in_browsers = if all {
+        &TESTED_IN_BROWSER[..1]
+    } else {
+        &TESTED_IN_BROWSER
+    };
+    for package in in_browsers.iter().filter(|p| packages.contains(p)) {
+        let test = || in_browser(&runner, &binaries, package, chosen.test());
+        said += &match watch.step("browser", test)? {
+            Some(count) => format!(", {package} in a browser {count}"),
             None => String::from(", none in a browser, as there is no chromedriver"),
         };
     }
@@ -175,7 +180,12 @@ fn run_one(
 }
 
 /// Runs one package's tests in a browser's worker and gives how many there are; none without a chromedriver.
-fn in_browser(runner: &Path, binaries: &[Binary], filter: Option<&str>) -> Result<Option<usize>> {
+fn in_browser(
+    runner: &Path,
+    binaries: &[Binary],
+    package: &str,
+    filter: Option<&str>,
+) -> Result<Option<usize>> {
     // It is installed with the browser.
     tools::chromium()?;
     let Some(driver) = find("chromedriver") else {
@@ -185,12 +195,12 @@ fn in_browser(runner: &Path, binaries: &[Binary], filter: Option<&str>) -> Resul
     let settings = [(tools::IN_WORKER, "1"), ("CHROMEDRIVER", &driver)];
     let mut count = 0;
     for binary in binaries {
-        if binary.package == TESTED_IN_BROWSER {
+        if binary.package == package {
             count += passed(&run_one(runner, binary, filter, &settings)?);
         }
     }
     if count == 0 && filter.is_none() {
-        bail!("no test of {TESTED_IN_BROWSER} was run in a browser");
+        bail!("no test of {package} was run in a browser");
     }
     Ok(Some(count))
 }
