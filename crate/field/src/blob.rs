@@ -12,9 +12,10 @@
 //! A segment is a sum of such points, and a Gaussian has |G′| = G. With a ramp r the field is `g·r`, so that −(gr)″ is at
 //! most `−g″·r + 2|g′||r′|` between the ramp's kinks; in a kink the slope falls by no more than `g·|r′|`.
 use crate::bone::{Bone, Segment};
+use crate::inverse::POLE2;
 use crate::ramp::Ramp;
 use crate::real::Scalar;
-use crate::term::{Evaluate, Frame};
+use crate::term::{Evaluate, Frame, Prepared};
 use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI};
 use glam::DVec3;
@@ -158,6 +159,23 @@ impl Primitive {
         })
     }
 
+    /// Returns the primitive as a blob if it is a point that adds to the field, without a profile, of a kernel that never ends. Such
+    /// blobs have no reach, but the same bounds on intervals: their kernels fall and are convex in q, too.
+    #[must_use]
+    pub fn endless_point<S: Scalar + Evaluate>(&self) -> Option<Blob<S>> {
+        let Prepared { double, .. } = &self.prepared;
+        let ends = self.kernel == Kernel::Gauss || self.kernel.is_compact();
+        let fits = |x: f64| x > 0.0 && x <= LARGEST_BLOB;
+        let is_point = matches!(double.form.bone, Bone::Point);
+        let plain = is_point && double.waves.is_none() && !ends && self.tapered.is_none();
+        (plain && fits(double.amplitude) && fits(self.width)).then(|| Blob {
+            kernel: self.kernel,
+            scale: S::round(self.width),
+            amplitude: S::prepared(&self.prepared).amplitude,
+            segment: None,
+        })
+    }
+
     /// Position of the point, or middle of the segment.
     #[must_use]
     pub fn blob_middle(&self) -> DVec3 {
@@ -246,6 +264,25 @@ impl<S: Scalar> Blob<S> {
             let [value, slope, ..] = self.kernel.derivatives(q).0;
             (q + (wanted - value) / slope).min(1.0)
         })
+    }
+
+    /// Returns the q at which a point of a kernel that never ends has this field alone; negative if it has not.
+    #[must_use]
+    pub fn square_of(&self, field: f64) -> f64 {
+        let ratio = self.amplitude.lane(0) / field;
+        match self.kernel {
+            Kernel::Cauchy => ratio.sqrt() - 1.0,
+            Kernel::Inverse => ratio * ratio - POLE2,
+            Kernel::Squared => ratio - POLE2,
+            Kernel::Cubed => libm::cbrt(ratio * ratio) - POLE2,
+            _ => self.core(1.0, THRESHOLD),
+        }
+    }
+
+    /// The kernel's width parameter, and the field where q is 0 over the kernel's value there.
+    #[must_use]
+    pub fn scale_and_amplitude(&self) -> [S; 2] {
+        [self.scale, self.amplitude]
     }
 
     /// Estimates the largest slope of the field where it is at most T: perpendicular to the bone, at `q = core`

@@ -35,6 +35,7 @@
 //!   stretches one; [`Local`] is a skeleton's convolution whose folds do not blend;
 //! - [`Primitive`] is a term of the field: value, gradient, depth of influence, and the ray interval within it;
 //!   [`Bound`] gives upper bounds on its size, its derivatives and the error of a cubic Hermite span;
+//! - [`FarField`] divides space into cells, each with a polynomial of all that is far from it and a list of what is near;
 //! - [`Blob`] is a primitive whose largest value on any interval of a ray has a closed form;
 //! - [`Real`] is the number type that formulas are generic over: `f64`, `f32`, or eight `f32` side by side.
 //!
@@ -64,6 +65,7 @@ mod envelope;
 mod error_function;
 mod exponentials;
 mod far;
+pub mod far_field;
 mod form;
 mod gauss;
 mod implicit;
@@ -100,6 +102,7 @@ pub use blob_chain::ChainBlob;
 pub use bound::Bound;
 pub use cut::Cut;
 pub use exponentials::Exponentials;
+pub use far_field::FarField;
 pub use implicit::{Ball, Enclosure, Implicit, Part, Variation};
 pub use kernel::{Derivatives, Kernel};
 pub use kinks::Kink;

@@ -18,7 +18,11 @@ use trials::{KINDS, Kind, Row, Trial, check};
 
 /// Packets of eight rays in each scene; fewer where there are hundreds of primitives.
 fn packets(kind: Kind) -> usize {
-    if kind == Kind::Cluster { 3 } else { 8 }
+    if matches!(kind, Kind::Cluster | Kind::Cloud) {
+        3
+    } else {
+        8
+    }
 }
 
 fn as_pictures(trial: &Trial, picture: &Picture) -> Vec<Option<Hit>> {

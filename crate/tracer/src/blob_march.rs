@@ -12,6 +12,7 @@
 //! would need a larger −F″. Newton's method then refines it. Otherwise the step is shortened, but to no less than the tolerance.
 //! The eight rays are computed together, each with its own intervals.
 use crate::lanes::least;
+use field::far_field::DEGREE;
 use field::{BlobOnRay, Limits, Real};
 use wide::f32x8;
 
@@ -90,6 +91,104 @@ pub struct MarchRays {
     pub tolerance: f32,
     /// Error of the field where it is T.
     pub noise: f32,
+    /// Value and slope at the start of each ray, if they are known.
+    pub start: Option<[f32x8; 2]>,
+}
+
+/// A smooth part of the field beside the blobs: a polynomial along each ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Backdrop {
+    /// Its coefficients in t over `half`, which is between −1 and 1 on the rays.
+    pub coefficients: [f32x8; DEGREE + 1],
+    /// Largest size of a parameter.
+    pub half: f32,
+}
+
+impl Backdrop {
+    /// Value and slope at t.
+    #[inline(always)]
+    pub fn at(&self, t: f32x8) -> (f32x8, f32x8) {
+        let scale = f32x8::splat(1.0 / self.half);
+        let x = t * scale;
+        let zero = f32x8::splat(0.0);
+        let (mut value, mut slope) = (zero, zero);
+        for c in self.coefficients.iter().rev() {
+            slope = slope * x + value;
+            value = value * x + *c;
+        }
+        (value, slope * scale)
+    }
+
+    /// Upper bound on it, and on −f″.
+    #[inline(always)]
+    pub fn limits(&self) -> (f32x8, f32x8) {
+        let [a, b, c, d, e, f] = self.coefficients;
+        let times = |k: f32, x: f32x8| f32x8::splat(k) * x;
+        let zero = f32x8::splat(0.0);
+        let most = a + b.abs() + c.fast_max(zero) + d.abs() + e.fast_max(zero) + f.abs();
+        let turns = times(6.0, d.abs()) + times(12.0, (-e).fast_max(zero)) + times(20.0, f.abs());
+        let bend = (turns - times(2.0, c)).fast_max(zero);
+        let scale = 1.0 / self.half;
+        // Rounded upwards.
+        let most = most + times(1e-6, most.abs());
+        (most, times(scale * scale * (1.0 + 1e-5), bend))
+    }
+}
+
+/// What is behind the blobs, compiled separately for each.
+pub trait Behind: Copy {
+    /// Whether there is anything.
+    const ANYTHING: bool;
+    /// Value and slope at t.
+    fn at(&self, t: f32x8) -> (f32x8, f32x8);
+    /// Upper bound on the value, and on −f″.
+    fn limits(&self) -> (f32x8, f32x8);
+}
+
+/// Nothing.
+impl Behind for () {
+    const ANYTHING: bool = false;
+
+    #[inline(always)]
+    fn at(&self, _: f32x8) -> (f32x8, f32x8) {
+        (f32x8::ZERO, f32x8::ZERO)
+    }
+
+    #[inline(always)]
+    fn limits(&self) -> (f32x8, f32x8) {
+        (f32x8::ZERO, f32x8::ZERO)
+    }
+}
+
+/// A backdrop with its limits.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounded<'a> {
+    backdrop: &'a Backdrop,
+    limits: (f32x8, f32x8),
+}
+
+impl<'a> Bounded<'a> {
+    /// Takes the limits of a backdrop.
+    pub fn new(backdrop: &'a Backdrop) -> Self {
+        Self {
+            backdrop,
+            limits: backdrop.limits(),
+        }
+    }
+}
+
+impl Behind for Bounded<'_> {
+    const ANYTHING: bool = true;
+
+    #[inline(always)]
+    fn at(&self, t: f32x8) -> (f32x8, f32x8) {
+        self.backdrop.at(t)
+    }
+
+    #[inline(always)]
+    fn limits(&self) -> (f32x8, f32x8) {
+        self.limits
+    }
 }
 
 /// Result of a march.
@@ -110,7 +209,7 @@ pub struct Marched {
 }
 
 /// T less the rounding of sums: a ray that only rounding keeps outside meets the surface.
-const LEVEL: f32 = 1.0 - 1e-6;
+pub const LEVEL: f32 = 1.0 - 1e-6;
 
 /// Field from which a point counts as deep inside.
 const DEEP: f32 = 1.5;
@@ -154,16 +253,31 @@ pub fn march(blobs: RayBlobs<'_>, rays: &MarchRays, tops: &mut Vec<f32x8>) -> Op
         tops.resize(blobs.intervals.len(), f32x8::splat(0.0));
     }
     if blobs.plain {
-        march_blobs::<true>(blobs, rays, tops)
+        march_blobs::<true, ()>(blobs, (), rays, tops)
     } else {
-        march_blobs::<false>(blobs, rays, tops)
+        march_blobs::<false, ()>(blobs, (), rays, tops)
     }
+}
+
+/// [`march`] before a backdrop; the rays' parameters are within its range.
+#[must_use]
+pub fn march_before(
+    blobs: RayBlobs<'_>,
+    backdrop: &Backdrop,
+    rays: &MarchRays,
+    tops: &mut Vec<f32x8>,
+) -> Option<Marched> {
+    if tops.len() < blobs.intervals.len() {
+        tops.resize(blobs.intervals.len(), f32x8::splat(0.0));
+    }
+    march_blobs::<false, _>(blobs, Bounded::new(backdrop), rays, tops)
 }
 
 /// [`march`] for one value of [`RayBlobs::plain`].
 #[inline(never)]
-fn march_blobs<const PLAIN: bool>(
+fn march_blobs<const PLAIN: bool, B: Behind>(
     blobs: RayBlobs<'_>,
+    behind: B,
     rays: &MarchRays,
     tops: &mut [f32x8],
 ) -> Option<Marched> {
@@ -179,8 +293,11 @@ fn march_blobs<const PLAIN: bool>(
     let mut going = rays.alive & low.simd_lt(rays.to).to_bitmask();
     // Rays that start out of all blobs' reach start at field 0.
     let (mut low_value, mut low_slope) = (zero, zero);
-    if low.simd_le(zero).to_bitmask() & going != 0 {
-        (low_value, low_slope) = values::<PLAIN>(blobs, low, rays.alive, &mut evaluations);
+    if let Some(start) = rays.start {
+        [low_value, low_slope] = start;
+    } else if low.simd_le(zero).to_bitmask() & going != 0 {
+        (low_value, low_slope) =
+            values::<PLAIN, B>(blobs, behind, low, rays.alive, &mut evaluations);
     }
     if level.simd_le(low_value).to_bitmask() & going != 0 {
         return None;
@@ -206,8 +323,9 @@ fn march_blobs<const PLAIN: bool>(
                 evaluations,
             };
             if met != 0 {
-                polish::<PLAIN>(
+                polish::<PLAIN, B>(
                     blobs,
+                    behind,
                     &mut marched,
                     low_value,
                     [high_value, high_slope, high_bend],
@@ -216,7 +334,7 @@ fn march_blobs<const PLAIN: bool>(
             return Some(marched);
         }
         let at = next;
-        let sum = Sum::on::<PLAIN>(blobs, low, at, going, tops, &mut evaluations);
+        let sum = Sum::on::<PLAIN, B>(blobs, behind, low, at, going, tops, &mut evaluations);
         let length = at - low;
         let short = length.simd_le(tolerance).to_bitmask();
         let above = level.simd_le(sum.value).to_bitmask() & going;
@@ -303,8 +421,9 @@ pub fn extremes(a: f32x8, b: f32x8, bits: u32) -> (f32, f32) {
 
 /// Returns the field at t and its slope.
 #[inline(always)]
-fn values<const PLAIN: bool>(
+pub fn values<const PLAIN: bool, B: Behind>(
     blobs: RayBlobs<'_>,
+    behind: B,
     t: f32x8,
     bits: u32,
     evaluations: &mut u64,
@@ -314,6 +433,11 @@ fn values<const PLAIN: bool>(
     for blob in blobs.between(first, last) {
         *evaluations += 8;
         let (v, s) = blob.on_ray::<PLAIN>().at(t);
+        value += v;
+        slope += s;
+    }
+    if B::ANYTHING {
+        let (v, s) = behind.at(t);
         value += v;
         slope += s;
     }
@@ -338,8 +462,9 @@ fn before_crossing(low: f32x8, high: f32x8, [value, slope, bend]: [f32x8; 3], go
 impl Sum {
     /// Adds up the blobs between two parameters. Each blob's contribution to `most` is written to `tops`.
     #[inline(always)]
-    fn on<const PLAIN: bool>(
+    fn on<const PLAIN: bool, B: Behind>(
         blobs: RayBlobs<'_>,
+        behind: B,
         from: f32x8,
         to: f32x8,
         bits: u32,
@@ -378,6 +503,14 @@ impl Sum {
                 sum.kink += kink;
             }
             *top = most;
+        }
+        if B::ANYTHING {
+            let (value, slope) = behind.at(to);
+            let (most, bend) = behind.limits();
+            sum.value += value;
+            sum.slope += slope;
+            sum.most += most;
+            sum.bend += bend;
         }
         sum
     }
@@ -468,8 +601,9 @@ fn tops_of<'a>(
 /// Refines bracketed crossings by Newton steps, or by the secant and halving where those leave the bracket. Value, slope and bend
 /// at the far end are given.
 #[inline(never)]
-fn polish<const PLAIN: bool>(
+fn polish<const PLAIN: bool, B: Behind>(
     blobs: RayBlobs<'_>,
+    behind: B,
     marched: &mut Marched,
     mut low_value: f32x8,
     [mut high_value, slope, bend]: [f32x8; 3],
@@ -501,7 +635,8 @@ fn polish<const PLAIN: bool>(
         if !near.to_bitmask() & marched.met == 0 {
             break;
         }
-        (value, slope) = values::<PLAIN>(blobs, at, marched.met, &mut marched.evaluations);
+        (value, slope) =
+            values::<PLAIN, B>(blobs, behind, at, marched.met, &mut marched.evaluations);
         let over = level.simd_le(value);
         high = over.select(at, high);
         high_value = over.select(value, high_value);
@@ -576,6 +711,7 @@ mod tests {
             alive: 255,
             tolerance: 5e-5,
             noise,
+            start: None,
         }
     }
 
@@ -802,6 +938,7 @@ mod tests {
             alive: 255,
             tolerance: 5e-5,
             noise: 0.0,
+            start: None,
         };
         let intervals = intervals(&ray_blobs);
         let blobs = RayBlobs {

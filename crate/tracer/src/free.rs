@@ -86,6 +86,9 @@ impl World {
         }
         let scratch = &mut work.scratch;
         for body in bodies {
+            if self.meet_far(body, alive, seen, scratch) {
+                continue;
+            }
             let whole = |base: f64| Beams::one(beam.from(base));
             let spaces = &mut scratch.spaces;
             let made = self.soft.slabs(body, beam, whole, furthest, spaces);

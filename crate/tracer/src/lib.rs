@@ -35,12 +35,14 @@
 //! surface point adds its own light (`lamps`, `coloured`), with the material of its elements and their textures (`material`), and asks
 //! for reflected and refracted rays, which `free` follows; `air` is what they pass and see beside surfaces.
 //!
-//! Crossings with the soft surface are found in one of two certified ways.
+//! Crossings with the soft surface are found in one of three certified ways.
 //!
 //! - The fast path (`quick`) is for *blobs*, whose largest value on any interval of a ray has a closed form
 //!   (`field::blob`): points with compact or Gaussian kernels, and Gaussian segments. Gaussian arcs, curves and tapered
 //!   limbs are chains of blobs (`field::blob_chain`). `nearby` lists the blobs near a square, a part of it, a packet;
 //!   `blob_march` steps along the packet's rays, each step proved to hold no crossing.
+//! - Bodies of 64 or more points of one kernel that never ends, of one finish and none of them negative, have a hierarchy of
+//!   cells with polynomials of what is far (`field::far_field`); `far_march` steps among the near points of each cell.
 //! - The general way is the thesis' (chapter 4): `slabs` decides for a whole beam which primitive needs Hermite spans
 //!   of which length (`field::Bound` has bounds on fields and on the errors of spans), and `walk` traverses the slabs with
 //!   single packets, adds up their spans' cubics (`spans`) and takes their roots (`roots`); `root_isolation` decides
@@ -60,6 +62,10 @@
 //!   that is within the tolerance unless a surface is nearly flat in the field. A ray that passes so near to the surface is
 //!   searched again there in double precision, with all primitives; shadow rays are not. A packet near more than 2¹⁶ blobs
 //!   (points of chains count one each), or with more than 2²⁴ evaluations, takes the general way.
+//! - Points that never end: the error of the field is at most about 1.3·10⁻⁴·T. Packets in which that moves a hit by more than half the
+//!   tolerance, whose beam is wider than half a cell, in which a ray starts inside, or that visit more than 4096 cells take the general
+//!   way. A ray that passes nearer to the surface than the error is searched again there in double precision, with all points; shadow
+//!   rays are not.
 //! - General way: the error of the field is at most 5·10⁻⁴·T, or that of rounding where it is larger, plus at most 4·10⁻⁴·T for
 //!   shared interpolants. Hits are then refined on the field itself (with shared interpolants where those move them by less
 //!   than half the tolerance), in double precision where rounding may move them by more than that and at most 2¹⁶ primitives
@@ -93,6 +99,7 @@ mod coloured;
 mod digger;
 mod dug;
 mod exposure;
+mod far_march;
 mod flesh;
 mod free;
 mod function;

@@ -138,6 +138,12 @@ impl World {
             if seen.limits().iter().all(|&limit| limit <= from) {
                 continue;
             }
+            if self.soft.is_far(body) {
+                self.make_exact(rays, seen, exact);
+                if self.meet_far(body, ALL, seen, &mut work.scratch) {
+                    continue;
+                }
+            }
             if let Some((slabs, base, number)) = square.slabs(body, place, &mut work.scratch) {
                 if !*exact {
                     seen.rays = (rays.exact)();
@@ -256,6 +262,27 @@ impl World {
         let asked = Asked::first(&limits, alive);
         self.soft
             .quick_each(near, &general, lanes, wide, asked, quick, tell)
+    }
+
+    /// Replaces what the rays of some lanes meet by nearer points on the surface of a body of very many points that never end.
+    /// Returns false if this is not the way.
+    pub fn meet_far(&self, body: u32, alive: u32, seen: &mut Seen, scratch: &mut Scratch) -> bool {
+        let limits = seen.limits();
+        let met = self.soft.far_first(
+            body,
+            &seen.rays,
+            &limits,
+            alive,
+            Quest::First,
+            &mut scratch.far,
+        );
+        scratch.evaluations += core::mem::take(&mut scratch.far.evaluations);
+        let Some(met) = met else { return false };
+        if met != 0 {
+            let flesh = &scratch.far.flesh;
+            self.soft_points(body, &seen.rays, flesh, 0.0, met, &mut seen.hits);
+        }
+        true
     }
 
     /// The points where the rays of some lanes meet the surface of a body, by the slabs of a beam around the rays, which start at

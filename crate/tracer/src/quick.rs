@@ -9,7 +9,7 @@ use crate::layout::PACKET;
 use crate::nearby::{Marks, Nearby, Other, marked};
 use crate::ray::Ray;
 use crate::soft::Soft;
-use crate::surface_samples::{FINEST, NEAR_ENOUGH, SurfaceSamples};
+use crate::surface_samples::{COARSEST_OF_BLOBS, FINEST, NEAR_ENOUGH, SurfaceSamples};
 use crate::walk::Quest;
 use field::{Cut, Real};
 use glam::DVec3;
@@ -161,9 +161,6 @@ pub struct Looked {
     /// Evaluations of blobs, for one ray each.
     pub evaluations: u64,
 }
-
-/// Half the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), or less, in units of the scene.
-pub const COARSEST_OF_BLOBS: f64 = 5e-5;
 
 /// Largest number of Newton steps from a packet's hits onto the surface.
 const MOST_REFINING: usize = 12;
@@ -443,6 +440,7 @@ impl Soft {
             alive,
             tolerance: self.tolerance(near) as f32,
             noise,
+            start: None,
         };
         // Not by `ray_blobs()`, which would borrow `tops`, too.
         let blobs = RayBlobs {

@@ -1,4 +1,5 @@
 //! Working space of one thread for following packets of rays.
+use crate::far_march::FarWork;
 use crate::layout::PACKET;
 use crate::quick::Quick;
 use crate::slabs::Space;
@@ -15,6 +16,7 @@ pub struct Scratch {
     pub(crate) active: ActivePrimitives,
     pub(crate) flesh: SurfaceSamples,
     pub(crate) quick: Quick,
+    pub(crate) far: FarWork,
     /// Evaluations of one primitive's field at one point, so far.
     pub evaluations: u64,
     /// Evaluations that were made for a single ray.

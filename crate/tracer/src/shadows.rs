@@ -249,6 +249,14 @@ impl World {
                 if alive == 0 {
                     break;
                 }
+                let (soft, far) = (&self.soft, &mut scratch.far);
+                let entered = soft.far_first(body, &rays, &limits, alive, Quest::Entry, far);
+                scratch.evaluations += core::mem::take(&mut far.evaluations);
+                if let Some(met) = entered {
+                    dark |= met;
+                    alive &= !met;
+                    continue;
+                }
                 let at = match slabs.iter().position(|(own, _)| *own == body) {
                     Some(at) => at,
                     None => {

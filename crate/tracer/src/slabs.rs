@@ -1307,7 +1307,8 @@ mod tests {
                     let noise = slabs.nodes[index as usize].noise_of_shared;
                     slabs.nodes[index as usize].noise_of_shared = SHARP_INTERPOLANT;
                     let louder = slabs.near(index, &mut Vec::new());
-                    let of_own = louder.blocks.len() == told && slabs.slab(index).shared.len() > 0;
+                    let of_own =
+                        louder.blocks.len() == told && !slabs.slab(index).shared.is_empty();
                     if of_own {
                         let more = louder.off - afar.off;
                         let added = SHARP_INTERPOLANT - noise;

@@ -3,8 +3,10 @@ use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::blob_set::{BlobSet, NEXT_TO_NOTHING};
 use crate::clusters::Clusters;
+use crate::far_march::{FarBody, FarQuery, FarWork};
 use crate::hierarchy::Hierarchy;
 use crate::kinks::Kinks;
+use crate::layout::PACKET;
 use crate::nearby::{Nearby, Other};
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator};
@@ -58,6 +60,8 @@ pub(crate) struct SoftBody {
     pub ball: Option<(DVec3, f64)>,
     /// Data that only slabs need.
     groups: OnceLock<Groups>,
+    /// The hierarchy of its far field, if it is of many points that never end.
+    far: OnceLock<Option<Box<FarBody>>>,
 }
 
 /// What the material of a body's surface is made of.
@@ -121,6 +125,7 @@ impl Soft {
                 everywhere: Vec::new(),
                 ball: None,
                 groups: OnceLock::new(),
+                far: OnceLock::new(),
             });
         }
         let ranges: Vec<Range<u32>> = bodies.iter().map(|body| body.range.clone()).collect();
@@ -313,6 +318,51 @@ impl Soft {
         }
         spaces.push(slabs.into_space());
         None
+    }
+
+    fn far<'a>(&self, body: &'a SoftBody) -> Option<&'a FarBody> {
+        let make = || {
+            let own = body.range.start as usize..body.range.end as usize;
+            let kernel = self.primitives.get(own.start)?.kernel;
+            if self.precision.shared == 0.0 || !body.everywhere.is_empty() {
+                return None;
+            }
+            field::far_field::power(kernel)?;
+            let strong = &self.groups(body).strong;
+            let ball = (strong.len() > 0).then(|| strong.ball(0))?;
+            let primitives = &self.primitives[own.clone()];
+            FarBody::new(primitives, &self.finish[own.clone()], own.start, ball).map(Box::new)
+        };
+        body.far.get_or_init(make).as_deref()
+    }
+
+    /// Whether a body is one for [`Soft::far_first`].
+    pub fn is_far(&self, body: u32) -> bool {
+        self.far(&self.bodies[body as usize]).is_some()
+    }
+
+    /// Finds the first crossings of rays with the surface of a body of very many points that never end; for [`Quest::Entry`] only
+    /// whether there is one. Returns the rays that cross, a bit each, with the surface there in `work`, whose parameters are the
+    /// rays' own. `None` if the body is no such one, or this is not the way for these rays.
+    pub fn far_first(
+        &self,
+        body: u32,
+        rays: &[Ray; PACKET],
+        limits: &[f64; PACKET],
+        alive: u32,
+        quest: Quest,
+        work: &mut FarWork,
+    ) -> Option<u32> {
+        let body = &self.bodies[body as usize];
+        let far = self.far(body)?;
+        let query = FarQuery {
+            rays,
+            limits,
+            alive,
+            quest,
+            pixel: self.pixel,
+        };
+        far.first(self.sight(body), &query, self.precision.resolution, work)
     }
 
     fn groups<'a>(&self, body: &'a SoftBody) -> &'a Groups {

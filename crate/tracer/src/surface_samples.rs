@@ -6,6 +6,8 @@ use wide::f32x8;
 
 /// Half the least tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), in units of the scene.
 pub const FINEST: f64 = 1e-6;
+/// Half the largest tolerance of pictures, or less, for blobs.
+pub const COARSEST_OF_BLOBS: f64 = 5e-5;
 /// Difference of the field from T within which normal and colours are those of the surface: they change by about 0.1 % on the way
 /// there, less than a picture shows.
 pub const NEAR_ENOUGH: f32 = 1e-3;

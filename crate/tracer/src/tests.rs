@@ -97,19 +97,20 @@ fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     scene.camera.eye = DVec3::Z * 4.0;
     scene.camera.target = DVec3::ZERO;
     scene.camera.fov = 1.0;
-    common::clothe(&mut scene, vec![common::soft(-4.0, 1.0)]);
-    let mut ball = |center: DVec3, radius: f64| {
+    // Two finishes: points of one finish take the way of `far_march`.
+    common::clothe(&mut scene, vec![common::soft(-4.0, 1.0); 2]);
+    let mut ball = |center: DVec3, radius: f64, finish: u32| {
         let shape = Shape::Sphere { center, radius };
-        scene.elements.push(common::element(shape, 0));
+        scene.elements.push(common::element(shape, finish));
     };
     for _ in 0..1000 {
         let place = numbers.vector();
-        ball(place * DVec3::new(0.3, 0.3, 1.0), 0.003);
+        ball(place * DVec3::new(0.3, 0.3, 1.0), 0.003, 0);
     }
     // Far from all rays, but a third of T together.
     for i in 0..60 {
         let (y, x) = libm::sincos(f64::from(i));
-        ball(DVec3::new(2.0 * x, 2.0 * y, 0.0), 0.5);
+        ball(DVec3::new(2.0 * x, 2.0 * y, 0.0), 0.5, 1);
     }
     let mut picture = Picture::new(&scene, [SIZE; 2]);
     let (shown, plain) = trace_counting(&picture);

@@ -25,7 +25,8 @@ fn run(
     let mut total = Row::default();
     for &kernel in kernels {
         for &kind in kinds {
-            let packets = if kind == Kind::Cluster { 2 } else { packets };
+            let many = matches!(kind, Kind::Cluster | Kind::Cloud);
+            let packets = if many { 2 } else { packets };
             for seed in 0..scenes {
                 // Other seeds than those of the large run.
                 total.add(&check(
@@ -109,6 +110,22 @@ fn pictures_of_profiles_are_within_the_tolerance() {
 fn pictures_of_mixtures_and_clusters_are_within_the_tolerance() {
     certify(&[Kind::Mixed], 0.002);
     certify(&[Kind::Cluster], 0.0);
+}
+
+/// Very many points of kernels that never end, whose far field is a hierarchy of polynomials.
+#[test]
+fn pictures_of_clouds_are_within_the_tolerance() {
+    let endless = [
+        Kernel::Cauchy,
+        Kernel::Inverse,
+        Kernel::Squared,
+        Kernel::Cubed,
+    ];
+    let (row, told) = run(&endless, &[Kind::Cloud], 12, 4, &|trial, picture| {
+        picture.cast(&trial.rays)
+    });
+    assert!(row.faults() == 0, "{row:?}\n{told}");
+    assert!(row.hits > 300, "{row:?}");
 }
 
 /// Kinds in whose pictures each of the following faults would show.

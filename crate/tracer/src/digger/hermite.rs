@@ -38,6 +38,17 @@ impl Digger for Hermite {
                 (looked.met >> i & 1 != 0).then_some(base + t)
             });
         }
+        let (rays, limits) = (packet.rays, packet.limits);
+        let far = &mut scratch.far;
+        let met = soft.far_first(body, rays, limits, packet.alive, quest, far);
+        scratch.evaluations += core::mem::take(&mut far.evaluations);
+        if let Some(met) = met {
+            let t = scratch.far.flesh.t;
+            return core::array::from_fn(|i| {
+                let t = if quest == Quest::Entry { 0.0 } else { t[i] };
+                (met >> i & 1 != 0).then_some(t)
+            });
+        }
         let alive = |lane: &usize| packet.alive >> lane & 1 != 0;
         let rays: Vec<Ray> = (0..PACKET).filter(alive).map(|i| packet.rays[i]).collect();
         let furthest = (0..PACKET).filter(alive).map(|i| packet.limits[i]);

@@ -30,9 +30,11 @@ pub enum Kind {
     Mixed,
     /// A hundred or two points and segments.
     Cluster,
+    /// A hundred or two points that add up.
+    Cloud,
 }
 
-pub const KINDS: [Kind; 13] = [
+pub const KINDS: [Kind; 14] = [
     Kind::Point,
     Kind::Segment,
     Kind::Arc,
@@ -46,6 +48,7 @@ pub const KINDS: [Kind; 13] = [
     Kind::Restricted,
     Kind::Mixed,
     Kind::Cluster,
+    Kind::Cloud,
 ];
 
 /// A scene, its reference and its rays.
@@ -131,6 +134,7 @@ fn random_scene(kernel: Kernel, kind: Kind, n: &mut Numbers, world: World) -> Sc
     }
     let count = match kind {
         Kind::Cluster => n.between(60.0, 300.0) as usize,
+        Kind::Cloud => n.between(64.0, 300.0) as usize,
         Kind::Mixed => n.between(4.0, 16.0) as usize,
         _ if n.unit() < 0.4 => 1,
         _ => n.between(2.0, 6.0) as usize,
@@ -145,12 +149,13 @@ fn random_scene(kernel: Kernel, kind: Kind, n: &mut Numbers, world: World) -> Sc
             Kind::Restricted => Kind::Triangle,
             Kind::Mixed => KINDS[(n.unit() * 7.0) as usize],
             Kind::Cluster => KINDS[(n.unit() * 2.0) as usize],
+            Kind::Cloud => Kind::Point,
             _ => kind,
         };
         // Now and then a thin spike.
         let thin = n.unit() < 0.15;
         let radius = match kind {
-            Kind::Cluster => n.between(0.02, 0.12),
+            Kind::Cluster | Kind::Cloud => n.between(0.02, 0.12),
             _ if thin => n.between(0.008, 0.03),
             _ => n.between(0.05, 0.4),
         };
@@ -172,6 +177,9 @@ fn random_scene(kernel: Kernel, kind: Kind, n: &mut Numbers, world: World) -> Sc
             flesh.strength = -n.between(0.2, 1.5);
         } else if n.unit() < 0.2 {
             flesh.strength = n.between(0.5, 2.0);
+        }
+        if kind == Kind::Cloud {
+            flesh.strength = flesh.strength.abs();
         }
         if kind == Kind::Taper || (kind == Kind::Mixed && n.unit() < 0.2) {
             flesh.end_radius = Some(flesh.radius * n.between(0.02, 1.5));

@@ -1,0 +1,338 @@
+//! Polynomials of three variables on a box, by interpolation at Chebyshev nodes.
+//!
+//! Values at 5 × 5 × 5 nodes give the coefficients of products of Chebyshev polynomials up to degree 4 in each coordinate. Those of
+//! total degree above 5 are dropped, and the sum of their sizes is the exact bound of what that changes, since |Tₖ| ≤ 1. The rest
+//! are kept as powers of the coordinates, so that along a straight line the polynomial is one of degree 5 in one variable.
+use crate::{Jet, Real};
+use core::f64::consts::PI;
+use std::sync::OnceLock;
+use wide::f32x8;
+
+/// Nodes along each axis.
+pub const NODES: usize = 5;
+/// Nodes of a box.
+const ALL: usize = NODES * PLANE;
+/// Vectors of eight that hold a value for each node.
+pub const VECTORS: usize = ALL.div_ceil(8);
+/// Largest total degree.
+pub const DEGREE: usize = 5;
+/// Number of coefficients.
+const TERMS: usize = 53;
+/// Lebesgue's constant of interpolation at the nodes of three axes: the largest factor on errors of the values.
+pub const LEBESGUE: f64 = 7.9;
+/// Rounding of the polynomial's evaluation in single precision, relative to the sum of its coefficients' sizes.
+const ROUNDING: f64 = 2e-6;
+
+/// A function on a box `center ± half`, in coordinates from −1 to 1.
+#[derive(Clone, Debug)]
+pub struct Expansion {
+    /// Coefficients of `xⁱyʲzᵏ`, i innermost.
+    terms: [f32; TERMS],
+}
+
+/// An expansion with what is known of it.
+pub struct Fitted {
+    /// The polynomial.
+    pub expansion: Expansion,
+    /// Bound on its difference from the interpolant, with rounding.
+    pub error: f64,
+    /// Bounds on it in the box from below and above.
+    pub range: [f64; 2],
+}
+
+/// A matrix of one axis.
+type Matrix = [[f64; NODES]; NODES];
+
+/// The nodes and the matrices from values to Chebyshev coefficients and from these to powers.
+struct Tables {
+    nodes: [f64; NODES],
+    chebyshev: Matrix,
+    powers: Matrix,
+}
+
+fn tables() -> &'static Tables {
+    static TABLES: OnceLock<Tables> = OnceLock::new();
+    TABLES.get_or_init(|| {
+        let angle = |i: usize| PI * (2 * i + 1) as f64 / (2 * NODES) as f64;
+        let weight = |k: usize| if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
+        Tables {
+            nodes: core::array::from_fn(|i| libm::cos(angle(i))),
+            chebyshev: core::array::from_fn(|k| {
+                core::array::from_fn(|i| weight(k) * libm::cos(k as f64 * angle(i)))
+            }),
+            // Row i: the coefficient of xⁱ in each Chebyshev polynomial.
+            powers: [
+                [1.0, 0.0, -1.0, 0.0, 1.0],
+                [0.0, 1.0, 0.0, -3.0, 0.0],
+                [0.0, 0.0, 2.0, 0.0, -8.0],
+                [0.0, 0.0, 0.0, 4.0, 0.0],
+                [0.0, 0.0, 0.0, 0.0, 8.0],
+            ],
+        }
+    })
+}
+
+/// Coordinates of the nodes, −1 to 1, eight at a time; those beyond the last repeat it.
+pub fn nodes() -> [[f32x8; 3]; VECTORS] {
+    let x = tables().nodes;
+    core::array::from_fn(|v| {
+        core::array::from_fn(|axis| {
+            let place = |lane: usize| {
+                let node = (8 * v + lane).min(ALL - 1);
+                x[node / [1, NODES, NODES * NODES][axis] % NODES] as f32
+            };
+            f32x8::new(core::array::from_fn(place))
+        })
+    })
+}
+
+/// Nodes of a plane.
+const PLANE: usize = NODES * NODES;
+
+/// Multiplies the values along each axis by a matrix.
+fn apply(matrix: &Matrix, values: &mut [f64; ALL]) {
+    // Along the last axis, whose planes are rows of memory; then the axes change places, and after three times are as before.
+    for _ in 0..3 {
+        let mut rows = [[0.0; PLANE]; NODES];
+        for (row, factors) in rows.iter_mut().zip(matrix) {
+            for (plane, factor) in values.chunks_exact(PLANE).zip(factors) {
+                for (sum, value) in row.iter_mut().zip(plane) {
+                    *sum += factor * value;
+                }
+            }
+        }
+        for (at, own) in values.chunks_exact_mut(NODES).enumerate() {
+            for (value, row) in own.iter_mut().zip(&rows) {
+                *value = row[at];
+            }
+        }
+    }
+}
+
+/// Largest degree in x, or in y, where the other degrees add up to `others`.
+#[inline(always)]
+const fn most(others: usize) -> usize {
+    if DEGREE - others < NODES - 1 {
+        DEGREE - others
+    } else {
+        NODES - 1
+    }
+}
+
+impl Expansion {
+    /// The polynomial 0.
+    pub const ZERO: Self = Self {
+        terms: [0.0; TERMS],
+    };
+
+    /// The interpolant of values at the [`nodes`].
+    pub fn fit(values: &[f32x8; VECTORS]) -> Fitted {
+        let mut all = [0.0; ALL];
+        for (eight, values) in all.chunks_mut(8).zip(values) {
+            for (own, value) in eight.iter_mut().zip(values.to_array()) {
+                *own = f64::from(value);
+            }
+        }
+        let tables = tables();
+        apply(&tables.chebyshev, &mut all);
+        let (mut dropped, mut size) = (0.0, 0.0);
+        for (node, value) in all.iter_mut().enumerate() {
+            let degree = node % NODES + node / NODES % NODES + node / (NODES * NODES);
+            if degree > DEGREE {
+                dropped += value.abs();
+                *value = 0.0;
+            }
+            size += value.abs();
+        }
+        let first = all[0];
+        let change = size - first.abs();
+        apply(&tables.powers, &mut all);
+        let mut terms = [0.0; TERMS];
+        let mut next = 0;
+        let mut largest = 0.0;
+        for k in 0..=most(0) {
+            for j in 0..=most(k) {
+                for i in 0..=most(j + k) {
+                    let term = all[(k * NODES + j) * NODES + i];
+                    largest += term.abs();
+                    terms[next] = term as f32;
+                    next += 1;
+                }
+            }
+        }
+        let error = dropped + ROUNDING * largest;
+        Fitted {
+            expansion: Self { terms },
+            error,
+            range: [first - change - error, first + change + error],
+        }
+    }
+
+    /// Coefficients in τ of the polynomial on the line `place + τ·step`, both in the box's coordinates. `single` converts a number.
+    #[inline(always)]
+    #[must_use]
+    pub fn along<R: Real>(
+        &self,
+        place: [R; 3],
+        step: [R; 3],
+        single: impl Fn(f32) -> R,
+    ) -> [R; DEGREE + 1] {
+        let zero = R::splat(0.0);
+        // Multiplies a polynomial of some degree by the line's coordinate, and adds another.
+        let times = |sum: &mut [R; DEGREE + 1], degree: usize, axis: usize| {
+            for n in (1..=degree).rev() {
+                sum[n] = sum[n] * place[axis] + sum[n - 1] * step[axis];
+            }
+            sum[0] = sum[0] * place[axis];
+        };
+        let mut next = TERMS;
+        let mut by_z = [zero; DEGREE + 1];
+        for k in (0..=most(0)).rev() {
+            let mut by_y = [zero; DEGREE + 1];
+            for j in (0..=most(k)).rev() {
+                let mut by_x = [zero; DEGREE + 1];
+                let top = most(j + k);
+                for i in (0..=top).rev() {
+                    next -= 1;
+                    times(&mut by_x, top - i, 0);
+                    by_x[0] = by_x[0] + single(self.terms[next]);
+                }
+                times(&mut by_y, DEGREE - k - j, 1);
+                for (sum, own) in by_y.iter_mut().zip(&by_x[..=top]) {
+                    *sum = *sum + *own;
+                }
+            }
+            times(&mut by_z, DEGREE - k, 2);
+            for (sum, own) in by_z.iter_mut().zip(&by_y[..=DEGREE - k]) {
+                *sum = *sum + *own;
+            }
+        }
+        by_z
+    }
+
+    /// Value and gradient at a place, both in the box's coordinates.
+    #[inline(always)]
+    #[must_use]
+    pub fn jet<R: Real>(&self, [x, y, z]: [R; 3], single: impl Fn(f32) -> R) -> Jet<R> {
+        let zero = R::splat(0.0);
+        let mut next = TERMS;
+        let mut sum = Jet::zero();
+        for k in (0..=most(0)).rev() {
+            let (mut plane, mut plane_x, mut plane_y) = (zero, zero, zero);
+            for j in (0..=most(k)).rev() {
+                let (mut row, mut row_x) = (zero, zero);
+                for _ in 0..=most(j + k) {
+                    next -= 1;
+                    row_x = row_x * x + row;
+                    row = row * x + single(self.terms[next]);
+                }
+                plane_y = plane_y * y + plane;
+                plane = plane * y + row;
+                plane_x = plane_x * y + row_x;
+            }
+            sum.gradient[2] = sum.gradient[2] * z + sum.value;
+            sum.value = sum.value * z + plane;
+            sum.gradient[0] = sum.gradient[0] * z + plane_x;
+            sum.gradient[1] = sum.gradient[1] * z + plane_y;
+        }
+        sum
+    }
+
+    /// Value at eight places in the box's coordinates.
+    #[inline(always)]
+    pub fn value([x, y, z]: [f32x8; 3], of: &Self) -> f32x8 {
+        let zero = f32x8::splat(0.0);
+        let mut next = TERMS;
+        let mut sum = zero;
+        for k in (0..=most(0)).rev() {
+            let mut plane = zero;
+            for j in (0..=most(k)).rev() {
+                let mut row = zero;
+                for _ in 0..=most(j + k) {
+                    next -= 1;
+                    row = row * x + f32x8::splat(of.terms[next]);
+                }
+                plane = plane * y + row;
+            }
+            sum = sum * z + plane;
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn random(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
+            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
+        }
+    }
+
+    /// A polynomial within the degrees is reproduced, with its gradient, and along lines.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn polynomials_are_reproduced() {
+        let mut next = random(4);
+        for _ in 0..20 {
+            let c: [f64; 6] = core::array::from_fn(|_| next());
+            let f = |[x, y, z]: [f64; 3]| {
+                let mixed = c[3] * x * x * y * z * z + c[4] * x.powi(4) * y;
+                c[0] + c[1] * x + c[2] * y * z + mixed + c[5] * y * y * z * z * x
+            };
+            let values = nodes().map(|place| {
+                let of = |lane: usize| place.map(|x| f64::from(x.to_array()[lane]));
+                f32x8::new(core::array::from_fn(|lane| f(of(lane)) as f32))
+            });
+            let fitted = Expansion::fit(&values);
+            assert!(fitted.error < 1e-4, "{}", fitted.error);
+            for _ in 0..20 {
+                let place = [next(), next(), next()];
+                let jet = fitted.expansion.jet(place, f64::from);
+                assert!((jet.value - f(place)).abs() <= fitted.error + 1e-6);
+                assert!(fitted.range[0] <= jet.value && jet.value <= fitted.range[1]);
+                for axis in 0..3 {
+                    let [mut a, mut b] = [place; 2];
+                    (a[axis], b[axis]) = (a[axis] - 1e-4, b[axis] + 1e-4);
+                    let slope = (f(b) - f(a)) / 2e-4;
+                    assert!((jet.gradient[axis] - slope).abs() < 1e-4, "{slope} {jet:?}");
+                }
+                let step = [next(), next(), next()].map(|x| 0.3 * x);
+                let line = fitted.expansion.along(place, step, f64::from);
+                let t = next();
+                let there = core::array::from_fn(|i| place[i] + t * step[i]);
+                let value = line.iter().rev().fold(0.0, |sum, c| sum * t + c);
+                let want = fitted.expansion.jet(there, f64::from).value;
+                assert!((value - want).abs() < 1e-12, "{value} {want}");
+                let eight = there.map(f32x8::splat_f64);
+                let value = Expansion::value(eight, &fitted.expansion).to_array()[3];
+                assert!((f64::from(value) - want).abs() < 1e-5);
+            }
+        }
+    }
+
+    trait Splat {
+        fn splat_f64(value: f64) -> Self;
+    }
+
+    impl Splat for f32x8 {
+        fn splat_f64(value: f64) -> Self {
+            Self::splat(value as f32)
+        }
+    }
+
+    /// What is dropped is counted.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn terms_of_higher_degree_count_as_error() {
+        let values = nodes().map(|[x, y, z]| x * x * x * y * y * z);
+        let fitted = Expansion::fit(&values);
+        // x³y²z = (T₃ + 3T₁)/4·(T₂ + 1)/2·T₁: its part of degree 6 is an eighth.
+        assert!((fitted.error - 0.125).abs() < 1e-3, "{}", fitted.error);
+        let jet = fitted.expansion.jet([1.0; 3], f64::from);
+        assert!((jet.value - 0.875).abs() < 1e-5, "{jet:?}");
+    }
+}

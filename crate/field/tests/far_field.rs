@@ -1,0 +1,233 @@
+//! The hierarchy of far fields: its polynomials and lists add up to the field within the stated bounds, and it is as large as the
+//! number of primitives asks for.
+use field::far_field::{Cell, MOST_ERROR};
+use field::{BlobScale, FarField, Kernel, Primitive, Shaping, Skeleton};
+use glam::DVec3;
+
+struct Numbers(u64);
+
+impl Numbers {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(99);
+        (self.0 >> 33) as f64 / f64::from(1u32 << 31)
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
+    }
+}
+
+const ENDLESS: [Kernel; 4] = [
+    Kernel::Cauchy,
+    Kernel::Inverse,
+    Kernel::Squared,
+    Kernel::Cubed,
+];
+
+fn primitive(kernel: Kernel, kind: usize, size: f64, n: &mut Numbers) -> Primitive {
+    let a = n.vector();
+    let [b, c] = [0, 1].map(|_| a + n.vector() * size * 4.0);
+    let skeleton = match kind {
+        0 => Skeleton::Point { center: a },
+        1 => Skeleton::Segment { base: a, apex: b },
+        2 => Skeleton::Triangle { corners: [a, b, c] },
+        _ => Skeleton::Arc {
+            center: a,
+            u: DVec3::X,
+            v: n.vector(),
+            radius: size * 3.0,
+            angle: 1.0 + 4.0 * n.unit(),
+        },
+    };
+    let shaping = Shaping {
+        kernel,
+        radius: size * (0.3 + n.unit()),
+        blobbiness: -1.0 - 3.0 * n.unit(),
+        blob_scale: BlobScale::Relative,
+        strength: if n.unit() < 0.2 { -0.5 } else { 1.0 },
+        influence: 1e-3,
+        taper: None,
+    };
+    Primitive::new(skeleton, &shaping, None).expect("flesh")
+}
+
+/// A cell at a depth around a place.
+fn descend<'c>(
+    field: &'c FarField,
+    primitives: &[Primitive],
+    place: DVec3,
+    depth: u32,
+) -> &'c Cell {
+    (0..depth).fold(field.root(primitives), |cell, _| {
+        field.part(primitives, cell, cell.part_of(place))
+    })
+}
+
+/// Sums in double precision of all primitives that are not near.
+fn far(primitives: &[Primitive], cell: &Cell, place: DVec3) -> f64 {
+    (0..)
+        .zip(primitives)
+        .filter(|(i, _)| cell.near.binary_search(i).is_err())
+        .map(|(_, p)| p.value(place.to_array()))
+        .sum()
+}
+
+#[test]
+fn polynomials_are_within_their_bounds() {
+    let mut n = Numbers(7);
+    let (mut checked, mut tightest, mut listed, mut all) = (0, 0.0f64, 0, 0);
+    for case in 0..48 {
+        let kernel = ENDLESS[case % 4];
+        let kind = case / 4 % 4;
+        let count = [30, 200, 600][case / 16];
+        // The more there are the smaller, so that the field is about T somewhere.
+        let size = 0.5 / f64::from(count).sqrt();
+        let primitives: Vec<Primitive> = (0..count)
+            .map(|i| primitive(kernel, if i % 8 == 0 { 0 } else { kind }, size, &mut n))
+            .collect();
+        let field = FarField::new(&primitives, DVec3::ZERO, 4.0);
+        for _ in 0..12 {
+            let depth = 2 + (n.unit() * 6.0) as u32;
+            let cell = descend(&field, &primitives, 1.5 * n.vector(), depth);
+            assert!(cell.error.is_finite());
+            listed += cell.near.len();
+            all += primitives.len();
+            if cell.near.len() == primitives.len() {
+                continue;
+            }
+            for _ in 0..12 {
+                let local = n.vector();
+                let place = cell.center + local * cell.reach();
+                let want = far(&primitives, cell, place);
+                let told = cell.expansion.jet(local.to_array(), f64::from).value;
+                let off = (told - want).abs();
+                assert!(
+                    off <= cell.error,
+                    "{kernel:?} {kind} {depth}: {off} {}",
+                    cell.error
+                );
+                assert!(want <= cell.far_most);
+                let whole: f64 = primitives.iter().map(|p| p.value(place.to_array())).sum();
+                assert!(whole <= cell.most);
+                tightest = tightest.max(off / cell.error);
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 2000 && tightest > 0.02, "{checked} {tightest}");
+    assert!(listed * 3 < all * 2, "{listed} of {all}");
+}
+
+/// Errors stay below the limit where rounding does not count, and the slope of the polynomial is that of the field.
+#[test]
+fn balls_have_small_errors_and_true_slopes() {
+    let mut n = Numbers(3);
+    for kernel in ENDLESS {
+        let primitives: Vec<Primitive> = (0..400)
+            .map(|_| primitive(kernel, 0, 0.02, &mut n))
+            .collect();
+        let field = FarField::new(&primitives, DVec3::ZERO, 2.0);
+        let mut far_ones = 0;
+        for _ in 0..30 {
+            let cell = descend(&field, &primitives, n.vector(), 4);
+            let rounding = 2e-4 * cell.far_most.abs().max(0.1);
+            assert!(cell.error <= MOST_ERROR + rounding, "{}", cell.error);
+            far_ones += primitives.len() - cell.near.len();
+            let local = n.vector() * 0.6;
+            let place = cell.center + local * cell.reach();
+            let slope = (0..)
+                .zip(&primitives)
+                .filter(|(i, _)| cell.near.binary_search(i).is_err())
+                .fold(DVec3::ZERO, |sum, (_, p)| {
+                    sum + DVec3::from_array(p.jet(place.to_array()).gradient)
+                });
+            let told = cell.expansion.jet(local.to_array(), f64::from).gradient;
+            let told = DVec3::from_array(told) / cell.reach();
+            // By Markov's inequality a polynomial of degree 5 with this error has at most 25 times its slope.
+            let most = 40.0 * cell.error / cell.reach();
+            assert!(told.distance(slope) <= most, "{kernel:?} {told} {slope}");
+        }
+        // A field that falls as 1/r is far larger than T here, and needs as many more digits.
+        let least = if kernel == Kernel::Inverse { 100 } else { 200 };
+        assert!(far_ones > 30 * least, "{kernel:?} {far_ones}");
+    }
+}
+
+/// Lists get short, and the work that all cells around the primitives take grows about as their number.
+#[test]
+fn work_is_about_linear() {
+    let mut work = Vec::new();
+    for count in [500u32, 4000] {
+        let mut n = Numbers(11);
+        let size = 0.4 / libm::cbrt(f64::from(count));
+        let primitives: Vec<Primitive> = (0..count)
+            .map(|_| primitive(Kernel::Cauchy, 0, size, &mut n))
+            .collect();
+        let field = FarField::new(&primitives, DVec3::ZERO, 1.0);
+        let mut stack = vec![field.root(&primitives)];
+        let (mut candidates, mut cells) = (0usize, 0usize);
+        while let Some(cell) = stack.pop() {
+            cells += 1;
+            if cell.half < 2.0 * size {
+                continue;
+            }
+            for number in 0..8 {
+                candidates += cell.near.len();
+                stack.push(field.part(&primitives, cell, number));
+            }
+        }
+        work.push([candidates as f64, cells as f64].map(|w| w / f64::from(count)));
+    }
+    let [few, many] = [work[0], work[1]];
+    // Eight times as many: more levels, of which each costs the same for every primitive.
+    assert!(many[0] < 3.0 * few[0], "{few:?} {many:?}");
+    assert!(many[1] < 2.0 * few[1], "{few:?} {many:?}");
+}
+
+/// Where only the surface counts, the cells that are left empty have a field below T, and most of space is such.
+#[test]
+fn empty_cells_hold_no_surface() {
+    let mut n = Numbers(9);
+    let (mut empty, mut highest) = (0, 0.0f64);
+    for kernel in ENDLESS {
+        let primitives: Vec<Primitive> = (0..100)
+            .map(|i| primitive(kernel, i % 2, 0.02, &mut n))
+            .collect();
+        let field = FarField::new(&primitives, DVec3::ZERO, 2.0).surface_only();
+        for _ in 0..200 {
+            let place = 2.0 * n.vector();
+            let cell = descend(&field, &primitives, place, 6);
+            if !cell.is_empty {
+                continue;
+            }
+            empty += 1;
+            for _ in 0..20 {
+                let within = (cell.center + n.vector() * cell.reach()).to_array();
+                let value: f64 = primitives.iter().map(|p| p.value(within)).sum();
+                assert!(value <= cell.most && cell.most < 1.0, "{kernel:?} {value}");
+                highest = highest.max(value);
+            }
+        }
+    }
+    assert!(empty > 200 && highest > 0.3, "{empty} {highest}");
+}
+
+/// A field of cells depends on the primitives alone, not on the order in which cells are asked for.
+#[test]
+fn cells_are_the_same_in_any_order() {
+    let mut n = Numbers(5);
+    let primitives: Vec<Primitive> = (0..300)
+        .map(|_| primitive(Kernel::Cauchy, 0, 0.03, &mut n))
+        .collect();
+    let places: Vec<DVec3> = (0..20).map(|_| n.vector()).collect();
+    let [a, b] = [0, 1].map(|_| FarField::new(&primitives, DVec3::ZERO, 2.0));
+    for place in places.iter().rev() {
+        descend(&b, &primitives, *place, 5);
+    }
+    for place in &places {
+        let [x, y] = [&a, &b].map(|field| descend(field, &primitives, *place, 5));
+        assert_eq!(x.near, y.near);
+        let value = |cell: &Cell| cell.expansion.jet([0.3, -0.2, 0.5], f64::from).value;
+        assert_eq!(value(x).to_bits(), value(y).to_bits());
+    }
+}
