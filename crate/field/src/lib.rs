@@ -89,6 +89,7 @@ pub mod real;
 mod ripple;
 pub mod shaping;
 pub mod skeleton;
+mod sort;
 mod squared;
 mod sum;
 mod term;
@@ -112,6 +113,7 @@ pub use ray::AlongRay;
 pub use real::Real;
 pub use shaping::{BlobScale, Shaping, Taper};
 pub use skeleton::Skeleton;
+pub use sort::heap_sort;
 pub use sum::{Sum, sum};
 pub use term::Evaluate;
 
