@@ -91,6 +91,7 @@ pub mod real;
 mod ripple;
 pub mod shaping;
 pub mod skeleton;
+mod sort;
 mod squared;
 mod sum;
 mod term;
@@ -115,6 +116,7 @@ pub use ray::AlongRay;
 pub use real::Real;
 pub use shaping::{BlobScale, Shaping, Taper};
 pub use skeleton::Skeleton;
+pub use sort::heap_sort;
 pub use sum::{Sum, sum};
 pub use term::Evaluate;
 

@@ -116,7 +116,7 @@ impl Scene {
             };
             surfaces.push(Surface::Composed(blend(surface, parts)));
         }
-        surfaces.sort_by_key(Surface::body);
+        field::heap_sort(&mut surfaces, |a, b| a.body() < b.body());
         surfaces
     }
 }

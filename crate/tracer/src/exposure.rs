@@ -144,7 +144,9 @@ impl Sampler {
             .map(|i| sample(pixel, i as u32, Purpose::Time)[0])
             .collect();
         let mut order: Vec<usize> = (0..all).collect();
-        order.sort_unstable_by(|&a, &b| times[a].total_cmp(&times[b]).then(a.cmp(&b)));
+        field::heap_sort(&mut order, |&a, &b| {
+            times[a].total_cmp(&times[b]).then(a.cmp(&b)).is_lt()
+        });
         let mut turns = vec![0; all];
         for (rank, number) in order.into_iter().enumerate() {
             turns[number] = (2 * rank + 1) * count / (2 * all);

@@ -191,7 +191,10 @@ impl Materials {
 
 /// Adds up the shares of pieces of one element, as those of a limb.
 pub(crate) fn join_pieces(shares: &mut Vec<(u32, u32, f64)>) {
-    shares.sort_unstable_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    field::heap_sort(shares, |a, b| {
+        let order = (a.0, a.1).cmp(&(b.0, b.1));
+        order.then(a.2.total_cmp(&b.2)).is_lt()
+    });
     shares.dedup_by(|next, kept| {
         let same = (next.0, next.1) == (kept.0, kept.1);
         if same {

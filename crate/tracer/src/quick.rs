@@ -34,8 +34,8 @@ pub struct Quick {
     tops: Vec<f32x8>,
     pub(crate) list: Nearby,
     marks: Marks,
-    /// Blobs near a packet, without those of excluded bodies: body and index, in this order.
-    members: Vec<(u32, u32)>,
+    /// Blobs near a packet, without those of excluded bodies: body and index, in one number that orders them so.
+    members: Vec<u64>,
     /// Surface samples at the hits of the last packet; parameters are counted from its list's base.
     pub flesh: SurfaceSamples,
 }
@@ -357,19 +357,21 @@ impl Soft {
         }
         let mut members = core::mem::take(&mut work.members);
         members.clear();
-        let own = |index: usize| (near.get(index).body, index as u32);
+        let own = |index: usize| u64::from(near.get(index).body) << 32 | index as u64;
+        let body = |member: &u64| (member >> 32) as u32;
+        let index = |member: &u64| (member & u64::from(u32::MAX)) as usize;
         members.extend(
             marked(&work.marks)
                 .map(own)
-                .filter(|(body, _)| !pass_over.contains(body)),
+                .filter(|member| !pass_over.contains(&body(member))),
         );
         // Lists are in order of the parameter at which a blob may be met.
         members.sort_unstable();
-        let mut groups: Vec<&[(u32, u32)]> = members.chunk_by(|a, b| a.0 == b.0).collect();
-        groups.sort_unstable_by_key(|group| group[0].1);
+        let mut groups: Vec<&[u64]> = members.chunk_by(|a, b| body(a) == body(b)).collect();
+        field::heap_sort(&mut groups, |a, b| index(&a[0]) < index(&b[0]));
         let (mut limits, mut alive) = (*asked.limits, asked.alive);
         for group in groups {
-            let from = f64::from(near.get(group[0].1 as usize).from) + near.base;
+            let from = f64::from(near.get(index(&group[0])).from) + near.base;
             let reached = |lane: usize| alive >> lane & 1 != 0 && limits[lane] > from;
             if !(0..PACKET).any(reached) {
                 continue;
@@ -379,10 +381,10 @@ impl Soft {
                 alive,
                 quest: asked.quest,
             };
-            let indices = group.iter().map(|&(_, index)| index as usize);
-            match self.follow(near, group[0].0, indices, rays, exact, asked, work) {
+            let (body, indices) = (body(&group[0]), group.iter().map(index));
+            match self.follow(near, body, indices, rays, exact, asked, work) {
                 Some(looked) => (limits, alive) = tell(looked, &work.flesh),
-                None => left.push(group[0].0),
+                None => left.push(body),
             }
         }
         work.members = members;
@@ -570,7 +572,7 @@ impl Soft {
                 break;
             }
         }
-        weights.sort_unstable_by_key(|(finish, _)| *finish);
+        field::heap_sort(weights, |a, b| a.0 < b.0);
         flesh.gradient = gradient;
         flesh.t = at.to_array().map(f64::from);
         work.flesh = flesh;

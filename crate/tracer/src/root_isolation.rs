@@ -220,7 +220,7 @@ impl RootIsolator {
                 }
             }
         }
-        found.sort_unstable_by(f64::total_cmp);
+        field::heap_sort(&mut found, |a, b| a.total_cmp(b).is_lt());
         found
     }
 

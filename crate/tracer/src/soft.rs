@@ -192,7 +192,7 @@ impl Soft {
                 list.push((near, number));
             }
         });
-        list.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        field::heap_sort(list, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).is_lt());
     }
 
     /// Whether some primitive of a body counts everywhere.
@@ -212,7 +212,7 @@ impl Soft {
             let range = body.range.start as usize..body.range.end as usize;
             let own = &self.finish[range.clone()];
             let mut elements = self.element[range].to_vec();
-            elements.sort_unstable();
+            field::heap_sort(&mut elements, |a, b| a < b);
             MakeUp {
                 is_even: own.iter().all(|finish| *finish == own[0]),
                 first: own[0],
@@ -487,7 +487,7 @@ impl Soft {
                 near.push(i);
             }
         });
-        near.sort_unstable();
+        field::heap_sort(&mut near, |a, b| a < b);
         // Bounds of all primitives would take too much room where there are very many.
         let of = |&i: &u32| self.primitives[i as usize].clone();
         let primitives: Vec<Primitive> = near.iter().map(of).collect();

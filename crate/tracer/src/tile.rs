@@ -43,11 +43,12 @@ pub fn tiles(width: u32, height: u32, side: u32) -> Vec<Tile> {
     }
     // Twice the offset of the tile's centre from the picture's, so that all numbers are whole;
     // equal distances keep their order (left to right, top to bottom).
-    tiles.sort_by_key(|t| {
+    let key = |t: &Tile| {
         let dx = i64::from(2 * t.x + t.width) - i64::from(width);
         let dy = i64::from(2 * t.y + t.height) - i64::from(height);
-        dx * dx + dy * dy
-    });
+        (dx * dx + dy * dy, t.y, t.x)
+    };
+    field::heap_sort(&mut tiles, |a, b| key(a) < key(b));
     tiles
 }
 

@@ -217,7 +217,7 @@ fn colours_part_at_total_reflection() {
         corners.push([p - y, q - y, q + y]);
         corners.push([p - y, q + y, p + y]);
     }
-    scene.finishes.push(glass(1.4142));
+    scene.finishes.push(glass(1.414));
     scene.finishes[1].dispersion = 0.1;
     for corners in corners {
         scene.elements.push(Element {

@@ -155,8 +155,17 @@ fn split_by_area(range: &mut [u32], boxes: &[Aabb], centers: &[DVec3]) -> Option
         }
     }
     let (_, k) = best?;
-    range.sort_by_key(|i| bin(*i) >= k);
-    Some(range.partition_point(|i| bin(*i) < k))
+    // Both parts keep their order.
+    let above: Vec<u32> = range.iter().copied().filter(|i| bin(*i) >= k).collect();
+    let mut count = 0;
+    for place in 0..range.len() {
+        if bin(range[place]) < k {
+            range[count] = range[place];
+            count += 1;
+        }
+    }
+    range[count..].copy_from_slice(&above);
+    Some(count)
 }
 
 /// Sorts a range into halves by the centres along the widest axis, then by number.

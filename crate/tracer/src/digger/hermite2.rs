@@ -81,7 +81,7 @@ impl Single for Spans {
             cuts.extend((0..=self.0).map(place));
         }
         cuts.retain(|t| *t >= sight.range[0] && *t <= sight.range[1]);
-        cuts.sort_unstable_by(f64::total_cmp);
+        field::heap_sort(&mut cuts, |a, b| a.total_cmp(b).is_lt());
         pieces.sort_by(|a, b| a.from.total_cmp(&b.from));
 
         let mut side = Side::unknown(quest);
