@@ -601,7 +601,6 @@ pub fn grounded(text: &str, all: &[Drawn]) -> String {
 
 /// Whether a change makes no new mistakes; else what is wrong with it. Gives the change with the ground under it, and what the text
 /// makes.
-
 ///
 /// # Errors
 /// Says why the change cannot be made: the compiler's message.
