@@ -135,6 +135,10 @@ impl FarBody {
     ) -> Option<Self> {
         let kernel = primitives.first()?.kernel;
         let (power, softening) = power(kernel)?;
+        // A field that falls as 1/r is so large where there are many points that its rounding leaves nothing to save.
+        if power < 2 {
+            return None;
+        }
         let finish = finishes[0];
         if primitives.len() < FEWEST || finishes.iter().any(|other| *other != finish) {
             return None;

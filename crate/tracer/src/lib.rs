@@ -41,7 +41,7 @@
 //!   (`field::blob`): points with compact or Gaussian kernels, and Gaussian segments. Gaussian arcs, curves and tapered
 //!   limbs are chains of blobs (`field::blob_chain`). `nearby` lists the blobs near a square, a part of it, a packet;
 //!   `blob_march` steps along the packet's rays, each step proved to hold no crossing.
-//! - Bodies of 64 or more points of one kernel that never ends, of one finish and none of them negative, have a hierarchy of
+//! - Bodies of 64 or more points of one kernel that never ends (but not the inverse one), of one finish and none of them negative, have a hierarchy of
 //!   cells with polynomials of what is far (`field::far_field`); `far_march` steps among the near points of each cell.
 //! - The general way is the thesis' (chapter 4): `slabs` decides for a whole beam which primitive needs Hermite spans
 //!   of which length (`field::Bound` has bounds on fields and on the errors of spans), and `walk` traverses the slabs with
