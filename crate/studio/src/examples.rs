@@ -225,7 +225,17 @@ mod tests {
                 })
                 .collect();
             let compiled = rats::compile_at(&example.project(), &assets, 0.0);
-            assert_eq!(compiled.diagnostics, [], "{}", example.title);
+            let messages: Vec<&str> = compiled
+                .diagnostics
+                .iter()
+                .map(|d| d.message.as_str())
+                .collect();
+            // What this one shows is what its warning is about.
+            let expected: &[&str] = match example.title {
+                "Coated" => &["the bulge of this contact coats `SMALL`"],
+                _ => &[],
+            };
+            assert_eq!(messages, expected, "{}", example.title);
             assert!(!compiled.scene.elements.is_empty(), "{}", example.title);
             let bytes = crate::platform::read(example.thumbnail).expect(example.title);
             let thumbnail = decode(&bytes).expect(example.title);

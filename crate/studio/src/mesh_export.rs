@@ -815,7 +815,7 @@ mod tests {
             tolerance: 1e-2,
             ..Order::default()
         };
-        assert_eq!(follow(&mut export, &arm), 2);
+        assert_eq!(follow(&mut export, &arm), 3);
         let plain = glb(&export);
         export.order.rig = true;
         assert_eq!(follow(&mut export, &arm), 1);
