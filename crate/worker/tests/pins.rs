@@ -18,7 +18,13 @@ const PINS: &str = include_str!("../../../tests/pins.txt");
 /// Width and height of the pictures, pixels.
 const SIZE: u32 = 256;
 /// Scenes that take too long, and the sides of the squares in the middle of their pictures that are traced instead, pixels.
-const PARTS: [(&str, u32); 2] = [("generators", 128), ("flake-7381-cauchy", 16)];
+const PARTS: [(&str, u32); 5] = [
+    ("generators", 128),
+    ("flake-7381-cauchy", 16),
+    ("coils", 24),
+    ("folds", 64),
+    ("grasp", 128),
+];
 /// At most n×n rays a pixel, so that the smooth pass has something to do in every scene.
 const SAMPLES: u32 = 2;
 const PASSES: [Pass; 2] = [Pass::Full, Pass::Smooth];

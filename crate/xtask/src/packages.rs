@@ -32,9 +32,9 @@ pub const MODULES: [Module; 3] = [
         features: "entry",
         profile: "worker",
         name: "tracer",
-        // 400 kB is the aim. Made small but for the field and the tracer it was at 395; local convolution and motion took it to 422,
+        // 400 kB is the aim. Made small but for the field and the tracer it was at 395; local convolution, motion and far fields took it to 439,
         // a quarter of which, before compression, are the formulas of the chart in two precisions.
-        budget: 430_000,
+        budget: 445_000,
         seconds: 60,
     },
     Module {
