@@ -242,7 +242,7 @@ mod tests {
         let (dithered, plain) = (off(&indices), off(&plain));
         assert!(dithered < 0.65 * plain, "{dithered} {plain}");
         let grey = |i: usize| {
-            if i % 2 == 0 {
+            if i.is_multiple_of(2) {
                 [10, 10, 10, 255]
             } else {
                 [200, 200, 200, 255]
