@@ -75,7 +75,7 @@ impl Unproved {
     }
 }
 
-/// What became of an attempt to prove a face.
+/// Result of an attempt to prove a face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Attempt {
     /// There was none.
@@ -100,7 +100,7 @@ pub struct Improver<'a> {
     errors: Vec<f32>,
     /// How far each vertex, and those that were merged into it, may be from where the mesh was before edits that left triangles unproved.
     losses: Vec<f64>,
-    /// What became of the last attempt to prove a face that is not proved to be within the tolerance, since it changed.
+    /// Results of the last attempts to prove the faces that are not proved to be within the tolerance, since they changed.
     attempts: Vec<Attempt>,
     guard: Guard,
     /// The round in which something around a vertex has changed.
@@ -329,7 +329,7 @@ impl<'a> Improver<'a> {
             let edits: Vec<Edit> = merges.chain(flips).chain(moves).chain(splits).collect();
             self.round += 1;
             for edit in edits {
-                // What was refused in a round was planned in the same way, but for divisions.
+                // An edit refused in an earlier round would be planned the same way again; only divisions depend on more.
                 let is_known = !matches!(edit, Edit::Split(_)) && self.is_refused(edit);
                 if is_known || !self.is_allowed(edit) {
                     continue;

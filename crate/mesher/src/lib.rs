@@ -37,7 +37,7 @@
 //! - `surface.rs` does all that for one function ([`polygonize`]), `model.rs` for a scene ([`mesh_scene`]) with the help of
 //!   `solids.rs` (hard shapes), `level.rs` (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
 //!
-//! What is not proved: at kinks (profiles, creases between bodies), where the gradient jumps, where a surface touches itself, and where it
+//! Limits of the proofs: at kinks (profiles, creases between bodies), where the gradient jumps, where a surface touches itself, and where it
 //! has parts of a few tolerances' size, no triangle can be proved. Such triangles are counted as `unproved`; samples measure their
 //! distance. They do not cut each other: there `guard.rs` refuses each edit that an exact test finds to do so, with `boxes.rs` for the
 //! search. Parts of a surface smaller than two tolerances may be missing.

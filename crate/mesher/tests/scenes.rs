@@ -39,7 +39,7 @@ struct Row {
     triangles: usize,
     undecided: usize,
     unproved: usize,
-    /// What the mesher found by samples where nothing is proved, in tolerances.
+    /// Largest distances that the mesher sampled where nothing is proved, in tolerances.
     measured: [f64; 2],
     /// Of sampled points, in tolerances.
     off: [f64; 2],

@@ -324,7 +324,7 @@ mod tests {
         }
     }
 
-    /// What is dropped is counted.
+    /// The terms dropped from a polynomial are part of its bound.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn terms_of_higher_degree_count_as_error() {

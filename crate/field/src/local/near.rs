@@ -1,4 +1,4 @@
-//! What is known of pieces at a point or in a ball. Each is evaluated once, for however many places it counts.
+//! Values and bounds of pieces at a point or in a ball. Each piece is evaluated once, for however many places it counts.
 use super::Piece;
 use crate::bound::Nearness;
 use crate::{Ball, Jet};

@@ -41,7 +41,7 @@ pub(super) struct Candidate {
     pub known: Option<Known>,
 }
 
-/// What a close look at a candidate tells.
+/// Bounds of a candidate, found by evaluating its pieces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known {
     pub bounds: Bounds,
