@@ -75,9 +75,12 @@ async function play(bytes, type, seconds) {
     const context = canvas.getContext('2d', { willReadFrequently: true });
     const frames = [];
     for (const second of seconds) {
+      // A frame may reach the video only after the seek has ended; one that was there already is not shown anew.
+      const shown = new Promise((resolve) => { video.requestVideoFrameCallback(resolve); });
       const there = event('seeked');
       video.currentTime = second;
       await there;
+      await Promise.race([shown, new Promise((resolve) => { setTimeout(resolve, 2000); })]);
       context.drawImage(video, 0, 0);
       frames.push({ width, data: Array.from(context.getImageData(0, 0, width, height).data) });
     }
