@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 fn main() -> Result<(), fit::Error> {
     let as_json = std::env::args().nth(1).is_some_and(|word| word == "json");
-    let truth = Trial::new(2000, 6667)?;
+    let truth = Trial::new(2000, 6667, 0.1)?;
     let models = [
         ("2,000 facets, those of the truth", trial::head(2000)),
         ("420 uneven facets", coarse(420)?),

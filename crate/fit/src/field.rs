@@ -1,6 +1,7 @@
 //! The distance of points from a mesh as a fit sees it, with derivatives by the mesh's vertices.
 
 use crate::error::Error;
+use core::cell::Cell;
 use field::Real;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Bvh};
@@ -78,6 +79,12 @@ impl<'a> Field<'a> {
     /// nearest facet, of an implicit one `−ln F/k`, which is d − ρ where a single facet counts. Infinite, without a
     /// derivative, where no facet acts.
     pub fn distance(&self, point: DVec3, gradient: &mut Gradient) -> f64 {
+        self.distance_near(point, &Cell::new(u32::MAX), gradient)
+    }
+
+    /// Returns the distance of a point as [`Self::distance`] does. `facet` holds the number of a facet that was nearest before,
+    /// or another number, and gets the present one: with it a search among the facets need not go farther than that one.
+    pub fn distance_near(&self, point: DVec3, facet: &Cell<u32>, gradient: &mut Gradient) -> f64 {
         gradient.clear();
         match &self.form {
             Form::Explicit(bvh) => {
@@ -86,9 +93,17 @@ impl<'a> Field<'a> {
                         .point
                         .distance_squared(point)
                 };
-                let Some((facet, square)) = bvh.nearest(point, f64::INFINITY, square) else {
+                let known = facet.get();
+                let limit = if (known as usize) < self.triangles.len() {
+                    square(known)
+                } else {
+                    f64::INFINITY
+                };
+                let Some((found, square)) = bvh.nearest(point, limit, square) else {
                     return f64::INFINITY;
                 };
+                facet.set(found);
+                let facet = found;
                 self.pull(facet, point, 1.0, gradient);
                 square.sqrt()
             }

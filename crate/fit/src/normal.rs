@@ -52,6 +52,16 @@ impl Normal {
         }
     }
 
+    /// The decrease of `½·xᵀ·A·x + gᵀ·x` from 0 to x.
+    pub fn decrease(&self, x: &[f64]) -> f64 {
+        let row = |i: usize| {
+            let entries = &self.matrix[Self::start(i)..=Self::start(i) + i];
+            let half: f64 = dot(&entries[..i], &x[..i]) + 0.5 * entries[i] * x[i];
+            x[i] * (half + self.gradient[i])
+        };
+        -(0..self.size).map(row).sum::<f64>()
+    }
+
     /// The sum of the diagonal.
     pub fn trace(&self) -> f64 {
         (0..self.size)

@@ -51,11 +51,11 @@ pub struct Trial {
 
 impl Trial {
     /// Measures the head of `facets` triangles, deformed by its cage: `points` points before a quarter of them is left out,
-    /// a tenth of outliers, six outlines.
+    /// a share of outliers, six outlines.
     ///
     /// # Errors
     /// If there are too few facets.
-    pub fn new(facets: usize, points: usize) -> Result<Self, Error> {
+    pub fn new(facets: usize, points: usize, outliers: f64) -> Result<Self, Error> {
         let head = trial::head(facets);
         let cage = trial::cage();
         let deformation = Deformation::new(&head.positions, &cage.positions)?;
@@ -67,7 +67,7 @@ impl Trial {
         let sampled = trial::sample(&truth.positions, &truth.triangles, points, 3);
         let disturbance = Disturbance {
             noise: NOISE,
-            outliers: 0.1,
+            outliers,
             gap: 0.25,
             seed: 8,
         };

@@ -11,6 +11,7 @@ use crate::field::{Field, Gradient, Kind};
 use crate::normal::Normal;
 use crate::problem::{Options, Problem};
 use crate::stiffness::energy;
+use core::cell::Cell;
 use glam::DVec3;
 use mesh::{Aabb, Bvh};
 
@@ -20,6 +21,11 @@ const PER_LEVEL: usize = 12;
 const MOST_LEVELS: usize = 12;
 /// Relative decrease of the sum below which a step is done.
 const SETTLED: f64 = 1e-4;
+/// Steps tried from one place, each more damped.
+const MOST_TRIES: usize = 8;
+/// The damping at the start of a level, and the least.
+const DAMPING: f64 = 1e-3;
+const LEAST_DAMPING: f64 = 1e-7;
 /// The distance that the implicit surface's field reaches, in s.
 const REACH: f64 = 8.0;
 
@@ -101,6 +107,10 @@ struct Run<'a> {
     stiffness: Vec<(u32, u32, f64)>,
     moves: Vec<DVec3>,
     positions: Vec<DVec3>,
+    /// For each point the facet that was nearest last.
+    facets: Vec<Cell<u32>>,
+    /// For each point its distance from the nearest facet at the present positions, where the last sum has left them.
+    apart: Option<Vec<f64>>,
     /// k at the end.
     slope: f64,
     scale: f64,
@@ -124,9 +134,11 @@ impl<'a> Run<'a> {
             positions: problem
                 .deformation
                 .apply(&problem.positions, &problem.start),
+            facets: vec![Cell::new(u32::MAX); problem.observations.points.len()],
+            apart: None,
             slope: options.slope.unwrap_or(20.0 / problem.mean_edge()),
             scale: f64::INFINITY,
-            damping: 1e-3,
+            damping: DAMPING,
             iteration: 0,
             weights: [1.0; 2],
             smooth: 0.0,
@@ -152,7 +164,7 @@ impl<'a> Run<'a> {
 
     /// All steps, coarse to fine. Returns whether it went to the end.
     fn all(&mut self, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<bool, Error> {
-        let apart = self.distances(Kind::Explicit)?;
+        let apart = self.distances()?;
         let size = Aabb::of_points(self.positions.iter().copied())
             .size()
             .length();
@@ -162,7 +174,10 @@ impl<'a> Run<'a> {
             if !self.level(tell)? {
                 return Ok(false);
             }
-            let spread = 1.4826 * quantile(&self.distances(Kind::Explicit)?, 0.5);
+            if !self.has_scale() {
+                break;
+            }
+            let spread = 1.4826 * quantile(&self.distances()?, 0.5);
             let least = (3.0 * spread).max(1e-9 * size);
             if self.scale <= least * 1.01 {
                 break;
@@ -170,6 +185,11 @@ impl<'a> Run<'a> {
             self.scale = (0.5 * self.scale).max(least);
         }
         Ok(true)
+    }
+
+    /// Whether the scale changes what is summed: distances that saturate, or an implicit surface that sharpens with it.
+    fn has_scale(&self) -> bool {
+        self.options.saturates || self.options.kind != Kind::Explicit
     }
 
     /// The places of the observations: where lines of sight should touch the surface is found anew.
@@ -189,21 +209,34 @@ impl<'a> Run<'a> {
         places
     }
 
-    /// Distances of all observations from the present surface.
-    fn distances(&self, kind: Kind) -> Result<Vec<f64>, Error> {
-        let field = Field::new(&self.positions, &self.problem.triangles, kind, self.slope)?;
-        let mut gradient = Gradient::new();
-        let mut distances: Vec<f64> = self
-            .places(&field)
-            .iter()
-            .map(|(place, _)| field.distance(*place, &mut gradient).abs())
-            .collect();
+    /// The distance of an observation by its number and place: see [`Field::distance`].
+    fn distance(&self, field: &Field<'_>, i: usize, place: DVec3, gradient: &mut Gradient) -> f64 {
+        match self.facets.get(i) {
+            Some(facet) => field.distance_near(place, facet, gradient),
+            None => field.distance(place, gradient),
+        }
+    }
+
+    /// Distances of all observations from the nearest facets of the present mesh, the least first.
+    fn distances(&self) -> Result<Vec<f64>, Error> {
+        let mut distances = if let Some(apart) = &self.apart {
+            apart.clone()
+        } else {
+            let (facets, kind) = (&self.problem.triangles, Kind::Explicit);
+            let field = Field::new(&self.positions, facets, kind, self.slope)?;
+            let mut gradient = Gradient::new();
+            let places = self.places(&field);
+            let numbered = places.iter().enumerate();
+            numbered
+                .map(|(i, (place, _))| self.distance(&field, i, *place, &mut gradient))
+                .collect()
+        };
         distances.sort_by(f64::total_cmp);
         Ok(distances)
     }
 
     fn progress(&self) -> Result<Progress, Error> {
-        let distances = self.distances(Kind::Explicit)?;
+        let distances = self.distances()?;
         let spread = 1.4826 * quantile(&distances, 0.5);
         let near = distances.partition_point(|d| *d <= 3.0 * spread);
         let squares: f64 = distances[..near].iter().map(|d| d * d).sum();
@@ -221,8 +254,13 @@ impl<'a> Run<'a> {
 
     /// Iterations with one scale. Returns whether to go on.
     fn level(&mut self, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<bool, Error> {
-        self.damping = 1e-3;
-        for turn in 0..PER_LEVEL {
+        self.damping = DAMPING;
+        let most = if self.has_scale() {
+            PER_LEVEL
+        } else {
+            self.options.iterations
+        };
+        for turn in 0..most {
             if self.iteration >= self.options.iterations {
                 return Ok(true);
             }
@@ -249,8 +287,8 @@ impl<'a> Run<'a> {
     fn balance(&self, field: &Field<'_>, places: &[Place]) -> ([f64; 2], f64) {
         let mut sums = [0.0; 2];
         let mut row = Row::new(self.moves.len());
-        for (place, class) in places {
-            if let Some((_, factor)) = self.residual(field, *place, &mut row) {
+        for (i, (place, class)) in places.iter().enumerate() {
+            if let Some((_, factor)) = self.residual(field, i, *place, &mut row) {
                 let square: f64 = row
                     .entries
                     .iter()
@@ -278,8 +316,14 @@ impl<'a> Run<'a> {
 
     /// Sets the derivative of an observation's distance by the moves. Returns its residual and the factor between the
     /// residual's derivative and the distance's; `None` if nothing acts there.
-    fn residual(&self, field: &Field<'_>, place: DVec3, row: &mut Row) -> Option<(f64, f64)> {
-        let distance = field.distance(place, &mut row.gradient);
+    fn residual(
+        &self,
+        field: &Field<'_>,
+        i: usize,
+        place: DVec3,
+        row: &mut Row,
+    ) -> Option<(f64, f64)> {
+        let distance = self.distance(field, i, place, &mut row.gradient);
         if !distance.is_finite() {
             return None;
         }
@@ -301,9 +345,9 @@ impl<'a> Run<'a> {
         let mut normal = Normal::new(3 * self.moves.len());
         let mut row = Row::new(self.moves.len());
         let mut sum = 0.0;
-        for (place, class) in places {
+        for (i, (place, class)) in places.iter().enumerate() {
             let weight = self.weights[*class];
-            let Some((residual, factor)) = self.residual(field, *place, &mut row) else {
+            let Some((residual, factor)) = self.residual(field, i, *place, &mut row) else {
                 sum += 0.5 * weight * self.scale * self.scale;
                 continue;
             };
@@ -327,12 +371,21 @@ impl<'a> Run<'a> {
         )
     }
 
-    /// The sum at some moves.
-    fn sum(&self, moves: &[DVec3], positions: &[DVec3], places: &[Place]) -> Result<f64, Error> {
+    /// The sum at some moves, and each observation's distance.
+    fn sum(
+        &self,
+        moves: &[DVec3],
+        positions: &[DVec3],
+        places: &[Place],
+    ) -> Result<(f64, Vec<f64>), Error> {
         let field = self.field(positions)?;
         let mut gradient = Gradient::new();
-        let term = |(place, class): &Place| {
-            let distance = field.distance(*place, &mut gradient);
+        let numbered = places.iter().enumerate();
+        let distances: Vec<f64> = numbered
+            .map(|(i, (place, _))| self.distance(&field, i, *place, &mut gradient))
+            .collect();
+        let term = |((_, class), distance): (&Place, &f64)| {
+            let distance = *distance;
             let residual = if distance.is_finite() {
                 self.saturated(distance).0
             } else {
@@ -340,30 +393,43 @@ impl<'a> Run<'a> {
             };
             0.5 * self.weights[*class] * residual.powi(2)
         };
-        let sum: f64 = places.iter().map(term).sum();
-        Ok(sum + self.smooth * energy(&self.stiffness, moves))
+        let sum: f64 = places.iter().zip(&distances).map(term).sum();
+        Ok((
+            sum + self.smooth * energy(&self.stiffness, moves),
+            distances,
+        ))
     }
 
     /// Moves the controls to where the sum is less. Returns whether it has settled.
+    ///
+    /// The damping falls by how well the equations foretold the new sum, and grows twice as quickly with each failure (Nielsen
+    /// 1999).
     fn step(&mut self, normal: &Normal, before: f64, places: &[Place]) -> Result<bool, Error> {
-        for _ in 0..8 {
-            let Some(way) = normal.solve(self.damping) else {
-                self.damping = (self.damping * 10.0).max(1e-6);
-                continue;
-            };
-            let moved = self.moves.iter().zip(way.chunks_exact(3));
-            let moves: Vec<DVec3> = moved.map(|(m, way)| *m + DVec3::from_slice(way)).collect();
-            let positions = self
-                .problem
-                .deformation
-                .apply(&self.problem.positions, &moves);
-            let after = self.sum(&moves, &positions, places)?;
-            if after < before {
-                (self.moves, self.positions) = (moves, positions);
-                self.damping = (self.damping * 0.2).max(1e-9);
-                return Ok(before - after <= SETTLED * before);
+        let mut growth = 2.0;
+        for _ in 0..MOST_TRIES {
+            if let Some(way) = normal.solve(self.damping) {
+                let moved = self.moves.iter().zip(way.chunks_exact(3));
+                let moves: Vec<DVec3> = moved.map(|(m, way)| *m + DVec3::from_slice(way)).collect();
+                let positions = self
+                    .problem
+                    .deformation
+                    .apply(&self.problem.positions, &moves);
+                let (after, distances) = self.sum(&moves, &positions, places)?;
+                if after < before {
+                    (self.moves, self.positions) = (moves, positions);
+                    // Where lines of sight touch, and what is fitted to, may be other than what is told.
+                    let is_told =
+                        self.options.kind == Kind::Explicit && distances.len() == self.facets.len();
+                    self.apart = is_told.then_some(distances);
+                    let foretold = normal.decrease(&way);
+                    let miss = 2.0 * (before - after) / foretold - 1.0;
+                    let fall = (1.0 - miss.powi(3)).clamp(0.1, 2.0);
+                    self.damping = (self.damping * fall).max(LEAST_DAMPING);
+                    return Ok(before - after <= SETTLED * before);
+                }
             }
-            self.damping *= 5.0;
+            self.damping *= growth;
+            growth *= 2.0;
         }
         Ok(true)
     }

@@ -136,7 +136,7 @@ fn peer(folder: &Path, goals: &mut Vec<Goal>, page: &mut String) -> Result<()> {
         let other: Value = serde_json::from_str(said.trim())?;
         writeln!(
             page,
-            "The same problem, explicit and with plain squares of the points' distances, solved by \
+            "The same head and noise without outliers, explicit and with plain squares of the points' distances, solved by \
              `scipy.optimize.least_squares` (trust region, sparse analytic Jacobian, LSMR; \
              `tests/bench/fit_scipy.py`): {} s to a sum of {}, here {} s to {}, with the control points' coordinates.\n",
             other["seconds"].as_f64().map_or("–".into(), short),
