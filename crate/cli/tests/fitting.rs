@@ -246,6 +246,12 @@ fn bad_input_is_told_in_words() {
         said.contains("a cloud of 1 point says too little; four are the least"),
         "{said}"
     );
+    let same = folder.write("same.xyz", "0 0 1\n0 0 1\n0 0 1\n0 0 1\n");
+    let said = fit(&head, &["--points", &same]);
+    assert!(
+        said.contains("all points of the cloud are in one place"),
+        "{said}"
+    );
     let words = folder.write("words.xyz", "0 0 1\n1 2 three\n");
     let said = fit(&head, &["--points", &words]);
     assert!(

@@ -1,6 +1,6 @@
 //! Sums of functions: shapes of different kinds that blend.
 use crate::implicit::{self, Variation};
-use crate::{Ball, Enclosure, Implicit, Jet, Sum};
+use crate::{Ball, Clearance, Enclosure, Implicit, Jet, Sum};
 use glam::DVec3;
 use std::sync::Arc;
 use wide::f32x8;
@@ -46,6 +46,14 @@ impl Blend {
         Self {
             parts: parts.collect(),
             sum,
+        }
+    }
+
+    /// The only function, if there is nothing else.
+    fn single(&self) -> Option<&dyn Implicit> {
+        match &self.parts[..] {
+            [part] if self.sum.primitives.is_empty() => Some(&*part.function),
+            _ => None,
         }
     }
 }
@@ -107,6 +115,18 @@ impl Implicit for Blend {
         };
         let functions = self.parts.iter().map(|part| part.function.most(ball));
         functions.fold(sum, |all, most| all + most)
+    }
+
+    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+        match self.single() {
+            Some(function) => function.variation_with_jet(ball),
+            None => (self.variation(None, ball), None),
+        }
+    }
+
+    fn clearance(&self, point: DVec3) -> Option<Clearance> {
+        // Of several functions, none knows what the others add.
+        self.single()?.clearance(point)
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {

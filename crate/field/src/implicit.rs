@@ -166,6 +166,15 @@ impl Variation {
     }
 }
 
+/// A ball around a point in which a function does not cross the threshold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance {
+    /// The ball's radius, ≥ 0.
+    pub radius: f64,
+    /// Length over which the function changes by a factor or so: where the radius is much less, the surface is near.
+    pub scale: f64,
+}
+
 /// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
 /// outward normal is `−∇f/|∇f|`.
 ///
@@ -187,6 +196,12 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// A bound on the largest value in a ball that costs less than [`Implicit::enclose`], or infinity.
     fn most(&self, _ball: Ball) -> f64 {
         f64::INFINITY
+    }
+
+    /// A ball around a point in which the function does not cross the threshold; `None` if the function knows none. It costs as
+    /// much as a value does, and lets a ray go on by large steps where [`Implicit::enclose`] would need many small balls.
+    fn clearance(&self, _point: DVec3) -> Option<Clearance> {
+        None
     }
 
     /// Appends each element's share of the value at a point, as pairs of an element's number and its positive part of the
@@ -222,5 +237,11 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// the part are looked at.
     fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
         Variation::rough(self.enclose(ball))
+    }
+
+    /// Bounds on the function in a ball as [`Implicit::variation`] gives them, and value and gradient at its centre, where finding
+    /// the bounds finds these, too.
+    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+        (self.variation(None, ball), None)
     }
 }

@@ -1,5 +1,5 @@
 //! Functions moved, turned and stretched.
-use crate::{Ball, Enclosure, Implicit, Jet, Real};
+use crate::{Ball, Clearance, Enclosure, Implicit, Jet, Real, Variation};
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
 use wide::f32x8;
@@ -67,6 +67,15 @@ fn stretch(map: &DMat3) -> f64 {
     libm::sqrt(row(0).max(row(1)).max(row(2))) * (1.0 + 1e-12)
 }
 
+/// Bounds on a function after its space has been shrunk by a factor of 1/k.
+fn scaled(own: Enclosure, k: f64) -> Enclosure {
+    Enclosure {
+        value: own.value,
+        slope: own.slope * k,
+        curvature: own.curvature * k * k,
+    }
+}
+
 impl Implicit for Placed {
     fn jet(&self, point: DVec3) -> Jet<f64> {
         let own = self.own(point.to_array());
@@ -87,11 +96,34 @@ impl Implicit for Placed {
             center: self.to_own.transform_point3(ball.center),
             radius: ball.radius * k,
         });
-        Enclosure {
-            value: own.value,
-            slope: own.slope * k,
+        scaled(own, k)
+    }
+
+    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+        let k = self.shrinkage;
+        let (own, jet) = self.function.variation_with_jet(Ball {
+            center: self.to_own.transform_point3(ball.center),
+            radius: ball.radius * k,
+        });
+        let variation = Variation {
+            range: scaled(own.range, k),
             curvature: own.curvature * k * k,
-        }
+            third: own.third * k * k * k,
+            rough: own.rough * k * k,
+            jump: own.jump * k,
+            step: own.step,
+        };
+        (variation, jet.map(|jet| self.world(jet)))
+    }
+
+    fn clearance(&self, point: DVec3) -> Option<Clearance> {
+        let own = self
+            .function
+            .clearance(self.to_own.transform_point3(point))?;
+        Some(Clearance {
+            radius: own.radius / self.shrinkage,
+            scale: own.scale / self.shrinkage,
+        })
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {

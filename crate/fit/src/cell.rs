@@ -166,9 +166,25 @@ impl Cell {
         }
     }
 
-    /// The labels of all faces.
-    pub fn labels(&self) -> impl Iterator<Item = u32> + '_ {
-        self.faces.iter().map(|face| face.label)
+    /// The labels of the faces whose area is more than `least`.
+    pub fn labels(&self, least: f64) -> impl Iterator<Item = u32> + '_ {
+        let starts = core::iter::once(0).chain(self.faces.iter().map(|face| face.end as usize));
+        starts.zip(&self.faces).filter_map(move |(start, face)| {
+            let edges = self.edges.get(start..face.end as usize)?;
+            let (_, area) = self.apex_and_area(edges)?;
+            (area.length() > 2.0 * least).then_some(face.label)
+        })
+    }
+
+    /// A corner of a face and twice its area along the normal; `None` without edges.
+    fn apex_and_area(&self, edges: &[[u32; 2]]) -> Option<(DVec3, DVec3)> {
+        let apex = self.vertices[edges.first()?[0] as usize];
+        let mut area = DVec3::ZERO;
+        for edge in edges {
+            let [a, b] = edge.map(|v| self.vertices[v as usize] - apex);
+            area += a.cross(b);
+        }
+        Some((apex, area))
     }
 
     /// The volume.
@@ -181,14 +197,9 @@ impl Cell {
         for face in &self.faces {
             let edges = &self.edges[start..face.end as usize];
             start = face.end as usize;
-            let Some(apex) = edges.first().map(|e| self.vertices[e[0] as usize]) else {
+            let Some((apex, area)) = self.apex_and_area(edges) else {
                 continue;
             };
-            let mut area = DVec3::ZERO;
-            for edge in edges {
-                let [a, b] = edge.map(|v| self.vertices[v as usize] - apex);
-                area += a.cross(b);
-            }
             sum += area.dot(apex - *origin);
         }
         sum / 6.0
@@ -218,7 +229,7 @@ mod tests {
         // The volume within |x| + |y| + |z| ≤ 1.
         assert!((cell.volume() - 4.0 / 3.0).abs() < 1e-14);
         assert!((cell.radius() - 1.0).abs() < 1e-15);
-        let mut labels: Vec<u32> = cell.labels().filter(|l| *l != 9).collect();
+        let mut labels: Vec<u32> = cell.labels(0.0).filter(|l| *l != 9).collect();
         labels.sort_unstable();
         assert_eq!(labels, [0, 1, 2, 3, 4, 5, 6, 7]);
     }

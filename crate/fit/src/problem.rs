@@ -184,6 +184,9 @@ fn check(
     if let Some(bad) = points.iter().position(|p| !p.is_finite()) {
         return fail(format!("point {} of the cloud is no finite point", bad + 1));
     }
+    if sights.is_empty() && points.iter().all(|p| p == &points[0]) {
+        return fail("all points of the cloud are in one place");
+    }
     if sights
         .iter()
         .any(|s| !(s.origin.is_finite() && s.direction.is_normalized()))

@@ -22,6 +22,8 @@ const CUBE: f64 = 64.0;
 const EQUAL: f64 = 1e-12;
 /// Least distance of two controls, of the box's size.
 const APART: f64 = 1e-9;
+/// A face of less area, of the square of its cell's radius, counts as none.
+const NO_AREA: f64 = 1e-13;
 /// Controls that are looked at together.
 const BATCH: usize = 32;
 
@@ -231,7 +233,9 @@ impl Sibson {
             ..
         } = work;
         neighbors.clear();
-        neighbors.extend(cell.labels().filter(|k| *k != u32::MAX));
+        // A control that touches the cell in a point or an edge has no part of it. In a grid of controls most do.
+        let least = NO_AREA * cell.radius().powi(2);
+        neighbors.extend(cell.labels(least).filter(|k| *k != u32::MAX));
         let mut total = 0.0;
         for k in neighbors.iter() {
             let own = self.sites[*k as usize] - point;

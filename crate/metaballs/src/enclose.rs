@@ -1,14 +1,33 @@
 //! Proven bounds on the sum in a ball.
 
 use crate::function::{Metaballs, term};
-use crate::profile::{CUT, Range, range};
-use field::{Ball, Enclosure, Implicit, Jet, THRESHOLD};
+use crate::profile::{CUT, DEEP, FADE, FADING, Range, range};
+use field::{Ball, Clearance, Enclosure, Implicit, Jet, Real, THRESHOLD};
 use glam::DVec3;
 
 /// Nodes of the hierarchy smaller than this part of the ball's radius are bounded as a whole.
 const COARSE: f64 = 0.5;
+/// The least k(d − ρ) of a point from which all facets are counted as equally far.
+const AFAR: f64 = 300.0;
+/// A group of facets is counted as one where it adds less than this, in the most that the nearest facet may add.
+const FEW: f64 = 0.02;
+/// s up to which a term is counted that is to keep F above the threshold.
+const SAFE: f64 = 8.0;
 /// Relative rounding errors of a bound, from above.
 const ROUNDING: f64 = 1e-9;
+
+/// The largest k·r of a ball whose bounds follow from the values at its centre.
+pub(crate) const SMALL: f64 = 2.0;
+
+/// A bound on the second derivative along any line of a metaball of at most this value, whose d is at least `nearest`: with c the
+/// cosine between the line and ∇d, `|φ″k²c² + φ′k(1 − c²)/d| ≤ max(|φ″|k², |φ′|k/d)`.
+fn bend(k: f64, value: f64, nearest: f64, [first, second]: [f64; 2]) -> f64 {
+    if nearest > 0.0 {
+        value * k * (second * k).max(first / nearest)
+    } else {
+        f64::INFINITY
+    }
+}
 
 impl Metaballs {
     /// Proven bounds in a ball. Each facet is bounded by itself: its distance changes by at most the radius. Groups of
@@ -68,6 +87,114 @@ impl Metaballs {
         }
         let jet = if whole { at_center } else { self.jet(center) };
         total.about(&jet, radius)
+    }
+
+    /// Proven bounds in a ball that is small beside 1/k, and value and gradient at its centre.
+    ///
+    /// Over the distance r no term changes by more than the factor `e^±kr`, but for those that fall to 0: they are bounded by the
+    /// exponential from above and by 0 from below.
+    pub(crate) fn small_enclosure(&self, Ball { center, radius }: Ball) -> (Enclosure, Jet<f64>) {
+        let k = self.sharpness;
+        let place = center.to_array();
+        let reach = k * radius * (1.0 + ROUNDING);
+        let [grows, falls] = [reach.exp(), reach.decay()];
+        let mut jet = Jet::zero();
+        let (mut low, mut high, mut slope, mut curvature) = (0.0, 0.0, 0.0, 0.0_f64);
+        self.bvh.descend(|_, bounds, facets| {
+            if k * (bounds.distance_squared(center).sqrt() - radius) > CUT * (1.0 + ROUNDING) {
+                return false;
+            }
+            for facet in facets {
+                let (offset, thickness) = self.double.offset(*facet, place);
+                let distance = DVec3::from_array(offset).length();
+                let s = k * (distance - thickness);
+                if s - reach > CUT * (1.0 + ROUNDING) {
+                    continue;
+                }
+                let rounding = 4.0 * f64::EPSILON * (distance + center.abs().max_element());
+                let nearest = distance - radius - rounding;
+                let term = term(k, offset, thickness);
+                jet = jet.plus(term);
+                if s + reach < FADE {
+                    low += term.value * falls;
+                    high += term.value * grows;
+                    slope += term.value * grows;
+                    curvature += bend(k, term.value * grows, nearest, [1.0, 1.0]);
+                } else {
+                    let most = s.decay() * grows;
+                    high += most;
+                    slope += FADING[0] * most;
+                    curvature += bend(k, most, nearest, FADING);
+                }
+            }
+            true
+        });
+        let slack = |bound: f64| bound * (1.0 + ROUNDING);
+        let bounds = Enclosure {
+            value: [low * (1.0 - ROUNDING), slack(high)],
+            slope: slack(k * slope),
+            curvature: slack(curvature),
+        };
+        (bounds.about(&jet, radius), jet)
+    }
+
+    /// A ball around a point in which F stays on one side of the threshold 1.
+    ///
+    /// Each dᵢ changes by at most r over the distance r, so `Σ e^−k(dᵢ−ρᵢ)` changes by at most the factor `e^±kr`. That sum is at
+    /// least F everywhere; and of terms with s ≤ 16 at the ball's end, at most F, as the tangent below −40 falls slower than the
+    /// exponential.
+    pub(crate) fn clear_ball(&self, point: DVec3) -> Clearance {
+        let k = self.sharpness;
+        let scale = 1.0 / k;
+        let count = self.bvh.len() as f64;
+        // d − ρ of all facets is at least the distance from their boxes.
+        let from_box = |facet: u32| self.bvh.bounds_of(facet).distance_squared(point);
+        let nearest = self.bvh.nearest(point, f64::INFINITY, from_box);
+        let gap = nearest.map_or(0.0, |(_, square)| square.sqrt());
+        let clear = if k * gap > AFAR {
+            gap - scale * Real::ln(count)
+        } else {
+            let [above, below] = self.exponentials(point, FEW * (k * gap).decay());
+            if above < THRESHOLD {
+                -scale * Real::ln(above)
+            } else if below > THRESHOLD {
+                scale * Real::ln(below).min(FADE - SAFE)
+            } else {
+                0.0
+            }
+        };
+        let rounding = 1e-14 * (point.abs().max_element() + clear);
+        Clearance {
+            radius: (clear * (1.0 - ROUNDING) - rounding).max(0.0),
+            scale,
+        }
+    }
+
+    /// The sum `Σ e^−k(dᵢ−ρᵢ)` at a point from above, where each group of facets that adds less than `little` is bounded by its box,
+    /// and the part of it whose s is at most [`SAFE`], from below.
+    fn exponentials(&self, point: DVec3, little: f64) -> [f64; 2] {
+        let k = self.sharpness;
+        let place = point.to_array();
+        let (mut above, mut below) = (0.0, 0.0);
+        self.bvh.descend(|node, bounds, facets| {
+            let gap = bounds.distance_squared(point).sqrt();
+            let most = f64::from(self.counts[node as usize]) * (k * gap).decay();
+            if most < little {
+                above += most;
+                return false;
+            }
+            for facet in facets {
+                let (offset, thickness) = self.double.offset(*facet, place);
+                let distance = DVec3::from_array(offset).length();
+                let term = (k * (distance - thickness)).max(DEEP).decay();
+                above += term;
+                if term > SAFE.decay() {
+                    below += term;
+                }
+            }
+            true
+        });
+        [above, below]
     }
 
     /// The largest ρ, from above.

@@ -1,11 +1,12 @@
 //! The sum of metaballs as an implicit function.
 
 use crate::ball::{Ball, circumscribed};
+use crate::enclose::SMALL;
 use crate::profile::{CUT, profile};
 use crate::triangle::Triangle;
 use core::fmt;
 use field::real::Scalar;
-use field::{Implicit, Jet, Real};
+use field::{Implicit, Jet, Real, Variation};
 use glam::DVec3;
 use mesh::limits::MAX_TRIANGLES;
 use mesh::{Aabb, Bvh};
@@ -251,6 +252,18 @@ impl Implicit for Metaballs {
 
     fn enclose(&self, ball: field::Ball) -> field::Enclosure {
         self.enclosure(ball)
+    }
+
+    fn variation_with_jet(&self, ball: field::Ball) -> (Variation, Option<Jet<f64>>) {
+        if ball.radius * self.sharpness > SMALL {
+            return (self.variation(None, ball), None);
+        }
+        let (range, jet) = self.small_enclosure(ball);
+        (Variation::rough(range), Some(jet))
+    }
+
+    fn clearance(&self, point: DVec3) -> Option<field::Clearance> {
+        Some(self.clear_ball(point))
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {

@@ -5,9 +5,11 @@ use field::Real;
 /// Where the profile has fallen to 0: facets further than `ρ + CUT/k` do not act.
 pub const CUT: f64 = 20.0;
 /// Where it begins to fall faster than the exponential.
-const FADE: f64 = 16.0;
+pub(crate) const FADE: f64 = 16.0;
+/// |φ′| and |φ″| in times of `e^−s`, at most, where φ falls to 0.
+pub(crate) const FADING: [f64; 2] = [1.47, 2.31];
 /// Below this it is its own tangent.
-const DEEP: f64 = -40.0;
+pub(crate) const DEEP: f64 = -40.0;
 
 /// Returns the profile φ(s) and its derivative, both continuous: `e^−s` for −40 ≤ s ≤ 16, times a smooth step of the
 /// fifth degree that falls to 0 at [`CUT`], and its tangent at −40 below.
@@ -54,7 +56,7 @@ pub(crate) fn range(low: f64, high: f64) -> Range {
     let (first, second) = if high <= FADE {
         (1.0, 1.0)
     } else {
-        (1.47, 2.31)
+        (FADING[0], FADING[1])
     };
     Range {
         value: [profile(high).0, profile(low).0],

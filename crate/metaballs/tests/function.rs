@@ -2,7 +2,7 @@
 mod common;
 
 use common::{Numbers, lumpy_sphere};
-use field::{Ball, Implicit, Jet, THRESHOLD};
+use field::{Ball, Enclosure, Implicit, Jet, THRESHOLD};
 use glam::DVec3;
 use metaballs::{Error, Kind, Metaballs, circumscribed, nearest};
 use wide::f32x8;
@@ -137,12 +137,30 @@ fn enclosures_hold() {
     for (kind, k) in KINDS {
         let (balls, _) = balls(kind, k, 10);
         let mut numbers = Numbers(5);
-        let (mut decided, mut curved) = (0, 0);
+        let (mut decided, mut curved, mut together) = (0, 0, 0);
         for _ in 0..1500 {
             let center = numbers.point() * 1.5;
             // From far below the size of a facet to above that of the mesh.
             let radius = libm::exp(-9.0 * numbers.next()) * 1.5;
-            let enclosure = balls.enclose(Ball { center, radius });
+            let ball = Ball { center, radius };
+            // The two ways in turn.
+            let enclosure = if numbers.next() < 0.5 {
+                balls.enclose(ball)
+            } else {
+                let (variation, jet) = balls.variation_with_jet(ball);
+                if let Some(jet) = jet {
+                    together += 1;
+                    assert_eq!(jet, balls.jet(center));
+                }
+                Enclosure {
+                    curvature: if variation.jump > 0.0 {
+                        f64::INFINITY
+                    } else {
+                        variation.curvature
+                    },
+                    ..variation.range
+                }
+            };
             let [low, high] = enclosure.value;
             decided += u32::from(low > THRESHOLD || high < THRESHOLD);
             curved += u32::from(enclosure.curvature.is_finite());
@@ -165,6 +183,7 @@ fn enclosures_hold() {
         }
         // They say something, too.
         assert!(decided > 500 && curved > 700, "{kind:?} {decided} {curved}");
+        assert!(together > 200, "{kind:?} {together}");
     }
 }
 
@@ -280,4 +299,59 @@ fn bad_input_is_told() {
     );
     let many = vec![[0, 1, 2]; mesh::limits::MAX_TRIANGLES + 1];
     assert_eq!(make(&corners, &many, thin, 1.0), Error::TooMany(many.len()));
+}
+
+#[test]
+fn balls_of_clearance_hold_no_crossing_and_are_not_small() {
+    for (kind, k) in KINDS
+        .into_iter()
+        .chain([(Kind::Triangular { thickness: 0.02 }, 900.0)])
+    {
+        let (balls, facets) = balls(kind, k, 10);
+        let mut numbers = Numbers(6);
+        let [mut outside, mut inside] = [0, 0];
+        for turn in 0..1500 {
+            // Near the surface, and far from it.
+            let reach = libm::pow(10.0, 4.0 * numbers.next() - 3.0);
+            let p = numbers.direction() * (1.0 + reach * (2.0 * numbers.next() - 1.0));
+            let side = balls.jet(p).value >= THRESHOLD;
+            let clear = balls.clearance(p).expect("a ball");
+            assert_eq!(clear.scale, 1.0 / k);
+            if clear.radius == 0.0 {
+                continue;
+            }
+            *(if side { &mut inside } else { &mut outside }) += 1;
+            for _ in 0..60 {
+                let q = p + numbers.direction() * (clear.radius * libm::cbrt(numbers.next()));
+                assert_eq!(
+                    balls.jet(q).value >= THRESHOLD,
+                    side,
+                    "{kind:?} {turn} {p} {q}"
+                );
+            }
+            if !side {
+                // The same bound from all facets one by one.
+                let sum = plain(&facets, kind, k, p).value;
+                let best = if sum > 0.0 {
+                    -libm::log(sum) / k
+                } else {
+                    f64::INFINITY
+                };
+                assert!(
+                    clear.radius <= best * (1.0 + 1e-6),
+                    "{} {best}",
+                    clear.radius
+                );
+                // Afar, boxes stand for facets, which are a third of a unit long.
+                let loss = 0.2 + 1.2 * libm::log(facets.len() as f64) / k + 0.2 * best;
+                assert!(
+                    best > 1e3 || clear.radius >= best - loss,
+                    "{} {best}",
+                    clear.radius
+                );
+            }
+        }
+        assert!(outside > 300, "{kind:?} {outside}");
+        assert!(inside > 10 || k > 100.0, "{kind:?} {inside}");
+    }
 }

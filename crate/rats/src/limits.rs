@@ -29,6 +29,8 @@ pub const STEPS_PER_OPERANDS: u64 = 5;
 pub const MAX_CONTROL_OPERANDS: usize = 65_536;
 /// Steps that the coordinates of a vertex cost that is deformed.
 pub const STEPS_PER_VERTEX: u64 = 12;
+/// Vertices that the deformations of one text may move together: their coordinates take a tenth of a millisecond each at first.
+pub const MAX_DEFORMED: usize = 60_000;
 /// Files read from files.
 pub const MAX_NESTED_FILES: usize = 128;
 /// Calls of defined commands inside each other.
@@ -80,6 +82,9 @@ pub const MAX_IMAGE_PIXELS: u64 = 1 << 23;
 pub const MAX_MOMENTS: usize = 16;
 /// Largest magnitude of a number given to a command, so that squares and cubes of it stay finite.
 pub const MAX_MAGNITUDE: f64 = 1e12;
+/// Smallest magnitude of a number given to a command that is not 0; what is smaller counts as 0, as its square's inverse
+/// would not be finite in single precision.
+pub const MIN_MAGNITUDE: f64 = 1e-15;
 /// Messages about one project.
 pub const MAX_DIAGNOSTICS: usize = 200;
 /// Jobs on files that one text may ask for.

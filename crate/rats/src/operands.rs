@@ -1,7 +1,7 @@
 //! Operands that are values: numbers, triples, colours.
 
 use crate::commands::OptionSpec;
-use crate::limits::MAX_MAGNITUDE;
+use crate::limits::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Reader;
 use crate::syntax::Datum;
@@ -75,7 +75,7 @@ impl Reader<'_, '_> {
         }
         let bounds = if high >= MAX_MAGNITUDE {
             match low {
-                low if low > 0.0 && low < 1e-6 => String::from("above 0"),
+                low if low > 0.0 && low < 1e-3 => format!("at least {low:e}"),
                 low => format!("at least {low}"),
             }
         } else {
@@ -111,6 +111,9 @@ impl Reader<'_, '_> {
     }
 
     fn check(&self, number: f64, start: usize, what: &str) -> Outcome<f64> {
+        if number.abs() < MIN_MAGNITUDE {
+            return Ok(0.0);
+        }
         if number.abs() <= MAX_MAGNITUDE {
             return Ok(number);
         }

@@ -364,3 +364,17 @@ fn a_large_image_in_a_loop() {
     let said: Vec<_> = compiled.diagnostics.iter().map(|d| &d.message).collect();
     assert!(said.iter().any(|m| m.contains("steps")), "{said:?}");
 }
+
+#[test]
+fn deformed_vertices() {
+    let text = |turns: u32| {
+        format!(
+            "surface s, diffuse Red\nmesh s gem.obj\nfor i = 1 to {turns} {{\n  deform {{ control <0 0 -1.2> move <0 0 0.001> }}\n}}\n"
+        )
+    };
+    fails(
+        text(5000),
+        "the deformations move more than 60000 vertices together",
+    );
+    assert_eq!(errors(text(100)), "");
+}

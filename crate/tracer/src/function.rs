@@ -15,6 +15,8 @@ use std::sync::Arc;
 
 /// Most halvings of pieces of one ray; on the rest the signs at the ends decide.
 const MOST_HALVED: u32 = 1 << 16;
+/// Radius of a ball without crossings, in the function's scale, below which the surface is looked for.
+const NEAR: f64 = 0.25;
 /// Rounding of a function's value in double precision, in T.
 const VALUE_ERROR: f64 = 1e-12;
 
@@ -93,6 +95,26 @@ pub(crate) fn range(
     (near < far).then_some([near, far])
 }
 
+/// The next piece of a ray, up to `end`, in which there may be crossings, and the number of evaluations that finding it took. Where
+/// the function knows balls without crossings the ray goes from one to the next; the piece after them is as long as the function's
+/// scale. `None` if there is no crossing up to the end.
+fn next_piece(function: &dyn Implicit, ray: &Ray, from: f64, end: f64) -> (Option<[f64; 2]>, u64) {
+    let mut at = from;
+    let mut evaluations = 0;
+    while at < end {
+        let Some(clear) = function.clearance(ray.at(at)) else {
+            return (Some([at, end]), evaluations);
+        };
+        evaluations += 1;
+        // A shorter step would cost more than it saves.
+        if clear.radius < NEAR * clear.scale {
+            return (Some([at, (at + clear.scale).min(end)]), evaluations);
+        }
+        at += clear.radius;
+    }
+    (None, evaluations)
+}
+
 /// Calls `tell` with each crossing of a ray with the surface of a function, and whether the ray enters there, in order,
 /// until `tell` returns false. Returns the number of evaluations.
 pub(crate) fn crossings(
@@ -100,10 +122,39 @@ pub(crate) fn crossings(
     along: &RayQuery,
     mut tell: impl FnMut(f64, bool) -> bool,
 ) -> u64 {
-    let ray = &along.ray;
-    let mut stack = vec![along.range];
+    let [mut from, end] = along.range;
     let mut left = MOST_HALVED;
     let mut evaluations = 0;
+    while from < end {
+        let (piece, more) = next_piece(function, &along.ray, from, end);
+        evaluations += more;
+        let Some(piece) = piece else { break };
+        if !isolate(
+            function,
+            along,
+            piece,
+            &mut left,
+            &mut evaluations,
+            &mut tell,
+        ) {
+            break;
+        }
+        from = piece[1];
+    }
+    evaluations
+}
+
+/// Calls `tell` with each crossing on a piece of a ray. Returns false if `tell` did.
+fn isolate(
+    function: &dyn Implicit,
+    along: &RayQuery,
+    piece: [f64; 2],
+    left: &mut u32,
+    evaluations: &mut u64,
+    tell: &mut impl FnMut(f64, bool) -> bool,
+) -> bool {
+    let ray = &along.ray;
+    let mut stack = vec![piece];
     while let Some([a, b]) = stack.pop() {
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let center = ray.at(middle);
@@ -112,13 +163,13 @@ pub(crate) fn crossings(
         if function.most(ball) < THRESHOLD {
             continue;
         }
-        let bounds = function.variation(None, ball);
-        evaluations += 1;
+        let (bounds, known) = function.variation_with_jet(ball);
+        *evaluations += 1;
         let [least, most] = bounds.range.value;
         if least > THRESHOLD || most < THRESHOLD {
             continue;
         }
-        let jet = function.jet(center);
+        let jet = known.unwrap_or_else(|| function.jet(center));
         let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
         // How much the slope may change between the middle and another point of the piece.
         let bend = bounds.curvature * radius + bounds.jump;
@@ -129,27 +180,27 @@ pub(crate) fn crossings(
         }
         // False if the bound is infinite.
         let monotone = slope.abs() > bend && bounds.step == 0.0;
-        if !monotone && b - a > along.resolution && left > 0 {
-            left -= 1;
+        if !monotone && b - a > along.resolution && *left > 0 {
+            *left -= 1;
             stack.push([middle, b]);
             stack.push([a, middle]);
             continue;
         }
         let inside = [a, b].map(|t| function.jet(ray.at(t)).value >= THRESHOLD);
-        evaluations += 2;
+        *evaluations += 2;
         if inside[0] == inside[1] {
             continue;
         }
         let excess = |t: f64| {
-            evaluations += 1;
+            *evaluations += 1;
             let jet = function.jet(ray.at(t));
             let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
             (jet.value - THRESHOLD, slope)
         };
         let t = bracketed(excess, a, b, 1e-14 * (1.0 + b));
         if !tell(t, inside[1]) {
-            break;
+            return false;
         }
     }
-    evaluations
+    true
 }

@@ -25,6 +25,8 @@ use texture::refraction::{reflect, refract};
 const MOST_SKIPPED: u32 = 64;
 /// Most rays of a wave for each ray from the eye; what would be more is not sent.
 const MOST_RAYS: usize = 512;
+/// Most rays of all waves together, likewise: glass inside glass may ask for 2ⁿ rays at depth n.
+const MOST_RAYS_IN_ALL: usize = 2048;
 
 /// Key of samples that see the ground.
 pub(crate) const GROUND: u32 = 1 << 31;
@@ -108,12 +110,14 @@ impl World {
             }
         }
         let most = MOST_RAYS * PACKET * seen.len();
+        let mut left = MOST_RAYS_IN_ALL * PACKET * seen.len();
         while !wave.is_empty() {
             let [mirrored, passed] = self.shade(rich, &wave, &mut samples, work, stats);
             wave.clear();
             // Neighbours that are mirrored run together, and so do those that pass.
             for mut paths in [mirrored, passed] {
-                paths.truncate(most);
+                paths.truncate(most.min(left));
+                left -= paths.len();
                 stats.secondary_rays += paths.len() as u64;
                 let free = |path: &Path| FreeRay {
                     ray: path.ray,

@@ -6,7 +6,7 @@ use super::state::{Evaluator, Flow};
 use super::watch::written_out;
 use crate::compiled::{Control, Deform};
 use crate::given::Chosen;
-use crate::limits::STEPS_PER_VERTEX;
+use crate::limits::{MAX_DEFORMED, STEPS_PER_VERTEX};
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use fit::Deformation;
@@ -71,6 +71,14 @@ pub fn deform<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
     let vertices = Vertices::of(&run.model, range.clone(), &command.word_span)?;
     let work = vertices.places.len() as u64 * STEPS_PER_VERTEX + range.len() as u64;
     run.scope.step(work, &command.word_span)?;
+    run.deformed += vertices.places.len();
+    if run.deformed > MAX_DEFORMED {
+        return Err(Problem::new(
+            command.word_span.clone(),
+            format!("the deformations move more than {MAX_DEFORMED} vertices together"),
+        )
+        .hint("deform a mesh of fewer triangles, or fewer objects"));
+    }
     let controls: Vec<DVec3> = points.iter().map(|control| control.place).collect();
     let moves: Vec<DVec3> = points.iter().map(|control| control.way).collect();
     let deformation = deformation(&vertices.places, &controls)

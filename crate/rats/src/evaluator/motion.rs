@@ -530,6 +530,15 @@ impl Evaluator<'_> {
                     Some(String::from("take fewer nodes or steps")),
                 )
             });
+        } else if self.moment > f64::from(MOST_FRAMES) {
+            self.say(Severity::Warning, span, || {
+                (
+                    format!(
+                        "this motion ends with frame {MOST_FRAMES}: later frames are as that one"
+                    ),
+                    None,
+                )
+            });
         } else if let Some(frame) = moved.hurried {
             self.say(Severity::Warning, span, || {
                 (

@@ -89,6 +89,9 @@ pub fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
     Ok(Flow::Next)
 }
 
+/// The least length along its curves within which flesh may blend, in its largest radius.
+const LEAST_REACH: f64 = 0.2;
+
 /// What a block says.
 struct Read<'a> {
     nodes: Vec<(Name<'a>, Node)>,
@@ -199,11 +202,25 @@ impl<'a> Read<'a> {
             _ => Scheme::Cubic,
         };
         let (places, curves): (Vec<_>, Vec<_>) = self.curves.into_iter().unzip();
-        let nodes = self.nodes.into_iter().map(|(_, node)| node).collect();
+        let nodes: Vec<Node> = self.nodes.into_iter().map(|(_, node)| node).collect();
+        let thickest = nodes
+            .iter()
+            .fold(0.0, |most: f64, node| most.max(node.radius));
         let mut curves = Curves::new(Skeleton { nodes, curves }, scheme, levels)
             .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
         if let Some(local) = given.option("local") {
-            curves = curves.within(local.given.number("D"));
+            let reach = local.given.number("D");
+            // So few of the field's sources count within less that no flesh is left.
+            if reach < LEAST_REACH * thickest {
+                return Err(Problem::new(
+                    local.given.span("D").unwrap_or_else(|| local.span.clone()),
+                    format!(
+                        "flesh as thick as {thickest} blends along {reach} of its curves only, and vanishes"
+                    ),
+                )
+                .hint("let it blend about as far as it is thick, and a fifth of that at least"));
+            }
+            curves = curves.within(reach);
         }
         // A curve all of whose nodes are at one place has no flesh.
         let lengths = curves.polyline().map_or(&[][..], |p| &p.lengths);

@@ -71,6 +71,8 @@ pub struct Evaluator<'a> {
     pub(super) tool_origins: Vec<Origin>,
     pub(super) output: Output,
     pub(super) deforms: Vec<Deform>,
+    /// Vertices of all deformations so far.
+    pub(super) deformed: usize,
     /// Whether a variable changes with every frame.
     pub(super) animated: bool,
     /// What `motion` has moved.
@@ -131,6 +133,7 @@ impl<'a> Evaluator<'a> {
             tool_origins: Vec::new(),
             output: Output::default(),
             deforms: Vec::new(),
+            deformed: 0,
             animated: false,
             moving: Moving::default(),
             file: 0,
