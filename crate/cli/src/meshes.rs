@@ -258,6 +258,12 @@ impl Mesh {
         let millimetres = self.size / all.size().max_element();
         let written = write(&self.output.with_extension(""), format, &parts, millimetres)?;
         let evaluations: u64 = bodies.iter().map(|body| body.coat.evaluations).sum();
+        for body in bodies.iter().filter(|body| body.coat.left_out > 0) {
+            eprintln!(
+                "{}: {} pieces of the skeleton have no coat, as that would take too long; a larger B may help",
+                body.name, body.coat.left_out
+            );
+        }
         if self.json {
             let summary = json!({
                 "bound": bound,
@@ -269,6 +275,7 @@ impl Mesh {
                     "triangles": body.coat.mesh.triangles.len(),
                     "buried": body.coat.buried,
                     "excess": body.coat.excess,
+                    "left_out": body.coat.left_out,
                 })).collect::<Vec<_>>(),
                 "files": sizes(&written),
                 "seconds": { "compile": loaded.compile_seconds, "mesh": seconds },
@@ -392,6 +399,11 @@ fn summary(part: &ModelPart) -> Value {
         "area": mesh.area(),
         "box": [bounds.min, bounds.max],
         "error": part.error,
+        "measured": {
+            "mesh_to_surface": part.measured.largest[0],
+            "surface_to_mesh": part.measured.largest[1],
+            "samples": part.measured.samples,
+        },
         "undecided": part.undecided.len(),
         "unproved": part.unproved,
         "crossings": part.crossings,

@@ -9,9 +9,10 @@
 //! [`crate::mesh_scene`] are for files.
 
 use crate::cages::{Cage, Spoke};
-use field::{Implicit, Jet, THRESHOLD};
+use crate::space::SLACK;
+use field::{Ball, Implicit, Jet, Part, THRESHOLD};
 use glam::DVec3;
-use mesh::TriangleMesh;
+use mesh::{Aabb, TriangleMesh};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -75,11 +76,16 @@ pub struct Coat {
     pub buried: usize,
     /// The largest |f − T| in the middle of an edge with both ends on the surface.
     pub excess: f64,
+    /// Cages without a shell: coating them would take too long.
+    pub left_out: usize,
 }
 
 impl Coating {
     /// Most triangles of a coating: edges are not split further beyond.
     pub const MOST_TRIANGLES: usize = 400_000;
+    /// Most primitives that are evaluated at a point, summed over all points: some ten seconds. Edges are not split further beyond, and
+    /// beyond twice as many the cages that are left get no shells.
+    pub const MOST_WORK: u64 = 100_000_000;
 
     /// Coats the cages of a function with the bound on |f − T| in the middles of edges, which may depend on the place: larger far from
     /// the eye, say.
@@ -95,12 +101,20 @@ impl Coating {
             before: core::mem::take(&mut self.known),
             known: BTreeMap::new(),
             coat: Coat::default(),
+            part: None,
+            terms: 1,
+            done: 0,
         };
         let mut positions = Vec::new();
         let mut normals = Vec::new();
         let mut triangles = Vec::new();
         let mut left = Self::MOST_TRIANGLES;
         for (number, cage) in cages.iter().enumerate() {
+            if work.done > 2 * Self::MOST_WORK {
+                work.coat.left_out = cages.len() - number;
+                break;
+            }
+            work.narrow(cage, cages.len());
             let (vertices, own) = work.shell(number, cage, left);
             left = left.saturating_sub(own.len());
             let first = positions.len() as u32;
@@ -136,12 +150,37 @@ struct Work<'a> {
     before: BTreeMap<u64, f64>,
     known: BTreeMap<u64, f64>,
     coat: Coat,
+    /// The terms of the function that matter around the present cage; `None` if all do.
+    part: Option<Part>,
+    /// Their number.
+    terms: u64,
+    /// Terms that were evaluated.
+    done: u64,
 }
 
 impl Work<'_> {
+    /// Finds the terms of the function that matter along the rays of one of so many cages.
+    fn narrow(&mut self, cage: &Cage, count: usize) {
+        let bounds = Aabb::of_points(cage.spokes.iter().map(|spoke| spoke.origin));
+        let center = bounds.center();
+        let far = |spoke: &Spoke| spoke.origin.distance(center) + spoke.reach;
+        let radius = cage.spokes.iter().map(far).fold(0.0, f64::max);
+        let ball = Ball {
+            center,
+            radius: radius * (1.0 + 1e-9),
+        };
+        self.part = self.function.narrow(ball, None, SLACK);
+        let terms = self.part.as_ref().map_or(count, |part| part.terms.len());
+        self.terms = terms.max(1) as u64;
+    }
+
     fn jet(&mut self, point: DVec3) -> Jet<f64> {
         self.coat.evaluations += 1;
-        self.function.jet(point)
+        self.done += self.terms;
+        match &self.part {
+            Some(part) => self.function.jet_of(part, point),
+            None => self.function.jet(point),
+        }
     }
 
     fn shell(&mut self, number: usize, cage: &Cage, most: usize) -> (Vec<Vertex>, Vec<[u32; 3]>) {
@@ -153,7 +192,9 @@ impl Work<'_> {
         let mut done: Vec<[u32; 3]> = Vec::new();
         let mut open = cage.triangles.clone();
         for depth in 0..=DEEPEST {
-            let may_split = depth < DEEPEST && done.len() + 4 * open.len() <= most;
+            let may_split = depth < DEEPEST
+                && done.len() + 4 * open.len() <= most
+                && self.done <= Coating::MOST_WORK;
             let middles = self.split(cage, &mut vertices, &open, may_split);
             let of_edge = |a: u32, b: u32| {
                 let edge = [a.min(b), a.max(b)];
@@ -222,6 +263,7 @@ impl Work<'_> {
 
     /// The vertex of a ray: from where it was last, else from a guess, else from the skeleton outwards.
     fn meet(&mut self, cage: &Cage, spoke: Spoke, number: u64, guess: Option<f64>) -> Vertex {
+        self.done += 10 * cage.lines.len() as u64;
         let end = cage.end(&spoke);
         let start = self.before.get(&number).copied().or(guess);
         let near = start

@@ -60,6 +60,8 @@ pub struct Cell {
     pub side: Side,
     /// Whether `bounds` were computed.
     pub has_bounds: bool,
+    /// Whether a closer look has proved that there is no surface in the cell.
+    pub is_empty: bool,
     /// Whether the surface's topology could not be proved in the cell.
     pub undecided: bool,
     /// Bounds.
@@ -75,6 +77,8 @@ pub struct Forest {
     root: DVec3,
     /// Root cells along each axis.
     pub counts: [u32; 3],
+    /// The deepest level that cells are refined to where nothing else calls for more.
+    pub usual: u32,
     /// The deepest level that is allowed.
     pub deepest: u32,
     /// All cells, parents before children.
@@ -82,9 +86,9 @@ pub struct Forest {
 }
 
 impl Forest {
-    /// Divides a box into root cells that are nearly cubes, not smaller than a twentieth of its longest side. The deepest level
-    /// is the first with cells of `finest` or less, as far as coordinates reach.
-    pub fn new(bounds: &Aabb, finest: f64) -> Self {
+    /// Divides a box into root cells that are nearly cubes, not smaller than a twentieth of its longest side. The usual level
+    /// is the first with cells of `finest` or less, and so many levels below it are allowed, both as far as coordinates reach.
+    pub fn new(bounds: &Aabb, finest: f64, levels: u32) -> Self {
         let size = bounds.max - bounds.min;
         let longest = size.max_element();
         let step = size.min_element().max(0.05 * longest);
@@ -96,16 +100,17 @@ impl Forest {
                 .iter()
                 .max()
                 .map_or(0, |n| n.next_power_of_two().ilog2());
-        let mut deepest = 0;
-        while deepest < most && root.max_element() * scale(deepest) > finest {
-            deepest += 1;
+        let mut usual = 0;
+        while usual < most && root.max_element() * scale(usual) > finest {
+            usual += 1;
         }
         let mut forest = Self {
             low: bounds.min,
             high: bounds.max,
             root,
             counts,
-            deepest,
+            usual,
+            deepest: (usual + levels).min(most),
             cells: Vec::new(),
         };
         for z in 0..counts[2] {
@@ -118,6 +123,7 @@ impl Forest {
                         part: NONE,
                         side: Side::Unknown,
                         has_bounds: false,
+                        is_empty: false,
                         undecided: false,
                         bounds: Bounds::NONE,
                     });
@@ -189,6 +195,11 @@ impl Forest {
         self.find(cell.level, at)
     }
 
+    /// Whether a position is in the box.
+    pub fn contains(&self, position: DVec3) -> bool {
+        position.cmpge(self.low).all() && position.cmple(self.high).all()
+    }
+
     /// The leaf at a position; the nearest one outside the box.
     pub fn leaf_at(&self, position: DVec3) -> u32 {
         let unit = (position - self.low) / self.size(self.deepest);
@@ -235,6 +246,7 @@ impl Forest {
                 level: parent.level + 1,
                 at: [0, 1, 2].map(|k| 2 * parent.at[k] + bits[k]),
                 has_bounds: false,
+                is_empty: parent.is_empty,
                 undecided: false,
                 bounds: Bounds::NONE,
                 // Children of a cell without the surface have none of it either.

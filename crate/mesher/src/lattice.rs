@@ -11,6 +11,7 @@ use crate::refine::NUDGE;
 use crate::space::Space;
 use field::THRESHOLD;
 use glam::DVec3;
+use std::collections::BTreeSet;
 
 /// Whole coordinates in one number.
 pub type Key = u64;
@@ -37,6 +38,8 @@ pub fn direction(side: usize) -> [i64; 3] {
 pub struct Lattice {
     keys: Vec<Key>,
     values: Vec<(f64, DVec3)>,
+    /// Vertices whose sign was changed.
+    forced: BTreeSet<Key>,
 }
 
 impl Lattice {
@@ -65,6 +68,21 @@ impl Lattice {
     /// Value at a vertex, less the threshold: never 0.
     pub fn value(&self, index: u32) -> f64 {
         self.values[index as usize].0
+    }
+
+    /// Changes the sign at a vertex: the surface is near, but no vertex is beyond it.
+    pub fn force(&mut self, key: Key) {
+        if let Ok(i) = self.keys.binary_search(&key)
+            && self.forced.insert(key)
+        {
+            self.values[i].0 = -self.values[i].0;
+        }
+    }
+
+    /// Whether the sign at a vertex was changed.
+    pub fn is_forced(&self, index: u32) -> bool {
+        let key = self.keys.get(index as usize);
+        key.is_some_and(|key| self.forced.contains(key))
     }
 
     /// Gradient at a vertex.

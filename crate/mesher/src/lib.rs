@@ -30,10 +30,10 @@
 //! The way of a mesh, a file each:
 //! - `forest.rs` cuts a box into cubic cells of balanced sizes; `lattice.rs` fills them with tetrahedra that fit together;
 //! - `refine.rs` splits cells until each proves, by bounds on the function's derivatives, that the linear interpolant has
-//!   the topology of the surface; `space.rs` evaluates the function by the terms that matter in a place;
+//!   the topology of the surface; `thin.rs` splits those on that may hide a part which is thinner than they are; `space.rs` evaluates the function by the terms that matter in a place;
 //! - `march.rs` makes triangles of the interpolant's level set, and lids where a box cuts it off;
-//! - `improve.rs` makes them fewer and better, as long as `certify.rs` proves each to be within the tolerance;
-//! - `measure.rs` measures distances where proofs fail;
+//! - `improve/` makes them fewer and better, as long as `certify.rs` proves each to be within the tolerance;
+//! - `measure.rs` measures distances by samples;
 //! - `surface.rs` does all that for one function ([`polygonize`]), `model.rs` for a scene ([`mesh_scene`]) with the help of
 //!   `solids.rs` (hard shapes), `level.rs` (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
 //!
@@ -65,10 +65,12 @@ mod refine;
 mod solids;
 mod space;
 mod surface;
+mod thin;
 mod unite;
 
 pub use cages::{Cage, Spoke};
 pub use coating::{Coat, Coating};
+pub use measure::Measured;
 pub use model::{CoatedBody, Model, ModelPart, Tolerance, Wishes, coat_scene, mesh_scene};
 pub use options::{MeshError, Options, Phase, Progress, Step};
 pub use surface::{SurfaceMesh, box_of, extent, polygonize};

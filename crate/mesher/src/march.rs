@@ -187,6 +187,10 @@ pub fn march(
         if a == b {
             return Vertex::new(at(a), &space.jet_at(at(a)));
         }
+        if lattice.is_forced(a) || lattice.is_forced(b) {
+            let middle = at(a).midpoint(at(b));
+            return Vertex::new(middle, &space.jet_at(middle));
+        }
         let values = [a, b].map(|i| lattice.value(i));
         root(space, [at(a), at(b)], values, MARGIN)
     })?;

@@ -3,6 +3,7 @@
 use crate::cages::Cage;
 use crate::coating::{Coat, Coating};
 use crate::level::QuadricFunction;
+use crate::measure::Measured;
 use crate::options::{MeshError, Options, Phase, Progress};
 use crate::paint::Paint;
 use crate::solids::{Solid, tessellate};
@@ -92,8 +93,8 @@ pub struct ModelPart {
     pub unproved: usize,
     /// Triangles before they were made fewer.
     pub raw_triangles: usize,
-    /// Largest distances that samples found where triangles are not proved: from mesh to surface, and back.
-    pub measured: [f64; 2],
+    /// Distances that samples found, of soft surfaces.
+    pub measured: Measured,
     /// Pairs of triangles that cut or touch each other, a hundred at most: none but where vertices are nearer to each other than
     /// numbers can tell.
     pub crossings: usize,
@@ -451,8 +452,8 @@ fn soft_part(
         model.notes.push(format!(
             "{name}: of {unproved} of {} triangles the distance from the surface is not proved; samples found {:.2e} from mesh to surface and {:.2e} back",
             mesh.triangles.len(),
-            measured[0],
-            measured[1],
+            measured.largest[0],
+            measured.largest[1],
         ));
     }
     model.parts.push(ModelPart {
@@ -542,7 +543,7 @@ fn hard_parts<'a>(
             error,
             undecided: Vec::new(),
             unproved: 0,
-            measured: [0.0; 2],
+            measured: Measured::default(),
             raw_triangles: 0,
             crossings: 0,
         });
@@ -653,12 +654,9 @@ fn unite(model: &mut Model, progress: &mut Progress<'_>) -> Result<(), MeshError
                 .flat_map(|part| part.undecided.clone())
                 .collect(),
             unproved: closed.iter().map(|part| part.unproved).sum(),
-            measured: [0, 1].map(|i| {
-                closed
-                    .iter()
-                    .map(|part| part.measured[i])
-                    .fold(0.0, f64::max)
-            }),
+            measured: closed
+                .iter()
+                .fold(Measured::default(), |all, part| all.with(&part.measured)),
             raw_triangles: closed.iter().map(|part| part.raw_triangles).sum(),
             crossings: 0,
         });

@@ -2,8 +2,11 @@
 
 use crate::options::{MeshError, Progress};
 
-/// Items between two reports.
+/// Items between two reports: each of them takes some ten evaluations.
 const BATCH: usize = 1024;
+
+/// Items between two reports that take some hundred evaluations each.
+pub const LARGE: usize = 128;
 
 /// The same as [`map`], with reports of the last progress in between, so that a long computation can be cancelled.
 ///
@@ -15,8 +18,22 @@ pub fn map_told<T: Sync, R: Send>(
     progress: &mut Progress<'_>,
     f: impl Fn(&T) -> R + Sync,
 ) -> Result<Vec<R>, MeshError> {
+    map_by(BATCH, threads, items, progress, f)
+}
+
+/// The same, with a report after so many items.
+///
+/// # Errors
+/// If the caller cancels.
+pub fn map_by<T: Sync, R: Send>(
+    batch: usize,
+    threads: usize,
+    items: &[T],
+    progress: &mut Progress<'_>,
+    f: impl Fn(&T) -> R + Sync,
+) -> Result<Vec<R>, MeshError> {
     let mut results = Vec::with_capacity(items.len());
-    for batch in items.chunks(BATCH) {
+    for batch in items.chunks(batch) {
         progress.again()?;
         results.extend(map(threads, batch, &f));
     }

@@ -11,7 +11,7 @@ use crate::lattice::Lattice;
 use crate::options::{MeshError, Progress};
 use crate::parallel::map_told;
 use crate::space::{SLACK, Space};
-use field::{Ball, Part, THRESHOLD, Variation};
+use field::{Ball, Jet, Part, THRESHOLD, Variation};
 use glam::DVec3;
 use mesh::Aabb;
 
@@ -37,36 +37,50 @@ struct Look {
     part: Option<Part>,
 }
 
+/// Bounds in a ball around a box in a part of the function, the function in its middle, and bounds on its value in the box.
+pub fn bounded(
+    space: &Space<'_>,
+    part: u32,
+    center: DVec3,
+    size: DVec3,
+    room: f64,
+) -> (Variation, Jet<f64>, [f64; 2]) {
+    let radius = 0.5 * size.length() * (1.0 + 1e-9);
+    let ball = Ball {
+        center,
+        radius: radius + room.min(radius),
+    };
+    let variation = space.variation(part, ball);
+    let jet = space.jet(part, center);
+    // A box is a part of the ball.
+    let linear = (0.5 * DVec3::from_array(jet.gradient).abs() * size).element_sum();
+    let bend = (0.5 * variation.curvature * radius + variation.jump) * radius;
+    let change = linear + bend + variation.step + SLACK;
+    let narrow = variation.range.about(&jet, radius).value;
+    let low = narrow[0].max(jet.value - change) - SLACK;
+    let high = narrow[1].min(jet.value + change) + SLACK;
+    (variation, jet, [low, high])
+}
+
 /// Looks at a cell, with so much room around it that a path of the length of the finer tolerance does not leave the ball.
 fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     let forest = &space.forest;
     let size = forest.size(cell.level);
     let center = forest.center(cell);
-    let radius = 0.5 * size.length() * (1.0 + 1e-9);
-    let around = radius + fine.min(radius);
-    let ball = Ball {
-        center,
-        radius: around,
-    };
+    let radius = 0.5 * size.length();
+    let (variation, jet, [low, high]) = bounded(space, cell.part, center, size, fine);
     let Variation {
-        range,
         curvature,
         third,
         rough,
         jump,
         step,
-    } = space.variation(cell.part, ball);
-    let jet = space.jet(cell.part, center);
+        ..
+    } = variation;
     let gradient = DVec3::from_array(jet.gradient);
-    // The cell is a box: a part of the ball.
-    let linear = (0.5 * gradient.abs() * size).element_sum();
-    let change = linear + (0.5 * curvature * radius + jump) * radius + step + SLACK;
-    let narrow = range.about(&jet, radius).value;
-    let low = narrow[0].max(jet.value - change);
-    let high = narrow[1].min(jet.value + change);
-    let side = if low - SLACK > THRESHOLD {
+    let side = if low > THRESHOLD {
         Side::Inside
-    } else if high + SLACK < THRESHOLD {
+    } else if high < THRESHOLD {
         Side::Outside
     } else {
         Side::Crossing
@@ -90,7 +104,7 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
         bounds.error = nudged / (steep - rest);
     }
     let wanted = side == Side::Crossing && !(is_steady && bounds.error <= tolerance);
-    let split = wanted && cell.level < forest.deepest && !bounds.is_stuck;
+    let split = wanted && cell.level < forest.usual && !bounds.is_stuck;
     Look {
         side,
         bounds,
@@ -110,7 +124,7 @@ pub fn extent(
     progress: &mut Progress<'_>,
 ) -> Result<Option<Aabb>, MeshError> {
     let size = domain.max - domain.min;
-    let mut space = Space::new(function, Forest::new(domain, size.max_element() * 2e-5));
+    let mut space = Space::new(function, Forest::new(domain, size.max_element() * 2e-5, 0));
     let mut open: Vec<u32> = (0..space.forest.cells.len() as u32).collect();
     let mut is_inside = false;
     while !open.is_empty() {
@@ -148,7 +162,7 @@ pub fn extent(
         let level = space.forest.cells[*first as usize].level;
         let size = space.forest.size(level).max_element();
         let is_fine = size * 16.0 <= (hull.max - hull.min).max_element();
-        if is_fine || level == space.forest.deepest || crossing.len() > MANY_CELLS {
+        if is_fine || level == space.forest.usual || crossing.len() > MANY_CELLS {
             return Ok(Some(hull));
         }
         open.clear();
@@ -168,78 +182,124 @@ pub fn extent(
 /// Cells with which the search for the extent ends in any case.
 const MANY_CELLS: usize = 100_000;
 
-/// Refines the cells until their interpolants are within the first tolerance, the second being that of the final mesh, and
-/// returns the lattice with values at its vertices.
-///
-/// # Errors
-/// If there are too many cells, or if the caller cancels.
-pub fn refine(
-    space: &mut Space<'_>,
-    tolerances: [f64; 2],
-    max_cells: usize,
-    threads: usize,
-    progress: &mut Progress<'_>,
-) -> Result<Lattice, MeshError> {
-    let mut lattice = Lattice::default();
-    let mut fraction = 0.0;
-    let mut fresh = 0;
-    loop {
-        look_at_all(
+/// Cells that are being refined, with the values at the vertices of their lattice.
+pub struct Refinement<'s, 'a> {
+    /// The cells, and the function.
+    pub space: &'s mut Space<'a>,
+    /// The values.
+    pub lattice: Lattice,
+    /// The tolerance of the interpolant, and that of the final mesh.
+    pub tolerances: [f64; 2],
+    /// Most cells.
+    pub max_cells: usize,
+    /// Threads.
+    pub threads: usize,
+    /// Number of cells that were looked at.
+    fresh: usize,
+    fraction: f32,
+}
+
+impl<'s, 'a> Refinement<'s, 'a> {
+    /// Cells of which nothing is known yet.
+    pub fn new(
+        space: &'s mut Space<'a>,
+        tolerances: [f64; 2],
+        max_cells: usize,
+        threads: usize,
+    ) -> Self {
+        Self {
             space,
-            &mut fresh,
+            lattice: Lattice::default(),
             tolerances,
             max_cells,
             threads,
-            progress,
-            &mut fraction,
-        )?;
-        look_beside(space, tolerances, threads, progress)?;
-        let crossing = crossing(&space.forest);
-        // Each becomes about ten triangles, which are there before they are made fewer.
-        if crossing.len() > max_cells / 2 {
-            return Err(MeshError::TooMany {
-                limit: 0,
-                fitting: fitting(&space.forest),
-            });
+            fresh: 0,
+            fraction: 0.0,
         }
-        progress.at(fraction)?;
-        lattice.extend(space, &crossing, tolerances[0], threads, progress)?;
-        let failing = map_told(threads, &crossing, progress, |node| {
-            failing(space, &lattice, *node, tolerances[0])
-        })?;
-        let mut failing: Vec<u32> = failing.into_iter().flatten().collect();
-        failing.sort_unstable();
-        failing.dedup();
-        let mut is_done = true;
-        for node in failing {
-            let cell = &mut space.forest.cells[node as usize];
-            if cell.level == space.forest.deepest || cell.bounds.is_stuck {
-                cell.undecided = true;
-            } else if cell.child == NONE {
-                is_done = false;
-                let cell = *cell;
-                if let Some(part) = space.narrow(&cell) {
-                    space.forest.cells[node as usize].part = space.add(part, cell.part);
+    }
+
+    /// Refines the cells, down to the usual level, until their interpolants have the topology of the surface and are within the
+    /// tolerance. Cells that cannot be refined further are marked as undecided. Returns the leaves in which the interpolant changes
+    /// its sign, in the order of their numbers.
+    ///
+    /// # Errors
+    /// If there are too many cells, or if the caller cancels.
+    pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<Vec<u32>, MeshError> {
+        let threads = self.threads;
+        loop {
+            look_at_all(self, progress)?;
+            look_beside(self.space, self.tolerances, threads, progress)?;
+            let crossing = crossing(&self.space.forest);
+            // Each becomes about ten triangles, which are there before they are made fewer.
+            if crossing.len() > self.max_cells / 2 {
+                return Err(MeshError::TooMany {
+                    limit: 0,
+                    fitting: fitting(&self.space.forest),
+                });
+            }
+            progress.at(self.fraction)?;
+            let coarse = self.tolerances[0];
+            self.lattice
+                .extend(self.space, &crossing, coarse, threads, progress)?;
+            let (space, lattice) = (&*self.space, &self.lattice);
+            let verdicts = map_told(threads, &crossing, progress, |node| {
+                verdict(space, lattice, *node, coarse)
+            })?;
+            let (mut failing, mut open, mut seen) = (Vec::new(), Vec::new(), Vec::new());
+            for verdict in verdicts {
+                failing.extend(verdict.failing);
+                open.extend(verdict.open);
+                seen.extend(verdict.seen);
+            }
+            for all in [&mut failing, &mut open, &mut seen] {
+                all.sort_unstable();
+                all.dedup();
+            }
+            let mut is_done = true;
+            for node in failing {
+                let cell = self.space.forest.cells[node as usize];
+                let is_last = cell.level >= self.space.forest.usual || cell.bounds.is_stuck;
+                if !is_last && cell.child == NONE {
+                    is_done = false;
+                    self.split(node);
                 }
-                space.forest.split(node);
+            }
+            for node in open {
+                let cell = &mut self.space.forest.cells[node as usize];
+                if cell.level >= self.space.forest.usual || cell.bounds.is_stuck {
+                    cell.undecided |= !cell.is_empty;
+                }
+            }
+            if is_done {
+                return Ok(seen);
             }
         }
-        if is_done {
-            return Ok(lattice);
+    }
+
+    /// Splits a leaf, with the part of the function that its children need.
+    pub fn split(&mut self, node: u32) {
+        let cell = self.space.forest.cells[node as usize];
+        if let Some(part) = self.space.narrow(&cell) {
+            self.space.forest.cells[node as usize].part = self.space.add(part, cell.part);
         }
+        self.space.forest.split(node);
     }
 }
 
 /// Looks at all leaves that are not known, and splits those that need it, until there are none.
 fn look_at_all(
-    space: &mut Space<'_>,
-    fresh: &mut usize,
-    tolerances: [f64; 2],
-    max_cells: usize,
-    threads: usize,
+    refinement: &mut Refinement<'_, '_>,
     progress: &mut Progress<'_>,
-    fraction: &mut f32,
 ) -> Result<(), MeshError> {
+    let Refinement {
+        space,
+        tolerances,
+        max_cells,
+        threads,
+        fresh,
+        fraction,
+        ..
+    } = refinement;
     loop {
         let cells = &space.forest.cells;
         let is_open = |i: &u32| {
@@ -260,8 +320,8 @@ fn look_at_all(
                 .iter()
                 .map(|i| space.forest.cells[*i as usize])
                 .collect();
-            let looks = map_told(threads, &leaves, progress, |cell| {
-                look(space, cell, tolerances)
+            let looks = map_told(*threads, &leaves, progress, |cell| {
+                look(space, cell, *tolerances)
             })?;
             for (node, look) in batch.iter().zip(looks) {
                 let cell = &mut space.forest.cells[*node as usize];
@@ -277,7 +337,7 @@ fn look_at_all(
                     space.forest.split(*node);
                 }
             }
-            if space.forest.cells.len() > max_cells {
+            if space.forest.cells.len() > *max_cells {
                 return Err(MeshError::TooMany {
                     limit: 0,
                     fitting: fitting(&space.forest),
@@ -355,13 +415,30 @@ pub fn crossing(forest: &Forest) -> Vec<u32> {
     (0..forest.cells.len() as u32).filter(is_crossing).collect()
 }
 
-/// The cells in which a tetrahedron of a cell does not prove the topology.
-fn failing(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> Vec<u32> {
+/// What the tetrahedra of a cell tell.
+struct Verdict {
+    /// The cells in which one does not prove the topology, and which are to blame.
+    failing: Vec<u32>,
+    /// The cells in which one does not prove the topology.
+    open: Vec<u32>,
+    /// Those in which the interpolant changes its sign.
+    seen: Vec<u32>,
+}
+
+fn verdict(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> Verdict {
     let cells = &space.forest.cells;
-    let mut failing = Vec::new();
+    let (mut failing, mut open, mut seen) = (Vec::new(), Vec::new(), Vec::new());
     crate::lattice::tetrahedra(&space.forest, node, &mut |keys, owners| {
         let vertices = keys.map(|key| lattice.index(key));
         let values = vertices.map(|i| lattice.value(i));
+        let is_inside = values.map(|v| v > 0.0);
+        if is_inside.contains(&true) && is_inside.contains(&false) {
+            for owner in owners {
+                if !seen.contains(&owner) {
+                    seen.push(owner);
+                }
+            }
+        }
         let bounds = owners.map(|owner| cells[owner as usize].bounds);
         let off = bounds[0].off.max(bounds[1].off);
         let gradients = vertices.map(|i| lattice.gradient(i));
@@ -380,6 +457,9 @@ fn failing(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> V
         let proves = least > rest * slope.length();
         if !proves {
             for (owner, own) in owners.into_iter().zip(bounds) {
+                if !open.contains(&owner) {
+                    open.push(owner);
+                }
                 // The other one alone may be to blame.
                 if own.rest >= 0.5 * rest && !failing.contains(&owner) {
                     failing.push(owner);
@@ -387,7 +467,11 @@ fn failing(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> V
             }
         }
     });
-    failing
+    Verdict {
+        failing,
+        open,
+        seen,
+    }
 }
 
 /// Gradient of the linear function with these values at the corners of a tetrahedron.

@@ -1,12 +1,14 @@
 //! The mesh of one function.
 
 use crate::forest::{Forest, NONE};
+use crate::guard::Guarded;
 use crate::improve::{Improved, Improver};
 use crate::march::{Raw, march};
-use crate::measure;
+use crate::measure::{self, Measured};
 use crate::options::{MeshError, Options, Phase, Progress};
-use crate::refine;
+use crate::refine::{self, Refinement};
 use crate::space::Space;
+use crate::thin;
 use field::{Ball, Implicit};
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
@@ -21,9 +23,8 @@ pub struct SurfaceMesh {
     pub error: f64,
     /// Triangles that are not proved to be within the tolerance: near undecided cells and kinks.
     pub unproved: usize,
-    /// Largest distances that samples found near those: of unproved triangles from the surface, and of the surface from the mesh. Zeros if
-    /// all is proved.
-    pub measured: [f64; 2],
+    /// Distances that samples found.
+    pub measured: Measured,
     /// Pairs of triangles that cut or touch each other, a hundred at most: none but where vertices are nearer to each other than
     /// numbers can tell.
     pub crossings: usize,
@@ -96,6 +97,7 @@ pub fn polygonize(
             max: (hull.max + room).min(domain.max),
         },
         FINEST * tolerance,
+        thin::LEVELS,
     );
     let mut space = Space::new(function, forest);
     let max_cells = max_triangles.saturating_mul(2).max(LEAST_CELLS);
@@ -110,14 +112,17 @@ pub fn polygonize(
     };
     // Vertices come to the surface later, and triangles are divided where that is not enough.
     let coarse = COARSE * tolerance;
-    let lattice = refine::refine(
-        &mut space,
-        [coarse, tolerance],
-        max_cells,
-        threads,
-        &mut progress.part(0.02, 0.4).in_phase(Phase::Cells),
-    )
-    .map_err(too_many)?;
+    let lattice = {
+        let mut progress = progress.part(0.02, 0.4).in_phase(Phase::Cells);
+        let mut refinement = Refinement::new(&mut space, [coarse, tolerance], max_cells, threads);
+        refinement
+            .settle(&mut progress.part(0.0, 0.8))
+            .and_then(|seen| {
+                thin::deepen(&mut refinement, seen, &mut progress.part(0.8, 1.0))?;
+                Ok(refinement.lattice)
+            })
+            .map_err(too_many)?
+    };
     let mut progress = progress.part(0.0, 1.0).in_phase(Phase::Triangles);
     progress.at(0.4)?;
     let raw = march(&space, &lattice, threads, &mut progress)?;
@@ -157,7 +162,14 @@ pub fn polygonize(
         });
     }
     let mut progress = progress.part(0.98, 1.0);
-    let measured = measure::distances(&space, &start.raw, &improved, threads, &mut progress)?;
+    let measured = measure::distances(
+        &space,
+        &start.raw,
+        &improved,
+        tolerance,
+        threads,
+        &mut progress,
+    )?;
     let unproved = improved.is_unproved.iter().filter(|is| **is).count();
     Ok(SurfaceMesh {
         mesh: improved.mesh,
@@ -193,10 +205,9 @@ impl Start<'_> {
         is_cut: bool,
         progress: &mut Progress<'_>,
     ) -> Result<(Improved, usize), MeshError> {
-        let attempt = |guards_all: bool, progress: &mut Progress<'_>| {
+        let attempt = |guarded: Guarded, progress: &mut Progress<'_>| {
             let raw = self.raw.clone();
-            let improver =
-                Improver::new(self.space, raw, self.tolerances, self.threads, guards_all)?;
+            let improver = Improver::new(self.space, raw, self.tolerances, self.threads, guarded)?;
             let improved = improver.run(&mut progress.part(0.0, 0.95))?;
             // A mesh of which all is proved has none.
             let is_proved = !is_cut && !improved.is_unproved.contains(&true);
@@ -208,18 +219,18 @@ impl Start<'_> {
             let crossings = found.map_or(0, |found| found.pairs.len() + found.flat.len());
             Ok((improved, crossings.min(MOST_CROSSINGS)))
         };
-        let (improved, crossings) = attempt(false, &mut progress.part(0.0, 0.7))?;
+        let (improved, crossings) = attempt(Guarded::Unproved, &mut progress.part(0.0, 0.7))?;
         if crossings == 0 {
             return Ok((improved, 0));
         }
-        attempt(true, &mut progress.part(0.7, 1.0))
+        attempt(Guarded::Everywhere, &mut progress.part(0.7, 1.0))
     }
 }
 
 /// Largest tolerance that is worked with, in sizes of the surface.
 const LARGEST: f64 = 0.02;
-/// Cells are at least half so large, in tolerances: smaller ones take minutes where surfaces touch. Parts of a surface that are smaller
-/// than they may be missing; where they leave the topology open, they are told.
+/// Cells are at least half so large, in tolerances, but for those that hold parts of the surface which are [thinner](crate::thin):
+/// smaller ones take minutes where surfaces touch.
 const FINEST: f64 = 4.0;
 
 /// Cells may be so many times as far from the surface as the result.

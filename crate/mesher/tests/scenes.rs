@@ -79,7 +79,10 @@ fn judge(scene: &Scene, care: Care) -> Result<Row, String> {
         row.triangles += mesh.triangles.len();
         row.undecided += part.undecided.len();
         row.unproved += part.unproved;
-        let measured = part.measured.map(|distance| distance / model.tolerance);
+        let measured = part
+            .measured
+            .largest
+            .map(|distance| distance / model.tolerance);
         row.measured = [0, 1].map(|i| row.measured[i].max(measured[i]));
         if !part.is_closed {
             continue;

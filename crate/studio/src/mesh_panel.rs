@@ -335,10 +335,17 @@ fn lines(facts: &MeshFacts, growth: f64, written: &Written, film: Film) -> Vec<S
     } else {
         lines.push(String::from("not closed: a printer may refuse it"));
     }
-    if facts.undecided + facts.unproved > 0 {
+    let unsure = match facts.undecided + facts.unproved {
+        0 => String::new(),
+        places => format!(", but for {} places", thousands(places)),
+    };
+    let error = millimetres(facts.error * growth);
+    lines.push(format!("proved: at most {error} off{unsure}"));
+    if facts.samples > 0 {
         lines.push(format!(
-            "not proved in {} places",
-            thousands(facts.undecided + facts.unproved)
+            "measured at {} points: at most {} off",
+            thousands(facts.samples),
+            millimetres(facts.measured * growth)
         ));
     }
     if written.joints > 0 {

@@ -41,7 +41,7 @@ pub(crate) fn run(job: FitJob, progress: &mut Progress<'_>) -> Result<Output, Er
         rigid = now.rigid;
         progress.report(now.iteration as f32 / most);
         progress.pass(Output::Fit(step(&rigid, now)));
-        true
+        progress.goes_on().is_continue()
     };
     let Fitted { rigid, last, .. } = fit(&problem, &mut tell)?;
     Ok(Output::Fit(step(&rigid, &last)))

@@ -11,6 +11,7 @@ use mesh::{Aabb, Export, Format, Part, TriangleMesh};
 pub struct Progress<'a> {
     report: Option<&'a mut dyn FnMut(f32)>,
     pass: Option<&'a mut dyn FnMut(Output)>,
+    is_over: Option<&'a mut dyn FnMut() -> bool>,
 }
 
 impl<'a> Progress<'a> {
@@ -19,6 +20,7 @@ impl<'a> Progress<'a> {
         Self {
             report: Some(report),
             pass: None,
+            is_over: None,
         }
     }
 
@@ -28,6 +30,24 @@ impl<'a> Progress<'a> {
         Self {
             pass: Some(pass),
             ..self
+        }
+    }
+
+    /// The job ends with an error soon after `is_over` says so. It is asked with every report, at least every tenth of a second or so
+    /// while a scene is meshed.
+    #[must_use]
+    pub fn until(self, is_over: &'a mut dyn FnMut() -> bool) -> Self {
+        Self {
+            is_over: Some(is_over),
+            ..self
+        }
+    }
+
+    /// Whether the job is to go on.
+    pub(crate) fn goes_on(&mut self) -> ControlFlow<()> {
+        match &mut self.is_over {
+            Some(is_over) if is_over() => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
         }
     }
 
@@ -52,6 +72,7 @@ impl<'a> Progress<'a> {
         Self {
             report: None,
             pass: None,
+            is_over: None,
         }
     }
 }
@@ -119,7 +140,7 @@ fn mesh_scene(job: MeshJob, progress: &mut Progress<'_>) -> Result<Meshed, Strin
     check(size, format, rig.as_ref())?;
     let mut report = |step: mesher::Step| {
         progress.report(0.95 * step.fraction);
-        ControlFlow::Continue(())
+        progress.goes_on()
     };
     let model = mesher::mesh_scene(&scene, &wishes, &mut mesher::Progress::new(&mut report))
         .map_err(|error| error.to_string())?;
@@ -135,7 +156,10 @@ fn mesh_scene(job: MeshJob, progress: &mut Progress<'_>) -> Result<Meshed, Strin
     for part in &model.parts {
         facts.triangles += part.mesh.triangles.len();
         facts.vertices += part.mesh.positions.len();
-        facts.error = facts.error.max(part.error);
+        facts.error = facts.error.max(part.error * millimetres);
+        let [there, back] = part.measured.largest;
+        facts.measured = facts.measured.max(there.max(back) * millimetres);
+        facts.samples += part.measured.samples.iter().sum::<usize>();
         facts.undecided += part.undecided.len();
         facts.unproved += part.unproved;
         facts.crossings += part.crossings;
@@ -144,6 +168,9 @@ fn mesh_scene(job: MeshJob, progress: &mut Progress<'_>) -> Result<Meshed, Strin
             facts.volume += part.mesh.signed_volume() * growth;
             facts.shells += mesh::Topology::of(&part.mesh).map_or(0, |t| t.genera.len());
         }
+    }
+    if progress.goes_on().is_break() {
+        return Err(mesher::MeshError::Cancelled.to_string());
     }
     let parts = model.parts.into_iter().map(|part| (part.name, part.mesh));
     let parts: Vec<(String, TriangleMesh)> = parts.collect();
@@ -304,6 +331,27 @@ mod tests {
         assert_eq!(meshed.written.files[0].name, "ball.glb");
         let again = mesh::read("ball.glb", &meshed.written.files[0].bytes).unwrap();
         assert_eq!(again.triangles.len(), meshed.facts.triangles);
+    }
+
+    #[test]
+    fn meshing_ends_when_it_is_told_to() {
+        let asked = |end: usize| {
+            let mut count = 0;
+            let mut is_over = || {
+                count += 1;
+                count > end
+            };
+            let progress = &mut Progress::silent().until(&mut is_over);
+            let result = run(Job::Mesh(Box::new(ball(3.0))), progress);
+            (result, count)
+        };
+        let (whole, all) = asked(usize::MAX);
+        assert!(whole.is_ok() && all > 20, "{all}");
+        for end in [0, all / 3, all / 2, all - 1] {
+            let (result, count) = asked(end);
+            assert_eq!(result, Err(String::from("cancelled")));
+            assert_eq!(count, end + 1, "it goes on");
+        }
     }
 
     #[test]

@@ -174,8 +174,12 @@ pub struct MeshFacts {
     pub sides: [f64; 3],
     /// Tolerance that was asked for, in units of the scene.
     pub tolerance: f64,
-    /// Largest proved distance between mesh and surface, in units of the scene.
+    /// Largest proved distance between mesh and surface, millimetres.
     pub error: f64,
+    /// Largest distance that samples found, either way, millimetres.
+    pub measured: f64,
+    /// Number of those samples.
+    pub samples: usize,
     /// Cells in which the topology is not proved.
     pub undecided: usize,
     /// Triangles whose distance is not proved.

@@ -1,0 +1,175 @@
+//! Proofs of triangles, and remedies for those that are not proved.
+
+use super::state::{Attempt, Edit, Improver};
+use crate::certify::{distance, is_hopeless};
+use crate::options::{MeshError, Progress};
+use crate::parallel::{LARGE, map_by};
+use mesh::{FaceId, HalfEdgeId, VertexId};
+
+/// Rounds in which triangles are divided or removed until all are near the surface.
+const SETTLE_ROUNDS: usize = 40;
+/// Rounds in which every edit is tried at the triangles that are left.
+const RESCUE_ROUNDS: usize = 8;
+/// Most triangles of such a round.
+const MOST_RESCUED: usize = 500;
+/// Sine of the smallest angle below which a triangle is not divided but removed.
+const THIN: f64 = 0.25;
+/// That below which it is not divided even if nothing else helps.
+const SLIVER: f64 = 0.02;
+
+impl Improver<'_> {
+    /// Proves triangles that are not yet proved to be near the surface; divides those that are too large, and removes flat ones.
+    pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
+        let (mut least, mut stalled) = (usize::MAX, 0);
+        for round in 0..SETTLE_ROUNDS {
+            progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
+            let far = self.unproved(progress)?;
+            // All kinds of remedies have been tried without much success.
+            if far.len() < least - least / 20 {
+                (least, stalled) = (far.len(), 0);
+            } else {
+                stalled += 1;
+                if stalled == 8 {
+                    break;
+                }
+            }
+            let mut edits: Vec<(f64, Edit)> = far
+                .into_iter()
+                .filter_map(|f| self.remedy(f, round))
+                .collect();
+            edits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            edits.dedup_by_key(|(_, edit)| *edit);
+            let edits = edits.into_iter().map(|(_, edit)| edit).collect::<Vec<_>>();
+            if edits.is_empty() {
+                break;
+            }
+            // Another round tries other edits: that nothing was done in this one does not end it.
+            self.do_round(edits, progress)?;
+        }
+        for round in 0..RESCUE_ROUNDS {
+            progress.at(round as f32 / RESCUE_ROUNDS as f32)?;
+            if self.rescue(progress)? == 0 {
+                break;
+            }
+        }
+        self.unproved(progress)?;
+        Ok(())
+    }
+
+    /// Tries every edit at each of the faces that are left, one after the other, until one helps. Returns how many were helped.
+    pub fn rescue(&mut self, progress: &mut Progress<'_>) -> Result<usize, MeshError> {
+        let mut done = 0;
+        let far = self.unproved(progress)?;
+        for f in far.into_iter().take(MOST_RESCUED) {
+            progress.again()?;
+            let is_left = self.mesh.has_face(f) && self.errors[f.index()] > self.tolerance as f32;
+            if !is_left {
+                continue;
+            }
+            let edges: Vec<HalfEdgeId> = self.mesh.face_half_edges(f).collect();
+            let twins: Vec<HalfEdgeId> = edges.iter().map(|h| self.mesh.twin(*h)).collect();
+            let merges = edges.iter().chain(&twins).map(|h| Edit::Merge(*h));
+            let flips = edges.iter().map(|h| Edit::Flip(*h));
+            let moves = self.corners(f).map(Edit::Move);
+            let splits = edges.iter().map(|h| Edit::Split(*h));
+            let edits: Vec<Edit> = merges.chain(flips).chain(moves).chain(splits).collect();
+            self.round += 1;
+            for edit in edits {
+                // An edit refused in an earlier round would be planned the same way again; only divisions depend on more.
+                let is_known = !matches!(edit, Edit::Split(_)) && self.is_refused(edit);
+                if is_known || !self.is_allowed(edit) {
+                    continue;
+                }
+                // Divisions of flat triangles that prove nothing would be repeated for ever.
+                let plan = match edit {
+                    Edit::Split(h) => self.plan_split(h, self.angle(f) <= SLIVER),
+                    _ => self.plan(edit),
+                };
+                if let Some(plan) = plan
+                    && self.apply(edit, &plan)
+                {
+                    done += 1;
+                    break;
+                }
+                if !matches!(edit, Edit::Split(_)) {
+                    self.refused.insert(edit, self.round);
+                }
+            }
+        }
+        Ok(done)
+    }
+
+    /// The faces that are not proved to be within the tolerance, also after another attempt, but might be if they were others.
+    pub fn unproved(&mut self, progress: &mut Progress<'_>) -> Result<Vec<FaceId>, MeshError> {
+        let tolerance = self.tolerance as f32;
+        let faces = self.mesh.faces();
+        let far: Vec<FaceId> = faces
+            .filter(|f| self.errors[f.index()] > tolerance && !self.is_fixed_face(*f))
+            .collect();
+        let is_new = |f: &FaceId| self.attempts[f.index()] == Attempt::None;
+        let new: Vec<FaceId> = far.iter().copied().filter(is_new).collect();
+        let this = &*self;
+        let proved = map_by(LARGE, self.threads, &new, progress, |f| {
+            let corners = this.corners(*f).map(|v| this.vertices[v.index()]);
+            let proved = distance(this.space, corners.each_ref(), this.tolerance);
+            let is_hopeless = proved.is_none() && is_hopeless(this.space, &corners, this.tolerance);
+            (proved, is_hopeless)
+        })?;
+        for (f, (proved, is_hopeless)) in new.into_iter().zip(proved) {
+            match proved {
+                Some(distance) => {
+                    self.errors[f.index()] = distance as f32;
+                    // Edits there are judged in another way from now on.
+                    for v in self.corners(f) {
+                        self.changed[v.index()] = self.round + 1;
+                    }
+                }
+                None if is_hopeless => self.attempts[f.index()] = Attempt::Hopeless,
+                None => self.attempts[f.index()] = Attempt::Failed,
+            }
+        }
+        let has_failed = |f: &FaceId| self.attempts[f.index()] == Attempt::Failed;
+        Ok(far.into_iter().filter(has_failed).collect())
+    }
+
+    /// What may help a face that is not proved to be near the surface.
+    pub fn remedy(&self, f: FaceId, round: usize) -> Option<(f64, Edit)> {
+        let mesh = &self.mesh;
+        let mut edges: Vec<(f64, HalfEdgeId)> = mesh
+            .face_half_edges(f)
+            .map(|h| {
+                let [a, b] = [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v));
+                (a.distance_squared(b), h.min(mesh.twin(h)))
+            })
+            .collect();
+        edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let (short, long) = (edges.first()?, edges.last()?);
+        let is_fixed = |v: VertexId| self.is_fixed[v.index()];
+        let split = |(length, h): (f64, HalfEdgeId)| {
+            let [a, b, c, d] = self.diamond(h).map(is_fixed);
+            (!(a && b && (c || d))).then_some((-length, Edit::Split(h)))
+        };
+        if self.angle(f) > THIN && round % 4 < 2 {
+            return split(*long);
+        }
+        let merge = |(length, h): (f64, HalfEdgeId)| {
+            let [a, b] = [mesh.origin(h), mesh.target(h)].map(is_fixed);
+            let h = if a { mesh.twin(h) } else { h };
+            (!(a && b)).then_some((length, Edit::Merge(h)))
+        };
+        match round % 8 {
+            0 | 2 => merge(*short),
+            1 | 5 => Some((-long.0, Edit::Flip(long.1))),
+            4 => merge(edges[1]),
+            6 => merge(*long),
+            // A flat one would only become two.
+            3 if self.angle(f) > SLIVER => split(*long),
+            3 => merge(*short),
+            _ => {
+                let movable = self.corners(f).into_iter().filter(|v| !is_fixed(*v));
+                let least = movable.map(|v| (self.star_angle(v), Edit::Move(v)));
+                least.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+            }
+        }
+    }
+}
