@@ -57,6 +57,7 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
         step,
     } = space.variation(cell.part, ball);
     let jet = space.jet(cell.part, center);
+    let [error, steep_error] = space.error(cell.part);
     let gradient = DVec3::from_array(jet.gradient);
     // The cell is a box: a part of the ball.
     let linear = (0.5 * gradient.abs() * size).element_sum();
@@ -64,9 +65,10 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     let narrow = range.about(&jet, radius).value;
     let low = narrow[0].max(jet.value - change);
     let high = narrow[1].min(jet.value + change);
-    let side = if low - SLACK > THRESHOLD {
+    let unsure = SLACK + error + steep_error * radius;
+    let side = if low - unsure > THRESHOLD {
         Side::Inside
-    } else if high + SLACK < THRESHOLD {
+    } else if high + unsure < THRESHOLD {
         Side::Outside
     } else {
         Side::Crossing
@@ -110,7 +112,8 @@ pub fn extent(
     progress: &mut Progress<'_>,
 ) -> Result<Option<Aabb>, MeshError> {
     let size = domain.max - domain.min;
-    let mut space = Space::new(function, Forest::new(domain, size.max_element() * 2e-5));
+    let forest = Forest::new(domain, size.max_element() * 2e-5);
+    let mut space = Space::new(function, forest, EXTENT);
     let mut open: Vec<u32> = (0..space.forest.cells.len() as u32).collect();
     let mut is_inside = false;
     while !open.is_empty() {
@@ -164,6 +167,9 @@ pub fn extent(
         Ok(None)
     }
 }
+
+/// Accuracy of the extent, as a part of it.
+const EXTENT: f64 = 1e-3;
 
 /// Cells with which the search for the extent ends in any case.
 const MANY_CELLS: usize = 100_000;
@@ -358,6 +364,7 @@ pub fn crossing(forest: &Forest) -> Vec<u32> {
 /// The cells in which a tetrahedron of a cell does not prove the topology.
 fn failing(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> Vec<u32> {
     let cells = &space.forest.cells;
+    let [error, steep_error] = space.worst_error();
     let mut failing = Vec::new();
     crate::lattice::tetrahedra(&space.forest, node, &mut |keys, owners| {
         let vertices = keys.map(|key| lattice.index(key));
@@ -366,7 +373,7 @@ fn failing(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> V
         let off = bounds[0].off.max(bounds[1].off);
         let gradients = vertices.map(|i| lattice.gradient(i));
         let steepest = gradients.iter().map(|g| g.length()).fold(0.0, f64::max);
-        let off = off + 2.0 * NUDGE * tolerance * steepest;
+        let off = off + error + 2.0 * NUDGE * tolerance * steepest;
         // Neither the function nor its interpolant is 0 in it.
         if values.iter().all(|v| *v > off) || values.iter().all(|v| *v < -off) {
             return;
@@ -375,13 +382,13 @@ fn failing(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> V
         let slope = gradient(&corners, &values);
         let rises = gradients.map(|gradient| gradient.dot(slope));
         let least = rises.into_iter().fold(f64::INFINITY, f64::min);
-        let rest = bounds[0].rest.max(bounds[1].rest);
+        let rest = bounds[0].rest.max(bounds[1].rest) + steep_error;
         // Not so for NaN.
         let proves = least > rest * slope.length();
         if !proves {
             for (owner, own) in owners.into_iter().zip(bounds) {
                 // The other one alone may be to blame.
-                if own.rest >= 0.5 * rest && !failing.contains(&owner) {
+                if own.rest >= 0.5 * (rest - steep_error) && !failing.contains(&owner) {
                     failing.push(owner);
                 }
             }
