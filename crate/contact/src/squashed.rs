@@ -1,7 +1,7 @@
 //! A function deformed by those that its surface touches.
 use crate::Bulge;
 use field::local::Bounds;
-use field::{Ball, Enclosure, Implicit, Jet, Part, Real, THRESHOLD, Variation};
+use field::{Ball, Enclosure, Implicit, Jet, Part, Real, Slack, THRESHOLD, Variation};
 use glam::DVec3;
 use std::sync::Arc;
 use wide::f32x8;
@@ -181,8 +181,9 @@ impl Implicit for Squashed {
         }
     }
 
-    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: f64) -> Option<Part> {
-        self.own.narrow(ball, among, slack)
+    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: Slack) -> Option<Part> {
+        // The deformation may be steeper than the field.
+        self.own.narrow(ball, among, Slack { far: 0.0, ..slack })
     }
 
     fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {

@@ -87,7 +87,7 @@ impl Implicit for Blend {
         &self,
         ball: Ball,
         among: Option<&implicit::Part>,
-        slack: f64,
+        slack: implicit::Slack,
     ) -> Option<implicit::Part> {
         self.sum.narrow(ball, among, slack)
     }

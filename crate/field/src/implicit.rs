@@ -1,6 +1,8 @@
 //! Implicit functions: the definition of a surface that tracer, mesher, picker and slices share.
 use crate::Jet;
+use crate::far_field::Cell;
 use glam::DVec3;
+use std::sync::Arc;
 use wide::f32x8;
 
 /// A ball of space.
@@ -86,14 +88,34 @@ impl Enclosure {
 }
 
 /// The terms of a function that matter in a ball, and bounds on all others there; made by [`Implicit::narrow`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Part {
     /// The ball.
     pub ball: Ball,
     /// Numbers of the terms, in ascending order.
     pub terms: Vec<u32>,
-    /// Bounds on the sum of the others in the ball.
+    /// Bounds on the sum of the others in the ball, but for those that the polynomial stands for.
     pub rest: Enclosure,
+    /// A cell around the ball whose polynomial stands for further terms; `None` if there are none.
+    pub far: Option<Arc<Cell>>,
+}
+
+impl Part {
+    /// Bounds on the error of the polynomial, and on that of its gradient.
+    #[must_use]
+    pub fn error(&self) -> [f64; 2] {
+        let of = |cell: &Arc<Cell>| [cell.error, cell.smooth.slope_error];
+        self.far.as_ref().map_or([0.0; 2], of)
+    }
+}
+
+/// What a caller of [`Implicit::narrow`] bears.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slack {
+    /// Bound on what is left out.
+    pub left_out: f64,
+    /// Largest error of a polynomial that stands for terms which are far; 0 if there must be none.
+    pub far: f64,
 }
 
 /// Proven bounds on a function in a ball, up to the third derivative.
@@ -184,6 +206,11 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// Value and gradient in double precision.
     fn jet(&self, point: DVec3) -> Jet<f64>;
 
+    /// Value and gradient with an error of the value up to this; [`Sum`](crate::Sum) then sums hundreds of terms by its hierarchy.
+    fn jet_within(&self, point: DVec3, _error: f64) -> Jet<f64> {
+        self.jet(point)
+    }
+
     /// Value and gradient in single precision.
     fn jet32(&self, point: [f32; 3]) -> Jet<f32>;
 
@@ -221,10 +248,11 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
         self.support()
     }
 
-    /// The terms that matter in a ball, chosen among those of a part whose ball contains it, or of all. What is left out is below
-    /// `slack` in all, and so are its slope and curvature times the ball's radius and its square. `None` if the function has no
-    /// such terms, or hardly any can be left out.
-    fn narrow(&self, _ball: Ball, _among: Option<&Part>, _slack: f64) -> Option<Part> {
+    /// The terms that matter in a ball, chosen among those of a part whose ball contains it, or of all. What is left out is at most
+    /// as large as the slack tells, and so are its slope and curvature times the ball's radius and its square. A polynomial may
+    /// stand for others, with an error of its own ([`Part::error`]). `None` if the function has no such terms, or hardly any can be
+    /// left out.
+    fn narrow(&self, _ball: Ball, _among: Option<&Part>, _slack: Slack) -> Option<Part> {
         None
     }
 

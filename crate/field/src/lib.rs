@@ -104,7 +104,7 @@ pub use bound::Bound;
 pub use cut::Cut;
 pub use exponentials::Exponentials;
 pub use far_field::FarField;
-pub use implicit::{Ball, Clearance, Enclosure, Implicit, Part, Variation};
+pub use implicit::{Ball, Clearance, Enclosure, Implicit, Part, Slack, Variation};
 pub use kernel::{Derivatives, Kernel};
 pub use kinks::Kink;
 pub use local::Local;

@@ -1,9 +1,10 @@
 //! The sum of primitives: the field of a convolution surface.
-use crate::implicit::{Part, Variation};
+use crate::far_field::{Cell, FarField};
+use crate::implicit::{Part, Slack, Variation};
 use crate::kinks::{self, Kink};
 use crate::{Ball, Bound, Enclosure, Evaluate, Implicit, Jet, Primitive, THRESHOLD};
 use glam::DVec3;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use wide::f32x8;
 
 /// The field F(p) = Σ fᵢ(p), with nothing cut off.
@@ -33,7 +34,14 @@ pub struct Sum {
     pub primitives: Vec<Primitive>,
     /// Bounds of each term for enclosures, made at first use.
     bounds: OnceLock<Vec<Known>>,
+    /// The hierarchy for those who bear its error, made at first use; `None` if it would not pay.
+    far: OnceLock<Option<Box<FarField>>>,
 }
+
+/// Fewest terms with an expansion for which a hierarchy pays.
+const MANY: usize = 64;
+/// Half the side of the hierarchy's cube, over the radius of the ball that holds the surface.
+const ROOM: f64 = 1.25;
 
 /// A primitive's bounds, and where its profile is not smooth.
 #[derive(Debug)]
@@ -75,6 +83,7 @@ impl Sum {
         Self {
             primitives,
             bounds: OnceLock::new(),
+            far: OnceLock::new(),
         }
     }
 
@@ -95,6 +104,38 @@ impl Sum {
     pub fn weights(&self, point: DVec3) -> Vec<f64> {
         let point = point.to_array();
         self.primitives.iter().map(|p| p.value(point)).collect()
+    }
+
+    fn far(&self) -> Option<&FarField> {
+        let make = || {
+            let endless = |p: &&Primitive| crate::far_field::power(p.kernel).is_some();
+            if self.primitives.iter().filter(endless).count() < MANY {
+                return None;
+            }
+            let Ball { center, radius } = self.support()?;
+            let field = FarField::new(&self.primitives, center, ROOM * radius);
+            let pays = field.expanded() >= MANY && radius.is_finite();
+            pays.then(|| Box::new(field.with_derivatives()))
+        };
+        self.far.get_or_init(make).as_deref()
+    }
+
+    /// The hierarchy's cell around a ball, if its error is at most this.
+    fn cell(&self, ball: Ball, error: f64) -> Option<&Arc<Cell>> {
+        if error <= 0.0 {
+            return None;
+        }
+        let cell = self
+            .far()?
+            .around(&self.primitives, ball.center, ball.radius)?;
+        // A cell that has all terms in its list is of no use.
+        (cell.error <= error && cell.near.len() < self.primitives.len()).then_some(cell)
+    }
+
+    /// The sum of some terms.
+    fn listed(&self, terms: &[u32], point: DVec3) -> Jet<f64> {
+        let terms = terms.iter().map(|i| &self.primitives[*i as usize]);
+        sum(terms, point.to_array())
     }
 
     fn known(&self) -> &[Known] {
@@ -136,6 +177,17 @@ impl Implicit for Sum {
         self.sum(point.to_array())
     }
 
+    fn jet_within(&self, point: DVec3, error: f64) -> Jet<f64> {
+        let ball = Ball {
+            center: point,
+            radius: 0.0,
+        };
+        match self.cell(ball, error) {
+            Some(cell) => self.listed(&cell.near, point).plus(cell.jet(point)),
+            None => self.jet(point),
+        }
+    }
+
     fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
         self.sum(point)
     }
@@ -150,13 +202,22 @@ impl Implicit for Sum {
         all.about(&self.jet(ball.center), ball.radius)
     }
 
-    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: f64) -> Option<Part> {
+    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: Slack) -> Option<Part> {
         let known = self.known();
-        let each = slack / known.len() as f64;
+        let each = slack.left_out / known.len() as f64;
+        let before = among.map_or(known.len(), |among| among.terms.len());
+        let inherited = among.and_then(|among| among.far.as_ref());
+        let far = self.cell(ball, slack.far).or(inherited);
+        // The terms that are left out, and those of the list, are those of the same cell.
+        let among = among.filter(|among| match (far, &among.far) {
+            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
+            (own, other) => own.is_none() && other.is_none(),
+        });
         let mut part = Part {
             ball,
             terms: Vec::new(),
             rest: among.map_or(Enclosure::ZERO, |among| among.rest),
+            far: far.cloned(),
         };
         let mut choose = |i: u32| {
             let bounds = known[i as usize].enclose(ball);
@@ -173,22 +234,20 @@ impl Implicit for Sum {
                 part.terms.push(i);
             }
         };
-        let before = match among {
-            Some(among) => {
-                among.terms.iter().copied().for_each(&mut choose);
-                among.terms.len()
-            }
-            None => {
-                (0..known.len() as u32).for_each(&mut choose);
-                known.len()
-            }
-        };
+        match (among, far) {
+            (Some(among), _) => among.terms.iter().copied().for_each(&mut choose),
+            (None, Some(cell)) => cell.near.iter().copied().for_each(&mut choose),
+            (None, None) => (0..known.len() as u32).for_each(&mut choose),
+        }
         (4 * part.terms.len() <= 3 * before).then_some(part)
     }
 
     fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {
-        let terms = part.terms.iter().map(|i| &self.primitives[*i as usize]);
-        sum(terms, point.to_array())
+        let jet = self.listed(&part.terms, point);
+        match &part.far {
+            Some(cell) => jet.plus(cell.jet(point)),
+            None => jet,
+        }
     }
 
     fn variation(&self, part: Option<&Part>, ball: Ball) -> Variation {
@@ -201,6 +260,16 @@ impl Implicit for Sum {
             jump: 0.0,
             step: 0.0,
         };
+        if let Some(cell) = part.and_then(|part| part.far.as_ref()) {
+            let [slope, curvature, third] = cell.smooth.derivatives;
+            all.range = all.range.plus(Enclosure {
+                value: [cell.far_least, cell.far_most],
+                slope,
+                curvature,
+            });
+            all.curvature += curvature;
+            all.third += third;
+        }
         let mut add = |known: &Known| {
             let range = known.enclose(ball);
             all.range = all.range.plus(range);

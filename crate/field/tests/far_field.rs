@@ -1,8 +1,11 @@
 //! The hierarchy of far fields: its polynomials and lists add up to the field within the stated bounds, and it is as large as the
 //! number of primitives asks for.
 use field::far_field::{Cell, MOST_ERROR};
-use field::{BlobScale, FarField, Kernel, Primitive, Shaping, Skeleton};
+use field::{
+    Ball, BlobScale, FarField, Implicit, Kernel, Primitive, Shaping, Skeleton, Slack, Sum,
+};
 use glam::DVec3;
+use std::sync::Arc;
 
 struct Numbers(u64);
 
@@ -57,7 +60,7 @@ fn descend<'c>(
     primitives: &[Primitive],
     place: DVec3,
     depth: u32,
-) -> &'c Cell {
+) -> &'c Arc<Cell> {
     (0..depth).fold(field.root(primitives), |cell, _| {
         field.part(primitives, cell, cell.part_of(place))
     })
@@ -230,4 +233,170 @@ fn cells_are_the_same_in_any_order() {
         let value = |cell: &Cell| cell.expansion.jet([0.3, -0.2, 0.5], f64::from).value;
         assert_eq!(value(x).to_bits(), value(y).to_bits());
     }
+}
+
+/// Gradients are no further off than the bound, derivatives no larger than theirs, and both bounds are of use.
+#[test]
+fn slopes_are_within_their_bounds() {
+    let mut n = Numbers(31);
+    for case in 0..16 {
+        let kernel = ENDLESS[case % 4];
+        let kind = case / 4;
+        let primitives: Vec<Primitive> = (0..300)
+            .map(|_| primitive(kernel, kind, 0.02, &mut n))
+            .collect();
+        let field = FarField::new(&primitives, DVec3::ZERO, 2.0).with_derivatives();
+        let (mut checked, mut worst, mut steepest) = (0, 0.0f64, 0.0f64);
+        for _ in 0..40 {
+            let center = n.vector();
+            let radius = 0.05 * n.unit();
+            let cell = field
+                .around(&primitives, center, radius)
+                .expect("in the cube");
+            if cell.near.len() == primitives.len() {
+                continue;
+            }
+            for _ in 0..8 {
+                let place = center + n.vector().clamp_length_max(1.0) * radius;
+                let of =
+                    |p: &Primitive, at: DVec3| DVec3::from_array(p.jet(at.to_array()).gradient);
+                let far = |at: DVec3| {
+                    (0..)
+                        .zip(&primitives)
+                        .filter(|(i, _)| cell.near.binary_search(i).is_err())
+                        .fold(DVec3::ZERO, |sum, (_, p)| sum + of(p, at))
+                };
+                let want = far(place);
+                let told = DVec3::from_array(cell.jet(place).gradient);
+                let [slope, curvature, third] = cell.smooth.derivatives;
+                let off = told.distance(want);
+                assert!(off <= cell.smooth.slope_error, "{kernel:?} {kind}: {off}");
+                assert!(want.length() <= slope, "{kernel:?} {kind}: {want} {slope}");
+                let along = n.vector().normalize();
+                let h = 1e-3 * cell.half;
+                let [a, b] = [-h, h].map(|h| far(place + along * h).dot(along));
+                let bend = (b - a) / (2.0 * h);
+                assert!(bend.abs() <= curvature * 1.001, "{kernel:?} {bend}");
+                let twist = (a + b - 2.0 * want.dot(along)) / (h * h);
+                assert!(twist.abs() <= third * 1.1 + 1e-3, "{kernel:?} {twist}");
+                worst = worst.max(off / cell.smooth.slope_error);
+                steepest = steepest.max(want.length() / slope);
+                checked += 1;
+            }
+        }
+        // Bounds add up where slopes cancel, and rounding of coordinates is bounded for the worst.
+        let [least, steep] = [1e-5, 0.01];
+        assert!(
+            checked > 60 && worst > least && steepest > steep,
+            "{kernel:?} {kind}: {checked} {worst} {steepest}"
+        );
+    }
+}
+
+/// The cell for a ball holds it in its loose cube; outside the hierarchy's cube there is none.
+#[test]
+fn cells_around_balls_hold_them() {
+    let mut n = Numbers(77);
+    let primitives: Vec<Primitive> = (0..500)
+        .map(|_| primitive(Kernel::Cauchy, 0, 0.02, &mut n))
+        .collect();
+    let field = FarField::new(&primitives, DVec3::ZERO, 2.0);
+    let mut sizes = Vec::new();
+    for _ in 0..200 {
+        let (center, radius) = (n.vector(), n.unit() * n.unit() * 0.3);
+        let cell = field.around(&primitives, center, radius).expect("a cell");
+        let reach = (center - cell.center).abs().max_element() + radius;
+        assert!(reach <= cell.reach());
+        sizes.push(cell.half);
+    }
+    assert!(sizes.iter().any(|half| *half < 0.2) && sizes.iter().any(|half| *half > 0.4));
+    let nowhere = [DVec3::X * 2.1, DVec3::splat(f64::NAN)];
+    for center in nowhere {
+        assert!(field.around(&primitives, center, 0.0).is_none());
+    }
+    assert!(
+        field
+            .around(&primitives, DVec3::ZERO, f64::INFINITY)
+            .is_none()
+    );
+}
+
+/// The hierarchy of some of the primitives sums these alone.
+#[test]
+fn parts_of_the_sum_have_hierarchies() {
+    let mut n = Numbers(15);
+    let primitives: Vec<Primitive> = (0..400)
+        .map(|i| primitive(Kernel::Squared, i % 2, 0.02, &mut n))
+        .collect();
+    let all = FarField::new(&primitives, DVec3::ZERO, 2.0);
+    let odd = all.of_positive(|i| i % 2 == 1);
+    let mut largest = 0.0f64;
+    for _ in 0..100 {
+        let place = n.vector();
+        let cell = odd.around(&primitives, place, 0.0).expect("a cell");
+        let of = |p: &Primitive| p.value(place.to_array());
+        let near: f64 = cell.near.iter().map(|i| of(&primitives[*i as usize])).sum();
+        let odds = primitives.iter().skip(1).step_by(2);
+        let want: f64 = odds.map(of).filter(|value| *value > 0.0).sum();
+        let off = (near + cell.jet(place).value - want).abs();
+        assert!(off <= cell.error + 1e-12 * want, "{off}");
+        assert!(cell.near.iter().all(|i| i % 2 == 1));
+        largest = largest.max(off);
+    }
+    assert!(largest > 0.0);
+}
+
+/// Sums use their hierarchy where the caller bears its error, and only there.
+#[test]
+fn sums_are_as_exact_as_is_asked() {
+    let mut n = Numbers(8);
+    let kernel = Kernel::Cauchy;
+    let primitives: Vec<Primitive> = (0..2000)
+        .map(|i| primitive(kernel, i % 3, 0.008, &mut n))
+        .collect();
+    let sum = Sum::new(primitives);
+    let (mut shortened, mut largest) = (0, 0.0f64);
+    for _ in 0..200 {
+        let ball = Ball {
+            center: n.vector(),
+            radius: 0.02 * n.unit(),
+        };
+        let point = ball.center + n.vector().clamp_length_max(1.0) * ball.radius;
+        let want = sum.jet(point);
+        assert_eq!(sum.jet_within(point, 0.0), want);
+        assert_eq!(sum.jet_within(point, 1e-9), want);
+        let error = 2e-4;
+        let told = sum.jet_within(point, error);
+        assert!((told.value - want.value).abs() <= error);
+        largest = largest.max((told.value - want.value).abs());
+        let [exact, slack] = [0.0, error].map(|far| Slack {
+            left_out: 1e-9,
+            far,
+        });
+        assert!(
+            sum.narrow(ball, None, exact)
+                .is_none_or(|part| part.far.is_none())
+        );
+        let Some(part) = sum.narrow(ball, None, slack) else {
+            continue;
+        };
+        assert!(part.error()[0] <= error && part.far.is_some());
+        let told = sum.jet_of(&part, point);
+        assert!((told.value - want.value).abs() <= part.error()[0] + 1e-9);
+        let bounds = sum.variation(Some(&part), ball).range;
+        assert!(bounds.value[0] <= want.value && want.value <= bounds.value[1]);
+        assert!(DVec3::from_array(want.gradient).length() <= bounds.slope);
+        shortened += usize::from(part.terms.len() < 300);
+        // A part of the part.
+        let inner = Ball {
+            radius: 0.3 * ball.radius,
+            ..ball
+        };
+        if let Some(smaller) = sum.narrow(inner, Some(&part), slack) {
+            let want = sum.jet(ball.center);
+            let told = sum.jet_of(&smaller, ball.center);
+            assert!((told.value - want.value).abs() <= smaller.error()[0] + 2e-9);
+        }
+    }
+    assert!(shortened > 150 && largest > 1e-9, "{shortened} {largest}");
 }

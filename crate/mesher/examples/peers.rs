@@ -5,7 +5,7 @@
 //! `LevelSet` has the same field, evaluated by the terms that matter in each cell of a grid, which is the quickest that there is for
 //! single points. Its edge length is halved between two bounds until its measured error is that of our mesh.
 
-use field::{Ball, Implicit, Part, THRESHOLD};
+use field::{Ball, Implicit, Part, Slack, THRESHOLD};
 use glam::DVec3;
 use manifold_rust::linalg::Vec3;
 use manifold_rust::manifold::Manifold;
@@ -19,6 +19,11 @@ use std::time::Instant;
 
 /// Cells of the grid along the longest side.
 const GRID: f64 = 24.0;
+/// What the terms that matter in a cell leave out.
+const SLACK: Slack = Slack {
+    left_out: 1e-7,
+    far: 0.0,
+};
 const SAMPLES: usize = 4000;
 const SHARE: f64 = 1e-3;
 
@@ -147,7 +152,7 @@ impl<'a> Grid<'a> {
                         center: bounds.min + at * size,
                         radius: 0.87 * size,
                     };
-                    parts.push(function.narrow(ball, None, 1e-7));
+                    parts.push(function.narrow(ball, None, SLACK));
                 }
             }
         }

@@ -113,12 +113,18 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
         step,
         ..
     } = space.variation(part, reach);
+    // The corners may have been evaluated in other parts.
+    let [error, steep_error] = space.worst_error();
     // What is proved with the least steepness and the highest value at the corners of a grid.
     let proved = |grid: usize, steep: f64, highest: f64| {
         let radius = radius / grid as f64;
-        let rest = (0.5 * third * radius + rough).min(curvature) * radius + jump + SLACK;
+        let rest =
+            (0.5 * third * radius + rough).min(curvature) * radius + jump + SLACK + steep_error;
         // Coefficients that are found from different corners differ by e times an edge.
-        let (steep, off) = (steep - rest, highest + 3.0 * rest * radius + step + SLACK);
+        let (steep, off) = (
+            steep - rest,
+            highest + 3.0 * rest * radius + step + SLACK + error,
+        );
         let square = steep * steep - 4.0 * curvature * off;
         // Not so for NaN.
         if !(steep > 0.0 && square >= 0.0) {

@@ -10,7 +10,7 @@
 
 use crate::cages::{Cage, Spoke};
 use crate::space::SLACK;
-use field::{Ball, Implicit, Jet, Part, THRESHOLD};
+use field::{Ball, Implicit, Jet, Part, Slack, THRESHOLD};
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
 use serde::{Deserialize, Serialize};
@@ -169,7 +169,11 @@ impl Work<'_> {
             center,
             radius: radius * (1.0 + 1e-9),
         };
-        self.part = self.function.narrow(ball, None, SLACK);
+        let slack = Slack {
+            left_out: SLACK,
+            far: 0.0,
+        };
+        self.part = self.function.narrow(ball, None, slack);
         let terms = self.part.as_ref().map_or(count, |part| part.terms.len());
         self.terms = terms.max(1) as u64;
     }

@@ -57,8 +57,10 @@ pub fn bounded(
     let bend = (0.5 * variation.curvature * radius + variation.jump) * radius;
     let change = linear + bend + variation.step + SLACK;
     let narrow = variation.range.about(&jet, radius).value;
-    let low = narrow[0].max(jet.value - change) - SLACK;
-    let high = narrow[1].min(jet.value + change) + SLACK;
+    let [error, steep_error] = space.error(part);
+    let unsure = SLACK + error + steep_error * radius;
+    let low = narrow[0].max(jet.value - change) - unsure;
+    let high = narrow[1].min(jet.value + change) + unsure;
     (variation, jet, [low, high])
 }
 
@@ -124,7 +126,8 @@ pub fn extent(
     progress: &mut Progress<'_>,
 ) -> Result<Option<Aabb>, MeshError> {
     let size = domain.max - domain.min;
-    let mut space = Space::new(function, Forest::new(domain, size.max_element() * 2e-5, 0));
+    let forest = Forest::new(domain, size.max_element() * 2e-5, 0);
+    let mut space = Space::new(function, forest, EXTENT);
     let mut open: Vec<u32> = (0..space.forest.cells.len() as u32).collect();
     let mut is_inside = false;
     while !open.is_empty() {
@@ -178,6 +181,9 @@ pub fn extent(
         Ok(None)
     }
 }
+
+/// Accuracy of the extent, as a part of it.
+const EXTENT: f64 = 1e-3;
 
 /// Cells with which the search for the extent ends in any case.
 const MANY_CELLS: usize = 100_000;
@@ -427,6 +433,7 @@ struct Verdict {
 
 fn verdict(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> Verdict {
     let cells = &space.forest.cells;
+    let [error, steep_error] = space.worst_error();
     let (mut failing, mut open, mut seen) = (Vec::new(), Vec::new(), Vec::new());
     crate::lattice::tetrahedra(&space.forest, node, &mut |keys, owners| {
         let vertices = keys.map(|key| lattice.index(key));
@@ -443,7 +450,7 @@ fn verdict(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> V
         let off = bounds[0].off.max(bounds[1].off);
         let gradients = vertices.map(|i| lattice.gradient(i));
         let steepest = gradients.iter().map(|g| g.length()).fold(0.0, f64::max);
-        let off = off + 2.0 * NUDGE * tolerance * steepest;
+        let off = off + error + 2.0 * NUDGE * tolerance * steepest;
         // Neither the function nor its interpolant is 0 in it.
         if values.iter().all(|v| *v > off) || values.iter().all(|v| *v < -off) {
             return;
@@ -452,7 +459,7 @@ fn verdict(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> V
         let slope = gradient(&corners, &values);
         let rises = gradients.map(|gradient| gradient.dot(slope));
         let least = rises.into_iter().fold(f64::INFINITY, f64::min);
-        let rest = bounds[0].rest.max(bounds[1].rest);
+        let rest = bounds[0].rest.max(bounds[1].rest) + steep_error;
         // Not so for NaN.
         let proves = least > rest * slope.length();
         if !proves {
@@ -461,7 +468,7 @@ fn verdict(space: &Space<'_>, lattice: &Lattice, node: u32, tolerance: f64) -> V
                     open.push(owner);
                 }
                 // The other one alone may be to blame.
-                if own.rest >= 0.5 * rest && !failing.contains(&owner) {
+                if own.rest >= 0.5 * (rest - steep_error) && !failing.contains(&owner) {
                     failing.push(owner);
                 }
             }

@@ -1,13 +1,18 @@
 //! A function with its terms sorted by place, so that evaluations cost what is nearby.
 
 use core::sync::atomic::{AtomicU64, Ordering};
-use field::{Ball, Implicit, Jet, Part, Variation};
+use field::{Ball, Implicit, Jet, Part, Slack, Variation};
 use glam::DVec3;
 
 use crate::forest::{Cell, Forest, NONE};
 
 /// Bound on the sum of terms that are left out at a place, in units of the threshold.
 pub const SLACK: f64 = 1e-7;
+
+/// Error of a polynomial that may stand for far terms, in units of the threshold, over the tolerance as a part of the surface's size:
+/// where the function falls by the threshold along the whole surface or on a shorter way, it moves no point by more than a fifth
+/// of the tolerance, and mostly by far less.
+const BORNE: f64 = 0.2;
 
 /// Parts with fewer terms are not divided further.
 const FEW_TERMS: usize = 4;
@@ -27,16 +32,22 @@ pub struct Space<'a> {
     /// The cells.
     pub forest: Forest,
     parts: Vec<Nested>,
+    /// Largest error of polynomials that stand for far terms.
+    far: f64,
+    /// The largest errors of values and gradients in any part, beyond what is left out.
+    worst: [f64; 2],
     evaluations: AtomicU64,
 }
 
 impl<'a> Space<'a> {
-    /// A function in a forest of which nothing is known yet.
-    pub fn new(function: &'a dyn Implicit, forest: Forest) -> Self {
+    /// A function in a forest of which nothing is known yet, for a tolerance as a part of the surface's size.
+    pub fn new(function: &'a dyn Implicit, forest: Forest, tolerance: f64) -> Self {
         Self {
             function,
             forest,
             parts: Vec::new(),
+            far: BORNE * tolerance,
+            worst: [0.0; 2],
             evaluations: AtomicU64::new(0),
         }
     }
@@ -60,6 +71,16 @@ impl<'a> Space<'a> {
         self.function.variation(self.part(part), ball)
     }
 
+    /// Bounds on the error of values in a part, and on that of gradients, beyond what is left out.
+    pub fn error(&self, part: u32) -> [f64; 2] {
+        self.part(part).map_or([0.0; 2], Part::error)
+    }
+
+    /// The same for points that were evaluated in any part known by now.
+    pub fn worst_error(&self) -> [f64; 2] {
+        self.worst
+    }
+
     /// Number of evaluations of values and bounds.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.load(Ordering::Relaxed)
@@ -76,11 +97,17 @@ impl<'a> Space<'a> {
             // Vertices move and triangles reach beyond a cell.
             radius: self.forest.size(cell.level).length(),
         };
-        self.function.narrow(ball, part, SLACK)
+        let slack = Slack {
+            left_out: SLACK,
+            far: self.far,
+        };
+        self.function.narrow(ball, part, slack)
     }
 
     /// Adds a part, chosen from another one.
     pub fn add(&mut self, part: Part, parent: u32) -> u32 {
+        let [value, slope] = part.error();
+        self.worst = [self.worst[0].max(value), self.worst[1].max(slope)];
         self.parts.push(Nested { part, parent });
         self.parts.len() as u32 - 1
     }

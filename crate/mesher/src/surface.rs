@@ -99,7 +99,8 @@ pub fn polygonize(
         FINEST * tolerance,
         thin::LEVELS,
     );
-    let mut space = Space::new(function, forest);
+    let size = (hull.max - hull.min).max_element();
+    let mut space = Space::new(function, forest, tolerance / size);
     let max_cells = max_triangles.saturating_mul(2).max(LEAST_CELLS);
     let too_many = |error| match error {
         MeshError::TooMany { fitting, .. } => MeshError::TooMany {

@@ -291,7 +291,7 @@ impl Implicit for Counted<'_> {
     fn support(&self) -> Option<Ball> {
         self.function.support()
     }
-    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: f64) -> Option<Part> {
+    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: Slack) -> Option<Part> {
         self.function.narrow(ball, among, slack)
     }
     fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {

@@ -20,8 +20,14 @@ pub const DEGREE: usize = 5;
 const TERMS: usize = 53;
 /// Lebesgue's constant of interpolation at the nodes of three axes: the largest factor on errors of the values.
 pub const LEBESGUE: f64 = 7.9;
+/// Upper bound on √3, the ratio of a gradient's length to its largest component.
+pub const AXES: f64 = 1.733;
+/// Largest ratio of a gradient's component to the polynomial's size, in the box's coordinates: Markov's inequality for degree 4.
+const MARKOV: f64 = 16.0;
 /// Rounding of the polynomial's evaluation in single precision, relative to the sum of its coefficients' sizes.
 const ROUNDING: f64 = 2e-6;
+/// Rounding of its coefficients in single precision.
+const STORED: f64 = 6e-8;
 
 /// A function on a box `center ± half`, in coordinates from −1 to 1.
 #[derive(Clone, Debug)]
@@ -34,11 +40,22 @@ pub struct Expansion {
 pub struct Fitted {
     /// The polynomial.
     pub expansion: Expansion,
-    /// Bound on its difference from the interpolant, with rounding.
+    /// Bound on its difference from the interpolant.
     pub error: f64,
+    /// Bound on the rounding of its evaluation.
+    pub evaluation: f64,
     /// Bounds on it in the box from below and above.
     pub range: [f64; 2],
 }
+
+/// Returns a bound on the gradient's length of a polynomial with degree 4 in each coordinate, on a box of this half extent, given one on
+/// its size.
+pub fn slope_of(size: f64, half: f64) -> f64 {
+    AXES * MARKOV * size / half
+}
+
+/// Coefficients of products of Chebyshev polynomials, x innermost.
+pub type Coefficients = [f64; ALL];
 
 /// A matrix of one axis.
 type Matrix = [[f64; NODES]; NODES];
@@ -89,10 +106,10 @@ pub fn nodes() -> [[f32x8; 3]; VECTORS] {
 /// Nodes of a plane.
 const PLANE: usize = NODES * NODES;
 
-/// Multiplies the values along each axis by a matrix.
-fn apply(matrix: &Matrix, values: &mut [f64; ALL]) {
+/// Multiplies the values along each axis by a matrix: those of x, y and z.
+fn apply([x, y, z]: [&Matrix; 3], values: &mut [f64; ALL]) {
     // Along the last axis, whose planes are rows of memory; then the axes change places, and after three times are as before.
-    for _ in 0..3 {
+    for matrix in [z, y, x] {
         let mut rows = [[0.0; PLANE]; NODES];
         for (row, factors) in rows.iter_mut().zip(matrix) {
             for (plane, factor) in values.chunks_exact(PLANE).zip(factors) {
@@ -125,8 +142,8 @@ impl Expansion {
         terms: [0.0; TERMS],
     };
 
-    /// The interpolant of values at the [`nodes`].
-    pub fn fit(values: &[f32x8; VECTORS]) -> Fitted {
+    /// The interpolant of values at the [`nodes`], plus a polynomial's [coefficients](Expansion::moved).
+    pub fn fit(values: &[f32x8; VECTORS], more: Option<&Coefficients>) -> Fitted {
         let mut all = [0.0; ALL];
         for (eight, values) in all.chunks_mut(8).zip(values) {
             for (own, value) in eight.iter_mut().zip(values.to_array()) {
@@ -134,7 +151,7 @@ impl Expansion {
             }
         }
         let tables = tables();
-        apply(&tables.chebyshev, &mut all);
+        apply([&tables.chebyshev; 3], &mut all);
         let (mut dropped, mut size) = (0.0, 0.0);
         for (node, value) in all.iter_mut().enumerate() {
             let degree = node % NODES + node / NODES % NODES + node / (NODES * NODES);
@@ -142,11 +159,14 @@ impl Expansion {
                 dropped += value.abs();
                 *value = 0.0;
             }
+            if let Some(more) = more {
+                *value += more[node];
+            }
             size += value.abs();
         }
         let first = all[0];
         let change = size - first.abs();
-        apply(&tables.powers, &mut all);
+        apply([&tables.powers; 3], &mut all);
         let mut terms = [0.0; TERMS];
         let mut next = 0;
         let mut largest = 0.0;
@@ -160,10 +180,13 @@ impl Expansion {
                 }
             }
         }
-        let error = dropped + ROUNDING * largest;
+        let error = dropped + STORED * largest;
+        let evaluation = ROUNDING * largest;
+        let change = change + evaluation;
         Fitted {
             expansion: Self { terms },
             error,
+            evaluation,
             range: [first - change - error, first + change + error],
         }
     }
@@ -238,25 +261,41 @@ impl Expansion {
         sum
     }
 
-    /// Value at eight places in the box's coordinates.
-    #[inline(always)]
-    pub fn value([x, y, z]: [f32x8; 3], of: &Self) -> f32x8 {
-        let zero = f32x8::splat(0.0);
-        let mut next = TERMS;
-        let mut sum = zero;
-        for k in (0..=most(0)).rev() {
-            let mut plane = zero;
-            for j in (0..=most(k)).rev() {
-                let mut row = zero;
-                for _ in 0..=most(j + k) {
-                    next -= 1;
-                    row = row * x + f32x8::splat(of.terms[next]);
+    /// Coefficients of the polynomial in the coordinates of a smaller box, of which `shift + scale·x` is a place in this one's.
+    #[must_use]
+    pub fn moved(&self, shift: [f64; 3], scale: f64) -> Coefficients {
+        let mut all = [0.0; ALL];
+        let mut next = 0;
+        for k in 0..=most(0) {
+            for j in 0..=most(k) {
+                for i in 0..=most(j + k) {
+                    all[(k * NODES + j) * NODES + i] = f64::from(self.terms[next]);
+                    next += 1;
                 }
-                plane = plane * y + row;
             }
-            sum = sum * z + plane;
         }
-        sum
+        // Column k: the coefficients of (shift + scale·x)ᵏ, by x·Tₙ = (Tₙ₋₁ + Tₙ₊₁)/2.
+        let of_axis = |shift: f64| {
+            let mut matrix: Matrix = [[0.0; NODES]; NODES];
+            let mut power = [0.0; NODES + 2];
+            power[0] = 1.0;
+            for k in 0..NODES {
+                for (row, own) in matrix.iter_mut().zip(power) {
+                    row[k] = own;
+                }
+                let before = power;
+                for n in 0..NODES {
+                    let lower = if n == 0 { 0.0 } else { before[n - 1] };
+                    // x·T₀ is T₁ as a whole.
+                    let lower = if n == 1 { 2.0 * lower } else { lower };
+                    power[n] = shift * before[n] + 0.5 * scale * (lower + before[n + 1]);
+                }
+            }
+            matrix
+        };
+        let [x, y, z] = shift.map(of_axis);
+        apply([&x, &y, &z], &mut all);
+        all
     }
 }
 
@@ -287,12 +326,20 @@ mod tests {
                 let of = |lane: usize| place.map(|x| f64::from(x.to_array()[lane]));
                 f32x8::new(core::array::from_fn(|lane| f(of(lane)) as f32))
             });
-            let fitted = Expansion::fit(&values);
+            let fitted = Expansion::fit(&values, None);
             assert!(fitted.error < 1e-4, "{}", fitted.error);
+            let (shift, scale) = ([next(), next(), next()].map(|x| 0.5 * x), 0.4);
+            let moved = fitted.expansion.moved(shift, scale);
+            let zero = [f32x8::splat(0.0); VECTORS];
+            let moved = Expansion::fit(&zero, Some(&moved)).expansion;
             for _ in 0..20 {
                 let place = [next(), next(), next()];
                 let jet = fitted.expansion.jet(place, f64::from);
                 assert!((jet.value - f(place)).abs() <= fitted.error + 1e-6);
+                let outer = core::array::from_fn(|i| shift[i] + scale * place[i]);
+                let want = fitted.expansion.jet(outer, f64::from).value;
+                let told = moved.jet(place, f64::from).value;
+                assert!((told - want).abs() < 1e-6, "{told} {want}");
                 assert!(fitted.range[0] <= jet.value && jet.value <= fitted.range[1]);
                 for axis in 0..3 {
                     let [mut a, mut b] = [place; 2];
@@ -307,20 +354,7 @@ mod tests {
                 let value = line.iter().rev().fold(0.0, |sum, c| sum * t + c);
                 let want = fitted.expansion.jet(there, f64::from).value;
                 assert!((value - want).abs() < 1e-12, "{value} {want}");
-                let eight = there.map(f32x8::splat_f64);
-                let value = Expansion::value(eight, &fitted.expansion).to_array()[3];
-                assert!((f64::from(value) - want).abs() < 1e-5);
             }
-        }
-    }
-
-    trait Splat {
-        fn splat_f64(value: f64) -> Self;
-    }
-
-    impl Splat for f32x8 {
-        fn splat_f64(value: f64) -> Self {
-            Self::splat(value as f32)
         }
     }
 
@@ -329,7 +363,7 @@ mod tests {
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn terms_of_higher_degree_count_as_error() {
         let values = nodes().map(|[x, y, z]| x * x * x * y * y * z);
-        let fitted = Expansion::fit(&values);
+        let fitted = Expansion::fit(&values, None);
         // x³y²z = (T₃ + 3T₁)/4·(T₂ + 1)/2·T₁: its part of degree 6 is an eighth.
         assert!((fitted.error - 0.125).abs() < 1e-3, "{}", fitted.error);
         let jet = fitted.expansion.jet([1.0; 3], f64::from);

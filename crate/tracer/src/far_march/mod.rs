@@ -1,0 +1,461 @@
+//! Certified marching among very many primitives of kernels that never end.
+//!
+//! Such a field is small nowhere, so no ball bounds what a ray meets. A [`FarField`] divides space into cells, each with a polynomial
+//! of what is far and a list of what is near. A packet visits the cells along its beam, front to back: those in which the field is
+//! below T are left at once, in the others the far field is the cell's polynomial along each ray, and the near primitives are added
+//! to it:
+//!
+//! - points of one kernel (`points.rs`) as cubic Hermite spans over the cell where their error is small enough, the rest as blobs among
+//!   which [`march_before`](crate::blob_march::march_before) follows the rays;
+//! - primitives of any kind (`spans.rs`) as spans over the cell, its halves, their halves and so on.
+//!
+//! So the surface found is that of a field that differs from the true one by a stated bound, which counts like rounding: what it may
+//! hide is searched again among all primitives in double precision. `hits.rs` follows the rays and samples the surface where they
+//! meet it, `piece.rs` is a packet's way through a cell.
+mod hits;
+mod piece;
+mod points;
+mod spans;
+
+use crate::beam::Beam;
+use crate::blob_march::{RayBlob, RayInterval};
+use crate::layout::PACKET;
+use crate::ray::Ray;
+use crate::root_isolation::BoundedTerms;
+use crate::surface_samples::SurfaceSamples;
+use crate::walk::Quest;
+use field::far_field::{Cell, FEW_NEAR, LOOSE, SMALLEST};
+use field::{Cut, FarField, Kernel, Primitive, THRESHOLD};
+use glam::DVec3;
+use piece::{Piece, leaves};
+use points::Points;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use wide::f32x8;
+
+/// Fewest primitives with an expansion for which this way pays: at all, and if they are not points of one kernel.
+pub const FEWEST: usize = 64;
+const FEWEST_OF_ANY: usize = 128;
+/// Most finishes in a body.
+const MOST_FINISHES: usize = 64;
+/// Largest error of a cell's polynomial; beyond it rounding is too large for this way.
+const MOST_OF_CELLS: f64 = 2e-4 * THRESHOLD;
+/// Bound on the rounding of sums in single precision near T.
+const ROUNDING: f64 = 4e-6 * THRESHOLD;
+/// Half the side of the hierarchy's cube, over the radius of the ball that holds the surface.
+const ROOM: f64 = 1.25;
+/// Most cells that a packet visits.
+const MOST_CELLS: u32 = 4096;
+
+/// The primitives of a body with their hierarchy.
+pub(crate) struct FarBody {
+    field: FarField,
+    /// All of them, if they are points of one kernel that add to the field.
+    points: Option<Points>,
+    /// Number of the body's first primitive.
+    first: usize,
+    /// Number of its primitives.
+    count: usize,
+    /// The finishes; if there are several, each with the field of those of its primitives that add to the body's.
+    finishes: Vec<(u32, Option<FarField>)>,
+    /// Ball that holds the surface.
+    center: DVec3,
+    radius: f64,
+}
+
+/// Working space of one thread.
+#[derive(Default)]
+pub struct FarWork {
+    blobs: Vec<RayBlob>,
+    intervals: Vec<RayInterval>,
+    tops: Vec<f32x8>,
+    /// Positions relative to the middle of the present piece, point by point of the cell's list.
+    places: Vec<[f32; 3]>,
+    /// Indices into the cell's list: of points that are blobs, and of those that are spans.
+    strong: Vec<u32>,
+    weak: Vec<u32>,
+    /// Numbers of the primitives that are not resolved, piece within piece, and of those that are in the present one.
+    pending: Vec<u32>,
+    resolved: Vec<u32>,
+    /// Surface samples at the hits of the last packet.
+    pub flesh: SurfaceSamples,
+    pub evaluations: u64,
+    /// Rays searched again in double precision.
+    pub doubts: u64,
+}
+
+/// A query for the rays of a packet.
+#[derive(Clone, Copy)]
+pub struct FarQuery<'r> {
+    pub rays: &'r [Ray; PACKET],
+    /// End of each ray.
+    pub limits: &'r [f64; PACKET],
+    /// The rays to follow, a bit each.
+    pub alive: u32,
+    pub quest: Quest,
+    /// Width of a pixel at distance 1.
+    pub pixel: f64,
+    /// All primitives.
+    pub sight: BoundedTerms<'r>,
+    /// Length of rays below which nothing is resolved.
+    pub resolution: f64,
+}
+
+impl FarBody {
+    /// Prepares a body of primitives numbered from `first` on, with the radius of a ball outside which the field is below T. `None`
+    /// if it has no many primitives of kernels without end, or one with kinks.
+    pub fn new(
+        primitives: &[Primitive],
+        finishes: &[u32],
+        first: usize,
+        (center, radius): (DVec3, f64),
+    ) -> Option<Self> {
+        // A field that falls as 1/r is so large where there are many elements that its rounding leaves nothing to save.
+        if primitives.iter().any(|p| p.kernel == Kernel::Inverse) {
+            return None;
+        }
+        let points = Points::of(primitives);
+        let field = FarField::new(primitives, center, ROOM * radius);
+        let fewest = if points.is_some() {
+            FEWEST
+        } else {
+            FEWEST_OF_ANY
+        };
+        if field.expanded() < fewest {
+            return None;
+        }
+        let kinked = |p: &Primitive| p.profile.is_some() && !field::kinks::of(p).is_empty();
+        if primitives.iter().any(kinked) {
+            return None;
+        }
+        let mut members: BTreeMap<u32, Option<FarField>> = BTreeMap::new();
+        for finish in finishes {
+            members.insert(*finish, None);
+        }
+        if members.len() > MOST_FINISHES {
+            return None;
+        }
+        if members.len() > 1 {
+            for (finish, own) in &mut members {
+                *own = Some(field.of_positive(|i| finishes[i as usize] == *finish));
+            }
+        }
+        Some(Self {
+            points,
+            field: field.surface_only(),
+            first,
+            count: primitives.len(),
+            finishes: members.into_iter().collect(),
+            center,
+            radius,
+        })
+    }
+
+    fn primitives<'a>(&self, query: &FarQuery<'a>) -> &'a [Primitive] {
+        &query.sight.primitives[self.first..self.first + self.count]
+    }
+
+    /// Finds the first crossings of rays with the surface; for [`Quest::Entry`] only whether there is one from outside. Returns the
+    /// rays that cross, a bit each, with the surface there in `work.flesh`. `None` if this is not the way for these rays; the caller
+    /// then takes the general one.
+    pub fn first(&self, query: &FarQuery<'_>, work: &mut FarWork) -> Option<u32> {
+        let primitives = self.primitives(query);
+        let followed = (0..PACKET).filter(|i| query.alive >> i & 1 != 0);
+        let followed: Vec<Ray> = followed.map(|i| query.rays[i]).collect();
+        let beam = Beam::around(&followed)?;
+        let [from, to] = self.range(&beam)?;
+        let mut furthest = 0.0;
+        for lane in (0..PACKET).filter(|i| query.alive >> i & 1 != 0) {
+            furthest = query.limits[lane].at_least(furthest);
+        }
+        let to = to.at_most(furthest);
+        let root = self.field.root(primitives);
+        let (mut alive, mut met) = (query.alive, 0);
+        let mut t = from;
+        work.flesh.weights.clear();
+        let zero = f32x8::splat(0.0);
+        let weights = self.finishes.iter().map(|(finish, _)| (*finish, zero));
+        work.flesh.weights.extend(weights);
+        // The present cell and those that contain it, the largest first.
+        let mut path = vec![root];
+        let mut cells = 0;
+        while t < to {
+            for (lane, limit) in query.limits.iter().enumerate() {
+                alive &= !(u32::from(*limit <= t) << lane);
+            }
+            if alive == 0 {
+                break;
+            }
+            cells += 1;
+            if cells > MOST_CELLS {
+                return None;
+            }
+            let place = beam.axis.at(t + 1e-9 * root.half);
+            let room = (LOOSE - 1.0) * (1.0 - 1e-6);
+            // How wide the beam is where it leaves a cell of this size.
+            let width = |half: f64| {
+                let last = t + 4.0 * half;
+                beam.width(last) + beam.lag(last)
+            };
+            if width(root.half) > room * root.half {
+                return None;
+            }
+            // Back to the smallest cell that still holds the beam.
+            while let [_, .., cell] = &path[..]
+                && (!cell.holds(place) || width(cell.half) > room * cell.half)
+            {
+                path.pop();
+            }
+            let mut cell: &Arc<Cell> = path[path.len() - 1];
+            let empty = loop {
+                if cell.most < THRESHOLD - ROUNDING {
+                    break true;
+                }
+                let half = 0.5 * cell.half;
+                if cell.near.len() <= FEW_NEAR
+                    || width(half) > room * half
+                    || half < SMALLEST * root.half
+                {
+                    break false;
+                }
+                cell = self.field.part(primitives, cell, cell.part_of(place));
+                path.push(cell);
+            };
+            let end = leaves(&beam.axis, t, cell).at_most(to);
+            if !empty {
+                if cell.error > MOST_OF_CELLS {
+                    return None;
+                }
+                let piece = Piece::new(cell, &beam, query.rays, [t, end]);
+                let is_start = t <= 0.0;
+                let found = match &self.points {
+                    Some(points) => {
+                        self.follow_points(points, query, &piece, alive, is_start, work)?
+                    }
+                    None => self.follow_spans(query, &piece, alive, is_start, work)?,
+                };
+                met |= found;
+                alive &= !found;
+            }
+            t = end;
+        }
+        Some(met)
+    }
+
+    /// Parameters between which a beam may be where the surface is; `None` if it is too wide for the hierarchy. Empty if it misses it.
+    fn range(&self, beam: &Beam) -> Option<[f64; 2]> {
+        let away = self.center - beam.axis.origin;
+        let along = away.dot(beam.axis.direction);
+        let last = (along + self.radius).at_least(0.0);
+        let width = beam.width(last) + beam.lag(last);
+        if width.is_nan() || width > 0.1 * (ROOM - 1.0) * self.radius {
+            return None;
+        }
+        let radius = self.radius + width;
+        let across = (away - beam.axis.direction * along).length_squared();
+        let square = radius * radius - across;
+        if square <= 0.0 {
+            return Some([0.0, 0.0]);
+        }
+        let half = square.sqrt();
+        Some([(along - half).at_least(0.0), along + half])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::soft::Soft;
+    use crate::tests::common::{Numbers, clothe, element, empty, soft};
+    use field::Kernel;
+    use scene::{Element, Shape};
+
+    /// Balls in a cloud, in the scene's own places.
+    fn cloud(kernel: Kernel, count: u32, numbers: &mut Numbers) -> Soft {
+        let mut scene = empty();
+        clothe(&mut scene, vec![soft(-4.0, 1.0)]);
+        for _ in 0..count {
+            let shape = Shape::Sphere {
+                center: numbers.vector(),
+                radius: numbers.between(0.02, 0.07),
+            };
+            scene.elements.push(Element {
+                kernel,
+                ..element(shape, 0)
+            });
+        }
+        let surfaces = scene.soft_surfaces();
+        let mut soft = Soft::new(scene, surfaces);
+        soft.pixel = 2e-3;
+        soft
+    }
+
+    /// Packets of rays take this way, and meet what single rays meet that are traced exactly.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn packets_meet_what_exact_rays_meet() {
+        let mut numbers = Numbers(21);
+        for kernel in [Kernel::Cauchy, Kernel::Squared, Kernel::Cubed] {
+            let soft = cloud(kernel, 200, &mut numbers);
+            let mut work = FarWork::default();
+            let (mut taken, mut hits, mut differ) = (0, 0, 0);
+            for _ in 0..60 {
+                let eye = numbers.vector().normalize() * 4.0;
+                let aim = numbers.vector() * 0.9;
+                let rays: [Ray; PACKET] = core::array::from_fn(|_| Ray {
+                    origin: eye,
+                    direction: (aim + numbers.vector() * 4e-3 - eye).normalize(),
+                });
+                let limits = [f64::INFINITY; PACKET];
+                let met = soft.far_first(0, &rays, &limits, 255, Quest::First, &mut work);
+                let entered = soft.far_first(0, &rays, &limits, 255, Quest::Entry, &mut work);
+                let Some(met) = met else { continue };
+                taken += 1;
+                // Rays start outside. Grazing ones may be told differently, as without noise.
+                let entered = entered.expect("the same way");
+                differ += (entered ^ met).count_ones();
+                for (lane, ray) in rays.iter().enumerate() {
+                    let exact = soft.crossings(0, ray).first().copied();
+                    assert_eq!(met >> lane & 1 != 0, exact.is_some(), "{kernel:?} {ray:?}");
+                    let Some((t, gradient)) = exact else { continue };
+                    hits += 1;
+                    let flesh = &work.flesh;
+                    // The second query has not changed the first one's samples.
+                    let off = (flesh.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
+                    assert!(off < 2e-4 * gradient.length(), "{kernel:?} {off}");
+                    let told = flesh.gradients()[lane];
+                    assert!(told.distance(gradient) < 0.02 * gradient.length());
+                }
+            }
+            assert!(taken > 50 && hits > 100, "{kernel:?} {taken} {hits}");
+            assert!(differ <= 2, "{kernel:?} {differ}");
+        }
+    }
+
+    /// Elements of many kinds, some of which carve, of two finishes.
+    fn thicket(kernel: Kernel, count: u32, numbers: &mut Numbers) -> Soft {
+        let mut scene = empty();
+        clothe(&mut scene, vec![soft(-4.0, 1.0), soft(-4.0, 1.0)]);
+        scene.flesh.push(scene::Flesh {
+            strength: -0.4,
+            ..scene.flesh[0].clone()
+        });
+        for i in 0..count {
+            let (a, along) = (numbers.vector(), numbers.vector() * 0.2);
+            let radius = numbers.between(0.02, 0.05);
+            let shape = match i % 8 {
+                0 => Shape::Sphere { center: a, radius },
+                1 => Shape::Triangle {
+                    corners: [a, a + along, a + numbers.vector() * 0.1],
+                    radius,
+                },
+                2 => Shape::Arc {
+                    center: a,
+                    u: along.normalize(),
+                    v: along.cross(DVec3::X).normalize(),
+                    sweep: 0.1,
+                    angle: 2.0,
+                    radius,
+                },
+                _ => Shape::Cylinder {
+                    base: a,
+                    apex: a + along,
+                    radius,
+                },
+            };
+            let finish = i % 2;
+            let own = element(shape, finish);
+            let flesh = if i % 16 == 15 { Some(2) } else { own.flesh };
+            scene.elements.push(Element {
+                kernel,
+                flesh,
+                ..own
+            });
+        }
+        let surfaces = scene.soft_surfaces();
+        let mut soft = Soft::new(scene, surfaces);
+        soft.pixel = 2e-3;
+        soft
+    }
+
+    /// The same among primitives of any kind, with each finish's share.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn packets_meet_lines_and_faces_as_exact_rays_do() {
+        let mut numbers = Numbers(5);
+        for kernel in [Kernel::Cauchy, Kernel::Squared, Kernel::Cubed] {
+            let soft = thicket(kernel, 240, &mut numbers);
+            let mut work = FarWork::default();
+            let (mut taken, mut hits, mut differ) = (0, 0, 0);
+            for _ in 0..40 {
+                let eye = numbers.vector().normalize() * 4.0;
+                let aim = numbers.vector() * 0.9;
+                let rays: [Ray; PACKET] = core::array::from_fn(|_| Ray {
+                    origin: eye,
+                    direction: (aim + numbers.vector() * 4e-3 - eye).normalize(),
+                });
+                let limits = [f64::INFINITY; PACKET];
+                let met = soft.far_first(0, &rays, &limits, 255, Quest::First, &mut work);
+                let entered = soft.far_first(0, &rays, &limits, 255, Quest::Entry, &mut work);
+                let (Some(met), Some(entered)) = (met, entered) else {
+                    continue;
+                };
+                taken += 1;
+                differ += (entered ^ met).count_ones();
+                let met = soft.far_first(0, &rays, &limits, 255, Quest::First, &mut work);
+                let met = met.expect("the same way");
+                for (lane, ray) in rays.iter().enumerate() {
+                    let exact = soft.crossings(0, ray).first().copied();
+                    assert_eq!(met >> lane & 1 != 0, exact.is_some(), "{kernel:?} {ray:?}");
+                    let Some((t, gradient)) = exact else { continue };
+                    hits += 1;
+                    let flesh = &work.flesh;
+                    let off = (flesh.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
+                    assert!(off < 2e-4 * gradient.length(), "{kernel:?} {off}");
+                    let told = flesh.gradients()[lane];
+                    assert!(told.distance(gradient) < 0.02 * gradient.length());
+                    let place = ray.at(t).to_array();
+                    let mut shares = [0.0; 2];
+                    for (p, finish) in soft.primitives.iter().zip(&soft.finish) {
+                        shares[*finish as usize] += p.value(place).max(0.0);
+                    }
+                    for (finish, weight) in &flesh.weights {
+                        let told = f64::from(weight.to_array()[lane]);
+                        let want: f64 = shares[*finish as usize];
+                        assert!((told - want).abs() < 2e-3, "{kernel:?} {told} {want}");
+                    }
+                }
+            }
+            assert!(taken > 30 && hits > 60, "{kernel:?} {taken} {hits}");
+            assert!(differ <= 2, "{kernel:?} {differ}");
+        }
+    }
+
+    /// A ray that starts inside is left to the general way, and an end before the surface hides it.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn starts_and_ends_of_rays_count() {
+        let mut numbers = Numbers(4);
+        let soft = cloud(Kernel::Cauchy, 100, &mut numbers);
+        let center = soft.primitives[0].blob_middle();
+        let mut work = FarWork::default();
+        let mut first = |origin: DVec3, limit: f64| {
+            let ray = Ray {
+                origin,
+                direction: DVec3::X,
+            };
+            soft.far_first(
+                0,
+                &[ray; PACKET],
+                &[limit; PACKET],
+                255,
+                Quest::First,
+                &mut work,
+            )
+        };
+        assert_eq!(first(center, f64::INFINITY), None);
+        let outside = DVec3::new(-5.0, center.y, center.z);
+        assert_eq!(first(outside, f64::INFINITY), Some(255));
+        assert_eq!(first(outside, 1.0), Some(0));
+    }
+}
