@@ -1,9 +1,9 @@
 //! The user's work without any window: the project, its undo steps, what the compiler
 //! says about it, the last scene that could be drawn, and the camera chosen by hand.
 //!
-//! Two counters tell others what changed: [`Session::revision`] rises with every change of the text,
-//! [`Session::generation`] with every change of what is to be drawn. Times are seconds on any clock
-//! that never goes back.
+//! Three counters tell others what changed: [`Session::revision`] rises with every change of the text,
+//! [`Session::generation`] with every change of what is to be drawn, [`Session::shape`] with those that are no mere turn of the camera.
+//! Times are seconds on any clock that never goes back.
 
 use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
@@ -128,6 +128,7 @@ pub struct Session {
     camera: Option<Camera>,
     revision: u64,
     generation: u64,
+    shape: u64,
     enabled: bool,
     stale: bool,
     compile_seconds: f64,
@@ -148,6 +149,7 @@ impl Session {
             camera: None,
             revision: 0,
             generation: 0,
+            shape: 0,
             enabled: compile,
             stale: false,
             compile_seconds: 0.0,
@@ -555,6 +557,12 @@ impl Session {
         self.generation
     }
 
+    /// Rises with every change of what [`Session::scene`] gives but for a camera chosen by hand.
+    #[must_use]
+    pub fn shape(&self) -> u64 {
+        self.shape
+    }
+
     /// Whether texts are compiled. False after a start that failed, until the user asks.
     #[must_use]
     pub fn enabled(&self) -> bool {
@@ -605,6 +613,7 @@ impl Session {
                 .is_some_and(|good| same_picture(good, scene));
             self.good = Some(scene.clone());
             self.generation += u64::from(!same);
+            self.shape += u64::from(!same);
         }
     }
 
@@ -731,6 +740,12 @@ mod tests {
         assert_eq!(session.scene().unwrap().camera, chosen);
         session.set_camera(None);
         assert_eq!(session.camera().eye, glam::DVec3::splat(9.0));
+        let shape = session.shape();
+        session.set_camera(Some(chosen));
+        assert_eq!(session.shape(), shape);
+        edit(&mut session, "surface a\nsphere a 1, 0 0 0\n", 2.0);
+        assert_eq!(session.shape(), shape + 1);
+        session.set_camera(None);
         let broken = Camera {
             fov: f64::NAN,
             ..chosen
