@@ -43,7 +43,7 @@ impl App {
                 self.dialog = None;
                 self.notice = Some(Notice::trouble(text));
             }
-            Request::SculptModel(result) => self.sculpt_mesh(ctx, result),
+            Request::SculptModel(result) => self.sculpt_mesh(result, now),
             Request::Videos(formats) => self.videos = Some(formats),
             Request::SetCamera(camera) => self.work.session.set_camera(camera),
             Request::Picture(answer) => answer(self.renderer.image()),

@@ -224,6 +224,45 @@ impl Session {
         Ok(())
     }
 
+    /// Changes the text of one file as a step of its own. If the last step led here from just that state, or the next one leads there, it
+    /// is undone or redone: whoever goes back, there is one history.
+    ///
+    /// # Errors
+    /// If the project would become too long; then nothing changes.
+    pub fn step_text(&mut self, file: usize, text: String, now: f64) -> Result<(), Refused> {
+        self.end_step();
+        let is_wanted = |state: &&Project| {
+            let mut pairs = state.files.iter().zip(&self.project.files).enumerate();
+            state.files.len() == self.project.files.len()
+                && pairs.all(|(i, (new, old))| {
+                    new.name == old.name && new.text == *if i == file { &text } else { &old.text }
+                })
+        };
+        let [before, after] = self.history.next().map(|s| s.filter(is_wanted).is_some());
+        if before {
+            self.undo();
+        } else if after {
+            self.redo();
+        } else {
+            self.set_text(file, text, now)?;
+            self.end_step();
+        }
+        Ok(())
+    }
+
+    /// Replaces all files. One undo step.
+    ///
+    /// # Errors
+    /// If there would be too many, or too much text; then nothing changes.
+    pub fn set_files(&mut self, files: Vec<rats::File>, now: f64) -> Result<(), Refused> {
+        let project = Project { files };
+        check_size(&project)?;
+        self.whole_step(now);
+        self.project = project;
+        self.changed();
+        Ok(())
+    }
+
     /// Adds an empty file and gives its index.
     ///
     /// # Errors
@@ -856,6 +895,50 @@ mod tests {
         session.undo();
         assert_eq!(session.text(0), TEXT);
         assert_eq!(session.project().files.len(), 1);
+    }
+
+    #[test]
+    fn steps_back_and_forth_are_one_history() {
+        let mut session = session(TEXT);
+        let file = |text: &str| File {
+            name: String::from("main.rat"),
+            text: text.to_owned(),
+        };
+        let strokes = File {
+            name: String::from("a.strokes"),
+            text: String::from("strokes 1\n"),
+        };
+        let project = session.project().clone();
+        let files = vec![file("# other\n"), strokes];
+        session.set_files(files, 1.0).unwrap();
+        for text in ["strokes 1\na\n", "strokes 1\na\nb\n"] {
+            session.step_text(1, text.to_owned(), 1.1).unwrap();
+        }
+        // Back to the first stroke, forth and back again: no steps of their own.
+        for text in ["strokes 1\na\n", "strokes 1\na\nb\n", "strokes 1\na\n"] {
+            session.step_text(1, text.to_owned(), 1.2).unwrap();
+            assert_eq!(session.text(1), text);
+        }
+        assert!(session.can_redo());
+        session.undo();
+        assert_eq!(session.text(1), "strokes 1\n");
+        session.undo();
+        assert_eq!(session.project(), &project);
+        assert!(!session.can_undo());
+        for _ in 0..3 {
+            session.redo();
+        }
+        assert_eq!(session.text(1), "strokes 1\na\nb\n");
+        // Another stroke than the one that was undone is a step.
+        session.undo();
+        session
+            .step_text(1, String::from("strokes 1\na\nc\n"), 2.0)
+            .unwrap();
+        assert!(!session.can_redo());
+        let long = "x".repeat(MAX_TEXT + 1);
+        assert!(session.step_text(1, long.clone(), 3.0).is_err());
+        assert!(session.set_files(vec![file(&long)], 3.0).is_err());
+        assert_eq!(session.text(1), "strokes 1\na\nc\n");
     }
 
     #[test]
