@@ -120,15 +120,7 @@ fn cover_box(@builtin(vertex_index) index: u32, instance: Instance) -> Varying {
 fn cover_point(instance: Instance, corner: vec3f) -> Varying {
     let offset = from_eye(instance);
     let seen = offset + rotate(instance.rotation, corner * instance.unit);
-    let distance = dot(seen, view.forward.xyz);
-    // The depth is written per fragment; half of w is never clipped, near or far.
-    let position = vec4f(
-        (dot(seen, view.right.xyz) - view.eye_high.w * distance) / view.right.w,
-        (dot(seen, view.up.xyz) - view.eye_low.w * distance) / view.up.w,
-        0.5 * distance,
-        distance,
-    );
-    return vary(instance, offset, position);
+    return vary(instance, offset, on_picture(seen));
 }
 
 // The whole picture in one triangle, for what has no end.
@@ -153,7 +145,7 @@ fn draw(solid: Varying) -> Fragment {
     let distance = (hit.s - ray.start) * solid.eye.w;
     let outward = normalize(rotate(solid.rotation, hit.normal));
     let normal = select(outward, -outward, dot(outward, gaze) > 0.0);
-    let light = phong(solid.material, distance * gaze, normal);
+    let light = phong(look_of(solid.material), distance * gaze, normal);
 
     var out: Fragment;
     out.colour = written(foggy(light, gaze, distance));

@@ -115,17 +115,40 @@ struct Fragment {
     @builtin(frag_depth) depth: f32,
 }
 
-// Colour of the point seen: Phong's model with all lights, without shadows. `seen` leads from the
-// eye to the point, `normal` is turned to the eye.
-fn phong(material: u32, seen: vec3f, normal: vec3f) -> vec3f {
+// Clip coordinates of the point that `seen` leads to from the eye. The depth is written per fragment; half of w is never clipped,
+// near or far.
+fn on_picture(seen: vec3f) -> vec4f {
+    let distance = dot(seen, view.forward.xyz);
+    return vec4f(
+        (dot(seen, view.right.xyz) - view.eye_high.w * distance) / view.right.w,
+        (dot(seen, view.up.xyz) - view.eye_low.w * distance) / view.up.w,
+        0.5 * distance,
+        distance,
+    );
+}
+
+// The parameters of Phong's model at a point.
+struct Look {
+    ambient: vec3f,
+    shine: f32,
+    diffuse: vec3f,
+    specular: vec3f,
+}
+
+fn look_of(material: u32) -> Look {
     let texel = vec2u((material % MATERIALS_A_ROW) * 3u, material / MATERIALS_A_ROW);
     let ambient = textureLoad(materials, texel, 0);
     let diffuse = textureLoad(materials, texel + vec2u(1u, 0u), 0).rgb;
     let specular = textureLoad(materials, texel + vec2u(2u, 0u), 0).rgb;
-    let shine = ambient.w;
+    return Look(ambient.rgb, ambient.w, diffuse, specular);
+}
+
+// Colour of the point seen: Phong's model with all lights, without shadows. `seen` leads from the
+// eye to the point, `normal` is turned to the eye.
+fn phong(look: Look, seen: vec3f, normal: vec3f) -> vec3f {
     let place = view.eye_high.xyz + seen;
     let mirrored = reflect(normalize(seen), normal);
-    var colour = ambient.rgb + diffuse * daylight(normal);
+    var colour = look.ambient + look.diffuse * daylight(normal);
     for (var i = 0u; i < 8u; i++) {
         if f32(i) >= view.picture.w {
             break;
@@ -141,8 +164,8 @@ fn phong(material: u32, seen: vec3f, normal: vec3f) -> vec3f {
         // No highlight away from the mirror's side, even for an exponent of 0. (And pow of
         // nothing is undefined on a GPU.)
         let gleam = dot(mirrored, towards);
-        let highlight = select(0.0, pow(max(gleam, 1e-20), shine), gleam > 0.0);
-        colour += share * light.colour.rgb * (diffuse * slope + specular * highlight);
+        let highlight = select(0.0, pow(max(gleam, 1e-20), look.shine), gleam > 0.0);
+        colour += share * light.colour.rgb * (look.diffuse * slope + look.specular * highlight);
     }
     return colour;
 }

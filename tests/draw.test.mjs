@@ -111,3 +111,45 @@ test('strokes of a mouse are paired, made single, moved, cut and taken back', as
   assert.deepEqual(sinew.troubles, []);
   await sinew.close();
 });
+
+test("a pen's pressure makes a stroke thick", async () => {
+  const { sinew, hand } = await open(DESKTOP, false);
+  const { page } = sinew;
+  // As in the sculpting tests: the page is told what a pen tells.
+  const pen = (type, [x, y], pressure) =>
+    page.evaluate(
+      ([type, x, y, pressure]) => {
+        const about = { clientX: x, clientY: y, pressure, pointerType: 'pen', pointerId: 9, bubbles: true, isPrimary: true };
+        const canvas = document.querySelector('canvas');
+        canvas.dispatchEvent(new PointerEvent(type, about));
+        if (type === 'pointermove') canvas.dispatchEvent(new MouseEvent('mousemove', about));
+      },
+      [type, x, y, pressure],
+    );
+  const stroke = async (height, pressures) => {
+    const { revision } = await sinew.status();
+    const places = await hand.at(...pressures.map((_, i) => [0.25 + (0.5 * i) / (pressures.length - 1), height]));
+    await page.mouse.move(...places[0]);
+    await page.waitForTimeout(120);
+    await pen('pointermove', places[0], 0);
+    await pen('pointerdown', places[0], pressures[0]);
+    for (const [i, place] of places.entries()) {
+      await page.waitForTimeout(60);
+      await pen('pointermove', place, pressures[i]);
+    }
+    await page.waitForTimeout(60);
+    await pen('pointerup', places.at(-1), 0);
+    await sinew.until((status) => status.revision > revision);
+  };
+  const radii = (text) => [...text.matchAll(/^ *node \w+ <[^>]*> radius ([\d.]+)/gm)].map(([, radius]) => Number(radius));
+  await stroke(0.4, [0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1]);
+  const pressed = radii(await sinew.text());
+  assert.ok(pressed.length >= 3, await sinew.text());
+  assert.ok(pressed.at(-1) > 2 * pressed[0], `thin where it begins, thick where it ends: ${pressed}`);
+  assert.ok(pressed.every((radius, i) => i === 0 || radius > 0.95 * pressed[i - 1]), `${pressed}`);
+  await sinew.finished();
+  await sinew.keep('draw pen');
+  assert.equal((await sinew.status()).errors, 0);
+  assert.deepEqual(sinew.troubles, []);
+  await sinew.close();
+});

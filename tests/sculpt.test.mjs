@@ -187,3 +187,87 @@ test('a finger sculpts and two fingers turn, on a phone', async () => {
   assert.deepEqual(sinew.troubles, []);
   await sinew.close();
 });
+
+test('the model becomes clay and comes back: one undo; flesh grows on it and it is fitted to points', async () => {
+  const sinew = await browser.open({ viewport: { width: 1280, height: 800 } });
+  const { page } = sinew;
+  const text = `eyep 0 0 9
+vrp 0 0 0
+fov 34
+framesize 320 240
+light White point, position 4 6 8
+surface flesh diffuse SummerSky, blobbiness -1.5
+sphere flesh 0.8, -0.8 0 0
+sphere flesh 0.6, 0.9 0.3 0
+`;
+  await sinew.load(text);
+  await sinew.finished();
+  const { name } = await sinew.status();
+  await sinew.click('sculpt');
+  await sinew.click('begin this');
+  const { counts } = await until(sinew, (now) => now?.name === 'sculpture.strokes');
+  assert.ok(counts[1] > 200, `${counts}`);
+  assert.match(await strokes(sinew), /^strokes 1\nstart file model\.ply\n$/);
+  const { x, y, w, h } = await sinew.place('sculpture');
+  const [at, side] = [[x + w / 2, y + h / 2], Math.min(w, h)];
+  await page.waitForTimeout(400);
+  await drag(page, at, [0.1 * side, -0.2 * side]);
+  await until(sinew, ({ depth }) => depth[0] === 1);
+  const pulled = await strokes(sinew);
+  await sinew.keep('sculpt this');
+
+  // Back beyond the first stroke is the model, forth is the clay.
+  await page.keyboard.press('Control+z');
+  await until(sinew, (now) => now?.depth[0] === 0);
+  await page.keyboard.press('Control+z');
+  await until(sinew, (now) => now === null);
+  await sinew.until(({ elements, errors }) => elements === 2 && errors === 0);
+  assert.equal(await sinew.text(), text);
+  assert.equal((await sinew.status()).name, name);
+  await sinew.finished();
+  await sinew.keep('sculpt this undone');
+  await page.keyboard.press('Control+Shift+z');
+  await page.keyboard.press('Control+Shift+z');
+  const deadline = Date.now() + 20_000;
+  while ((await strokes(sinew)) !== pulled) {
+    assert.ok(Date.now() < deadline, 'the clay and its stroke are back');
+    await page.waitForTimeout(100);
+  }
+  await sinew.until(({ elements }) => elements > 200);
+
+  // Flesh grows on it, in the same history.
+  await sinew.click('sculpt');
+  await until(sinew, (now) => now?.name === 'sculpture.strokes');
+  const clay = await sinew.page.evaluate(() => sinew.files()['main.rat']);
+  await sinew.click('sculpt metaballs');
+  await page.waitForFunction((clay) => sinew.files()['main.rat'] !== clay, clay);
+  assert.match(await page.evaluate(() => sinew.files()['main.rat']), /mesh Clay sculpture\.strokes metaballs/);
+  await sinew.click('sculpt a hard mesh');
+  await page.waitForFunction((clay) => sinew.files()['main.rat'] === clay, clay);
+
+  // Fitted: the clay's own vertices, moved, are what was measured.
+  await sinew.click('sculpt fit this to points');
+  await until(sinew, (now) => now === null);
+  await sinew.place('fit panel');
+  const moved = await page.evaluate(async () => {
+    const bytes = new Uint8Array(await sinew.mesh({ format: 'obj', tolerance: 0.01, size: 2 }));
+    const lines = new TextDecoder().decode(bytes).split('\n').filter((line) => line.startsWith('v '));
+    return lines.map((line) => line.split(/\s+/).slice(1, 4).map(Number));
+  });
+  assert.ok(moved.length > 100, `${moved.length} vertices`);
+  const size = [0, 1, 2].map((i) => Math.max(...moved.map((p) => p[i])) - Math.min(...moved.map((p) => p[i])));
+  const points = moved.map(([a, b, c]) => `${a + (0.06 * c) / size[2]} ${b} ${c}`).join('\n');
+  await page.evaluate((points) => sinew.take({ 'scan.xyz': points }), `${points}\n`);
+  await sinew.until(({ fit }) => fit?.points === moved.length);
+  const before = await page.evaluate(() => sinew.files()['main.rat']);
+  await sinew.click('fit start');
+  const { fit, errors } = await sinew.until(({ fit }) => fit.iteration > 0 && !fit.running);
+  assert.deepEqual([fit.said, errors], ['Done.', 0]);
+  assert.match(await page.evaluate(() => sinew.files()['main.rat']), /mesh Clay sculpture\.strokes\ndeform \{/);
+  await sinew.finished();
+  await sinew.keep('sculpt fitted');
+  await sinew.click('undo');
+  await page.waitForFunction((before) => sinew.files()['main.rat'] === before, before);
+  assert.deepEqual(sinew.troubles, []);
+  await sinew.close();
+});

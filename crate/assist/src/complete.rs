@@ -465,7 +465,7 @@ fn ranked(items: Vec<Completion>, typed: &str) -> Vec<Completion> {
         .filter_map(|(place, item)| Some((fit(&item.text, typed)?, place, item)))
         .filter(|(_, _, item)| seen.insert((item.text.clone(), item.kind)))
         .collect();
-    fitting.sort_by_key(|(fit, place, _)| (*fit, *place));
+    field::heap_sort(&mut fitting, |a, b| (a.0, a.1) < (b.0, b.1));
     fitting.truncate(MAX_COMPLETIONS);
     fitting.into_iter().map(|(_, _, item)| item).collect()
 }

@@ -22,7 +22,9 @@ pub fn folds(text: &str) -> Vec<Range<usize>> {
     folds.extend(objects(text, &lines));
     folds.retain(|fold| fold.len() >= 2);
     // Of those that begin in one line the longest counts.
-    folds.sort_by_key(|fold| (fold.start, usize::MAX - fold.end));
+    field::heap_sort(&mut folds, |a, b| {
+        (a.start, usize::MAX - a.end) < (b.start, usize::MAX - b.end)
+    });
     folds.dedup_by_key(|fold| fold.start);
     nested(folds)
 }

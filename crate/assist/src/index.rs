@@ -219,7 +219,7 @@ impl<'p> Index<'p> {
             .iter()
             .filter(|o| o.is_definition)
             .collect();
-        in_order.sort_by_key(|o| o.order);
+        field::heap_sort(&mut in_order, |a, b| a.order < b.order);
         for occurrence in in_order {
             let root = self.root(occurrence.entity);
             if !std::mem::replace(&mut seen[root], true) {
@@ -257,7 +257,7 @@ impl<'p> Index<'p> {
             .filter(|e| e.kind == kind && e.first.as_ref().is_some_and(|o| !is_here(o)))
             .map(|e| e.name)
             .collect();
-        names.sort_unstable();
+        field::heap_sort(&mut names, |a, b| a < b);
         names.dedup();
         names
     }

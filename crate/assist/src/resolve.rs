@@ -11,7 +11,7 @@ mod here;
 mod state;
 mod variables;
 
-use crate::index::{Index, SymbolKind};
+use crate::index::{Index, Occurrence, SymbolKind};
 use crate::walk::{self, Event};
 use rats::Project;
 use rats::parser::parse;
@@ -187,9 +187,11 @@ impl<'p, 's> Resolver<'p, 's> {
         index
             .occurrences
             .retain(|o| defined[entities[o.entity].parent]);
-        index
-            .occurrences
-            .sort_by_key(|o| (o.place.file, o.place.span.start, o.place.span.end));
+        let place = |o: &Occurrence| {
+            let span = &o.place.span;
+            (o.place.file, span.start, span.end, o.order)
+        };
+        field::heap_sort(&mut index.occurrences, |a, b| place(a) < place(b));
         index
     }
 }

@@ -106,7 +106,8 @@ fn bar(
             if all.clicked() {
                 place.see_all();
             }
-            let [undo, redo] = place.depth().map(|count| count > 0);
+            let own = place.depth().map(|count| count > 0);
+            let [undo, redo] = [0, 1].map(|i| own[i] || outside.depth[i]);
             let redo = icon::button(ui, Icon::Redo, "Redo (Ctrl+Shift+Z)", redo);
             places::note(ui.ctx(), "sculpt redo", redo.rect);
             if redo.clicked() {

@@ -31,6 +31,10 @@ pub enum Command {
     },
     /// Bring the mesh onto measured points.
     Fit,
+    /// Take back what was done before the first stroke.
+    Undo,
+    /// Do again what came after the last one.
+    Redo,
     /// Go back to the text.
     Close,
     /// Begin another one.
@@ -63,6 +67,8 @@ pub struct Outside {
     pub traced: Option<(TextureId, [u32; 2])>,
     /// Whether the model has errors, so that no picture comes.
     pub errors: usize,
+    /// Whether the page has something to undo, and to redo.
+    pub depth: [bool; 2],
 }
 
 /// What the pointer turns beside the mesh.
@@ -224,12 +230,22 @@ impl Sculpting {
         self.told(result, commands);
     }
 
+    /// Undoes the last stroke; what was done before the first one is the page's to take back.
     pub(crate) fn undo(&mut self, commands: &mut Vec<Command>) {
+        if self.depth()[0] == 0 {
+            commands.push(Command::Undo);
+            return;
+        }
         let result = self.document.undo().map(drop);
         self.told(result, commands);
     }
 
+    /// Carries out the stroke again that was undone last; what came after the last one is the page's.
     pub(crate) fn redo(&mut self, commands: &mut Vec<Command>) {
+        if self.depth()[1] == 0 {
+            commands.push(Command::Redo);
+            return;
+        }
         let result = self.document.redo().map(drop);
         self.told(result, commands);
     }

@@ -35,11 +35,12 @@ fn halve(
         let places = || some.iter().map(|tile| place(&tiles[*tile]));
         places().max().unwrap_or(0) - places().min().unwrap_or(0)
     };
-    if extent(|tile| tile.x) >= extent(|tile| tile.y) {
-        some.sort_by_key(|tile| (tiles[*tile].x, tiles[*tile].y));
-    } else {
-        some.sort_by_key(|tile| (tiles[*tile].y, tiles[*tile].x));
-    }
+    let is_wide = extent(|tile| tile.x) >= extent(|tile| tile.y);
+    let place = |tile: &usize| {
+        let Tile { x, y, .. } = tiles[*tile];
+        if is_wide { (x, y) } else { (y, x) }
+    };
+    field::heap_sort(some, |a, b| place(a) < place(b));
     let before = workers / 2;
     let whole: f64 = some.iter().map(|tile| costs[*tile]).sum();
     let wanted = whole * before as f64 / workers as f64;

@@ -4,6 +4,7 @@ use crate::bounds::Bounds;
 use crate::facets;
 use crate::instance::{Instance, Instances, Units};
 use crate::materials;
+use crate::mesh::{Mesh, Uploaded};
 use crate::pipelines::Pipelines;
 use crate::solid::{Kind, Solid};
 use crate::targets::{Sampling, Targets};
@@ -34,7 +35,10 @@ pub struct Drawn {
 /// [`Draft::render`]. Before the first scene it draws an empty one.
 pub struct Draft {
     pipelines: Pipelines,
-    instances: [Instances; Kind::COUNT],
+    /// Of hard elements, and of soft ones.
+    instances: [[Instances; Kind::COUNT]; 2],
+    /// Drawn in place of the soft ones.
+    mesh: Option<Uploaded>,
     bindings: wgpu::BindGroup,
     units: Units,
     lights: Lights,
@@ -57,6 +61,7 @@ impl Draft {
             bindings: pipelines.bind_materials(device, &materials.view),
             pipelines,
             instances: Default::default(),
+            mesh: None,
             units,
             lights: Lights::new(&[], units).0,
             tone: Tone::of(&empty),
@@ -68,7 +73,7 @@ impl Draft {
     }
 
     /// Replaces the scene: its elements at the radius that counts ([`Scene::radius`]), materials,
-    /// lights, background and gamma. The scene's own camera is not used. Tells what is drawn.
+    /// lights, background and gamma. The scene's own camera is not used. Tells what is drawn. A mesh stays.
     pub fn set_scene(
         &mut self,
         device: &wgpu::Device,
@@ -94,9 +99,10 @@ impl Draft {
             ..Drawn::default()
         };
         let limit = Instances::limit(device);
-        let mut lists: [Vec<Instance>; Kind::COUNT] = Default::default();
+        let mut both: [[Vec<Instance>; Kind::COUNT]; 2] = Default::default();
         let detail = facets::detail(scene);
         for element in &scene.elements {
+            let lists = &mut both[usize::from(scene.is_soft(element))];
             let is_quadric = matches!(element.shape, Shape::Quadric(_));
             if is_quadric && lists[Kind::Patch as usize].len() >= facets::MOST {
                 drawn.left_out += 1;
@@ -121,10 +127,24 @@ impl Draft {
                 lists[solid.kind as usize].push(Instance::new(&solid, material, self.units));
             }
         }
-        for (kind, list) in Kind::ALL.into_iter().zip(&lists) {
-            self.instances[kind as usize].write(device, queue, kind, list);
+        for (instances, lists) in self.instances.iter_mut().zip(&both) {
+            for (kind, list) in Kind::ALL.into_iter().zip(lists) {
+                instances[kind as usize].write(device, queue, kind, list);
+            }
         }
         drawn
+    }
+
+    /// Draws a mesh in place of the scene's soft elements from now on, or with `None` their offset surfaces again. One that has no
+    /// triangles, or is too large for the device, counts as none. Returns whether there is one.
+    pub fn set_mesh(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        mesh: Option<&Mesh<'_>>,
+    ) -> bool {
+        self.mesh = mesh.and_then(|mesh| Uploaded::new(device, queue, mesh));
+        self.mesh.is_some()
     }
 
     /// How many samples a pixel gets from now on.
@@ -166,6 +186,9 @@ impl Draft {
         let tone = [self.tone.gamma, 0.0, 0.0, 0.0];
         queue.write_buffer(&self.pipelines.tone, 0, bytemuck::bytes_of(&tone));
 
+        if let Some(mesh) = &self.mesh {
+            mesh.place(queue, self.units);
+        }
         self.draw_elements(encoder, &targets);
         if let Some((_, samples)) = &targets.oversized {
             self.resolve(encoder, &targets.view, samples);
@@ -229,9 +252,19 @@ impl Draft {
             pass.set_pipeline(&self.pipelines.backdrop);
             pass.draw(0..3, 0..1);
         }
-        for (kind, instances) in Kind::ALL.into_iter().zip(&self.instances) {
+        let [hard, soft] = &self.instances;
+        let drawn = [Some(hard), Some(soft).filter(|_| self.mesh.is_none())];
+        for (kind, instances) in drawn
+            .into_iter()
+            .flatten()
+            .flat_map(|lists| Kind::ALL.into_iter().zip(lists))
+        {
             pass.set_pipeline(&self.pipelines.elements[kind as usize]);
             instances.draw(&mut pass, kind.cover().1);
+        }
+        if let Some(mesh) = &self.mesh {
+            pass.set_pipeline(&self.pipelines.mesh);
+            mesh.draw(&mut pass);
         }
     }
 

@@ -8,7 +8,7 @@
 //! changes but a list of numbers. The draft and the tracer share the projection
 //! ([`scene::Camera::projection`]) and Phong's model, so the traced picture falls into place over
 //! the draft. Spots, sky, fog, gradients, ground and filmic tone are drawn, a texture as its mean colour. The draft has no
-//! blending of soft elements, no shadows, mirrors and glass.
+//! blending of soft elements, unless it is handed a mesh of their true surface ([`Draft::set_mesh`]), no shadows, mirrors and glass.
 //!
 //! [`Draft`] draws; [`orbit`] moves a camera with the pointer, or to where it sees everything.
 //!
@@ -19,6 +19,7 @@ mod draft;
 mod facets;
 mod instance;
 mod materials;
+mod mesh;
 pub mod orbit;
 mod pipelines;
 mod solid;
@@ -27,5 +28,6 @@ mod view;
 
 pub use bounds::Bounds;
 pub use draft::{Draft, Drawn, MAX_ELEMENTS};
+pub use mesh::{Mesh, VERTEX, looks};
 pub use targets::Sampling;
 pub use view::MAX_LIGHTS;

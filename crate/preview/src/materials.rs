@@ -59,7 +59,7 @@ pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) 
 /// The ambient and diffuse colours of a material under its textures: each pattern counts as if it were half its lowest and half
 /// its highest value everywhere, which is what the draft shows of it. What is all mirror or glass would be black: it gets that
 /// share as a grey.
-fn worn(material: &Finish) -> [Rgb; 2] {
+pub(crate) fn worn(material: &Finish) -> [Rgb; 2] {
     let mut colours = [material.ambient, material.diffuse];
     for layer in &material.layers {
         let targets: &[usize] = match layer.target {

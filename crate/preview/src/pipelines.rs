@@ -2,6 +2,7 @@
 //! that a person types ever becomes part of it.
 
 use crate::instance::Instance;
+use crate::mesh::Uploaded;
 use crate::solid::Kind;
 use crate::view::View;
 
@@ -55,6 +56,8 @@ impl Kind {
 /// Pipelines and buffers that live as long as the device.
 pub(crate) struct Pipelines {
     pub(crate) elements: [wgpu::RenderPipeline; Kind::COUNT],
+    /// Draws a mesh of the soft elements.
+    pub(crate) mesh: wgpu::RenderPipeline,
     /// Draws what is behind the elements.
     pub(crate) backdrop: wgpu::RenderPipeline,
     pub(crate) resolve: wgpu::RenderPipeline,
@@ -82,6 +85,7 @@ impl Pipelines {
         );
         Self {
             elements: Kind::ALL.map(|kind| element_pipeline(device, kind, &element_layout)),
+            mesh: mesh_pipeline(device, &element_layout),
             backdrop: backdrop_pipeline(device, &element_layout),
             resolve: resolve_pipeline(device, &resolve_layout),
             view: uniform_buffer(device, "view", size_of::<View>()),
@@ -204,14 +208,38 @@ fn element_pipeline(
         })],
         // The back faces of a box are drawn; of a single triangle, whichever is seen.
         (cover == "cover_box").then_some(wgpu::Face::Front),
-        Some(wgpu::DepthStencilState {
-            format: DEPTH,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
+        Some(depth(wgpu::CompareFunction::Greater)),
     )
+}
+
+fn mesh_pipeline(device: &wgpu::Device, bindings: &wgpu::BindGroupLayout) -> wgpu::RenderPipeline {
+    pipeline(
+        device,
+        Stages {
+            label: "mesh",
+            code: concat!(
+                include_str!("../../../shaders/view.wgsl"),
+                include_str!("../../../shaders/mesh.wgsl")
+            ),
+            vertex: "cover",
+            fragment: "draw",
+        },
+        bindings,
+        &Uploaded::LAYOUTS,
+        None,
+        Some(depth(wgpu::CompareFunction::Greater)),
+    )
+}
+
+/// Depths that pass a comparison are written.
+fn depth(compare: wgpu::CompareFunction) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(compare),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
 }
 
 fn backdrop_pipeline(
@@ -233,13 +261,7 @@ fn backdrop_pipeline(
         &[],
         None,
         // It is drawn first, over nothing.
-        Some(wgpu::DepthStencilState {
-            format: DEPTH,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Always),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
+        Some(depth(wgpu::CompareFunction::Always)),
     )
 }
 

@@ -109,9 +109,12 @@ impl Lights {
     /// Packs the strongest lights, and tells how many were left out.
     pub(crate) fn new(lights: &[Light], units: Units) -> (Self, usize) {
         let strength = |light: &Light| light.colour.map(finite).into_iter().sum::<f32>();
-        let mut order: Vec<&Light> = lights.iter().collect();
-        // Stable: of equally strong lights the first ones count.
-        order.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+        let mut order: Vec<(f32, usize)> = lights.iter().map(strength).zip(0..).collect();
+        // Of equally strong lights the first ones count.
+        field::heap_sort(&mut order, |a, b| {
+            b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).is_lt()
+        });
+        let order: Vec<&Light> = order.into_iter().map(|(_, i)| &lights[i]).collect();
         let mut packed = [PackedLight::zeroed(); MAX_LIGHTS];
         for (slot, light) in packed.iter_mut().zip(&order) {
             let (place, w) = match light.kind {

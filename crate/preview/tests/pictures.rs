@@ -6,7 +6,7 @@ mod common;
 use common::gpu::{gpus, open};
 use common::scenes::{arc, element, look};
 use glam::{DMat3, DQuat, DVec3};
-use preview::{Draft, Drawn, MAX_ELEMENTS, MAX_LIGHTS, Sampling};
+use preview::{Draft, Drawn, MAX_ELEMENTS, MAX_LIGHTS, Mesh, Sampling, VERTEX, looks};
 use scene::{Camera, Element, Finish, Flesh, Light, LightKind, Quadric, Scene, Settings, Shape};
 
 /// A ball of radius 1 at the origin, seen from z = 5.
@@ -445,5 +445,142 @@ fn a_device_with_little_memory_draws_what_fits() {
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         draft.render(&gpu.device, &gpu.queue, &mut encoder, &scene.camera, [8, 8]);
         gpu.queue.submit([encoder.finish()]);
+    }
+}
+
+/// A unit ball of triangles, `rings` from pole to pole, all of one look: vertices and triangles.
+fn round(rings: u32, look: [f32; 10]) -> (Vec<u8>, Vec<u8>) {
+    let across = 2 * rings;
+    let byte = |x: f32| (255.0 * x + 0.5) as u8;
+    let [ar, ag, ab, dr, dg, db, sr, sg, sb, shine] = look.map(byte);
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for i in 0..=rings {
+        for k in 0..across {
+            let [lat, lon] = [(i, rings), (k, rings)]
+                .map(|(i, n)| core::f64::consts::PI * f64::from(i) / f64::from(n));
+            let (s, c) = libm::sincos(lat);
+            let (t, d) = libm::sincos(lon);
+            let place = [s * d, s * t, c];
+            for x in place {
+                vertices.extend((x as f32).to_le_bytes());
+            }
+            for x in [place[0], place[1], place[2], 0.0] {
+                vertices.extend(((x * 32767.0) as i16).to_le_bytes());
+            }
+            vertices.extend([ar, ag, ab, shine, dr, dg, db, 255, sr, sg, sb, 255]);
+            if i < rings {
+                let [a, b] = [i * across + k, i * across + (k + 1) % across];
+                let [c, d] = [a + across, b + across];
+                for corner in [a, c, b, b, c, d] {
+                    triangles.extend(corner.to_le_bytes());
+                }
+            }
+        }
+    }
+    (vertices, triangles)
+}
+
+#[test]
+fn mesh_takes_the_place_of_soft_elements_alone() {
+    let lights = vec![Light {
+        kind: LightKind::Distant {
+            towards: DVec3::new(-1.0, 0.4, 0.8).normalize(),
+        },
+        colour: [0.8, 0.7, 0.9],
+        shadow: true,
+        size: 0.0,
+    }];
+    let mut scene = ball(shiny(), lights.clone());
+    scene.flesh.push(Flesh {
+        blobbiness: -2.0,
+        ..Flesh::default()
+    });
+    scene.elements[0].flesh = Some(0);
+    // A hard ball beside it.
+    let aside = DVec3::new(1.6, 1.6, 0.0);
+    scene.elements.push(element(
+        Shape::Sphere {
+            center: aside,
+            radius: 0.4,
+        },
+        0,
+    ));
+    let (vertices, triangles) = round(60, looks(&scene)[0]);
+    let (origin, unit) = (DVec3::new(0.1, -0.1, 0.0), 0.5);
+    let mesh = Mesh {
+        vertices: &vertices,
+        triangles: &triangles,
+        origin,
+        unit,
+    };
+    assert_eq!(vertices.len() % VERTEX, 0);
+    let size = [160, 160];
+    for gpu in gpus() {
+        let mut draft = Draft::new(&gpu.device, &gpu.queue);
+        draft.set_sampling(Sampling::One);
+        draft.set_scene(&gpu.device, &gpu.queue, &scene);
+        let before = gpu.render(&mut draft, &scene.camera, size);
+        assert!(draft.set_mesh(&gpu.device, &gpu.queue, Some(&mesh)));
+        let picture = gpu.render(&mut draft, &scene.camera, size);
+        let projection = scene.camera.projection(size[0], size[1]);
+        let mut counts = [0; 3];
+        for y in 0..size[1] {
+            for x in 0..size[0] {
+                let share = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0;
+                let ray = projection.world_from_view
+                    * DVec3::new(
+                        share(x, size[0]) * projection.half_width,
+                        -share(y, size[1]) * projection.half_height,
+                        -1.0,
+                    );
+                let ray = ray.normalize();
+                // Where the ray meets a ball, and how near it passes the middle, in radii.
+                let meet = |center: DVec3, radius: f64| {
+                    let to = projection.eye - center;
+                    let nearest = to - ray * to.dot(ray);
+                    let off = nearest.length() / radius;
+                    let half = (1.0 - off * off).max(0.0).sqrt() * radius;
+                    (off, (nearest - ray * half) / radius)
+                };
+                let (off, normal) = meet(origin, unit);
+                let (beside, _) = meet(aside, 0.4);
+                let pixel = picture.at(x, y);
+                if off < 0.95 {
+                    let expected = phong(normal, ray, &lights);
+                    let near =
+                        (0..3).all(|i| (pixel[i] - expected[i].clamp(0.0, 1.0)).abs() < 0.02);
+                    assert!(near, "{} {x} {y}: {pixel:?} {expected:?}", gpu.name);
+                    counts[0] += 1;
+                } else if off > 1.05 && beside > 1.05 {
+                    assert!(close(pixel, [0.1, 0.2, 0.3]), "{x} {y} {pixel:?}");
+                    counts[1] += 1;
+                } else if beside < 0.95 {
+                    assert_eq!(pixel, before.at(x, y), "the hard ball stays");
+                    counts[2] += 1;
+                }
+            }
+        }
+        assert!(counts.iter().all(|count| *count > 400), "{counts:?}");
+        // Without it, and with one that is none, the offset surfaces are back.
+        let mut broken = triangles.clone();
+        broken[4..8].copy_from_slice(&u32::MAX.to_le_bytes());
+        let broken = Mesh {
+            triangles: &broken,
+            ..mesh
+        };
+        let empty = Mesh {
+            triangles: &[],
+            ..mesh
+        };
+        let endless = Mesh {
+            unit: f64::NAN,
+            ..mesh
+        };
+        for none in [None, Some(&broken), Some(&empty), Some(&endless)] {
+            draft.set_mesh(&gpu.device, &gpu.queue, Some(&mesh));
+            assert!(!draft.set_mesh(&gpu.device, &gpu.queue, none));
+            let again = gpu.render(&mut draft, &scene.camera, size);
+            assert!(again.pixels == before.pixels);
+        }
     }
 }

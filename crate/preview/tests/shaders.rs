@@ -24,7 +24,7 @@ fn programs() -> BTreeMap<String, String> {
     for (name, text) in &mut files {
         match name.as_str() {
             "resolve.wgsl" => {}
-            "backdrop.wgsl" => *text = format!("{view}{text}"),
+            "backdrop.wgsl" | "mesh.wgsl" => *text = format!("{view}{text}"),
             _ => *text = format!("{view}{element}{text}"),
         }
     }
@@ -41,6 +41,7 @@ fn shaders_are_valid_and_translate_to_webgl2() {
             "arc.wgsl",
             "backdrop.wgsl",
             "cylinder.wgsl",
+            "mesh.wgsl",
             "patch.wgsl",
             "plane.wgsl",
             "resolve.wgsl",

@@ -556,14 +556,20 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
     kept
 }
 
-fn applied(text: &str, mut edits: Vec<Edit>) -> String {
-    edits.sort_by(|a, b| {
-        let place = |edit: &Edit| edit.0.start;
-        place(a).cmp(&place(b)).then(a.1.total_cmp(&b.1))
+fn applied(text: &str, edits: Vec<Edit>) -> String {
+    let mut order: Vec<usize> = (0..edits.len()).collect();
+    // The last first, so that no place moves under another.
+    field::heap_sort(&mut order, |a, b| {
+        let ((a_range, a_rank, _), (b_range, b_rank, _)) = (&edits[*a], &edits[*b]);
+        let by_place = b_range.start.cmp(&a_range.start);
+        by_place
+            .then(b_rank.total_cmp(a_rank))
+            .then(b.cmp(a))
+            .is_lt()
     });
     let mut text = text.to_owned();
-    for (range, _, with) in edits.into_iter().rev() {
-        text.replace_range(range, &with);
+    for (range, _, with) in order.into_iter().map(|i| &edits[i]) {
+        text.replace_range(range.clone(), with);
     }
     text
 }

@@ -90,7 +90,10 @@ impl App {
                 self.warn_if_refused(result);
             }
             Command::RemoveAsset(name) => self.remove_asset(&name, now),
-            Command::Hold => session.hold(),
+            Command::Hold => {
+                session.hold();
+                self.live.want();
+            }
             Command::Release => session.release(),
             Command::Undo => {
                 let place = session.undo();
@@ -188,6 +191,9 @@ impl App {
             Command::SetCamera(camera) => {
                 session.set_camera(camera);
                 self.settings.turned = true;
+                if camera.is_some() {
+                    self.live.want();
+                }
             }
             Command::ShowAll => {
                 if let Some(scene) = session.scene() {
@@ -269,12 +275,13 @@ impl App {
     fn carry_out_on_works(&mut self, ctx: &Context, command: Command, now: f64) {
         match command {
             Command::OpenExample(index) => {
-                let files = examples::ALL.get(index).map_or(&[][..], |e| e.files);
-                if files.is_empty() {
-                    let result = self.work.open_example(index, Vec::new());
-                    self.opened_or(ctx, result);
-                } else {
-                    self.fetch_example(index, files);
+                let example = examples::ALL.get(index).filter(|e| e.files.is_empty());
+                match example.and_then(|example| example.text) {
+                    Some(text) => {
+                        let result = self.work.open_example(index, text, Vec::new());
+                        self.opened_or(ctx, result);
+                    }
+                    None => self.fetch_example(index),
                 }
             }
             Command::OpenSaved(id) => {

@@ -14,6 +14,7 @@ use crate::gallery::Gallery;
 use crate::hands::Hands;
 use crate::help::Help;
 use crate::keyboard::Keyboard;
+use crate::live::LiveMesh;
 use crate::mesh_export::MeshExport;
 use crate::notice::Notice;
 use crate::pencil::Pencil;
@@ -67,6 +68,26 @@ pub enum Tab {
     Fit,
 }
 
+/// What stands in for a traced picture that is not there yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StandIn {
+    /// The elements before they melt together.
+    Draft,
+    /// A mesh of their surface.
+    Mesh,
+}
+
+impl StandIn {
+    /// Its name, for the status line and for scripts.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Draft => "draft",
+            Self::Mesh => "mesh",
+        }
+    }
+}
+
 /// Parts of an app that outlive it when the window must be started anew.
 #[derive(Clone)]
 pub struct Parts {
@@ -105,6 +126,10 @@ pub struct App {
     pub(crate) work: Work,
     pub(crate) renderer: Renderer,
     pub(crate) draft: Option<Draft>,
+    /// The true surface for the draft.
+    pub(crate) live: LiveMesh,
+    /// What stands in for the traced picture on the screen.
+    pub(crate) stand_in: Option<StandIn>,
     /// The draft where there is none on the window's device.
     pub(crate) apart: Apart,
     pub(crate) backend: Backend,
@@ -207,11 +232,13 @@ impl App {
         let pool = Pool::new(move || once(&repaint));
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
-        let [repaint, repaint_fit, repaint_mesh] = [ctx.clone(), ctx.clone(), ctx.clone()];
+        let [repaint, repaint_fit, repaint_mesh, repaint_live] = [0; 4].map(|_| ctx.clone());
         let mut app = Self {
             reading: MeshReading::new(move || once(&repaint)),
             fitting: Fitting::new(move || once(&repaint_fit)),
             mesh_export: MeshExport::new(move || once(&repaint_mesh)),
+            live: LiveMesh::new(move || once(&repaint_live)),
+            stand_in: None,
             lab: Lab::new(pool.clone(), lesson),
             renderer: Renderer::new(pool),
             draft: render_state
@@ -314,6 +341,9 @@ impl App {
         if self.fitting.tick(&mut self.work.session, now) {
             self.work.session.compile();
         }
+        let rests = !matches!(self.renderer.phase(), Phase::Waiting | Phase::Tracing);
+        let is_drawn = self.draft.is_some() && self.stand_in.is_some();
+        self.live.tick(&self.work.session, now, is_drawn, rests);
         if self.settings != self.saved_settings {
             self.saved_settings = self.settings.clone();
             self.parts.shelf.borrow_mut().set_settings(&self.settings);
@@ -351,6 +381,7 @@ impl App {
             waits.push(self.renderer.wait(now));
         }
         waits.push(self.player.wait(now));
+        waits.push(self.live.wait(&self.work.session, now).filter(|_| rests));
         waits.push(self.fitting.wait(now));
         // A frame that was finished just now is taken into the film at the next tick.
         waits.push((self.saving.is_some() && self.is_finished()).then_some(0.0));
@@ -456,6 +487,7 @@ impl App {
         self.editor.reset(ctx);
         self.sliders.clear();
         self.tray.clear();
+        self.live.forget();
         self.fitting.forget();
         self.hands.clear();
         self.pencil.clear();

@@ -3,6 +3,7 @@
 
 use crate::app::{App, Tab};
 use crate::asset::Asset;
+use crate::examples;
 use crate::intake::{self, Sorted, Taken};
 use crate::notice::Notice;
 use crate::platform;
@@ -22,22 +23,33 @@ impl App {
         }
     }
 
-    /// Fetches the images and meshes of an example, which is opened when all are here. One that does not come is missed by the
-    /// text, which says so.
-    pub(crate) fn fetch_example(&self, index: usize, files: &'static [&'static str]) {
-        let inbox = Rc::new(RefCell::new((files.len(), Vec::new())));
-        for path in files {
+    /// Fetches the text, the images and the meshes of an example, which is opened when all are here. An image or a mesh that does
+    /// not come is missed by the text, which says so.
+    pub(crate) fn fetch_example(&self, index: usize) {
+        let Some(example) = examples::ALL.get(index) else {
+            return;
+        };
+        let text = example.text.is_none().then_some(&example.path);
+        let paths = text.into_iter().chain(example.files);
+        let own = example.text.map(str::to_owned);
+        let inbox = Rc::new(RefCell::new((paths.clone().count(), own, Vec::new())));
+        for path in paths {
             let (inbox, requests) = (inbox.clone(), self.parts.requests.clone());
             platform::fetch(path, move |bytes| {
-                let (missing, assets) = &mut *inbox.borrow_mut();
+                let (missing, text, assets) = &mut *inbox.borrow_mut();
                 *missing -= 1;
-                let name = path.rsplit('/').next().unwrap_or(path).to_owned();
-                assets.extend(bytes.map(|bytes| Asset {
-                    name,
-                    bytes: bytes.into(),
-                }));
+                if *path == example.path {
+                    *text = bytes.and_then(|bytes| String::from_utf8(bytes).ok());
+                } else {
+                    let name = path.rsplit('/').next().unwrap_or(path).to_owned();
+                    assets.extend(bytes.map(|bytes| Asset {
+                        name,
+                        bytes: bytes.into(),
+                    }));
+                }
                 if *missing == 0 {
-                    requests.ask(Request::Example(index, std::mem::take(assets)));
+                    let (text, assets) = (text.take(), std::mem::take(assets));
+                    requests.ask(Request::Example(index, text, assets));
                 }
             });
         }

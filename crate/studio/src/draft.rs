@@ -1,6 +1,7 @@
 //! The draft on its way to the screen: drawn when the scene, the camera or the size changed, and
 //! given to egui as a texture.
 
+use crate::live::Made;
 use crate::session::Session;
 use egui::TextureId;
 use egui_wgpu::{RenderState, wgpu};
@@ -10,9 +11,10 @@ use scene::Camera;
 pub struct Draft {
     state: RenderState,
     draft: preview::Draft,
-    /// The session's generation that was uploaded.
+    /// What was uploaded: the session's count of shapes, and the number of a mesh.
     scene: Option<u64>,
-    drawn: Option<(u64, Camera, [u32; 2])>,
+    mesh: Option<u64>,
+    drawn: Option<(u64, Option<u64>, Camera, [u32; 2])>,
     /// egui's name for the texture, and the draft's count of textures.
     texture: Option<(TextureId, u64)>,
 }
@@ -26,21 +28,34 @@ impl Draft {
             state,
             draft,
             scene: None,
+            mesh: None,
             drawn: None,
             texture: None,
         }
     }
 
-    /// The draft of the session's scene, `size` pixels large; `None` before there is a scene.
-    pub fn texture(&mut self, session: &Session, size: [f32; 2]) -> Option<TextureId> {
+    /// The draft of the session's scene, `size` pixels large, with a mesh in place of its soft elements if there is one; `None` before
+    /// there is a scene.
+    pub fn texture(
+        &mut self,
+        session: &Session,
+        size: [f32; 2],
+        mesh: Option<&Made>,
+    ) -> Option<TextureId> {
         let RenderState { device, queue, .. } = &self.state;
         let size = size.map(|side| side.clamp(1.0, 8192.0) as u32);
-        if self.scene != Some(session.generation()) {
+        if self.scene != Some(session.shape()) {
             let scene = session.scene()?;
             self.draft.set_scene(device, queue, &scene);
-            self.scene = Some(session.generation());
+            self.scene = Some(session.shape());
         }
-        let wanted = (session.generation(), session.camera(), size);
+        let number = mesh.map(|made| made.number);
+        if self.mesh != number {
+            self.mesh = number;
+            let mesh = mesh.map(Made::mesh);
+            self.draft.set_mesh(device, queue, mesh.as_ref());
+        }
+        let wanted = (session.shape(), number, session.camera(), size);
         if self.drawn != Some(wanted) {
             self.drawn = Some(wanted);
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
@@ -48,7 +63,7 @@ impl Draft {
             });
             let view = self
                 .draft
-                .render(device, queue, &mut encoder, &wanted.1, size)
+                .render(device, queue, &mut encoder, &wanted.2, size)
                 .clone();
             queue.submit([encoder.finish()]);
             let made = self.draft.generation();

@@ -12,8 +12,11 @@ pub struct Example {
     pub about: &'static str,
     /// Its file name.
     pub name: &'static str,
-    /// Its text.
-    pub text: &'static str,
+    /// Address of its text, a file beside the page.
+    pub path: &'static str,
+    /// Its text, where it must be there at once: that of the first visit, and of sculptures. All others are fetched when they are
+    /// opened, so that no visitor waits for them.
+    pub text: Option<&'static str>,
     /// Address of its thumbnail, a PNG file beside the page: fetched when the gallery is opened, as few
     /// visits open it.
     pub thumbnail: &'static str,
@@ -32,10 +35,10 @@ impl Example {
         words.iter().all(|word| text.contains(word))
     }
 
-    /// As a project.
+    /// A project of its text, and of the strokes beside it.
     #[must_use]
-    pub fn project(&self) -> Project {
-        let own = (self.name, self.text);
+    pub fn project(&self, text: &str) -> Project {
+        let own = (self.name, text);
         let all = core::iter::once(&own).chain(self.texts);
         let file = |(name, text): &(&str, &str)| File {
             name: (*name).to_owned(),
@@ -67,10 +70,25 @@ macro_rules! example {
             title: $title,
             about: $about,
             name: concat!($name, ".rat"),
-            text: include_str!(concat!("../../../www/examples/", $name, ".rat")),
+            path: concat!("examples/", $name, ".rat"),
+            text: None,
             thumbnail: concat!("examples/", $name, ".png"),
             texts: &[],
             files: &[$(concat!("examples/", $file)),*],
+        }
+    };
+}
+
+/// An example whose text is part of the program.
+macro_rules! built_in {
+    ($group:ident, $title:literal, $about:literal, $name:literal) => {
+        Example {
+            text: Some(include_str!(concat!(
+                "../../../www/examples/",
+                $name,
+                ".rat"
+            ))),
+            ..example!($group, $title, $about, $name)
         }
     };
 }
@@ -83,7 +101,7 @@ macro_rules! sculpted {
                 concat!($name, ".strokes"),
                 include_str!(concat!("../../../www/examples/", $name, ".strokes")),
             )],
-            ..example!(SCULPTED, $title, $about, $name)
+            ..built_in!(SCULPTED, $title, $about, $name)
         }
     };
 }
@@ -99,8 +117,8 @@ const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// All of them, group by group. The first one is what a first visit shows.
 #[rustfmt::skip]
-pub const ALL: [Example; 57] = [
-    example!(SEA, "Tide line", "a cowrie, two starfish and pebbles", "tide"),
+pub static ALL: [Example; 57] = [
+    built_in!(SEA, "Tide line", "a cowrie, two starfish and pebbles", "tide"),
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
@@ -224,7 +242,10 @@ mod tests {
                     bytes: crate::platform::read(path).expect(path).into(),
                 })
                 .collect();
-            let compiled = rats::compile_at(&example.project(), &assets, 0.0);
+            let text = crate::platform::read(example.path).expect(example.path);
+            let text = String::from_utf8(text).expect(example.path);
+            assert!(example.text.is_none_or(|own| own == text));
+            let compiled = rats::compile_at(&example.project(&text), &assets, 0.0);
             let messages: Vec<&str> = compiled
                 .diagnostics
                 .iter()

@@ -87,6 +87,12 @@ impl<T: Snapshot> History<T> {
         Self::step(&mut self.future, &mut self.past, &mut self.open, present)
     }
 
+    /// The states that [`History::undo`] and [`History::redo`] would go to.
+    #[must_use]
+    pub fn next(&self) -> [Option<&T>; 2] {
+        [self.past.last(), self.future.last()]
+    }
+
     /// Whether there is a step to undo.
     #[must_use]
     pub fn can_undo(&self) -> bool {

@@ -1,7 +1,7 @@
 //! Layout of the page. Wide: text on the left, picture on the right, with a split
 //! that can be dragged. Narrow: the picture on top, and text, sliders and problems in turn below.
 
-use crate::app::{App, Dialog, Tab};
+use crate::app::{App, Dialog, StandIn, Tab};
 use crate::command::Command;
 use crate::hands::Around;
 use crate::icon::{self, Icon};
@@ -65,6 +65,7 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
                 ui,
                 &app.renderer,
                 app.backend,
+                app.stand_in,
                 enabled,
                 reading,
                 narrow,
@@ -253,7 +254,7 @@ fn show_choice(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
             (
                 Show::Draft,
                 "Draft",
-                "Only the instant draft: shapes before they melt together",
+                "Only the instant draft: shapes before they melt together; once you turn or drag, a mesh of the surface where it comes soon enough",
             ),
             (Show::Traced, "Traced", "Only the ray-traced picture"),
         ] {
@@ -373,14 +374,20 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         ui.ctx().request_repaint_after_secs(view::SOON as f32);
     }
     let session = &app.work.session;
+    let mut stand_in = StandIn::Draft;
     let draft = if view::needs_draft(app.settings.show, session, &app.renderer, slow, now) {
         match &mut app.draft {
-            Some(draft) => draft.texture(session, app.place),
+            Some(draft) => {
+                let mesh = app.live.shown(session, now);
+                stand_in = mesh.map_or(StandIn::Draft, |_| StandIn::Mesh);
+                draft.texture(session, app.place, mesh)
+            }
             None => app.apart.texture(ui.ctx(), session, app.place),
         }
     } else {
         None
     };
+    app.stand_in = draft.map(|_| stand_in);
     let scenery = Scenery {
         session,
         renderer: &app.renderer,

@@ -44,6 +44,7 @@ pub mod intake;
 pub mod keyboard;
 pub mod lamp;
 pub mod layout;
+mod live;
 pub mod marks;
 pub mod mesh_export;
 mod mesh_panel;

@@ -34,11 +34,16 @@ impl App {
                 answers.push(Box::new(move || answer(result)));
             }
             Request::Files(taken) => self.take_in(ctx, taken, now),
-            Request::Example(index, assets) => {
-                let result = self.work.open_example(index, assets);
+            Request::Example(index, Some(text), assets) => {
+                let result = self.work.open_example(index, &text, assets);
                 self.opened_or(ctx, result);
             }
-            Request::SculptModel(result) => self.sculpt_mesh(ctx, result),
+            Request::Example(..) => {
+                let text = "This example could not be loaded. Check the connection and try again; your work stays open.";
+                self.dialog = None;
+                self.notice = Some(Notice::trouble(text));
+            }
+            Request::SculptModel(result) => self.sculpt_mesh(result, now),
             Request::Videos(formats) => self.videos = Some(formats),
             Request::SetCamera(camera) => self.work.session.set_camera(camera),
             Request::Picture(answer) => answer(self.renderer.image()),
@@ -107,6 +112,7 @@ impl App {
         let texture = self.renderer.texture();
         state.fresh = session.is_compiled()
             && texture.is_some_and(|(_, generation)| generation == session.generation());
+        state.stand_in = self.stand_in.map(crate::app::StandIn::id);
         state.timings.coarse = self.renderer.timings().coarse;
         state.timings.done = self.renderer.timings().done;
         state.picture = self.renderer.image().map(|image| report::Size {

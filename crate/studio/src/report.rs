@@ -30,6 +30,8 @@ pub struct Report {
     pub fresh: bool,
     /// How many of the diagnostics are errors.
     pub errors: usize,
+    /// What stands in for the picture on the screen: `draft` or `mesh`.
+    pub stand_in: Option<&'static str>,
     /// Elements of the scene that the text now makes.
     pub elements: usize,
     /// Messages of the compiler.

@@ -27,8 +27,8 @@ pub enum Request {
     Load(Project, Answer),
     /// Take in files that the user dropped or chose.
     Files(Vec<Taken>),
-    /// Open an example of the gallery with its images and meshes, which were fetched.
-    Example(usize, Vec<Asset>),
+    /// Open an example of the gallery with its text, `None` if that did not come, and its images and meshes, which were fetched.
+    Example(usize, Option<String>, Vec<Asset>),
     /// Sculpt the mesh of the model, as a PLY file, or say why there is none.
     SculptModel(Result<Vec<u8>, String>),
     /// The browser has these encoders of videos.

@@ -237,36 +237,34 @@ impl App {
             .make_for(session, film, "model", order, taker);
     }
 
-    /// Opens the mesh of the model as a new work.
-    pub(crate) fn sculpt_mesh(&mut self, ctx: &Context, result: Result<Vec<u8>, String>) {
-        let opened = result.and_then(|bytes| {
-            let name = format!("{} in clay", self.work.name);
-            let asset = crate::intake::asset("model.ply", bytes)?;
+    /// Puts the mesh of the model in the place of its texts, to be sculpted: one step, which undo takes back.
+    pub(crate) fn sculpt_mesh(&mut self, result: Result<Vec<u8>, String>, now: f64) {
+        let session = &mut self.work.session;
+        let put = result.and_then(|bytes| {
+            let asset = crate::intake::asset(&session.free_name("model.ply"), bytes)?;
             let text = |name: &str, text: String| File {
                 name: name.to_owned(),
                 text,
             };
-            let strokes = text(FIRST, String::from("strokes 1\nstart file model.ply\n"));
+            let start = format!("strokes 1\nstart file {}\n", asset.name);
+            let strokes = text(FIRST, start);
             // Colours of the model, which the file has for each vertex, take the place of clay's.
             let head = &asset.bytes[..asset.bytes.len().min(400)];
             let is_coloured = head.windows(5).any(|word| word == b" red\n");
             let diffuse = if is_coloured { "White" } else { CLAY };
-            let main = text(
-                "main.rat",
-                format!("{STUDIO}\n{}", shown("", FIRST, diffuse)),
-            );
-            let project = Project {
-                name,
-                texts: vec![main, strokes],
-                assets: vec![asset],
-                ..Project::default()
-            };
-            self.work.open_files(project)
+            let name = &session.project().files[0].name;
+            let main = text(name, format!("{STUDIO}\n{}", shown("", FIRST, diffuse)));
+            session
+                .put_assets(vec![asset])
+                .and_then(|()| session.set_files(vec![main, strokes], now))
+                .map_err(|refused| refused.to_string())
         });
-        match opened {
+        match put {
             Ok(()) => {
-                platform::set_hash("");
-                self.opened(ctx);
+                // The clay is as large as the shapes that one may begin with, wherever the model was looked at from.
+                session.set_camera(None);
+                self.editor.open(0);
+                self.hands.clear();
                 self.open_sculpture(FIRST);
             }
             Err(trouble) => self.notice = Some(Notice::trouble(trouble)),
@@ -301,6 +299,7 @@ impl App {
             pressure: platform::pen_pressure(),
             traced: traced.map(|((texture, _), image)| (texture.id(), image.size)),
             errors: session.errors(),
+            depth: [session.can_undo(), session.can_redo()],
         };
         let mut wishes = Vec::new();
         modeling::show(place, &outside, ui, &mut wishes);
@@ -317,6 +316,8 @@ impl App {
                 edge,
             },
             modeling::Command::Fit => Command::FitSculpture(name.clone()),
+            modeling::Command::Undo => Command::Undo,
+            modeling::Command::Redo => Command::Redo,
             modeling::Command::Close => Command::CloseSculpt,
             modeling::Command::New => Command::NewSculpture,
             modeling::Command::SetTheme(choice) => Command::SetTheme(choice),
@@ -340,10 +341,7 @@ impl App {
             let start = start_of(session, name, &text);
             rats::keep_sculpted(&text, start.as_ref(), mesh);
         }
-        session.end_step();
-        let result = session.set_text(file, text, now);
-        session.end_step();
-        if let Err(refused) = result {
+        if let Err(refused) = session.step_text(file, text, now) {
             // What is on the screen goes back to what is kept.
             self.notice = Some(Notice::trouble(refused.to_string()));
         }
@@ -423,7 +421,7 @@ impl App {
             let label = Button::new(RichText::new("Sculpt this").size(14.5));
             let button = ui
                 .add(label)
-                .on_hover_text("The model as it is drawn is meshed first");
+                .on_hover_text("The model as it is drawn is meshed first; undo brings it back");
             places::note(ui.ctx(), "begin this", button.rect);
             if button.clicked() {
                 commands.push(Command::SculptModel);

@@ -1,9 +1,9 @@
 //! The user's work without any window: the project, its undo steps, what the compiler
 //! says about it, the last scene that could be drawn, and the camera chosen by hand.
 //!
-//! Two counters tell others what changed: [`Session::revision`] rises with every change of the text,
-//! [`Session::generation`] with every change of what is to be drawn. Times are seconds on any clock
-//! that never goes back.
+//! Three counters tell others what changed: [`Session::revision`] rises with every change of the text,
+//! [`Session::generation`] with every change of what is to be drawn, [`Session::shape`] with those that are no mere turn of the camera.
+//! Times are seconds on any clock that never goes back.
 
 use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
@@ -128,6 +128,7 @@ pub struct Session {
     camera: Option<Camera>,
     revision: u64,
     generation: u64,
+    shape: u64,
     enabled: bool,
     stale: bool,
     compile_seconds: f64,
@@ -148,6 +149,7 @@ impl Session {
             camera: None,
             revision: 0,
             generation: 0,
+            shape: 0,
             enabled: compile,
             stale: false,
             compile_seconds: 0.0,
@@ -218,6 +220,45 @@ impl Session {
         }
         self.history.record(&self.project, now);
         self.project.files[file].text = text;
+        self.changed();
+        Ok(())
+    }
+
+    /// Changes the text of one file as a step of its own. If the last step led here from just that state, or the next one leads there, it
+    /// is undone or redone: whoever goes back, there is one history.
+    ///
+    /// # Errors
+    /// If the project would become too long; then nothing changes.
+    pub fn step_text(&mut self, file: usize, text: String, now: f64) -> Result<(), Refused> {
+        self.end_step();
+        let is_wanted = |state: &&Project| {
+            let mut pairs = state.files.iter().zip(&self.project.files).enumerate();
+            state.files.len() == self.project.files.len()
+                && pairs.all(|(i, (new, old))| {
+                    new.name == old.name && new.text == *if i == file { &text } else { &old.text }
+                })
+        };
+        let [before, after] = self.history.next().map(|s| s.filter(is_wanted).is_some());
+        if before {
+            self.undo();
+        } else if after {
+            self.redo();
+        } else {
+            self.set_text(file, text, now)?;
+            self.end_step();
+        }
+        Ok(())
+    }
+
+    /// Replaces all files. One undo step.
+    ///
+    /// # Errors
+    /// If there would be too many, or too much text; then nothing changes.
+    pub fn set_files(&mut self, files: Vec<rats::File>, now: f64) -> Result<(), Refused> {
+        let project = Project { files };
+        check_size(&project)?;
+        self.whole_step(now);
+        self.project = project;
         self.changed();
         Ok(())
     }
@@ -555,6 +596,12 @@ impl Session {
         self.generation
     }
 
+    /// Rises with every change of what [`Session::scene`] gives but for a camera chosen by hand.
+    #[must_use]
+    pub fn shape(&self) -> u64 {
+        self.shape
+    }
+
     /// Whether texts are compiled. False after a start that failed, until the user asks.
     #[must_use]
     pub fn enabled(&self) -> bool {
@@ -605,6 +652,7 @@ impl Session {
                 .is_some_and(|good| same_picture(good, scene));
             self.good = Some(scene.clone());
             self.generation += u64::from(!same);
+            self.shape += u64::from(!same);
         }
     }
 
@@ -731,6 +779,12 @@ mod tests {
         assert_eq!(session.scene().unwrap().camera, chosen);
         session.set_camera(None);
         assert_eq!(session.camera().eye, glam::DVec3::splat(9.0));
+        let shape = session.shape();
+        session.set_camera(Some(chosen));
+        assert_eq!(session.shape(), shape);
+        edit(&mut session, "surface a\nsphere a 1, 0 0 0\n", 2.0);
+        assert_eq!(session.shape(), shape + 1);
+        session.set_camera(None);
         let broken = Camera {
             fov: f64::NAN,
             ..chosen
@@ -841,6 +895,50 @@ mod tests {
         session.undo();
         assert_eq!(session.text(0), TEXT);
         assert_eq!(session.project().files.len(), 1);
+    }
+
+    #[test]
+    fn steps_back_and_forth_are_one_history() {
+        let mut session = session(TEXT);
+        let file = |text: &str| File {
+            name: String::from("main.rat"),
+            text: text.to_owned(),
+        };
+        let strokes = File {
+            name: String::from("a.strokes"),
+            text: String::from("strokes 1\n"),
+        };
+        let project = session.project().clone();
+        let files = vec![file("# other\n"), strokes];
+        session.set_files(files, 1.0).unwrap();
+        for text in ["strokes 1\na\n", "strokes 1\na\nb\n"] {
+            session.step_text(1, text.to_owned(), 1.1).unwrap();
+        }
+        // Back to the first stroke, forth and back again: no steps of their own.
+        for text in ["strokes 1\na\n", "strokes 1\na\nb\n", "strokes 1\na\n"] {
+            session.step_text(1, text.to_owned(), 1.2).unwrap();
+            assert_eq!(session.text(1), text);
+        }
+        assert!(session.can_redo());
+        session.undo();
+        assert_eq!(session.text(1), "strokes 1\n");
+        session.undo();
+        assert_eq!(session.project(), &project);
+        assert!(!session.can_undo());
+        for _ in 0..3 {
+            session.redo();
+        }
+        assert_eq!(session.text(1), "strokes 1\na\nb\n");
+        // Another stroke than the one that was undone is a step.
+        session.undo();
+        session
+            .step_text(1, String::from("strokes 1\na\nc\n"), 2.0)
+            .unwrap();
+        assert!(!session.can_redo());
+        let long = "x".repeat(MAX_TEXT + 1);
+        assert!(session.step_text(1, long.clone(), 3.0).is_err());
+        assert!(session.set_files(vec![file(&long)], 3.0).is_err());
+        assert_eq!(session.text(1), "strokes 1\na\nc\n");
     }
 
     #[test]

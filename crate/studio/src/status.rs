@@ -1,6 +1,7 @@
 //! The strip at the bottom: how far the picture is, and what works on it.
 
 use crate::Backend;
+use crate::app::StandIn;
 use crate::command::Command;
 use crate::numerals::{count, duration};
 use crate::render::{Phase, Renderer, pass_label};
@@ -44,6 +45,7 @@ pub fn show(
     ui: &mut Ui,
     renderer: &Renderer,
     backend: Backend,
+    stand_in: Option<StandIn>,
     enabled: bool,
     reading: Option<(&str, f32)>,
     narrow: bool,
@@ -98,7 +100,19 @@ pub fn show(
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(12.0);
-            for (text, tip) in facts(renderer, backend, narrow) {
+            let on_screen = stand_in.map(|stand_in| {
+                let tip = match stand_in {
+                    StandIn::Draft => {
+                        "The shapes before they melt together stand in for the traced picture"
+                    }
+                    StandIn::Mesh => "A mesh of the surface stands in for the traced picture",
+                };
+                (stand_in.id().to_owned(), tip.to_owned())
+            });
+            for (text, tip) in facts(renderer, backend, narrow)
+                .into_iter()
+                .chain(on_screen)
+            {
                 let fact = ui.add(
                     egui::Label::new(RichText::new(text).color(palette.weak).size(12.5))
                         .sense(Sense::hover()),

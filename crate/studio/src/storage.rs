@@ -142,7 +142,9 @@ impl Shelf {
                 })
             })
             .collect();
-        entries.sort_by(|a, b| b.saved.total_cmp(&a.saved));
+        field::heap_sort(&mut entries, |a, b| {
+            b.saved.total_cmp(&a.saved).then(a.id.cmp(&b.id)).is_lt()
+        });
         entries
     }
 

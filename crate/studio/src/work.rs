@@ -65,7 +65,8 @@ impl Work {
         let last = work.shelf.borrow().last();
         let own = last.is_some_and(|id| work.open_saved(&id).is_ok());
         if !own {
-            work.begin_example(0, Vec::new());
+            let first = examples::ALL[0].text.unwrap_or_default();
+            work.begin_example(0, first, Vec::new());
         }
         let trouble = work.open_link(hash).err();
         if compile {
@@ -105,13 +106,18 @@ impl Work {
         Ok(true)
     }
 
-    /// Opens an example with its images and meshes.
+    /// Opens an example with its text, its images and its meshes.
     ///
     /// # Errors
     /// If the open work cannot be written; then it stays open.
-    pub fn open_example(&mut self, index: usize, assets: Vec<Asset>) -> Result<(), String> {
+    pub fn open_example(
+        &mut self,
+        index: usize,
+        text: &str,
+        assets: Vec<Asset>,
+    ) -> Result<(), String> {
         self.leave()?;
-        self.begin_example(index, assets);
+        self.begin_example(index, text, assets);
         Ok(())
     }
 
@@ -301,10 +307,10 @@ impl Work {
         Ok(shelf.opened().filter(|_| own).map(str::to_owned))
     }
 
-    fn begin_example(&mut self, index: usize, assets: Vec<Asset>) {
+    fn begin_example(&mut self, index: usize, text: &str, assets: Vec<Asset>) {
         if let Some(example) = examples::ALL.get(index) {
             let kept = Kept {
-                project: example.project(),
+                project: example.project(text),
                 assets,
                 ..Kept::default()
             };

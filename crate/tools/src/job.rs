@@ -4,6 +4,7 @@ use crate::fitting;
 use crate::message::{
     CoatJob, Coated, Job, MeshFacts, MeshJob, Meshed, Output, RigJob, WriteJob, Written,
 };
+use crate::view;
 use core::ops::ControlFlow;
 use mesh::{Aabb, Export, Format, Part, TriangleMesh};
 
@@ -125,6 +126,7 @@ pub fn run(job: Job, progress: &mut Progress<'_>) -> Result<Output, String> {
         }
         Job::Mesh(job) => mesh_scene(*job, progress).map(|meshed| Output::Meshed(Box::new(meshed))),
         Job::Write(job) => write(*job).map(Output::Written),
+        Job::View(job) => view::run(*job, progress).map(|view| Output::View(Box::new(view))),
     }
 }
 

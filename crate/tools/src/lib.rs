@@ -25,9 +25,10 @@ mod entry;
 mod fitting;
 mod job;
 pub mod message;
+mod view;
 
 pub use job::{Progress, run};
 pub use message::{
-    Answer, CoatJob, Coated, Controls, FitJob, FitStep, Job, MeshFacts, MeshJob, Meshed, Output,
-    Request, RigJob, WriteJob, Written,
+    Answer, CoatJob, Coated, Controls, Detail, FitJob, FitStep, Job, MeshFacts, MeshJob, Meshed,
+    Output, Request, RigJob, ViewJob, ViewMesh, WriteJob, Written,
 };

@@ -35,6 +35,8 @@ pub enum Job {
     Write(Box<WriteJob>),
     /// Coat the skeletons of a scene.
     Coat(Box<CoatJob>),
+    /// Mesh the soft surfaces of a scene for the eye.
+    View(Box<ViewJob>),
 }
 
 /// A mesh to fit.
@@ -92,6 +94,54 @@ pub struct Coated {
     pub parts: Vec<(String, TriangleMesh)>,
     /// For the next job.
     pub coatings: Vec<Coating>,
+}
+
+/// How near the mesh of a [`ViewJob`] is to the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Detail {
+    /// As near as can be had while a hand moves.
+    Coarse,
+    /// As near as the eye sees.
+    Fine,
+}
+
+/// A scene whose soft surfaces are to be seen while a hand moves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ViewJob {
+    /// The scene.
+    pub scene: Scene,
+    /// For each of its finishes the parameters that the view shows, 0 … 1, which are mixed by the shares of the elements: ambient,
+    /// diffuse and specular colours, and the shine.
+    pub looks: Vec<[f32; 10]>,
+    /// How near.
+    pub detail: Detail,
+    /// [`ViewMesh::coatings`] of the last job, to start from; empty at first.
+    #[serde(with = "serde_bytes")]
+    pub coatings: Vec<u8>,
+}
+
+/// A mesh for the eye: bytes as a GPU takes them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ViewMesh {
+    /// The origin of the vertices' positions in the scene.
+    pub origin: DVec3,
+    /// Length of a unit of their positions.
+    pub unit: f64,
+    /// [`ViewMesh::VERTEX`] bytes each: position (three `f32`), normal (four `i16`, parts of 32767, the last one 0), then parts of 255:
+    /// the ambient colour and the shine, the diffuse colour and 1, the specular colour and 1.
+    #[serde(with = "serde_bytes")]
+    pub vertices: Vec<u8>,
+    /// Three `u32` a triangle.
+    #[serde(with = "serde_bytes")]
+    pub triangles: Vec<u8>,
+    /// For the next job.
+    #[serde(with = "serde_bytes")]
+    pub coatings: Vec<u8>,
+}
+
+impl ViewMesh {
+    /// Bytes of a vertex.
+    pub const VERTEX: usize = 32;
 }
 
 /// A scene to be meshed, and what is wanted of it.
@@ -205,6 +255,8 @@ pub enum Output {
     Written(Written),
     /// Of [`Job::Coat`].
     Coated(Box<Coated>),
+    /// Of [`Job::View`].
+    View(Box<ViewMesh>),
 }
 
 /// A message to the worker. Jobs run one after the other, in the order of their messages; the page

@@ -50,7 +50,8 @@ pub fn drag(handle: &Handle, to: DVec3, grain: f64) -> Vec<Edit> {
             text: write(value, grain),
         });
     }
-    edits.sort_by_key(|edit| (edit.file, edit.span.start));
+    let place = |edit: &Edit| (edit.file, edit.span.start);
+    field::heap_sort(&mut edits, |a, b| place(a) < place(b));
     edits
 }
 

@@ -75,7 +75,7 @@ impl<'p, 's> Resolver<'p, 's> {
                 .iter()
                 .map(|(name, kind)| (*name, *kind))
                 .collect();
-            names.sort_unstable_by_key(|(name, _)| *name);
+            field::heap_sort(&mut names, |a, b| a.0 < b.0);
             for (name, value) in names {
                 let is_loop = frame.loops.iter().any(|(bound, _, _)| *bound == name);
                 let kind = if is_loop {

@@ -111,9 +111,9 @@ impl Cage {
         }
         let mut order: Vec<usize> = (0..handles.len()).collect();
         // The nearest last, above the others.
-        order.sort_by(|a, b| {
-            let [a, b] = [a, b].map(|i| sight.depth(handles[*i].place));
-            b.total_cmp(&a)
+        let depth = |i: &usize| sight.depth(handles[*i].place);
+        field::heap_sort(&mut order, |a, b| {
+            depth(b).total_cmp(&depth(a)).then(a.cmp(b)).is_lt()
         });
         let first = order.len().saturating_sub(MOST_KNOBS);
         for i in order.split_off(first) {

@@ -268,9 +268,10 @@ impl Hands {
         commands: &mut Vec<Command>,
     ) {
         // Points come last, above the others, which have room to move away.
-        let mut order: Vec<usize> = (0..self.handles.len()).collect();
-        order.sort_by_key(|index| self.handles[*index].kind == handles::Kind::Point);
-        for index in order {
+        let is_point = |index: &usize| self.handles[*index].kind == handles::Kind::Point;
+        let all = 0..self.handles.len();
+        let (points, others): (Vec<usize>, Vec<usize>) = all.partition(is_point);
+        for index in others.into_iter().chain(points) {
             let handle = &self.handles[index];
             let Some(at) = sight.screen(handle.place).filter(|at| rect.contains(*at)) else {
                 continue;

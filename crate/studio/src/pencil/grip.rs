@@ -131,7 +131,7 @@ impl Grip {
         if let Some(twin) = self.twin.and_then(|twin| of_node(handles, twin)) {
             add_apart(&mut edits, handles::drag(twin.0, other, grain));
         }
-        replace(edits, commands);
+        replace(&edits, commands);
         None
     }
 }
@@ -182,7 +182,7 @@ pub fn widen(
             }
         }
     }
-    replace(edits, commands);
+    replace(&edits, commands);
     None
 }
 
@@ -201,13 +201,15 @@ fn add_apart(edits: &mut Vec<assist::Edit>, more: Vec<assist::Edit>) {
 }
 
 /// From the last to the first, so that no place in the text moves under another.
-fn replace(mut edits: Vec<assist::Edit>, commands: &mut Vec<Command>) {
-    edits.sort_by_key(|edit| (edit.file, edit.span.start));
-    for edit in edits.into_iter().rev() {
+fn replace(edits: &[assist::Edit], commands: &mut Vec<Command>) {
+    let mut order: Vec<usize> = (0..edits.len()).collect();
+    let place = |i: usize| (edits[i].file, edits[i].span.start, i);
+    field::heap_sort(&mut order, |a, b| place(*a) > place(*b));
+    for edit in order.into_iter().map(|i| &edits[i]) {
         commands.push(Command::Replace {
             file: edit.file,
-            range: edit.span,
-            with: edit.text,
+            range: edit.span.clone(),
+            with: edit.text.clone(),
         });
     }
 }

@@ -44,7 +44,7 @@ impl Order {
         let compiled = session.compiled();
         let picture = (compiled.output.file(), compiled.output.saved);
         let mut read: Vec<&str> = compiled.tools.iter().flat_map(Tool::reads).collect();
-        read.sort_unstable();
+        field::heap_sort(&mut read, |a, b| a < b);
         read.dedup();
         let is_read = |name: &str| read.binary_search(&name).is_ok();
         let assets = session.assets().iter();

@@ -1,0 +1,319 @@
+//! A mesh of the model's true surface for the draft, while a hand turns the model or drags a part of it.
+//!
+//! The tools worker makes it, apart from the page's thread: coarsely, from what the last one found, while the text changes, and finely
+//! once nothing changes and no picture is traced. Until it is there, and where it would come too late to follow a hand, the
+//! draft shows the elements before they melt together. Nothing is made, nor fetched, before a hand turns or drags for
+//! the first time.
+
+use crate::session::Session;
+use pool::{ToolEvent, Tools};
+use preview::Mesh;
+use scene::{Scene, Shape};
+use tools::{Detail, Job, Output, ViewJob, ViewMesh};
+
+/// Seconds that a coarse mesh may take to be one that follows a hand.
+const QUICK: f64 = 0.15;
+/// Seconds for which such a mesh stands in for the next one.
+const LATE: f64 = 0.35;
+/// Seconds without a change before a fine mesh is made.
+const STILL: f64 = 0.5;
+/// Seconds of work after which a mesh is given up.
+const LIMIT: f64 = 15.0;
+/// Most elements of a scene that is meshed.
+const MOST: usize = 20_000;
+
+/// A mesh that is being made.
+struct Running {
+    id: u64,
+    shape: u64,
+    detail: Detail,
+    begun: f64,
+}
+
+/// A mesh that is there.
+pub struct Made {
+    /// Another one has another number.
+    pub number: u64,
+    mesh: ViewMesh,
+    /// [`Session::shape`] of its scene.
+    shape: u64,
+    detail: Detail,
+    /// When it last was, or may have been, that of the present scene.
+    current: f64,
+}
+
+impl Made {
+    /// The mesh as the draft takes it.
+    #[must_use]
+    pub fn mesh(&self) -> Mesh<'_> {
+        Mesh {
+            vertices: &self.mesh.vertices,
+            triangles: &self.mesh.triangles,
+            origin: self.mesh.origin,
+            unit: self.mesh.unit,
+        }
+    }
+}
+
+/// The mesh of the present work.
+pub struct LiveMesh {
+    tools: Tools,
+    is_wanted: bool,
+    running: Option<Running>,
+    made: Option<Made>,
+    count: u64,
+    /// What the last coarse mesh found.
+    coatings: Vec<u8>,
+    /// Seconds that it took.
+    seconds: f64,
+    /// The scene of which there is no mesh, or none that is finer.
+    hopeless: Option<u64>,
+    /// The scene seen last, and when it changed.
+    seen: (u64, f64),
+}
+
+impl LiveMesh {
+    /// Makes nothing yet. `repaint` is called when [`LiveMesh::tick`] has something to do.
+    #[must_use]
+    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
+        Self {
+            tools: Tools::new(repaint),
+            is_wanted: false,
+            running: None,
+            made: None,
+            count: 0,
+            coatings: Vec::new(),
+            seconds: f64::INFINITY,
+            hopeless: None,
+            seen: (0, 0.0),
+        }
+    }
+
+    /// A hand turns or drags: meshes are made from now on.
+    pub fn want(&mut self) {
+        self.is_wanted = true;
+    }
+
+    /// Forgets all: another work is open.
+    pub fn forget(&mut self) {
+        self.stop();
+        self.is_wanted = false;
+        self.made = None;
+        self.coatings.clear();
+        self.seconds = f64::INFINITY;
+        self.hopeless = None;
+    }
+
+    fn stop(&mut self) {
+        if let Some(running) = self.running.take() {
+            self.tools.cancel(running.id);
+        }
+    }
+
+    /// Takes in what the worker has made, and begins the next mesh. `is_drawn`: a draft is on the screen; `rests`: no picture is being
+    /// traced.
+    pub fn tick(&mut self, session: &Session, now: f64, is_drawn: bool, rests: bool) {
+        for (id, event) in self.tools.poll() {
+            if let ToolEvent::Done(result) = event
+                && let Some(running) = self.running.take_if(|running| running.id == id)
+            {
+                self.take(running, result, now);
+            }
+        }
+        let shape = session.shape();
+        if self.seen.0 != shape {
+            self.seen = (shape, now);
+        }
+        if let Some(made) = self.made.as_mut().filter(|made| made.shape == shape) {
+            made.current = now;
+        }
+        if let Some(running) = &self.running {
+            let is_old = running.shape != shape && running.detail == Detail::Fine;
+            let is_long = now - running.begun > LIMIT;
+            if is_long {
+                self.hopeless = Some(running.shape);
+            }
+            if is_old || is_long {
+                self.stop();
+            }
+        }
+        if !self.is_wanted || self.running.is_some() || self.hopeless == Some(shape) {
+            return;
+        }
+        let known = self.made.as_ref().filter(|made| made.shape == shape);
+        let detail = match known.map(|made| made.detail) {
+            None if is_drawn => Detail::Coarse,
+            Some(Detail::Coarse) if rests && now - self.seen.1 >= STILL => Detail::Fine,
+            _ => return,
+        };
+        let Some(scene) = session.scene().and_then(soft_part) else {
+            self.hopeless = Some(shape);
+            return;
+        };
+        let job = Job::View(Box::new(ViewJob {
+            looks: preview::looks(&scene),
+            scene,
+            detail,
+            coatings: self.coatings.clone(),
+        }));
+        self.running = Some(Running {
+            id: self.tools.submit(job),
+            shape,
+            detail,
+            begun: now,
+        });
+    }
+
+    fn take(&mut self, running: Running, result: Result<Output, String>, now: f64) {
+        let Ok(Output::View(mut mesh)) = result else {
+            self.hopeless = Some(running.shape);
+            return;
+        };
+        if running.detail == Detail::Coarse {
+            self.seconds = now - running.begun;
+            self.coatings = std::mem::take(&mut mesh.coatings);
+        }
+        self.count += 1;
+        self.made = Some(Made {
+            number: self.count,
+            mesh: *mesh,
+            shape: running.shape,
+            detail: running.detail,
+            current: running.begun,
+        });
+    }
+
+    /// The mesh to draw: that of the present scene, or while a hand drags and meshes are quick, the one before.
+    #[must_use]
+    pub fn shown(&self, session: &Session, now: f64) -> Option<&Made> {
+        let follows = self.seconds <= QUICK && self.hopeless != Some(session.shape());
+        let fits =
+            |made: &&Made| made.shape == session.shape() || (follows && now - made.current <= LATE);
+        self.made.as_ref().filter(fits)
+    }
+
+    /// Seconds until [`LiveMesh::tick`] has something to do, if it waits for a time.
+    #[must_use]
+    pub fn wait(&self, session: &Session, now: f64) -> Option<f64> {
+        let made = self.made.as_ref().filter(|_| self.is_wanted)?;
+        let is_next = made.shape == session.shape() && made.detail == Detail::Coarse;
+        let is_possible = self.running.is_none() && self.hopeless != Some(made.shape);
+        (is_next && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
+    }
+}
+
+/// The soft elements of a scene, and what their surfaces depend on; `None` if there are none, too many, or one that has no end.
+fn soft_part(mut scene: Scene) -> Option<Scene> {
+    let mut elements = std::mem::take(&mut scene.elements);
+    elements.retain(|element| scene.is_soft(element));
+    let is_endless = |shape: &Shape| matches!(shape, Shape::Plane { .. });
+    if elements.is_empty()
+        || elements.len() > MOST
+        || elements.iter().any(|element| is_endless(&element.shape))
+    {
+        return None;
+    }
+    Some(Scene {
+        elements,
+        images: Vec::new(),
+        moments: Vec::new(),
+        clouds: Vec::new(),
+        ..scene
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::Kept;
+    use rats::{File, Project};
+    use std::time::{Duration, Instant};
+
+    const BALLS: &str =
+        "surface a, diffuse Red, blobbiness -2\nsphere a 1, 0 0 0\nsphere a 1, 1.5 0 0\n";
+
+    fn session(text: &str) -> Session {
+        let file = File {
+            name: String::from("main.rat"),
+            text: text.to_owned(),
+        };
+        let kept = Kept {
+            project: Project { files: vec![file] },
+            ..Kept::default()
+        };
+        let mut session = Session::new(kept, true);
+        session.compile();
+        session
+    }
+
+    /// Ticks at a moment of the app's clock until nothing is being made.
+    fn settle(live: &mut LiveMesh, session: &Session, now: f64, rests: bool) {
+        let deadline = Instant::now() + Duration::from_secs(120);
+        loop {
+            live.tick(session, now, true, rests);
+            if live.running.is_none() {
+                return;
+            }
+            assert!(Instant::now() < deadline);
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    #[test]
+    fn mesh_is_made_once_a_hand_moves_and_becomes_finer_when_it_rests() {
+        let session = session(BALLS);
+        let mut live = LiveMesh::new(|| {});
+        settle(&mut live, &session, 0.0, true);
+        assert!(live.shown(&session, 0.0).is_none());
+        live.want();
+        settle(&mut live, &session, 1.0, false);
+        let coarse = live.shown(&session, 1.0).unwrap();
+        assert_eq!((coarse.number, coarse.detail), (1, Detail::Coarse));
+        assert!(coarse.mesh().triangles.len() > 100);
+        // Not while a picture is traced, nor at once.
+        settle(&mut live, &session, 9.0, false);
+        assert_eq!(live.count, 1);
+        assert!(live.wait(&session, 1.2).is_some());
+        settle(&mut live, &session, 9.0, true);
+        let fine = live.shown(&session, 9.0).unwrap();
+        assert_eq!((fine.number, fine.detail), (2, Detail::Fine));
+        settle(&mut live, &session, 99.0, true);
+        assert_eq!((live.count, live.wait(&session, 99.0)), (2, None));
+        live.forget();
+        assert!(live.shown(&session, 99.0).is_none());
+    }
+
+    #[test]
+    fn quick_mesh_stands_in_for_the_next_one_but_not_for_long() {
+        let mut session = session(BALLS);
+        let mut live = LiveMesh::new(|| {});
+        live.want();
+        settle(&mut live, &session, 1.0, false);
+        let moved = BALLS.replace("1.5", "1.6");
+        session.set_text(0, moved, 1.0).unwrap();
+        session.compile();
+        assert!(live.seconds <= QUICK && live.shown(&session, 1.1).is_some());
+        assert!(live.shown(&session, 1.1 + LATE).is_none());
+        // One that takes long never does.
+        live.seconds = 2.0 * QUICK;
+        assert!(live.shown(&session, 1.1).is_none());
+        settle(&mut live, &session, 1.2, false);
+        let followed = live.shown(&session, 1.2).unwrap();
+        assert_eq!((followed.number, followed.shape), (2, session.shape()));
+    }
+
+    #[test]
+    fn scenes_without_a_finite_surface_are_left_to_the_draft() {
+        for text in [
+            "surface a, diffuse Red\nsphere a 1, 0 0 0\n",
+            "surface a, diffuse Red, blobbiness -2\nsphere a 1, 0 0 0\nplane a, <0 -2 0>, <0 1 0>\n",
+        ] {
+            let session = session(text);
+            assert_eq!(session.errors(), 0);
+            let mut live = LiveMesh::new(|| {});
+            live.want();
+            settle(&mut live, &session, 1.0, true);
+            assert!(live.shown(&session, 1.0).is_none() && live.hopeless.is_some());
+        }
+    }
+}
