@@ -5,8 +5,8 @@ mod common;
 use common::{assert_embedded, assert_manifold, distances};
 use core::f64::consts::{PI, TAU};
 use field::{
-    Ball, BlobScale, Enclosure, Implicit, Jet, Kernel, Part, Primitive, Shaping, Skeleton, Sum,
-    Variation,
+    Ball, BlobScale, Enclosure, Implicit, Jet, Kernel, Part, Primitive, Shaping, Skeleton, Slack,
+    Sum, Variation,
 };
 use glam::DVec3;
 use mesh::Topology;

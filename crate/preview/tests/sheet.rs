@@ -170,7 +170,10 @@ fn drafts_of_all_examples_look_like_their_pictures() {
             let (plain, mesh) = drafts(gpu, &scene, traced.size);
             let off = difference(&plain, &traced);
             let near = mesh.as_ref().map(|mesh| difference(mesh, &traced));
-            println!("{name}: draft {off:.1}, mesh {near:.1?}, {:.1?}", begun.elapsed());
+            println!(
+                "{name}: draft {off:.1}, mesh {near:.1?}, {:.1?}",
+                begun.elapsed()
+            );
             let (draft_bound, mesh_bound) = bounds(name);
             if off > draft_bound || near.is_some_and(|near| near > mesh_bound) {
                 bad.push(format!("{name}: {off:.1} {near:.1?}"));
