@@ -13,24 +13,25 @@ use field::bound::SpanLength;
 use field::{Bound, Cut, THRESHOLD};
 use wide::f32x8;
 
-/// Largest error of all spans of a piece together, in T.
-const OF_SPANS: f64 = 3e-5 * THRESHOLD;
+/// Largest error of all spans of a piece together, in T …
+const OF_SPANS: f64 = 1e-4 * THRESHOLD;
+/// … and the part of what is left of it that one of them may use up.
+const SHARE: f64 = 0.125;
 /// Largest error of all that is known of a piece; beyond it this is not the way.
 const MOST_ERROR: f64 = 5e-4 * THRESHOLD;
 /// Rounding of coordinates and values in single precision.
 const SINGLE: f64 = 2.5e-7;
 /// Rounding of a polynomial's coefficients as pieces are halved, and of its values, over the sum of the coefficients' sizes.
 const COEFFICIENTS: f64 = 1e-6;
-/// Width of the beam over half a piece's length from which on halving does not bring the rays nearer to each other.
-const NARROW: f64 = 1.0;
+/// Width of the beam over half a piece's length up to which pieces are halved: shorter ones have smaller errors, but are no nearer
+/// to single primitives.
+const NARROW: f64 = 64.0;
 /// Largest number of halvings.
 const MOST_HALVINGS: u32 = 24;
 
 /// Work with the pieces of a cell.
 struct Halving<'a, 'q> {
     query: &'a FarQuery<'q>,
-    /// Error of a span up to which it is added.
-    share: f64,
     /// Whether the rays start with the piece.
     is_start: bool,
 }
@@ -50,17 +51,14 @@ impl FarBody {
         work.intervals.clear();
         work.pending.clear();
         work.pending.extend(&piece.cell.near);
-        let halving = Halving {
-            query,
-            share: OF_SPANS / work.pending.len().max(1) as f64,
-            is_start,
-        };
+        let halving = Halving { query, is_start };
         let known = Known {
             backdrop: piece.far(),
             error: piece.cell.error,
         };
+        let left = OF_SPANS;
         let all = 0..work.pending.len();
-        self.descend(&halving, piece, known, all, alive, 0, work)
+        self.descend(&halving, piece, (known, left), all, alive, 0, work)
     }
 
     /// Adds the spans of those pending primitives that are exact enough to what is known of a piece, and follows the rays if there
@@ -70,7 +68,7 @@ impl FarBody {
         &self,
         halving: &Halving<'_, '_>,
         piece: &Piece<'_>,
-        mut known: Known,
+        (mut known, mut budget): (Known, f64),
         pending: Range<usize>,
         alive: u32,
         depth: u32,
@@ -94,7 +92,8 @@ impl FarBody {
                 0.0
             };
             all += most;
-            if estimate.error <= halving.share {
+            if estimate.error <= SHARE * budget {
+                budget -= estimate.error;
                 // Where the field is T.
                 let size = estimate.magnitude.at_most(LARGE_TERM);
                 let places = misplaced * size * bound.relative_slope(near);
@@ -146,7 +145,15 @@ impl FarBody {
             let [near, far] = piece.halves();
             let [first, last] = known.halves();
             let next = depth + 1;
-            let met = self.descend(halving, &near, first, pending.clone(), alive, next, work)?;
+            let met = self.descend(
+                halving,
+                &near,
+                (first, budget),
+                pending.clone(),
+                alive,
+                next,
+                work,
+            )?;
             let later = Halving {
                 is_start: false,
                 ..*halving
@@ -155,7 +162,7 @@ impl FarBody {
             if rest == 0 {
                 met
             } else {
-                met | self.descend(&later, &far, last, pending, rest, next, work)?
+                met | self.descend(&later, &far, (last, budget), pending, rest, next, work)?
             }
         };
         work.pending.truncate(bottom);

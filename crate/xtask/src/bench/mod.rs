@@ -10,12 +10,14 @@ mod fields;
 mod fit;
 mod fused;
 mod goal;
+mod growth;
 mod memory;
 mod meshes;
 mod mirrors;
 mod models;
 mod ours;
 mod peers;
+mod plot;
 mod povray;
 mod profile;
 mod scenes;
@@ -49,6 +51,8 @@ pub enum Part {
     Certify,
     /// Where the time goes.
     Profile,
+    /// Fields that never end, and how their cost grows with the number of elements.
+    Growth,
     /// Memory of very many elements.
     Memory,
     /// The formulas of the fields.
@@ -152,6 +156,7 @@ fn title(part: Part) -> &'static str {
         Part::Browser => "The page in a browser",
         Part::Certify => "Certified",
         Part::Profile => "Where the time goes",
+        Part::Growth => "Fields without end",
         Part::Memory => "Memory",
         Part::Fields => "Fields",
         Part::Fit => "Fitted meshes",
@@ -170,6 +175,7 @@ fn measure(part: Part) -> (&'static str, Result<Piece>) {
         Part::Browser => browser::measure(),
         Part::Certify => certify::measure(),
         Part::Profile => profile::measure(),
+        Part::Growth => growth::measure(),
         Part::Memory => memory::measure(),
         Part::Fields => fields::measure().map(|piece| (Vec::new(), piece)),
         Part::Fit => fit::measure(),

@@ -256,19 +256,6 @@ fn hierarchy(scenes: &Scenes, goals: &mut Vec<Goal>, page: &mut String) -> Resul
         without.text(),
         short(ratio)
     )?;
-    *page += "What fields cost that do not end, with groups:\n\n\
-              | balls | Gaussian | Cauchy | Cauchy ÷ Gaussian |\n|--:|--:|--:|--:|\n";
-    for balls in [820, 7381] {
-        let [ends, goes_on] = ["", "-cauchy"].map(|kernel| format!("flake-{balls}{kernel}"));
-        let [ends, goes_on] = [ends, goes_on].map(|scene| scenes.dataset(&scene));
-        let mut ends = || Ok(ours::time(&scenes.sinew, &[&ends])?.seconds);
-        let mut goes_on = || Ok(ours::time(&scenes.sinew, &[&goes_on])?.seconds);
-        let [ends, goes_on] = alternate(3, [&mut ends, &mut goes_on])?;
-        let ratio = goes_on.best() / ends.best();
-        let (ends, goes_on) = (ends.text(), goes_on.text());
-        writeln!(page, "| {balls} | {ends} | {goes_on} | {} |", short(ratio))?;
-    }
-    page.push('\n');
     goals.push(Goal {
         what: "sphereflake 820, Cauchy".into(),
         against: "our own without far-field hierarchy".into(),
