@@ -497,11 +497,11 @@ fn mesh_takes_the_place_of_soft_elements_alone() {
     });
     scene.elements[0].flesh = Some(0);
     // A hard ball beside it.
-    let aside = DVec3::new(1.6, 1.6, 0.0);
+    let (aside, small) = (DVec3::new(0.95, 0.95, 0.0), 0.3);
     scene.elements.push(element(
         Shape::Sphere {
             center: aside,
-            radius: 0.4,
+            radius: small,
         },
         0,
     ));
@@ -543,7 +543,7 @@ fn mesh_takes_the_place_of_soft_elements_alone() {
                     (off, (nearest - ray * half) / radius)
                 };
                 let (off, normal) = meet(origin, unit);
-                let (beside, _) = meet(aside, 0.4);
+                let (beside, _) = meet(aside, small);
                 let pixel = picture.at(x, y);
                 if off < 0.95 {
                     let expected = phong(normal, ray, &lights);

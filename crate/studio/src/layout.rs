@@ -387,7 +387,12 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     } else {
         None
     };
-    app.stand_in = draft.map(|_| stand_in);
+    let stand_in = draft.map(|_| stand_in);
+    if app.stand_in != stand_in {
+        app.stand_in = stand_in;
+        // The strip with its name was drawn before.
+        ui.ctx().request_repaint();
+    }
     let scenery = Scenery {
         session,
         renderer: &app.renderer,

@@ -1,7 +1,6 @@
 //! A mesh of the model's true surface for the draft, while a hand turns the model or drags a part of it.
 //!
-//! The tools worker makes it, apart from the page's thread: coarsely, from what the last one found, while the text changes, and finely
-//! once nothing changes and no picture is traced. Until it is there, and where it would come too late to follow a hand, the
+//! The tools worker makes it, apart from the page's thread: coarsely while the text changes, and finely once nothing changes and no picture is traced. Until it is there, and where it would come too late to follow a hand, the
 //! draft shows the elements before they melt together. Nothing is made, nor fetched, before a hand turns or drags for
 //! the first time.
 
@@ -18,7 +17,7 @@ const LATE: f64 = 0.35;
 /// Seconds without a change before a fine mesh is made.
 const STILL: f64 = 0.5;
 /// Seconds of work after which a mesh is given up.
-const LIMIT: f64 = 15.0;
+const LIMIT: f64 = 8.0;
 /// Most elements of a scene that is meshed.
 const MOST: usize = 20_000;
 
@@ -62,9 +61,7 @@ pub struct LiveMesh {
     running: Option<Running>,
     made: Option<Made>,
     count: u64,
-    /// What the last coarse mesh found.
-    coatings: Vec<u8>,
-    /// Seconds that it took.
+    /// Seconds that the last coarse mesh took.
     seconds: f64,
     /// The scene of which there is no mesh, or none that is finer.
     hopeless: Option<u64>,
@@ -82,7 +79,6 @@ impl LiveMesh {
             running: None,
             made: None,
             count: 0,
-            coatings: Vec::new(),
             seconds: f64::INFINITY,
             hopeless: None,
             seen: (0, 0.0),
@@ -99,7 +95,6 @@ impl LiveMesh {
         self.stop();
         self.is_wanted = false;
         self.made = None;
-        self.coatings.clear();
         self.seconds = f64::INFINITY;
         self.hopeless = None;
     }
@@ -154,7 +149,6 @@ impl LiveMesh {
             looks: preview::looks(&scene),
             scene,
             detail,
-            coatings: self.coatings.clone(),
         }));
         self.running = Some(Running {
             id: self.tools.submit(job),
@@ -165,13 +159,12 @@ impl LiveMesh {
     }
 
     fn take(&mut self, running: Running, result: Result<Output, String>, now: f64) {
-        let Ok(Output::View(mut mesh)) = result else {
+        let Ok(Output::View(mesh)) = result else {
             self.hopeless = Some(running.shape);
             return;
         };
         if running.detail == Detail::Coarse {
             self.seconds = now - running.begun;
-            self.coatings = std::mem::take(&mut mesh.coatings);
         }
         self.count += 1;
         self.made = Some(Made {

@@ -25,6 +25,7 @@ mod entry;
 mod fitting;
 mod job;
 pub mod message;
+mod track;
 mod view;
 
 pub use job::{Progress, run};

@@ -115,9 +115,6 @@ pub struct ViewJob {
     pub looks: Vec<[f32; 10]>,
     /// How near.
     pub detail: Detail,
-    /// [`ViewMesh::coatings`] of the last job, to start from; empty at first.
-    #[serde(with = "serde_bytes")]
-    pub coatings: Vec<u8>,
 }
 
 /// A mesh for the eye: bytes as a GPU takes them.
@@ -134,9 +131,6 @@ pub struct ViewMesh {
     /// Three `u32` a triangle.
     #[serde(with = "serde_bytes")]
     pub triangles: Vec<u8>,
-    /// For the next job.
-    #[serde(with = "serde_bytes")]
-    pub coatings: Vec<u8>,
 }
 
 impl ViewMesh {

@@ -1,126 +1,133 @@
 //! Meshes of a scene's soft surfaces for the eye: what the page shows while a hand turns the model or drags a part of it.
 //!
-//! A coarse one is a coating, which starts from what the last one found; a fine one is within a tolerance. The result is bytes as a GPU takes
-//! them, so that the page has nothing to do with it in the frame in which it comes.
+//! The surfaces are followed through a grid from where rays from the skeletons leave them. The result is bytes as a GPU takes them, so
+//! that the page has nothing to do with it in the frame in which it comes.
 
 use crate::job::Progress;
-use crate::message::{Detail, ViewJob, ViewMesh, pack, unpack};
-use core::ops::ControlFlow;
+use crate::message::{Detail, ViewJob, ViewMesh};
+use crate::track::{jets, track};
+use field::{Implicit, THRESHOLD};
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
-use mesher::{Cage, Coating, Options};
+use mesher::{Cage, Spoke};
 use scene::{Scene, Surface};
 
-/// Largest |f − T| in the middle of a coating's edge.
-const BOUND: f64 = 0.08;
-/// Tolerance of a fine mesh, as a share of the diagonal of the surfaces' box.
-const TOLERANCE: f64 = 1e-3;
-/// Most triangles of a body's fine mesh: of a model that has more, the coating is all that is seen.
-const MOST_TRIANGLES: usize = 400_000;
+/// Sides of the grid's cells, in shares of the diagonal of the skeletons' box with their flesh: the least and the most.
+const CELLS: [f64; 2] = [1.0 / 300.0, 1.0 / 70.0];
+/// The same in radii of the thinnest part.
+const OF_RADIUS: f64 = 0.5;
+/// How much smaller cells are for a fine mesh.
+const FINER: f64 = 0.5;
+/// Most cells that a body's surface goes through.
+const MOST_CELLS: usize = 300_000;
+/// Halvings of the step of a ray in which it leaves the surface.
+const HALVINGS: usize = 5;
 
 /// Meshes the soft surfaces of a scene.
 ///
 /// # Errors
-/// If there is nothing to see, or a surface has no end or too many triangles; in words.
+/// If there is nothing to see, or too much; in words.
 pub fn run(job: ViewJob, progress: &mut Progress<'_>) -> Result<ViewMesh, String> {
     let ViewJob {
         scene,
         looks,
         detail,
-        coatings,
     } = job;
     let surfaces = scene.surfaces();
-    let (meshes, coatings) = match detail {
-        Detail::Coarse => {
-            // What cannot be read is of no use; all is found anew then.
-            let mut known: Vec<Coating> = unpack(&coatings).unwrap_or_default();
-            known.resize_with(surfaces.len(), Coating::default);
-            let mut meshes = Vec::with_capacity(surfaces.len());
-            for (i, (surface, coating)) in surfaces.iter().zip(&mut known).enumerate() {
-                let cages = Cage::of_surface(&scene, surface);
-                let coat = coating.update(surface.function(), &cages, &|_| BOUND);
-                meshes.push(coat.mesh);
-                progress.report(i as f32 / surfaces.len() as f32);
-            }
-            (meshes, pack(&known).unwrap_or_default())
-        }
-        Detail::Fine => (fine(&surfaces, progress)?, coatings),
+    let cages: Vec<Vec<Cage>> = surfaces
+        .iter()
+        .map(|surface| Cage::of_surface(&scene, surface))
+        .collect();
+    let spokes = || cages.iter().flatten().flat_map(|cage| &cage.spokes);
+    // A ray's reach is some radii; the flesh of one is less.
+    let room = |spoke: &Spoke| {
+        let reach = radius(spoke);
+        [spoke.origin - reach, spoke.origin + reach]
     };
-    let bounds = meshes.iter().map(TriangleMesh::bounds);
-    let bounds = bounds.fold(Aabb::EMPTY, |all, own| all.union(&own));
-    let unit = 0.5 * bounds.size().max_element();
-    let is_sound = unit > 0.0 && unit.is_finite() && bounds.center().is_finite();
+    let bounds = Aabb::of_points(spokes().flat_map(room));
+    let thinnest = spokes().map(radius).fold(f64::INFINITY, f64::min);
+    let size = bounds.size().length();
+    let is_sound = size > 0.0 && size.is_finite() && thinnest > 0.0;
     if !is_sound {
         return Err("there is no soft surface to see".into());
     }
+    let [least, most] = CELLS.map(|share| share * size);
+    let finer = match detail {
+        Detail::Coarse => 1.0,
+        Detail::Fine => FINER,
+    };
+    let step = finer * (OF_RADIUS * thinnest).clamp(least, most);
     let mut view = ViewMesh {
         origin: bounds.center(),
-        unit,
-        coatings,
+        unit: 0.5 * size,
         ..ViewMesh::default()
     };
-    for (surface, mesh) in surfaces.iter().zip(&meshes) {
-        add(&mut view, &scene, &looks, surface, mesh);
+    for (i, (surface, cages)) in surfaces.iter().zip(&cages).enumerate() {
+        let mut seeds = Vec::new();
+        for cage in cages {
+            seeds.extend(exits(surface.function(), &cage.spokes));
+        }
+        progress.report((i as f32 + 0.3) / surfaces.len() as f32);
+        let mesh = track(surface.function(), &seeds, step, MOST_CELLS)?;
+        progress.report((i as f32 + 0.8) / surfaces.len() as f32);
+        add(&mut view, &scene, &looks, surface, &mesh);
+    }
+    if view.triangles.is_empty() {
+        return Err("there is no soft surface to see".into());
     }
     progress.report(1.0);
     Ok(view)
 }
 
-/// Meshes within the tolerance.
-fn fine(surfaces: &[Surface], progress: &mut Progress<'_>) -> Result<Vec<TriangleMesh>, String> {
-    let count = 2.0 * surfaces.len() as f32;
-    let mut done = 0.0;
-    let mut part =
-        |run: &mut dyn FnMut(&mut mesher::Progress<'_>) -> Result<(), mesher::MeshError>| {
-            let mut report = |step: mesher::Step| {
-                progress.report((done + step.fraction) / count);
-                ControlFlow::Continue(())
-            };
-            let result = run(&mut mesher::Progress::new(&mut report));
-            done += 1.0;
-            result.map_err(|error| error.to_string())
-        };
-    let mut domains = Vec::with_capacity(surfaces.len());
-    let mut all = Aabb::EMPTY;
-    for surface in surfaces {
-        let function = surface.function();
-        let Some(ball) = function.support() else {
-            return Err("the surface has no end".into());
-        };
-        let within = mesher::box_of(ball);
-        let mut hull = None;
-        if ball.radius > 0.0 {
-            part(&mut |progress| {
-                hull = mesher::extent(function, &within, 1, progress)?;
-                Ok(())
-            })?;
-        }
-        all = all.union(&hull.unwrap_or(Aabb::EMPTY));
-        domains.push(hull.map(|hull| {
-            // So that nothing touches the sides.
-            let room = 0.05 * hull.size().max_element();
-            Aabb {
-                min: (hull.min - room).max(within.min),
-                max: (hull.max + room).min(within.max),
+/// The radius of the flesh around the start of a ray, which is searched in steps of half of it.
+fn radius(spoke: &Spoke) -> f64 {
+    2.0 * spoke.step
+}
+
+/// Where rays first leave the inside of a function. Those that begin outside, or do not leave it, have no such place.
+fn exits(function: &dyn Implicit, spokes: &[Spoke]) -> Vec<DVec3> {
+    /// Rays of a cage that are looked at: the surface is followed from each.
+    const RAYS: usize = 8;
+    let stride = spokes.len().div_ceil(RAYS).max(1);
+    // Inside, and a step farther.
+    let mut searched: Vec<(&Spoke, f64, f64)> = spokes
+        .iter()
+        .step_by(stride)
+        .map(|spoke| (spoke, 0.0, 0.0))
+        .collect();
+    let mut left = Vec::new();
+    let at = |spoke: &Spoke, along: f64| spoke.origin + spoke.direction * along;
+    while !searched.is_empty() {
+        let points: Vec<DVec3> = searched.iter().map(|(s, _, far)| at(s, *far)).collect();
+        let found = jets(function, &points);
+        let mut going = Vec::new();
+        for ((spoke, near, far), jet) in searched.into_iter().zip(found) {
+            if f64::from(jet.value) > THRESHOLD {
+                let next = far + spoke.step;
+                if next <= spoke.reach {
+                    going.push((spoke, far, next));
+                }
+            } else if far > 0.0 {
+                left.push((spoke, near, far));
             }
-        }));
-    }
-    let options = Options {
-        max_triangles: MOST_TRIANGLES,
-        ..Options::new(TOLERANCE * all.size().length())
-    };
-    let mut meshes = Vec::with_capacity(surfaces.len());
-    for (surface, domain) in surfaces.iter().zip(&domains) {
-        let mut mesh = TriangleMesh::default();
-        if let Some(domain) = domain {
-            part(&mut |progress| {
-                mesh = mesher::polygonize(surface.function(), domain, &options, progress)?.mesh;
-                Ok(())
-            })?;
         }
-        meshes.push(mesh);
+        searched = going;
     }
-    Ok(meshes)
+    for _ in 0..HALVINGS {
+        let middle = |(spoke, near, far): &(&Spoke, f64, f64)| at(spoke, 0.5 * (near + far));
+        let points: Vec<DVec3> = left.iter().map(middle).collect();
+        for ((_, near, far), jet) in left.iter_mut().zip(jets(function, &points)) {
+            let half = 0.5 * (*near + *far);
+            if f64::from(jet.value) > THRESHOLD {
+                *near = half;
+            } else {
+                *far = half;
+            }
+        }
+    }
+    left.iter()
+        .map(|(spoke, near, far)| at(spoke, 0.5 * (near + far)))
+        .collect()
 }
 
 /// Appends a surface's mesh.
@@ -220,12 +227,11 @@ mod tests {
         vec![red, blue]
     }
 
-    fn view(x: f64, detail: Detail, coatings: Vec<u8>) -> ViewMesh {
+    fn view(x: f64, detail: Detail) -> ViewMesh {
         let job = ViewJob {
             scene: scene(x),
             looks: looks(),
             detail,
-            coatings,
         };
         match run(Job::View(Box::new(job)), &mut Progress::silent()) {
             Ok(Output::View(view)) => *view,
@@ -255,13 +261,14 @@ mod tests {
     #[test]
     fn corners_lie_on_the_surface_and_colours_follow_the_shares() {
         for detail in [Detail::Coarse, Detail::Fine] {
-            let view = view(1.6, detail, Vec::new());
+            let view = view(1.6, detail);
             let scene = scene(1.6);
             let surfaces = scene.surfaces();
             let function = surfaces[0].function();
             let all = corners(&view);
             assert!(all.len() > 100, "{detail:?} {}", all.len());
             for (place, normal, colours) in &all {
+                // All but what a coating leaves out.
                 let jet = function.jet(*place);
                 // In a coating some corners stay inside, where another shell covers them.
                 let is_on = (jet.value - 1.0).abs() < 0.02;
@@ -296,14 +303,9 @@ mod tests {
     }
 
     #[test]
-    fn coating_goes_on_from_the_last_one_and_from_nonsense() {
-        let first = view(1.6, Detail::Coarse, Vec::new());
-        assert!(!first.coatings.is_empty());
-        let moved = view(1.62, Detail::Coarse, first.coatings.clone());
-        let anew = view(1.62, Detail::Coarse, vec![255; 9]);
-        assert_eq!(moved.triangles.len(), anew.triangles.len());
-        let kept = view(1.62, Detail::Fine, first.coatings.clone());
-        assert_eq!(kept.coatings, first.coatings);
+    fn finer_mesh_has_more_triangles() {
+        let [coarse, fine] = [Detail::Coarse, Detail::Fine].map(|detail| view(1.6, detail));
+        assert!(fine.triangles.len() > 3 * coarse.triangles.len());
     }
 
     #[test]
@@ -313,7 +315,6 @@ mod tests {
                 scene: Scene::default(),
                 looks: Vec::new(),
                 detail,
-                coatings: Vec::new(),
             };
             let told = run(Job::View(Box::new(job)), &mut Progress::silent()).unwrap_err();
             assert!(told.contains("no soft surface"), "{told}");
