@@ -17,7 +17,7 @@ const SAFE: f64 = 8.0;
 const ROUNDING: f64 = 1e-9;
 
 /// The largest k·r of a ball whose bounds follow from the values at its centre.
-pub(crate) const SMALL: f64 = 2.0;
+const SMALL: f64 = 2.0;
 
 /// A bound on the second derivative along any line of a metaball of at most this value, whose d is at least `nearest`: with c the
 /// cosine between the line and ∇d, `|φ″k²c² + φ′k(1 − c²)/d| ≤ max(|φ″|k², |φ′|k/d)`.
@@ -89,12 +89,18 @@ impl Metaballs {
         total.about(&jet, radius)
     }
 
-    /// Proven bounds in a ball that is small beside 1/k, and value and gradient at its centre.
+    /// Proven bounds in a ball that is no larger than a few 1/k, and value and gradient at its centre; `None` in a larger one.
     ///
     /// Over the distance r no term changes by more than the factor `e^±kr`, but for those that fall to 0: they are bounded by the
     /// exponential from above and by 0 from below.
-    pub(crate) fn small_enclosure(&self, Ball { center, radius }: Ball) -> (Enclosure, Jet<f64>) {
+    pub(crate) fn small_enclosure(
+        &self,
+        Ball { center, radius }: Ball,
+    ) -> Option<(Enclosure, Jet<f64>)> {
         let k = self.sharpness;
+        if k * radius > SMALL {
+            return None;
+        }
         let place = center.to_array();
         let reach = k * radius * (1.0 + ROUNDING);
         let [grows, falls] = [reach.exp(), reach.decay()];
@@ -135,7 +141,7 @@ impl Metaballs {
             slope: slack(k * slope),
             curvature: slack(curvature),
         };
-        (bounds.about(&jet, radius), jet)
+        Some((bounds.about(&jet, radius), jet))
     }
 
     /// A ball around a point in which F stays on one side of the threshold 1.

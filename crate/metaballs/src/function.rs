@@ -1,7 +1,6 @@
 //! The sum of metaballs as an implicit function.
 
 use crate::ball::{Ball, circumscribed};
-use crate::enclose::SMALL;
 use crate::profile::{CUT, profile};
 use crate::triangle::Triangle;
 use core::fmt;
@@ -255,11 +254,10 @@ impl Implicit for Metaballs {
     }
 
     fn variation_with_jet(&self, ball: field::Ball) -> (Variation, Option<Jet<f64>>) {
-        if ball.radius * self.sharpness > SMALL {
-            return (self.variation(None, ball), None);
+        match self.small_enclosure(ball) {
+            Some((range, jet)) => (Variation::rough(range), Some(jet)),
+            None => (self.variation(None, ball), None),
         }
-        let (range, jet) = self.small_enclosure(ball);
-        (Variation::rough(range), Some(jet))
     }
 
     fn clearance(&self, point: DVec3) -> Option<field::Clearance> {

@@ -75,7 +75,8 @@ impl Reader<'_, '_> {
         }
         let bounds = if high >= MAX_MAGNITUDE {
             match low {
-                low if low > 0.0 && low < 1e-3 => format!("at least {low:e}"),
+                low if low > 0.0 && low < 1e-6 && number <= 0.0 => String::from("above 0"),
+                low if low > 0.0 && low < 1e-6 => format!("at least {low:e}"),
                 low => format!("at least {low}"),
             }
         } else {

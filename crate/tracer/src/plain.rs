@@ -16,7 +16,7 @@ use glam::{DVec3, Vec3};
 use scene::LightKind;
 
 /// A surface point, or one of the ground, that light falls on.
-pub(crate) struct LitPoint {
+struct LitPoint {
     /// Its packet and lane.
     hit: (usize, usize),
     position: DVec3,
@@ -45,9 +45,8 @@ impl World {
         stats: &mut Stats,
     ) {
         let mut samples = core::mem::take(&mut work.samples);
-        let mut points = core::mem::take(&mut work.lit);
+        let mut points = Vec::new();
         samples.clear();
-        points.clear();
         for (k, seen) in seen.iter().enumerate() {
             let mut packet = [Sample::BLANK; PACKET];
             for (i, sample) in packet.iter_mut().enumerate().take(seen.used) {
@@ -115,7 +114,6 @@ impl World {
             sample.colour = clamped(rich.toned(sample.colour));
         }
         work.shadows = shadows;
-        work.lit = points;
         work.samples = samples;
     }
 

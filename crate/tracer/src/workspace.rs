@@ -2,7 +2,6 @@
 use crate::hard::Crossing;
 use crate::layout::PACKET;
 use crate::nearby::Nearby;
-use crate::plain::LitPoint;
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::scratch::Scratch;
@@ -16,8 +15,6 @@ pub struct Workspace {
     pub(crate) around: Nearby,
     /// Rays to a light.
     pub(crate) shadows: Vec<Shadow>,
-    /// Points that light falls on.
-    pub(crate) lit: Vec<LitPoint>,
     pub(crate) samples: Vec<[Sample; PACKET]>,
     /// Bodies that take the general way.
     pub(crate) general: Vec<(f64, u32)>,
