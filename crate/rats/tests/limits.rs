@@ -316,7 +316,8 @@ fn long_lines_and_words() {
 
 #[test]
 fn a_tiny_weight_takes_no_eye_to_infinity() {
-    fails("cp 1e12 0 5 1e-300", "further away than 1e12");
+    fails("cp 1e12 0 5 1e-14", "further away than 1e12");
+    fails("cp 1e12 0 5 1e-300", "must not be 0");
     fails("cp 1 0 5 1e-12", "further away than 1e12");
     assert_eq!(errors("cp 1 0 5 1e-11"), "");
 }
