@@ -42,6 +42,12 @@ fn every_format_holds_the_same_closed_mesh() {
         );
         let tolerance = known["tolerance"].as_f64().unwrap();
         assert!(part["error"].as_f64().unwrap() <= tolerance);
+        let measured = &part["measured"];
+        for way in ["mesh_to_surface", "surface_to_mesh"] {
+            let distance = measured[way].as_f64().unwrap();
+            assert!(distance > 0.0 && distance <= tolerance, "{way} {distance}");
+        }
+        assert!(measured["samples"][0].as_u64().unwrap() > 500);
         assert!(part["area"].as_f64().unwrap() > 4.0 * core::f64::consts::PI);
         assert!(part["smallest_angle"].as_f64().unwrap() > 1.0);
         assert!(known["seconds"]["phases"]["triangles"].as_f64().is_some());
@@ -118,4 +124,48 @@ fn what_cannot_be_meshed_is_told() {
     told(&["mesh", &file, "-o", &out, "--body", "NOBODY"], "NOBODY");
     told(&["mesh", &file, "-o", &out, "--threads", "0"], "--threads");
     assert!(!std::fs::exists(&out).unwrap(), "nothing is written");
+}
+
+/// What would take hours ends soon, with a mesh or a sentence. (How long it takes is bounded by counts of cells and evaluations.)
+#[test]
+fn degenerate_models_end_with_a_mesh_or_words() {
+    let folder = Folder::new("mesh-ends");
+    let said = |name: &str, text: &str, options: &[&str]| {
+        let file = folder.write(&format!("{name}.rat"), text);
+        let out = folder.path("out.ply");
+        let output = sinew(&[&["mesh", &file, "-o", &out], options].concat(), "");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), said)
+    };
+    let ball = "sphere s 1 0 0 0\n";
+    let soft = "surface s diffuse White blob -2\n";
+    let twice = format!("{soft}body A\n{ball}close\nbody B\n{ball}close\ncontact A B\n");
+    let (code, words) = said("same", &twice, &["--relative", "1e-2"]);
+    assert_eq!(code, Some(2), "{words}");
+    assert!(words.contains("lie on each other"), "{words}");
+
+    let hard = "surface s diffuse White\n";
+    let plane = format!("{hard}plane s <0 0 0> <0 1 0>\n{ball}");
+    let (code, words) = said("plane", &plane, &["--box", "1e9"]);
+    assert_eq!(code, Some(0), "{words}");
+
+    let shell = format!("{hard}shell s, angle = 20, rise = 0.5\n");
+    let (code, words) = said("shell", &shell, &["--union", "--relative", "5e-3"]);
+    assert_eq!(code, Some(0), "{words}");
+
+    // All end in one place: no primitive can be left out of a sum.
+    let star = (0..2000).map(|i| {
+        let (a, b) = (i % 50, i / 50);
+        let tip = [
+            a as f64 / 25.0 - 1.0,
+            b as f64 / 20.0 - 1.0,
+            0.3 + (a * b % 7) as f64 * 0.1,
+        ];
+        let [x, y, z] = tip;
+        format!("cylinder s 0.03 <0 0 0> <{x} {y} {z}>\n")
+    });
+    let star = format!("{soft}{}", star.collect::<String>());
+    let (code, words) = said("star", &star, &["--coat", "0.1"]);
+    assert_eq!(code, Some(0), "{words}");
+    assert!(words.contains("would take too long"), "{words}");
 }

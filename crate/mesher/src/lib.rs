@@ -38,9 +38,10 @@
 //!   `solids.rs` (hard shapes), `level.rs` (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
 //!
 //! Limits of the proofs: at kinks (profiles, creases between bodies), where the gradient jumps, where a surface touches itself, and where it
-//! has parts of a few tolerances' size, no triangle can be proved. Such triangles are counted as `unproved`; samples measure their
+//! has parts thinner than a tolerance, no triangle can be proved. Such triangles are counted as `unproved`; samples measure their
 //! distance. They do not cut each other: there `guard.rs` refuses each edit that an exact test finds to do so, with `boxes.rs` for the
-//! search. Parts of a surface smaller than two tolerances may be missing.
+//! search. Parts thinner than the tolerance are there, about half a tolerance thick, unless they are too many: a thin plate of some
+//! hundred tolerances' size may be missing; its cells are counted as undecided.
 //!
 //! [`Coating`] is another kind of mesh, which follows a skeleton that is dragged: `cages.rs` has its rays, `coating.rs` their ends.
 //!

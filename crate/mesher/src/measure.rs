@@ -12,9 +12,9 @@ use glam::DVec3;
 use mesh::{Aabb, Bvh, closest_point};
 
 /// Most triangles, and most places of the surface, that are looked at where proofs may fail: they are spread evenly.
-const MOST: usize = 4000;
+const MOST: usize = 1500;
 /// Most of those anywhere.
-const FEW: usize = 1000;
+const FEW: usize = 600;
 /// Doublings of the distance in which a place of the surface is looked for.
 const DOUBLINGS: usize = 10;
 /// Halvings of the interval that contains it.

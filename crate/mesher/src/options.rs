@@ -47,6 +47,11 @@ pub enum MeshError {
         /// A tolerance with which there are fewer, as far as can be told; `None` if no tolerance helps.
         fitting: Option<f64>,
     },
+    /// The function is nearly its threshold throughout a region, so that no cells are fine enough.
+    Flat {
+        /// A point of the region.
+        near: [f64; 3],
+    },
     /// The caller has cancelled.
     Cancelled,
     /// Meshes could not be joined, or a file could not be made.
@@ -71,6 +76,10 @@ impl fmt::Display for MeshError {
                     None => f.write_str(", as the surface is very rough"),
                 }
             }
+            Self::Flat { near: [x, y, z] } => write!(
+                f,
+                "surfaces lie on each other throughout a region, as near {x:.4} {y:.4} {z:.4}, so that no triangle is sure; move the bodies or elements there a little apart"
+            ),
             Self::Cancelled => f.write_str("cancelled"),
             Self::Failed(why) => f.write_str(why),
         }

@@ -37,31 +37,51 @@ struct Look {
     part: Option<Part>,
 }
 
-/// Bounds in a ball around a box in a part of the function, the function in its middle, and bounds on its value in the box.
-pub fn bounded(
-    space: &Space<'_>,
-    part: u32,
-    center: DVec3,
-    size: DVec3,
-    room: f64,
-) -> (Variation, Jet<f64>, [f64; 2]) {
+/// Bounds in a ball around a box, with so much room around it that the radius is at most doubled.
+pub fn around(space: &Space<'_>, part: u32, center: DVec3, size: DVec3, room: f64) -> Variation {
     let radius = 0.5 * size.length() * (1.0 + 1e-9);
     let ball = Ball {
         center,
         radius: radius + room.min(radius),
     };
-    let variation = space.variation(part, ball);
-    let jet = space.jet(part, center);
+    space.variation(part, ball)
+}
+
+/// The error of values in a box that a part of the function leaves.
+pub fn error(space: &Space<'_>, part: u32, size: DVec3) -> f64 {
+    let [value, slope] = space.error(part);
+    SLACK + value + slope * 0.5 * size.length()
+}
+
+/// Bounds on the value in a box, by those in a ball around it alone and the values' error.
+pub fn coarse_range(variation: &Variation, error: f64) -> [f64; 2] {
+    let [low, high] = variation.range.value;
+    [low - error, high + error]
+}
+
+/// Bounds on the value in a box, by those in a ball around it, the function in its middle, and the values' error.
+pub fn fine_range(variation: &Variation, jet: &Jet<f64>, size: DVec3, error: f64) -> [f64; 2] {
+    let radius = 0.5 * size.length() * (1.0 + 1e-9);
     // A box is a part of the ball.
     let linear = (0.5 * DVec3::from_array(jet.gradient).abs() * size).element_sum();
     let bend = (0.5 * variation.curvature * radius + variation.jump) * radius;
     let change = linear + bend + variation.step + SLACK;
-    let narrow = variation.range.about(&jet, radius).value;
-    let [error, steep_error] = space.error(part);
-    let unsure = SLACK + error + steep_error * radius;
-    let low = narrow[0].max(jet.value - change) - unsure;
-    let high = narrow[1].min(jet.value + change) + unsure;
-    (variation, jet, [low, high])
+    let narrow = variation.range.about(jet, radius).value;
+    [
+        narrow[0].max(jet.value - change) - error,
+        narrow[1].min(jet.value + change) + error,
+    ]
+}
+
+/// The side of values within bounds.
+fn side([low, high]: [f64; 2]) -> Side {
+    if low > THRESHOLD {
+        Side::Inside
+    } else if high < THRESHOLD {
+        Side::Outside
+    } else {
+        Side::Crossing
+    }
 }
 
 /// Looks at a cell, with so much room around it that a path of the length of the finer tolerance does not leave the ball.
@@ -70,7 +90,7 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     let size = forest.size(cell.level);
     let center = forest.center(cell);
     let radius = 0.5 * size.length();
-    let (variation, jet, [low, high]) = bounded(space, cell.part, center, size, fine);
+    let variation = around(space, cell.part, center, size, fine);
     let Variation {
         curvature,
         third,
@@ -79,20 +99,20 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
         step,
         ..
     } = variation;
-    let gradient = DVec3::from_array(jet.gradient);
-    let side = if low > THRESHOLD {
-        Side::Inside
-    } else if high < THRESHOLD {
-        Side::Outside
-    } else {
-        Side::Crossing
-    };
+    let error = error(space, cell.part, size);
+    let sure = side(coarse_range(&variation, error));
+    // Away from the surface the function itself does not matter, unless a jump could be as large as its slope.
+    let is_known = sure != Side::Crossing && jump == 0.0;
+    let jet = (!is_known).then(|| space.jet(cell.part, center));
+    let side = jet.map_or(sure, |jet| side(fine_range(&variation, &jet, size, error)));
+    let steep = jet.map_or(f64::INFINITY, |jet| {
+        DVec3::from_array(jet.gradient).length()
+    });
     let longest = size.max_element();
     let square = INTERPOLATION * longest * longest;
     let reach = (2.0 * square).sqrt();
     let rest = (third * square + rough * reach).min(curvature * reach) + jump + SLACK / radius;
     let off = curvature * square + jump * reach + step + SLACK;
-    let steep = gradient.length();
     let nudged = off + NUDGE * tolerance * steep;
     let mut bounds = Bounds {
         rest: if rest.is_nan() { f64::INFINITY } else { rest },
@@ -238,10 +258,7 @@ impl<'s, 'a> Refinement<'s, 'a> {
             let crossing = crossing(&self.space.forest);
             // Each becomes about ten triangles, which are there before they are made fewer.
             if crossing.len() > self.max_cells / 2 {
-                return Err(MeshError::TooMany {
-                    limit: 0,
-                    fitting: fitting(&self.space.forest),
-                });
+                return Err(too_many(self.space));
             }
             progress.at(self.fraction)?;
             let coarse = self.tolerances[0];
@@ -344,10 +361,7 @@ fn look_at_all(
                 }
             }
             if space.forest.cells.len() > *max_cells {
-                return Err(MeshError::TooMany {
-                    limit: 0,
-                    fitting: fitting(&space.forest),
-                });
+                return Err(too_many(space));
             }
         }
     }
@@ -355,6 +369,37 @@ fn look_at_all(
 
 /// Cells that are looked at between two reports.
 const BATCH: usize = 20_000;
+
+/// Cells of a flat region that are looked at to tell it.
+const MOST_LOOKED_AT: usize = 1000;
+/// Change of the function over such a cell together with its distance from the threshold, in thresholds.
+const FLAT: f64 = 0.02;
+
+/// Why there are too many cells.
+fn too_many(space: &Space<'_>) -> MeshError {
+    let is_rough = |cell: &&Cell| {
+        cell.child == NONE && cell.side == Side::Crossing && !cell.bounds.error.is_finite()
+    };
+    let rough: Vec<&Cell> = space.forest.cells.iter().filter(is_rough).collect();
+    let step = rough.len().div_ceil(MOST_LOOKED_AT).max(1);
+    let some: Vec<&Cell> = rough.into_iter().step_by(step).collect();
+    let is_flat = |cell: &&&Cell| {
+        let jet = space.jet(cell.part, space.forest.center(cell));
+        let size = space.forest.size(cell.level).max_element();
+        let change = DVec3::from_array(jet.gradient).length() * size;
+        (jet.value - THRESHOLD).abs() + change < FLAT * THRESHOLD
+    };
+    let flat: Vec<&&Cell> = some.iter().filter(is_flat).collect();
+    match flat.get(flat.len() / 2) {
+        Some(cell) if 2 * flat.len() > some.len() => MeshError::Flat {
+            near: space.forest.center(cell).to_array(),
+        },
+        _ => MeshError::TooMany {
+            limit: 0,
+            fitting: fitting(&space.forest),
+        },
+    }
+}
 
 /// A tolerance for which the present cells would be fine enough, where their topology is sure.
 fn fitting(forest: &Forest) -> Option<f64> {

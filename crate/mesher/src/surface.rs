@@ -74,6 +74,17 @@ pub fn polygonize(
     options: &Options,
     progress: &mut Progress<'_>,
 ) -> Result<SurfaceMesh, MeshError> {
+    guarded(function, domain, options, Guarded::Unproved, progress)
+}
+
+/// The same, with a choice of where edits are kept from making the mesh cut itself.
+fn guarded(
+    function: &dyn Implicit,
+    domain: &Aabb,
+    options: &Options,
+    guarded: Guarded,
+    progress: &mut Progress<'_>,
+) -> Result<SurfaceMesh, MeshError> {
     let Options {
         tolerance,
         max_triangles,
@@ -151,6 +162,7 @@ pub fn polygonize(
         raw,
         tolerances: [tolerance, coarse],
         threads,
+        guarded,
     };
     let (improved, crossings) = start.improved(is_cut, &mut progress.part(0.4, 0.98))?;
     if improved.mesh.triangles.len() > max_triangles {
@@ -196,6 +208,7 @@ struct Start<'a> {
     raw: Raw,
     tolerances: [f64; 2],
     threads: usize,
+    guarded: Guarded,
 }
 
 impl Start<'_> {
@@ -220,9 +233,9 @@ impl Start<'_> {
             let crossings = found.map_or(0, |found| found.pairs.len() + found.flat.len());
             Ok((improved, crossings.min(MOST_CROSSINGS)))
         };
-        let (improved, crossings) = attempt(Guarded::Unproved, &mut progress.part(0.0, 0.7))?;
-        if crossings == 0 {
-            return Ok((improved, 0));
+        let (improved, crossings) = attempt(self.guarded, &mut progress.part(0.0, 0.7))?;
+        if crossings == 0 || self.guarded != Guarded::Unproved {
+            return Ok((improved, crossings));
         }
         attempt(Guarded::Everywhere, &mut progress.part(0.7, 1.0))
     }
@@ -246,5 +259,49 @@ fn check(domain: &Aabb) -> Result<(), MeshError> {
         Ok(())
     } else {
         Err(MeshError::NotFinite("each side of the box".into()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::ops::ControlFlow;
+    use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton, Sum};
+
+    #[test]
+    fn mesh_cuts_itself_without_a_guard() {
+        // Spikes thinner than the tolerance, beside each other: nothing is proved there.
+        let limb = |radius: f64, base: DVec3, apex: DVec3| {
+            let shaping = Shaping {
+                kernel: Kernel::Gauss,
+                radius,
+                blobbiness: -2.0,
+                blob_scale: BlobScale::Relative,
+                strength: 1.0,
+                influence: 1e-3,
+                taper: None,
+            };
+            Primitive::new(Skeleton::Segment { base, apex }, &shaping, None)
+        };
+        let spike = |i: i32| {
+            let base = DVec3::new(0.03 * f64::from(i), 0.0, 0.2);
+            limb(
+                0.008,
+                base,
+                base + DVec3::new(0.02 * f64::from(i), 0.1, 0.6),
+            )
+        };
+        let body = limb(0.3, DVec3::NEG_X, DVec3::X);
+        let sum: Sum = (-4..5).map(spike).chain([body]).flatten().collect();
+        let domain = box_of(sum.support().unwrap());
+        let crossings = |guard: Guarded| {
+            let mut report = |_| ControlFlow::Continue(());
+            let progress = &mut Progress::new(&mut report);
+            let surface = guarded(&sum, &domain, &Options::new(0.03), guard, progress).unwrap();
+            assert!(surface.unproved > 100, "{}", surface.unproved);
+            surface.crossings
+        };
+        assert!(crossings(Guarded::Nowhere) > 10);
+        assert_eq!(crossings(Guarded::Unproved), 0);
     }
 }

@@ -10,7 +10,7 @@ use crate::forest::{Cell, Forest, NONE, Side};
 use crate::lattice::{Lattice, direction, pack};
 use crate::options::{MeshError, Progress};
 use crate::parallel::{LARGE, map_by};
-use crate::refine::{Refinement, bounded};
+use crate::refine::{Refinement, around, coarse_range, error, fine_range};
 use crate::space::Space;
 use field::THRESHOLD;
 use glam::DVec3;
@@ -23,7 +23,11 @@ const THIN: f64 = 0.5;
 /// Levels below the usual one that cells are split to where the surface hid.
 pub const LEVELS: u32 = 4;
 /// Most cells that are split in one pass.
-const MOST: usize = 40_000;
+const MOST: usize = 16_000;
+/// Most of those that hide the surface, if no others are.
+const MOST_HIDING: usize = 60_000;
+/// Most cells that are searched in one pass.
+const MOST_SEARCHED: usize = 60_000;
 /// Cells that the split of one may make: with neighbours that would differ by two levels.
 const MADE: usize = 24;
 /// Largest cells, in tolerances, that get another sign at their centre.
@@ -146,11 +150,11 @@ fn chosen(
         }
     }
     let room = refinement.max_cells.saturating_sub(forest.cells.len()) / MADE;
-    let most = MOST.min(room);
-    let fit = [all, some, few]
+    let choices = [(all, MOST), (some, MOST), (few, MOST_HIDING)];
+    let fit = choices
         .into_iter()
-        .find(|cells| cells.len() <= most);
-    fit.unwrap_or_default()
+        .find(|(cells, most)| cells.len() <= room.min(*most));
+    fit.map_or_else(Vec::new, |(cells, _)| cells)
 }
 
 /// Those of some thin cells in which a search finds a point on the other side of the surface. Where it proves that there is none, the
@@ -161,6 +165,7 @@ fn hiding(
     progress: &mut Progress<'_>,
 ) -> Result<Vec<u32>, MeshError> {
     let (space, lattice) = (&*refinement.space, &refinement.lattice);
+    let thin = &thin[..thin.len().min(MOST_SEARCHED)];
     let found = map_by(LARGE, refinement.threads, thin, progress, |node| {
         search(space, lattice, &space.forest.cells[*node as usize])
     })?;
@@ -190,7 +195,7 @@ enum Found {
 /// Steps of a search along gradients.
 const STEPS: usize = 8;
 /// Most boxes of a search by bounds.
-const BOXES: usize = 160;
+const BOXES: usize = 64;
 /// Halvings of a cell after which its boxes are not divided.
 const HALVINGS: u32 = 5;
 
@@ -226,11 +231,16 @@ fn search(space: &Space<'_>, lattice: &Lattice, cell: &Cell) -> Found {
         };
         let (_, middle, depth) = open.swap_remove(best);
         let own = size / f64::from(1_u32 << depth);
-        let (_, jet, bounds) = bounded(space, cell.part, middle, own, 0.0);
+        let variation = around(space, cell.part, middle, own, 0.0);
+        let error = error(space, cell.part, own);
+        if promise(coarse_range(&variation, error)) < 0.0 {
+            continue;
+        }
+        let jet = space.jet(cell.part, middle);
         if (jet.value > THRESHOLD) != is_inside {
             return Found::Other;
         }
-        let promise = promise(bounds);
+        let promise = promise(fine_range(&variation, &jet, own, error));
         if promise < 0.0 {
             continue;
         }

@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The largest error of a mesh.
-const TOLERANCE: f64 = 0.01;
+const TOLERANCE: f64 = 0.03;
 
 /// A thick limb that leans to one side.
 fn limb(x: f64, lean: f64, kernel: Kernel) -> Arc<dyn Implicit> {
@@ -79,7 +79,7 @@ fn sheets_lie_on_each_other() {
                     on_sheet += 1;
                 }
             }
-            assert!(on_sheet > 30, "{bulge:?} {on_sheet}");
+            assert!(on_sheet > 12, "{bulge:?} {on_sheet}");
             // Away from the sheet the bodies are apart.
             let apart = meshes[i].positions.iter().map(|p| other.to(*p));
             assert!(apart.fold(0.0, f64::max) > 0.3);

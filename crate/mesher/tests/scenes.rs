@@ -1,7 +1,7 @@
 //! Scenes: random ones over all kernels and primitives, and the examples, judged by others.
 //!
 //! By default a small sample. `SINEW_MESHES=all` meshes all examples and 200 random scenes, `SINEW_MESHES=NAME` one example, `SINEW_MESHES=NUMBER`
-//! one random scene, and prints a line for each: `SINEW_MESHES=all cargo test --release -p mesher --test scenes -- --nocapture`.
+//! one random scene with the care of the sample, `SINEW_MESHES=NUMBER-NUMBER` some of the 200, and prints a line for each: `SINEW_MESHES=all cargo test --release -p mesher --test scenes -- --nocapture`.
 
 #[path = "../../tracer/tests/common/mod.rs"]
 mod common;
@@ -15,7 +15,7 @@ use field::Kernel;
 use glam::DVec3;
 use judges::{Distances, Random, crossings, manifold, on_surface};
 use mesh::{Topology, TriangleMesh, self_intersections};
-use mesher::{MeshError, Model, Progress, Tolerance, Wishes, mesh_scene};
+use mesher::{MeshError, Model, Progress, Step, Tolerance, Wishes, mesh_scene};
 use random::{KINDS, Trial};
 use scene::{Scene, Surface};
 use std::ops::ControlFlow;
@@ -55,8 +55,20 @@ fn mesh_with(scene: &Scene, relative: f64) -> Result<Model, MeshError> {
         threads: 2,
         ..Wishes::default()
     };
-    let mut report = |_| ControlFlow::Continue(());
-    mesh_scene(scene, &wishes, &mut Progress::new(&mut report))
+    let (start, mut phases) = (Instant::now(), Vec::new());
+    let mut report = |step: Step| {
+        if phases.last().is_none_or(|(phase, _)| *phase != step.phase) {
+            phases.push((step.phase, start.elapsed().as_secs_f64()));
+        }
+        ControlFlow::Continue(())
+    };
+    let model = mesh_scene(scene, &wishes, &mut Progress::new(&mut report))?;
+    let begun = phases
+        .iter()
+        .map(|(phase, s)| format!("{} {s:.1} s", phase.name()));
+    let begun: Vec<String> = begun.collect();
+    println!("  {} evaluations; {}", model.evaluations, begun.join(", "));
+    Ok(model)
 }
 
 /// Meshes a scene and checks all that is promised of it.
@@ -285,7 +297,13 @@ const SLOW: [usize; 10] = [4, 5, 9, 16, 17, 18, 19, 22, 23, 25];
 #[test]
 fn random_scenes() {
     let wanted = wanted();
+    let some = wanted.as_deref().and_then(|wanted| {
+        let (from, to) = wanted.split_once('-')?;
+        Some((from.parse().ok()?, to.parse().ok()?))
+    });
     let is_all = wanted.as_deref() == Some("all");
+    let (from, to): (usize, usize) = some.unwrap_or((0, 199));
+    let is_all = is_all || some.is_some();
     let only: Option<usize> = wanted.and_then(|wanted| wanted.parse().ok());
     let (count, care) = if is_all {
         (
@@ -313,12 +331,16 @@ fn random_scenes() {
         let kernel = Kernel::ALL[number % Kernel::ALL.len()];
         let kind = KINDS[(number * 5) % KINDS.len()];
         let is_wanted = only.map_or(is_all || !SLOW.contains(&number), |only| only == number);
+        let is_wanted = is_wanted && (from..=to).contains(&number);
         if !is_wanted {
             continue;
         }
         let scene = Trial::new(kernel, kind, 40_000 + number as u64, 0).scene;
+        let start = Instant::now();
         let result = judge(&scene, care);
-        wrong += usize::from(told(&format!("{number} {kernel:?} {kind:?}"), &result));
+        let seconds = start.elapsed().as_secs_f64();
+        let name = format!("{number} {kernel:?} {kind:?}, {seconds:.1} s in all");
+        wrong += usize::from(told(&name, &result));
     }
     assert_eq!(wrong, 0);
 }

@@ -94,7 +94,7 @@ fn spikes_thinner_than_the_tolerance_are_there() {
             let way = random.vector().normalize();
             (way * 0.8, way * 1.8)
         };
-        let spikes: Vec<(DVec3, DVec3)> = (0..5).map(spike).collect();
+        let spikes: Vec<(DVec3, DVec3)> = (0..3).map(spike).collect();
         let thin = spikes.iter().map(|(base, apex)| {
             let (base, apex) = (*base, *apex);
             primitive(Skeleton::Segment { base, apex }, kernel, radius, 1.0)

@@ -10,8 +10,11 @@ use mesh::{FaceId, HalfEdgeId, VertexId};
 const SETTLE_ROUNDS: usize = 40;
 /// Rounds in which every edit is tried at the triangles that are left.
 const RESCUE_ROUNDS: usize = 8;
-/// Most triangles of such a round.
-const MOST_RESCUED: usize = 500;
+/// Most triangles of such a round: where more are left, there are kinks, or the surface touches itself, and no edit would help.
+const MOST_RESCUED: usize = 300;
+/// No more remedies are tried after so many evaluations, and so many for each triangle of the mesh.
+const LEAST_WORK: u64 = 50_000;
+const MOST_WORK: u64 = 60;
 /// Sine of the smallest angle below which a triangle is not divided but removed.
 const THIN: f64 = 0.25;
 /// That below which it is not divided even if nothing else helps.
@@ -21,6 +24,8 @@ impl Improver<'_> {
     /// Proves triangles that are not yet proved to be near the surface; divides those that are too large, and removes flat ones.
     pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
         let (mut least, mut stalled) = (usize::MAX, 0);
+        let start = self.space.evaluations();
+        let most = LEAST_WORK + MOST_WORK * self.mesh.face_count() as u64;
         for round in 0..SETTLE_ROUNDS {
             progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
             let far = self.unproved(progress)?;
@@ -32,6 +37,9 @@ impl Improver<'_> {
                 if stalled == 8 {
                     break;
                 }
+            }
+            if self.space.evaluations() - start > most {
+                break;
             }
             let mut edits: Vec<(f64, Edit)> = far
                 .into_iter()
@@ -60,7 +68,10 @@ impl Improver<'_> {
     pub fn rescue(&mut self, progress: &mut Progress<'_>) -> Result<usize, MeshError> {
         let mut done = 0;
         let far = self.unproved(progress)?;
-        for f in far.into_iter().take(MOST_RESCUED) {
+        if far.len() > MOST_RESCUED {
+            return Ok(0);
+        }
+        for f in far {
             progress.again()?;
             let is_left = self.mesh.has_face(f) && self.errors[f.index()] > self.tolerance as f32;
             if !is_left {
