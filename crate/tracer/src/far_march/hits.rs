@@ -226,7 +226,6 @@ impl FarBody {
         let jet = cell.expansion.jet(piece.local(cell, place), f32x8::splat);
         let mut gradient = jet.gradient.map(|g| g * scale);
         let primitives = self.primitives(query);
-        let world = piece.world(place);
         for (index, number) in cell.near.iter().enumerate() {
             let jet = match &self.points {
                 Some(points) => {
@@ -234,7 +233,7 @@ impl FarBody {
                     let away = core::array::from_fn(|i| place[i] - own[i]);
                     points.each[*number as usize].blob.jet(away)
                 }
-                None => primitives[*number as usize].jet(world),
+                None => primitives[*number as usize].jet_about(piece.middle, place),
             };
             for (sum, part) in gradient.iter_mut().zip(jet.gradient) {
                 *sum += part;

@@ -10,8 +10,10 @@
 //! - primitives of any kind (`spans.rs`) as spans over the cell, its halves, their halves and so on.
 //!
 //! So the surface found is that of a field that differs from the true one by a stated bound, which counts like rounding: what it may
-//! hide is searched again among all primitives in double precision. `hits.rs` follows the rays and samples the surface where they
+//! hide is searched again among all primitives in double precision. `bars.rs` bounds points and
+//! segments eight at a time, `hits.rs` follows the rays and samples the surface where they
 //! meet it, `piece.rs` is a packet's way through a cell.
+mod bars;
 mod hits;
 mod piece;
 mod points;
@@ -24,11 +26,13 @@ use crate::ray::Ray;
 use crate::root_isolation::BoundedTerms;
 use crate::surface_samples::SurfaceSamples;
 use crate::walk::Quest;
+use bars::Bars;
 use field::far_field::{Cell, FEW_NEAR, LOOSE, SMALLEST};
 use field::{Cut, FarField, Kernel, Primitive, THRESHOLD};
 use glam::DVec3;
 use piece::{Piece, leaves};
 use points::Points;
+use spans::Judged;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use wide::f32x8;
@@ -52,6 +56,8 @@ pub(crate) struct FarBody {
     field: FarField,
     /// All of them, if they are points of one kernel that add to the field.
     points: Option<Points>,
+    /// All of them, if they are points and segments of one kernel.
+    bars: Option<Bars>,
     /// Number of the body's first primitive.
     first: usize,
     /// Number of its primitives.
@@ -77,6 +83,7 @@ pub struct FarWork {
     /// Numbers of the primitives that are not resolved, piece within piece, and of those that are in the present one.
     pending: Vec<u32>,
     resolved: Vec<u32>,
+    judged: Vec<Judged>,
     /// Surface samples at the hits of the last packet.
     pub flesh: SurfaceSamples,
     pub evaluations: u64,
@@ -140,8 +147,14 @@ impl FarBody {
                 *own = Some(field.of_positive(|i| finishes[i as usize] == *finish));
             }
         }
+        let bars = if points.is_some() {
+            None
+        } else {
+            Bars::of(primitives)
+        };
         Some(Self {
             points,
+            bars,
             field: field.surface_only(),
             first,
             count: primitives.len(),

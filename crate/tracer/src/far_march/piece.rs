@@ -59,6 +59,11 @@ impl<'a> Piece<'a> {
         [part([from, self.t]), part([self.t, to])]
     }
 
+    /// A ray's place in the middle.
+    pub fn middle_of(&self, lane: usize) -> DVec3 {
+        self.rays[lane].at(self.t)
+    }
+
     /// The beam's middle at a parameter.
     pub fn axis_at(&self, t: f64) -> DVec3 {
         self.beam.axis.at(t)

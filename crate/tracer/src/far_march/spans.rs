@@ -20,14 +20,24 @@ const SHARE: f64 = 0.125;
 /// Largest error of all that is known of a piece; beyond it this is not the way.
 const MOST_ERROR: f64 = 5e-4 * THRESHOLD;
 /// Rounding of coordinates and values in single precision.
-const SINGLE: f64 = 2.5e-7;
+pub const SINGLE: f64 = 2.5e-7;
 /// Rounding of a polynomial's coefficients as pieces are halved, and of its values, over the sum of the coefficients' sizes.
 const COEFFICIENTS: f64 = 1e-6;
-/// Width of the beam over half a piece's length up to which pieces are halved: shorter ones have smaller errors, but are no nearer
-/// to single primitives.
-const NARROW: f64 = 64.0;
+/// Width of the beam over half a piece's length from which on primitives are judged ray by ray.
+const WIDE: f64 = 0.5;
 /// Largest number of halvings.
-const MOST_HALVINGS: u32 = 24;
+const MOST_HALVINGS: u32 = 16;
+
+/// Bounds on a primitive on a piece.
+#[derive(Clone, Copy)]
+pub struct Judged {
+    /// On its size, on each ray.
+    pub sizes: [f64; PACKET],
+    /// On the error of its span.
+    pub error: f64,
+    /// On the effect of rounding in single precision.
+    pub noise: f64,
+}
 
 /// Work with the pieces of a cell.
 struct Halving<'a, 'q> {
@@ -75,41 +85,47 @@ impl FarBody {
         work: &mut FarWork,
     ) -> Option<u32> {
         let query = halving.query;
-        let radius = (piece.half + piece.width) * (1.0 + 1e-9);
-        let length = SpanLength::new(2.0 * piece.half);
-        let misplaced = SINGLE * (piece.middle.abs().max_element() + radius);
         let bottom = work.pending.len();
+        self.judge(query, piece, &pending, alive, SHARE * budget, work);
         work.resolved.clear();
-        let (mut all, mut left, mut lost) = (0.0, 0.0, 0.0);
-        for at in pending {
+        let (mut all, mut left, mut lost) = ([0.0; PACKET], [0.0; PACKET], 0.0);
+        for (index, at) in pending.enumerate() {
             let number = work.pending[at];
-            let bound = self.bound(query, number);
-            let near = bound.nearness(piece.middle, radius);
-            let estimate = bound.estimate(near, &length);
-            let most = if bound.adds() {
-                estimate.magnitude
-            } else {
-                0.0
-            };
-            all += most;
-            if estimate.error <= SHARE * budget {
-                budget -= estimate.error;
-                // Where the field is T.
-                let size = estimate.magnitude.at_most(LARGE_TERM);
-                let places = misplaced * size * bound.relative_slope(near);
-                lost += estimate.error + places + SINGLE * (size + 2.0 * bound.cancels());
+            let Judged {
+                sizes,
+                error,
+                noise,
+            } = work.judged[index];
+            let adds = self.bound(query, number).adds();
+            if adds {
+                all.iter_mut().zip(sizes).for_each(|(sum, own)| *sum += own);
+            }
+            if error <= SHARE * budget {
+                budget -= error;
+                lost += error + noise;
                 work.resolved.push(number);
             } else {
                 work.pending.push(number);
-                left += most;
+                if adds {
+                    left.iter_mut()
+                        .zip(sizes)
+                        .for_each(|(sum, own)| *sum += own);
+                }
             }
         }
-        let is_below = |known: &Known, more: f64| {
+        // The rays on which what is known and some more may add up to T.
+        let may_meet = |known: &Known, more: [f64; PACKET]| {
             let (most, _) = known.backdrop.limits();
-            let (_, most) = extremes(most, most, alive);
-            f64::from(most) + more + known.error < THRESHOLD - ROUNDING
+            let most = most.to_array();
+            let level = THRESHOLD - ROUNDING - known.error;
+            (0..PACKET).fold(0, |lanes, i| {
+                // Not so for NaN.
+                let is_below = f64::from(most[i]) + more[i] < level;
+                lanes | u32::from(!is_below) << i
+            })
         };
-        if is_below(&known, all) {
+        let mut alive = alive & may_meet(&known, all);
+        if alive == 0 {
             work.pending.truncate(bottom);
             return Some(0);
         }
@@ -137,9 +153,10 @@ impl FarBody {
             };
             return self.follow(query, piece, &known, alive, start, work);
         }
-        let met = if is_below(&known, left) {
+        alive &= may_meet(&known, left);
+        let met = if alive == 0 {
             0
-        } else if depth >= MOST_HALVINGS || piece.width > NARROW * piece.half {
+        } else if depth >= MOST_HALVINGS {
             self.isolate_pending(halving, piece, &known, &pending, alive, work)?
         } else {
             let [near, far] = piece.halves();
@@ -169,6 +186,54 @@ impl FarBody {
         Some(met)
     }
 
+    /// Bounds on pending primitives on a piece: on its whole, or ray by ray if the beam is wide and the error more than this.
+    fn judge(
+        &self,
+        query: &FarQuery<'_>,
+        piece: &Piece<'_>,
+        pending: &Range<usize>,
+        alive: u32,
+        enough: f64,
+        work: &mut FarWork,
+    ) {
+        work.judged.clear();
+        let is_wide = piece.width > WIDE * piece.half;
+        let numbers = &work.pending[pending.clone()];
+        if let Some(bars) = &self.bars {
+            let alive = if is_wide { alive } else { 0 };
+            bars.judge(piece, numbers, alive, enough, &mut work.judged);
+            return;
+        }
+        let radius = (piece.half + piece.width) * (1.0 + 1e-9);
+        let length = SpanLength::new(2.0 * piece.half);
+        let primitives = self.primitives(query);
+        for &number in numbers {
+            let bound = self.bound(query, number);
+            let near = bound.nearness(piece.middle, radius);
+            let estimate = bound.estimate(near, &length);
+            // Where the field is T.
+            let size = estimate.magnitude.at_most(LARGE_TERM);
+            let away = primitives[number as usize].frame_middle() - piece.middle;
+            let misplaced = SINGLE * (away.length() + radius);
+            let places = misplaced * size * bound.relative_slope(near);
+            let mut own = Judged {
+                sizes: [estimate.magnitude; PACKET],
+                error: estimate.error,
+                noise: places + SINGLE * (size + 2.0 * bound.cancels()),
+            };
+            if is_wide && own.error > enough {
+                own.error = 0.0;
+                for lane in (0..PACKET).filter(|i| alive >> i & 1 != 0) {
+                    let near = bound.nearness(piece.middle_of(lane), piece.half);
+                    let estimate = bound.estimate(near, &length);
+                    own.error = estimate.error.at_least(own.error);
+                    own.sizes[lane] = estimate.magnitude;
+                }
+            }
+            work.judged.push(own);
+        }
+    }
+
     fn bound<'a>(&self, query: &FarQuery<'a>, number: u32) -> &'a Bound {
         &query.sight.bounds[self.first + number as usize]
     }
@@ -184,10 +249,10 @@ impl FarBody {
         work.evaluations += 16 * work.resolved.len() as u64;
         let half = f32x8::splat(piece.half as f32);
         [-half, half].map(|t| {
-            let place = piece.world(piece.places(t));
+            let place = piece.places(t);
             let mut sum = Node::zero();
             for number in &work.resolved {
-                let jet = primitives[*number as usize].jet(place);
+                let jet = primitives[*number as usize].jet_about(piece.middle, place);
                 let [x, y, z] = jet.gradient;
                 let [dx, dy, dz] = piece.direction;
                 sum = sum.plus(Node {
