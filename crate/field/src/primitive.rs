@@ -164,24 +164,6 @@ impl Primitive {
         R::prepared(&self.prepared).jet(point)
     }
 
-    /// Value and gradient at a place near another one, which is exact: single precision then loses no digits to the distance of both
-    /// from the origin.
-    #[must_use]
-    pub fn jet_about<R: Evaluate<Scalar: Evaluate>>(
-        &self,
-        middle: DVec3,
-        offset: [R; 3],
-    ) -> Jet<R> {
-        let start = self.prepared.double.frame.local_point(middle);
-        R::prepared(&self.prepared).jet_about(start.to_array().map(R::Scalar::round), offset)
-    }
-
-    /// Middle of the frame in which the primitive is evaluated: that of a point or a segment, a place on or near any other bone.
-    #[must_use]
-    pub fn frame_middle(&self) -> DVec3 {
-        DVec3::from_array(self.prepared.double.frame.origin)
-    }
-
     /// Value alone.
     #[inline]
     #[must_use]

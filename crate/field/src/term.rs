@@ -128,24 +128,6 @@ impl<S: Copy> Term<S> {
         }
     }
 
-    /// Value and gradient at a place given relative to one in local coordinates.
-    pub(crate) fn jet_about<R: Evaluate<Scalar = S>>(
-        &self,
-        start: [S; 3],
-        offset: [R; 3],
-    ) -> Jet<R> {
-        let axes = self.frame.axes.map(|axis| axis.map(R::lift));
-        let local = core::array::from_fn(|i| {
-            let [x, y, z] = axes[i];
-            R::lift(start[i]) + (x * offset[0] + y * offset[1] + z * offset[2])
-        });
-        let jet = self.local_jet(local);
-        Jet {
-            value: jet.value,
-            gradient: self.frame.world(jet.gradient),
-        }
-    }
-
     /// Value and gradient at a position in the world.
     #[inline(always)]
     pub(crate) fn jet<R: Evaluate<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
