@@ -3,7 +3,7 @@ use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::blob_set::{BlobSet, NEXT_TO_NOTHING};
 use crate::clusters::Clusters;
-use crate::far_march::{FEWEST, FarBody, FarQuery, FarWork};
+use crate::far_march::{FarBody, FarQuery, FarWork};
 use crate::hierarchy::Hierarchy;
 use crate::kinks::Kinks;
 use crate::layout::PACKET;
@@ -323,12 +323,11 @@ impl Soft {
     fn far<'a>(&self, body: &'a SoftBody) -> Option<&'a FarBody> {
         let make = || {
             let own = body.range.start as usize..body.range.end as usize;
-            let endless = |p: &&Primitive| field::far_field::power(p.kernel).is_some();
-            let endless = self.primitives[own.clone()].iter().filter(endless).count();
-            let is_plain = self.precision.shared != 0.0 && body.everywhere.is_empty();
-            if !is_plain || endless < FEWEST {
+            let kernel = self.primitives.get(own.start)?.kernel;
+            if self.precision.shared == 0.0 || !body.everywhere.is_empty() {
                 return None;
             }
+            field::far_field::power(kernel)?;
             let strong = &self.groups(body).strong;
             let ball = (strong.len() > 0).then(|| strong.ball(0))?;
             let primitives = &self.primitives[own.clone()];

@@ -97,8 +97,14 @@ fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     scene.camera.eye = DVec3::Z * 4.0;
     scene.camera.target = DVec3::ZERO;
     scene.camera.fov = 1.0;
-    // Two finishes: points of one finish take the way of `far_march`.
     common::clothe(&mut scene, vec![common::soft(-4.0, 1.0); 2]);
+    // Bodies of points alone take the way of `far_march`.
+    let line = Shape::Cylinder {
+        base: DVec3::Z * -3.0,
+        apex: DVec3::Z * -3.1,
+        radius: 0.003,
+    };
+    scene.elements.push(common::element(line, 0));
     let mut ball = |center: DVec3, radius: f64, finish: u32| {
         let shape = Shape::Sphere { center, radius };
         scene.elements.push(common::element(shape, finish));

@@ -2,7 +2,7 @@
 use super::expansion::{AXES, NODES};
 use super::{DIAGONAL, MISPLACED, Smooth, power};
 use crate::bone::Bone;
-use crate::{Bound, Cut, Kernel, Primitive};
+use crate::{Bound, Cut, Kernel, Primitive, Skeleton};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -12,6 +12,8 @@ pub struct Source {
     /// Ball around its skeleton.
     pub center: DVec3,
     pub around: f64,
+    /// Half the sides of a box around it.
+    pub extent: DVec3,
     /// Bound on the field times the kernel's reciprocal ([`Bound::far`]), and the least width parameter.
     pub whole: f64,
     pub width: f64,
@@ -60,6 +62,11 @@ impl Source {
         Self {
             center,
             around,
+            extent: match primitive.skeleton {
+                Skeleton::Point { .. } => DVec3::ZERO,
+                Skeleton::Segment { base, apex } => (0.5 * (apex - base)).abs(),
+                _ => DVec3::splat(around),
+            },
             whole,
             width,
             finest: primitive.width,
@@ -129,6 +136,20 @@ impl Source {
         Afar { own, inverse }
     }
 
+    /// Number of axes along which a line through the box may be seen from a part of the skeleton at an angle with a larger cosine
+    /// than this, squared: `cos² ≤ X²/(X² + R²)`, with the largest X along the axis and the least R across it.
+    fn steep_axes(&self, away: DVec3, half: f64, square: f64) -> usize {
+        let most = (away + half + self.extent) * self.finest;
+        let least = (away - half - self.extent).max(DVec3::ZERO) * self.width;
+        let least = least * least;
+        let base = self.softening + least.element_sum();
+        let is_steep = |axis: &usize| {
+            let across = base - least[*axis];
+            square * across < (1.0 - square) * most[*axis] * most[*axis]
+        };
+        (0..3).filter(is_steep).count()
+    }
+
     /// The primitive as seen from a box of this half extent.
     pub fn seen(&self, center: DVec3, half: f64) -> Seen {
         let away = (self.center - center).abs();
@@ -152,8 +173,8 @@ impl Source {
         let Afar { own, inverse } = self.from(distance);
         let magnitude = magnitude.at_most(own);
         let q = 0.5 * self.finest * half * inverse;
-        // The parts of a skeleton are seen along different lines.
-        let factor = GEGENBAUER[self.power as usize - 1].factor(3);
+        let bounds = GEGENBAUER[self.power as usize - 1];
+        let factor = bounds.factor(self.steep_axes(away, half, bounds.square));
         Seen {
             magnitude,
             error: own * (q * q * q * q * q) * factor,

@@ -195,7 +195,7 @@ impl FarBody {
             at = good.select(newton, f32x8::splat(0.5) * (low + high));
         }
         let place = piece.places(at);
-        let gradient = self.gradient(query, piece, place, work);
+        let gradient = self.gradient(piece, place, work);
         let steep = gradient.iter().fold(f32x8::splat(0.0), |s, g| s + *g * *g);
         let moved = (steep.sqrt() * f32x8::splat(tolerance as f32))
             .simd_lt(f32x8::splat(known.error as f32));
@@ -214,28 +214,15 @@ impl FarBody {
     }
 
     /// Gradients at places relative to a piece's middle.
-    fn gradient(
-        &self,
-        query: &FarQuery<'_>,
-        piece: &Piece<'_>,
-        place: [f32x8; 3],
-        work: &mut FarWork,
-    ) -> [f32x8; 3] {
+    fn gradient(&self, piece: &Piece<'_>, place: [f32x8; 3], work: &mut FarWork) -> [f32x8; 3] {
         let cell = piece.cell;
         let scale = f32x8::splat(1.0 / cell.reach() as f32);
         let jet = cell.expansion.jet(piece.local(cell, place), f32x8::splat);
         let mut gradient = jet.gradient.map(|g| g * scale);
-        let primitives = self.primitives(query);
-        let world = piece.world(place);
         for (index, number) in cell.near.iter().enumerate() {
-            let jet = match &self.points {
-                Some(points) => {
-                    let own = work.places[index].map(f32x8::splat);
-                    let away = core::array::from_fn(|i| place[i] - own[i]);
-                    points.each[*number as usize].blob.jet(away)
-                }
-                None => primitives[*number as usize].jet(world),
-            };
+            let own = work.places[index].map(f32x8::splat);
+            let away = core::array::from_fn(|i| place[i] - own[i]);
+            let jet = self.points.each[*number as usize].blob.jet(away);
             for (sum, part) in gradient.iter_mut().zip(jet.gradient) {
                 *sum += part;
             }

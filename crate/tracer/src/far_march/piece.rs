@@ -14,7 +14,6 @@ use wide::f32x8;
 pub struct Piece<'a> {
     pub cell: &'a Cell,
     beam: &'a Beam,
-    rays: &'a [Ray; PACKET],
     /// Middle of the beam's axis there, and the parameter.
     pub middle: DVec3,
     pub t: f64,
@@ -29,19 +28,13 @@ pub struct Piece<'a> {
 }
 
 impl<'a> Piece<'a> {
-    pub fn new(
-        cell: &'a Cell,
-        beam: &'a Beam,
-        rays: &'a [Ray; PACKET],
-        [from, to]: [f64; 2],
-    ) -> Self {
+    pub fn new(cell: &'a Cell, beam: &'a Beam, rays: &[Ray; PACKET], [from, to]: [f64; 2]) -> Self {
         let t = 0.5 * (from + to);
         let middle = beam.axis.at(t);
         let at = rays.map(|ray| ray.at(t) - middle);
         Self {
             cell,
             beam,
-            rays,
             middle,
             t,
             half: 0.5 * (to - from),
@@ -50,13 +43,6 @@ impl<'a> Piece<'a> {
             origin: core::array::from_fn(|k| f32x8::from_lanes(|i| at[i][k])),
             direction: core::array::from_fn(|k| f32x8::from_lanes(|i| rays[i].direction[k])),
         }
-    }
-
-    /// The near half and the far one.
-    pub fn halves(&self) -> [Self; 2] {
-        let [from, to] = [self.t - self.half, self.t + self.half];
-        let part = |ends| Self::new(self.cell, self.beam, self.rays, ends);
-        [part([from, self.t]), part([self.t, to])]
     }
 
     /// The beam's middle at a parameter.

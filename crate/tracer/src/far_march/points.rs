@@ -43,17 +43,16 @@ impl FarBody {
     /// way.
     pub(super) fn follow_points(
         &self,
-        points: &Points,
         query: &FarQuery<'_>,
         piece: &Piece<'_>,
         alive: u32,
         is_start: bool,
         work: &mut FarWork,
     ) -> Option<u32> {
-        let Some(known) = points.prepare(piece, work) else {
+        let Some(known) = self.points.prepare(piece, work) else {
             return Some(0);
         };
-        let [guess, first] = points.guess(piece, work);
+        let [guess, first] = self.points.guess(piece, work);
         let start = Start {
             guess,
             first,
