@@ -309,7 +309,7 @@ mod tests {
     fn scenes_without_a_finite_surface_are_left_to_the_draft() {
         for text in [
             "surface a, diffuse Red\nsphere a 1, 0 0 0\n",
-            "surface a, diffuse Red, blobbiness -2\nsphere a 1, 0 0 0\nplane a, <0 -2 0>, <0 1 0>\n",
+            "surface a, diffuse Red, blobbiness -2, radius 0.3\nsphere a 1, 0 0 0\nplane a, <0 -2 0>, <0 1 0>\n",
         ] {
             let session = session(text);
             assert_eq!(session.errors(), 0);
