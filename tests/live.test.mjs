@@ -49,7 +49,10 @@ async function turn(sinew, until) {
 
 for (const [size, options] of Object.entries(SIZES)) {
   test(`a turn shows a mesh of the true surface on a ${size}`, async () => {
-    const sinew = await browser.open(options);
+    // A narrow page has no buttons for it, and where the processor draws the page it traces this text sooner than it drafts it.
+    const drafted = () => localStorage.setItem('sinew/settings', JSON.stringify({ show: 'draft' }));
+    const before = size === 'phone' ? (page) => page.addInitScript(drafted) : undefined;
+    const sinew = await browser.open({ ...options, before });
     const fetched = [];
     sinew.page.on('request', (request) => fetched.push(new URL(request.url()).pathname.split('/').pop()));
     await sinew.load(MELTED);
@@ -107,7 +110,7 @@ test('while a bone is dragged the mesh follows, and a text that it cannot follow
   assert.ok(seen.has('mesh'), `while it is dragged: ${[...seen]}`);
 
   // A plane has no end, so there is no mesh of it.
-  await sinew.load(`${MELTED}plane red, <0 -4 0>, <0 1 0>\n`);
+  await sinew.load(`${MELTED}surface soil diffuse Gray50, radius 0.4, blobbiness -2\nplane soil, <0 -4 0>, <0 1 0>\n`);
   await turn(sinew, (_, moves) => moves === 40);
   await mouse.up();
   assert.equal((await sinew.status()).standIn, 'draft');
@@ -117,7 +120,7 @@ test('while a bone is dragged the mesh follows, and a text that it cannot follow
 
 test('larger models are seen as meshes, too', async () => {
   const sinew = await browser.open(SIZES.desk);
-  for (const name of ['snail', 'tide', 'coral-crab']) {
+  for (const name of ['snail', 'tide']) {
     await sinew.load(await example(name));
     await sinew.finished();
     await sinew.click('show draft');

@@ -41,3 +41,28 @@ for (const colorScheme of ['dark', 'light']) {
     await sinew.close();
   });
 }
+
+for (const [size, options] of [
+  ['desk', { viewport: { width: 1200, height: 760 } }],
+  ['phone', { viewport: VIEWPORT, hasTouch: true, isMobile: true, colorScheme: 'light' }],
+]) {
+  test(`a text without light is offered one, on a ${size}`, async () => {
+    const sinew = await browser.open(options);
+    const text = 'surface clay diffuse Coral, specular White, shine 40, blobbiness -2\nsphere clay 1 0 0 0\n';
+    await sinew.load(text);
+    await sinew.finished();
+    const [picture, offer] = [await sinew.place('picture'), await sinew.place('add light')];
+    assert.ok(offer.x >= picture.x && offer.x + offer.w <= picture.x + picture.w, 'it lies on the picture');
+    const dark = colours(await sinew.image());
+    await sinew.keep(`lamp ${size} dark`);
+    await sinew.click('add light');
+    await sinew.until(({ errors, revision }) => revision > 0 && errors === 0);
+    await sinew.page.waitForFunction(() => /^light White, position/m.test(JSON.stringify(sinew.text()).replaceAll('\\n', '\n')));
+    await sinew.finished();
+    assert.ok(colours(await sinew.image()) > 2 * dark, 'the light is seen');
+    await sinew.page.waitForFunction(() => !sinew.debug.rects()['add light']);
+    await sinew.keep(`lamp ${size} lit`);
+    assert.deepEqual(sinew.troubles, []);
+    await sinew.close();
+  });
+}

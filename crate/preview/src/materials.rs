@@ -20,7 +20,7 @@ pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) 
     let mut texels = vec![[0.0f32; 4]; rows * MATERIALS_A_ROW * TEXELS];
     let all = scene.finishes[..kept].iter().chain([&fallback]);
     for (texel, material) in texels.chunks_exact_mut(TEXELS).zip(all) {
-        let [ambient, diffuse] = worn(material);
+        let [ambient, diffuse] = worn(material, scene.background.mean());
         texel[0] = with(ambient, finite(material.shine).max(0.0));
         texel[1] = with(diffuse, 0.0);
         texel[2] = with(material.specular, 0.0);
@@ -56,10 +56,13 @@ pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) 
     }
 }
 
+/// The share of the background's mean colour that mirrors and glass show.
+const AROUND: f32 = 0.6;
+
 /// The ambient and diffuse colours of a material under its textures: each pattern counts as if it were half its lowest and half
 /// its highest value everywhere, which is what the draft shows of it. What is all mirror or glass would be black: it gets that
-/// share as a grey.
-pub(crate) fn worn(material: &Finish) -> [Rgb; 2] {
+/// share as a grey, and of what is around it, which it would mirror or let through.
+pub(crate) fn worn(material: &Finish, around: Rgb) -> [Rgb; 2] {
     let mut colours = [material.ambient, material.diffuse];
     for layer in &material.layers {
         let targets: &[usize] = match layer.target {
@@ -88,7 +91,7 @@ pub(crate) fn worn(material: &Finish) -> [Rgb; 2] {
     let [ambient, diffuse] = colours;
     let through = [0, 1, 2].map(|i| material.reflective[i] + material.transparent[i]);
     [
-        ambient,
+        [0, 1, 2].map(|i| ambient[i] + AROUND * (through[i] * around[i]).clamp(0.0, 1.0)),
         [0, 1, 2].map(|i| diffuse[i].max(0.35 * through[i].min(1.0))),
     ]
 }

@@ -4,7 +4,7 @@ use crate::instance::Units;
 use crate::materials::{finite, worn};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
-use scene::{Finish, Scene};
+use scene::{Finish, Rgb, Scene};
 
 /// Bytes of a vertex: its position (three `f32`), its normal (four signed 16-bit parts of 32767, the last one unused), and three
 /// colours of four bytes each, parts of 255: ambient with the shine of [`shine`], diffuse and specular.
@@ -30,11 +30,13 @@ pub struct Mesh<'a> {
 /// from 0 to 1.
 #[must_use]
 pub fn looks(scene: &Scene) -> Vec<[f32; 10]> {
-    scene.finishes.iter().map(look).collect()
+    let around = scene.background.mean();
+    let looks = scene.finishes.iter().map(|finish| look(finish, around));
+    looks.collect()
 }
 
-fn look(finish: &Finish) -> [f32; 10] {
-    let [ambient, diffuse] = worn(finish);
+fn look(finish: &Finish, around: Rgb) -> [f32; 10] {
+    let [ambient, diffuse] = worn(finish, around);
     let colours = [ambient, diffuse, finish.specular].concat();
     core::array::from_fn(|i| match colours.get(i) {
         Some(channel) => finite(*channel).clamp(0.0, 1.0),

@@ -61,6 +61,9 @@ fn traced(name: &str) -> Picture {
     }
 }
 
+/// Most elements of a scene that is meshed here: unoptimised code takes long for more.
+const MOST: usize = 150;
+
 /// Draws a scene as offset surfaces, and, if it has a finite soft surface of a moderate size, as a mesh.
 fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>) {
     let mut draft = Draft::new(&gpu.device, &gpu.queue);
@@ -73,7 +76,7 @@ fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>
         .elements
         .iter()
         .any(|element| matches!(element.shape, scene::Shape::Plane { .. }));
-    if soft.elements.is_empty() || is_endless || soft.elements.len() > 1500 {
+    if soft.elements.is_empty() || is_endless || soft.elements.len() > MOST {
         return (plain, None);
     }
     let job = Job::View(Box::new(ViewJob {
@@ -192,7 +195,12 @@ fn drafts_of_all_examples_look_like_their_pictures() {
     assert!(bad.is_empty(), "{bad:#?}");
 }
 
-/// The largest differences of draft and mesh from the traced picture.
-fn bounds(_name: &str) -> (f64, f64) {
-    (40.0, 30.0)
+/// The largest differences of draft and mesh from the traced picture. Neither has shadows, and textures are their mean colours; what is
+/// seen in glass and mirrors is not drawn at all.
+fn bounds(name: &str) -> (f64, f64) {
+    match name {
+        "glass-drops" | "diamond" => (50.0, 50.0),
+        "pebbles" => (25.0, 21.0),
+        _ => (20.0, 20.0),
+    }
 }

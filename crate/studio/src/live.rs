@@ -65,6 +65,8 @@ pub struct LiveMesh {
     seconds: f64,
     /// The scene of which there is no mesh, or none that is finer.
     hopeless: Option<u64>,
+    /// Elements of the scene that took too long: another try waits until there are others.
+    slow: Option<usize>,
     /// The scene seen last, and when it changed.
     seen: (u64, f64),
 }
@@ -81,6 +83,7 @@ impl LiveMesh {
             count: 0,
             seconds: f64::INFINITY,
             hopeless: None,
+            slow: None,
             seen: (0, 0.0),
         }
     }
@@ -97,6 +100,7 @@ impl LiveMesh {
         self.made = None;
         self.seconds = f64::INFINITY;
         self.hopeless = None;
+        self.slow = None;
     }
 
     fn stop(&mut self) {
@@ -127,12 +131,14 @@ impl LiveMesh {
             let is_long = now - running.begun > LIMIT;
             if is_long {
                 self.hopeless = Some(running.shape);
+                self.slow = Some(elements(session));
             }
             if is_old || is_long {
                 self.stop();
             }
         }
-        if !self.is_wanted || self.running.is_some() || self.hopeless == Some(shape) {
+        let is_slow = self.slow == Some(elements(session));
+        if !self.is_wanted || self.running.is_some() || is_slow || self.hopeless == Some(shape) {
             return;
         }
         let known = self.made.as_ref().filter(|made| made.shape == shape);
@@ -193,6 +199,10 @@ impl LiveMesh {
         let is_possible = self.running.is_none() && self.hopeless != Some(made.shape);
         (is_next && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
     }
+}
+
+fn elements(session: &Session) -> usize {
+    session.compiled().scene.elements.len()
 }
 
 /// The soft elements of a scene, and what their surfaces depend on; `None` if there are none, too many, or one that has no end.
@@ -299,7 +309,7 @@ mod tests {
     fn scenes_without_a_finite_surface_are_left_to_the_draft() {
         for text in [
             "surface a, diffuse Red\nsphere a 1, 0 0 0\n",
-            "surface a, diffuse Red, blobbiness -2\nsphere a 1, 0 0 0\nplane a, <0 -2 0>, <0 1 0>\n",
+            "surface a, diffuse Red, blobbiness -2, radius 0.3\nsphere a 1, 0 0 0\nplane a, <0 -2 0>, <0 1 0>\n",
         ] {
             let session = session(text);
             assert_eq!(session.errors(), 0);

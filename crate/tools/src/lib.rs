@@ -1,5 +1,5 @@
-//! Jobs of the tools worker, which take long and draw nothing: reading a mesh from a file, meshing a scene, coating its
-//! skeletons, fitting a mesh to measured points.
+//! Jobs of the tools worker, which take long and draw nothing: reading a mesh from a file, meshing a scene, for files or
+//! for the eye, coating its skeletons, fitting a mesh to measured points.
 //!
 //! The page sends a [`Request`] with the job's number; the worker runs it with [`run`] and sends
 //! [`Answer`]s: progress, and in the end the result. A job is a function of its request alone, so

@@ -5,12 +5,14 @@
 
 use crate::job::Progress;
 use crate::message::{Detail, ViewJob, ViewMesh};
-use crate::track::{jets, track};
+use crate::track::{eight, jets, track};
 use field::{Implicit, THRESHOLD};
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
 use mesher::{Cage, Spoke};
-use scene::{Scene, Surface};
+use scene::{Scene, SoftSurface, Surface};
+use std::collections::BTreeMap;
+use wide::f32x8;
 
 /// Sides of the grid's cells, in shares of the diagonal of the skeletons' box with their flesh: the least and the most.
 const CELLS: [f64; 2] = [1.0 / 300.0, 1.0 / 70.0];
@@ -139,36 +141,10 @@ fn add(
     mesh: &TriangleMesh,
 ) {
     let first = (view.vertices.len() / ViewMesh::VERTEX) as u32;
-    let finish = |primitive: u32| {
-        let element = surface.element().get(primitive as usize)?;
-        let finish = scene.elements.get(*element as usize)?.finish;
-        looks.get(finish as usize)
-    };
-    let mut finishes = (0..surface.element().len() as u32).map(finish);
-    let only = match finishes.next() {
-        Some(first) if finishes.all(|other| other == first) => first.copied(),
-        _ => None,
-    };
-    let mut shares = Vec::new();
-    let mut look_at = |point: DVec3| {
-        if let Some(only) = only {
-            return only;
-        }
-        shares.clear();
-        surface.function().shares(point, &mut shares);
-        let total: f64 = shares.iter().map(|(_, share)| share).sum();
-        let mut sum = [0.0; 10];
-        for (primitive, share) in &shares {
-            let share = (share / total) as f32;
-            for (sum, own) in sum.iter_mut().zip(finish(*primitive).unwrap_or(&[0.0; 10])) {
-                *sum += share * own;
-            }
-        }
-        sum
-    };
+    let mixed = mixed(scene, looks, surface, &mesh.positions);
     let byte = |x: f32| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8;
     let normals = mesh.normals.as_deref().unwrap_or_default();
-    for (i, position) in mesh.positions.iter().enumerate() {
+    for (i, (position, look)) in mesh.positions.iter().zip(mixed).enumerate() {
         let own = (*position - view.origin) / view.unit;
         let normal = normals.get(i).copied().unwrap_or_default();
         let [x, y, z] = (normal.normalize_or_zero() * 32767.0).to_array();
@@ -179,13 +155,80 @@ fn add(
         for part in [x, y, z, 0.0] {
             bytes.extend((part as i16).to_le_bytes());
         }
-        let [ar, ag, ab, dr, dg, db, sr, sg, sb, shine] = look_at(*position);
+        let [ar, ag, ab, dr, dg, db, sr, sg, sb, shine] = look;
         let colours = [ar, ag, ab, shine, dr, dg, db, 1.0, sr, sg, sb, 1.0];
         bytes.extend(colours.map(byte));
     }
     for corner in mesh.triangles.iter().flatten() {
         view.triangles.extend((first + corner).to_le_bytes());
     }
+}
+
+/// The looks at points of a surface: those of its elements, mixed by their shares.
+fn mixed(
+    scene: &Scene,
+    looks: &[[f32; 10]],
+    surface: &Surface,
+    points: &[DVec3],
+) -> Vec<[f32; 10]> {
+    // Of each finish that the surface has, once.
+    let mut numbers = BTreeMap::new();
+    let mut own: Vec<[f32; 10]> = Vec::new();
+    let number = |element: &u32| {
+        let element = scene.elements.get(*element as usize);
+        let finish = element.map_or(0, |element| element.finish);
+        *numbers.entry(finish).or_insert_with(|| {
+            own.push(looks.get(finish as usize).copied().unwrap_or([0.0; 10]));
+            own.len() - 1
+        })
+    };
+    let of: Vec<usize> = surface.element().iter().map(number).collect();
+    if let [only] = own[..] {
+        return vec![only; points.len()];
+    }
+    let mix = |weights: &[f32]| {
+        let total: f32 = weights.iter().sum();
+        let mut sum = [0.0; 10];
+        for (weight, own) in weights.iter().zip(&own) {
+            for (sum, own) in sum.iter_mut().zip(own) {
+                *sum += weight / total * own;
+            }
+        }
+        sum
+    };
+    let mut all = Vec::with_capacity(points.len());
+    match surface {
+        Surface::Sum(SoftSurface { sum, .. }) => {
+            for chunk in points.chunks(8) {
+                let places = eight(chunk);
+                let mut weights = vec![f32x8::splat(0.0); own.len()];
+                for (primitive, finish) in sum.primitives.iter().zip(&of) {
+                    let value = primitive.value(places);
+                    weights[*finish] += value.fast_max(f32x8::splat(0.0));
+                }
+                let lanes: Vec<[f32; 8]> = weights.into_iter().map(f32x8::to_array).collect();
+                all.extend((0..chunk.len()).map(|i| {
+                    let weights: Vec<f32> = lanes.iter().map(|lane| lane[i]).collect();
+                    mix(&weights)
+                }));
+            }
+        }
+        Surface::Composed(surface) => {
+            let mut shares = Vec::new();
+            for point in points {
+                shares.clear();
+                surface.function.shares(*point, &mut shares);
+                let mut weights = vec![0.0; own.len()];
+                for (element, share) in &shares {
+                    if let Some(finish) = of.get(*element as usize) {
+                        weights[*finish] += *share as f32;
+                    }
+                }
+                all.push(mix(&weights));
+            }
+        }
+    }
+    all
 }
 
 #[cfg(test)]
