@@ -45,9 +45,10 @@ impl<'a> Progress<'a> {
 
     /// Whether the job is to go on.
     pub(crate) fn goes_on(&mut self) -> ControlFlow<()> {
-        match &mut self.is_over {
-            Some(is_over) if is_over() => ControlFlow::Break(()),
-            _ => ControlFlow::Continue(()),
+        if self.is_over.as_mut().is_some_and(|is_over| is_over()) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
         }
     }
 
