@@ -111,7 +111,7 @@ test('while a bone is dragged the mesh follows, and a text that it cannot follow
 
   // A plane has no end, so there is no mesh of it.
   await sinew.load(`${MELTED}surface soil diffuse Gray50, radius 0.4, blobbiness -2\nplane soil, <0 -4 0>, <0 1 0>\n`);
-  await turn(sinew, (_, moves) => moves === 40);
+  await turn(sinew, (_, moves) => moves === 12);
   await mouse.up();
   assert.equal((await sinew.status()).standIn, 'draft');
   assert.deepEqual(sinew.troubles, []);

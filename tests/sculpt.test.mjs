@@ -189,7 +189,8 @@ test('a finger sculpts and two fingers turn, on a phone', async () => {
 });
 
 test('the model becomes clay and comes back: one undo; flesh grows on it and it is fitted to points', async () => {
-  const sinew = await browser.open({ viewport: { width: 1280, height: 800 } });
+  // High enough for all of the place's panel.
+  const sinew = await browser.open({ viewport: { width: 1280, height: 1100 } });
   const { page } = sinew;
   const text = `eyep 0 0 9
 vrp 0 0 0

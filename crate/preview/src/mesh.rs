@@ -95,8 +95,8 @@ impl Uploaded {
         let corners = mesh.vertices.len() / VERTEX;
         let numbers = mesh.triangles.chunks_exact(4);
         let most = numbers.filter_map(|n| n.try_into().ok().map(u32::from_le_bytes));
-        let is_sound = mesh.vertices.len() % VERTEX == 0
-            && mesh.triangles.len() % 12 == 0
+        let is_sound = mesh.vertices.len().is_multiple_of(VERTEX)
+            && mesh.triangles.len().is_multiple_of(12)
             && most.max().is_some_and(|most| (most as usize) < corners)
             && mesh.origin.is_finite()
             && mesh.unit.is_finite()

@@ -64,8 +64,7 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
             status::show(
                 ui,
                 &app.renderer,
-                app.backend,
-                app.stand_in,
+                (app.backend, app.stand_in),
                 enabled,
                 reading,
                 narrow,

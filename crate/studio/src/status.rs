@@ -40,12 +40,11 @@ pub fn summary(renderer: &Renderer, enabled: bool, reading: Option<(&str, f32)>)
     }
 }
 
-/// Shows the strip.
+/// Shows the strip; with what the window is drawn, and what stands in for the traced picture.
 pub fn show(
     ui: &mut Ui,
     renderer: &Renderer,
-    backend: Backend,
-    stand_in: Option<StandIn>,
+    (backend, stand_in): (Backend, Option<StandIn>),
     enabled: bool,
     reading: Option<(&str, f32)>,
     narrow: bool,
