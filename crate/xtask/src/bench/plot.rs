@@ -41,7 +41,7 @@ pub fn svg(panels: &[Panel]) -> String {
 /// Whole powers of ten below and above all coordinates of one axis.
 fn decades(panel: &Panel, axis: usize) -> [i32; 2] {
     let all = panel.curves.iter().flat_map(|curve| &curve.points);
-    let logs = all.map(|point| point[axis].log10());
+    let logs = all.map(|point| libm::log10(point[axis]));
     let (low, high) = logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), log| {
         (low.min(log), high.max(log))
     });
@@ -101,7 +101,7 @@ fn drawn(panel: &Panel, left: f64) -> String {
         let colour = COLOURS[i % COLOURS.len()];
         let mut points = String::new();
         for [a, b] in &curve.points {
-            let (a, b) = (x(a.log10()), y(b.log10()));
+            let (a, b) = (x(libm::log10(*a)), y(libm::log10(*b)));
             // A String takes any text.
             let _ = write!(points, "{a:.1},{b:.1} ");
         }
