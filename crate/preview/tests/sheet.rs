@@ -199,8 +199,8 @@ fn drafts_of_all_examples_look_like_their_pictures() {
 /// seen in glass and mirrors is not drawn at all.
 fn bounds(name: &str) -> (f64, f64) {
     match name {
-        "glass-drops" | "diamond" => (50.0, 50.0),
-        "pebbles" => (25.0, 21.0),
-        _ => (20.0, 20.0),
+        "glass-drops" | "diamond" | "pebbles" | "still-life" => (31.0, 25.0),
+        "shell-2" | "shell-3" | "starfish" | "starfish-c" | "sea-urchin" => (31.0, 25.0),
+        _ => (20.0, 19.0),
     }
 }
