@@ -95,7 +95,7 @@ pub fn of(lesson: Lesson) -> Words {
                         so the mesh ends where it should not; shells are as thin as you like.",
         },
         Lesson::Textures => Words {
-            about: "patterns that dissolve into each other",
+            about: "patterns that cross-dissolve",
             sentences: "Each element has its own map of u and v, so two balls that blend have two patterns. At \
                         a point of the surface each is looked up for itself, and the results are mixed by the \
                         shares of the field that the elements have there. A solid texture fills space and needs \
