@@ -206,11 +206,6 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// Value and gradient in double precision.
     fn jet(&self, point: DVec3) -> Jet<f64>;
 
-    /// Value and gradient with an error of the value up to this; [`Sum`](crate::Sum) then sums hundreds of terms by its hierarchy.
-    fn jet_within(&self, point: DVec3, _error: f64) -> Jet<f64> {
-        self.jet(point)
-    }
-
     /// Value and gradient in single precision.
     fn jet32(&self, point: [f32; 3]) -> Jet<f32>;
 

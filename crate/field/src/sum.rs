@@ -177,17 +177,6 @@ impl Implicit for Sum {
         self.sum(point.to_array())
     }
 
-    fn jet_within(&self, point: DVec3, error: f64) -> Jet<f64> {
-        let ball = Ball {
-            center: point,
-            radius: 0.0,
-        };
-        match self.cell(ball, error) {
-            Some(cell) => self.listed(&cell.near, point).plus(cell.jet(point)),
-            None => self.jet(point),
-        }
-    }
-
     fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
         self.sum(point)
     }

@@ -363,12 +363,7 @@ fn sums_are_as_exact_as_is_asked() {
         };
         let point = ball.center + n.vector().clamp_length_max(1.0) * ball.radius;
         let want = sum.jet(point);
-        assert_eq!(sum.jet_within(point, 0.0), want);
-        assert_eq!(sum.jet_within(point, 1e-9), want);
         let error = 2e-4;
-        let told = sum.jet_within(point, error);
-        assert!((told.value - want.value).abs() <= error);
-        largest = largest.max((told.value - want.value).abs());
         let [exact, slack] = [0.0, error].map(|far| Slack {
             left_out: 1e-9,
             far,
@@ -382,7 +377,9 @@ fn sums_are_as_exact_as_is_asked() {
         };
         assert!(part.error()[0] <= error && part.far.is_some());
         let told = sum.jet_of(&part, point);
-        assert!((told.value - want.value).abs() <= part.error()[0] + 1e-9);
+        let off = (told.value - want.value).abs();
+        assert!(off <= part.error()[0] + 1e-9);
+        largest = largest.max(off);
         let bounds = sum.variation(Some(&part), ball).range;
         assert!(bounds.value[0] <= want.value && want.value <= bounds.value[1]);
         assert!(DVec3::from_array(want.gradient).length() <= bounds.slope);

@@ -103,7 +103,7 @@ impl Metaballs {
         }
         let place = center.to_array();
         let reach = k * radius * (1.0 + ROUNDING);
-        let [grows, falls] = [reach.exp(), reach.decay()];
+        let [grows, falls] = [Real::exp(reach), reach.decay()];
         let mut jet = Jet::zero();
         let (mut low, mut high, mut slope, mut curvature) = (0.0, 0.0, 0.0, 0.0_f64);
         self.bvh.descend(|_, bounds, facets| {

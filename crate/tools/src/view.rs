@@ -239,8 +239,10 @@ mod tests {
 
     /// Two soft balls that blend, of two finishes, and a hard one.
     fn scene(x: f64) -> Scene {
-        let mut scene = Scene::default();
-        scene.finishes = vec![Finish::default(), Finish::default()];
+        let mut scene = Scene {
+            finishes: vec![Finish::default(), Finish::default()],
+            ..Scene::default()
+        };
         scene.flesh.push(Flesh {
             blobbiness: -2.0,
             ..Flesh::default()

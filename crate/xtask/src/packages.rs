@@ -32,9 +32,9 @@ pub const MODULES: [Module; 3] = [
         features: "entry",
         profile: "worker",
         name: "tracer",
-        // 400 kB is the aim. Made small but for the field and the tracer it was at 395; local convolution, motion and far fields took it to 439,
-        // a quarter of which, before compression, are the formulas of the chart in two precisions.
-        budget: 445_000,
+        // 400 kB is the aim. Made small but for the field and the tracer it was at 395; local convolution, motion, far fields and implicit meshes took it to
+        // 449, a quarter of which, before compression, are the formulas of the chart in two precisions.
+        budget: 450_000,
         seconds: 60,
     },
     Module {
