@@ -201,7 +201,7 @@ fn bounds(name: &str) -> (f64, f64) {
     match name {
         "glass-drops" | "diamond" | "pebbles" | "still-life" => (31.0, 25.0),
         "shell-2" | "shell-3" | "starfish" | "starfish-c" | "sea-urchin" => (31.0, 25.0),
-        // Its texture is two colours in half and half.
+        // Its picture is a map of what each pixel costs.
         "time-map" => (20.0, 21.0),
         _ => (20.0, 19.0),
     }
