@@ -115,33 +115,22 @@ test('strokes of a mouse are paired, made single, moved, cut and taken back', as
 test("a pen's pressure makes a stroke thick", async () => {
   const { sinew, hand } = await open(DESKTOP, false);
   const { page } = sinew;
-  // As in the sculpting tests: the page is told what a pen tells.
-  const pen = (type, [x, y], pressure) =>
-    page.evaluate(
-      ([type, x, y, pressure]) => {
-        const about = { clientX: x, clientY: y, pressure, pointerType: 'pen', pointerId: 9, bubbles: true, isPrimary: true };
-        const canvas = document.querySelector('canvas');
-        canvas.dispatchEvent(new PointerEvent(type, about));
-        if (type === 'pointermove') canvas.dispatchEvent(new MouseEvent('mousemove', about));
-      },
-      [type, x, y, pressure],
-    );
   const stroke = async (height, pressures) => {
     const { revision } = await sinew.status();
     const places = await hand.at(...pressures.map((_, i) => [0.25 + (0.5 * i) / (pressures.length - 1), height]));
     await page.mouse.move(...places[0]);
     await page.waitForTimeout(120);
-    await pen('pointermove', places[0], 0);
-    await pen('pointerdown', places[0], pressures[0]);
+    await sinew.pen('pointermove', places[0], 0);
+    await sinew.pen('pointerdown', places[0], pressures[0]);
     // Each is seen in a frame of its own, on a busy machine too.
     const frame = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
     for (const [i, place] of places.entries()) {
       await frame();
-      await pen('pointermove', place, pressures[i]);
+      await sinew.pen('pointermove', place, pressures[i]);
       await page.waitForTimeout(150);
     }
     await frame();
-    await pen('pointerup', places.at(-1), 0);
+    await sinew.pen('pointerup', places.at(-1), 0);
     await sinew.until((status) => status.revision > revision);
   };
   const radii = (text) => [...text.matchAll(/^ *node \w+ <[^>]*> radius ([\d.]+)/gm)].map(([, radius]) => Number(radius));

@@ -162,6 +162,19 @@ export class Sinew {
     await this.finished();
   }
 
+  /** Tells the page what a pen tells, events of a pointer and of the mouse, as Chromium's own tools make no pen events. */
+  pen(type, [x, y], pressure) {
+    return this.page.evaluate(
+      ([type, x, y, pressure]) => {
+        const about = { clientX: x, clientY: y, pressure, pointerType: 'pen', pointerId: 9, bubbles: true, isPrimary: true };
+        const canvas = document.querySelector('canvas');
+        canvas.dispatchEvent(new PointerEvent(type, about));
+        if (type === 'pointermove') canvas.dispatchEvent(new MouseEvent('mousemove', about));
+      },
+      [type, x, y, pressure],
+    );
+  }
+
   /** Where a widget is, in CSS pixels. */
   async place(name) {
     await this.page.waitForFunction((name) => sinew.debug.rects()[name], name, { timeout: 60_000 });

@@ -116,28 +116,17 @@ test("a pen's pressure is written", async () => {
   const { page } = sinew;
   const { at, side } = await begin(sinew);
   await page.keyboard.press('p');
-  // Chromium's own tools make no pen events, so the page is told what a pen tells: events of a pointer and of the mouse.
-  const pen = (type, x, y, pressure) =>
-    page.evaluate(
-      ([type, x, y, pressure]) => {
-        const about = { clientX: x, clientY: y, pressure, pointerType: 'pen', pointerId: 9, bubbles: true, isPrimary: true };
-        const canvas = document.querySelector('canvas');
-        canvas.dispatchEvent(new PointerEvent(type, about));
-        if (type === 'pointermove') canvas.dispatchEvent(new MouseEvent('mousemove', about));
-      },
-      [type, x, y, pressure],
-    );
   const [x, y] = at;
   await page.mouse.move(x, y);
   await page.waitForTimeout(120);
-  await pen('pointermove', x, y, 0);
-  await pen('pointerdown', x, y, 0.25);
+  await sinew.pen('pointermove', [x, y], 0);
+  await sinew.pen('pointerdown', [x, y], 0.25);
   for (let i = 1; i <= 5; i += 1) {
     await page.waitForTimeout(80);
-    await pen('pointermove', x + 0.04 * side * i, y, 0.25 + 0.1 * i);
+    await sinew.pen('pointermove', [x + 0.04 * side * i, y], 0.25 + 0.1 * i);
   }
   await page.waitForTimeout(80);
-  await pen('pointerup', x + 0.2 * side, y, 0);
+  await sinew.pen('pointerup', [x + 0.2 * side, y], 0);
   await until(sinew, ({ depth }) => depth[0] === 1);
   const line = (await strokes(sinew)).split('\n')[2];
   const points = line.split(' : ')[1].split(', ').map((point) => point.split(' ').map(Number));

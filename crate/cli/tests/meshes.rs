@@ -126,7 +126,7 @@ fn what_cannot_be_meshed_is_told() {
     assert!(!std::fs::exists(&out).unwrap(), "nothing is written");
 }
 
-/// What would take hours ends soon, with a mesh or a sentence. (How long it takes is bounded by counts of cells and evaluations.)
+/// Models that would take hours end with a mesh or a sentence, by bounds on the counts of cells and evaluations.
 #[test]
 fn degenerate_models_end_with_a_mesh_or_words() {
     let folder = Folder::new("mesh-ends");

@@ -109,7 +109,7 @@ impl Part {
     }
 }
 
-/// What a caller of [`Implicit::narrow`] bears.
+/// Errors that a caller of [`Implicit::narrow`] bears, in units of the function's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slack {
     /// Bound on what is left out.

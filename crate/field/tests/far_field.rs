@@ -336,8 +336,8 @@ fn parts_of_the_sum_have_hierarchies() {
         let cell = odd.around(&primitives, place, 0.0).expect("a cell");
         let of = |p: &Primitive| p.value(place.to_array());
         let near: f64 = cell.near.iter().map(|i| of(&primitives[*i as usize])).sum();
-        let odds = primitives.iter().skip(1).step_by(2);
-        let want: f64 = odds.map(of).filter(|value| *value > 0.0).sum();
+        let chosen = primitives.iter().skip(1).step_by(2);
+        let want: f64 = chosen.map(of).filter(|value| *value > 0.0).sum();
         let off = (near + cell.jet(place).value - want).abs();
         assert!(off <= cell.error + 1e-12 * want, "{off}");
         assert!(cell.near.iter().all(|i| i % 2 == 1));

@@ -19,7 +19,7 @@ use std::time::Instant;
 
 /// Cells of the grid along the longest side.
 const GRID: f64 = 24.0;
-/// What the terms that matter in a cell leave out.
+/// The bound on terms that are left out in a cell; polynomials stand for none.
 const SLACK: Slack = Slack {
     left_out: 1e-7,
     far: 0.0,

@@ -10,15 +10,15 @@ use mesh::{Aabb, FaceId, HalfEdgeMesh, TriangleMesh, VertexId, self_intersection
 /// Rings of neighbours around vertices where proofs may fail that are guarded, too.
 const RINGS: usize = 2;
 
-/// Where edits are kept from making a mesh cut itself.
+/// The triangles whose edits are kept from making a mesh cut itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guarded {
-    /// Nowhere: for tests.
+    /// None: for tests.
     #[cfg(test)]
     Nowhere,
-    /// Where proofs of triangles may fail.
+    /// Those whose proofs may fail.
     Unproved,
-    /// Everywhere.
+    /// All.
     Everywhere,
 }
 

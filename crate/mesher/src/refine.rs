@@ -466,7 +466,7 @@ pub fn crossing(forest: &Forest) -> Vec<u32> {
     (0..forest.cells.len() as u32).filter(is_crossing).collect()
 }
 
-/// What the tetrahedra of a cell tell.
+/// The cells around a cell that its tetrahedra tell something about.
 struct Verdict {
     /// The cells in which one does not prove the topology, and which are to blame.
     failing: Vec<u32>,

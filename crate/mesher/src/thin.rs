@@ -181,7 +181,7 @@ fn hiding(
     Ok(hiding)
 }
 
-/// What a search for the other side of the surface in a cell has found.
+/// The result of a search for the other side of the surface in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Found {
     /// A point there.

@@ -38,7 +38,7 @@ fn meshed(function: &dyn Implicit) -> TriangleMesh {
     surface.expect("it has a surface").mesh
 }
 
-/// Where both bodies were inside, their surfaces are the sheet on which the fields are equal.
+/// The sheet on which the fields are equal is the surface of both bodies where both were inside.
 #[test]
 fn sheets_lie_on_each_other() {
     let bulges = [

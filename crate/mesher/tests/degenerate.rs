@@ -3,7 +3,9 @@
 mod common;
 
 use common::assert_manifold;
-use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
+use field::{
+    Ball, BlobScale, Enclosure, Implicit, Jet, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD,
+};
 use glam::DVec3;
 use mesh::Topology;
 use mesher::{
@@ -11,6 +13,7 @@ use mesher::{
 };
 use scene::{Body, Element, Flesh, Scene, Shape};
 use std::ops::ControlFlow;
+use wide::f32x8;
 
 fn meshed(scene: &Scene, wishes: &Wishes) -> Result<Model, MeshError> {
     let mut report = |_| ControlFlow::Continue(());
@@ -221,4 +224,75 @@ fn union_joins_bodies_and_outer_drops_cavities() {
     let one = meshed(&scene, &wishes).unwrap();
     assert_eq!(one.parts.len(), 1);
     assert_eq!(one.parts[0].name, "second");
+}
+
+/// A function that waves by next to nothing about its threshold throughout a ball, and of which no more is known than that.
+#[derive(Debug)]
+struct Level;
+
+const WAVE: f64 = 1e-4;
+
+impl Implicit for Level {
+    fn jet(&self, point: DVec3) -> Jet<f64> {
+        let beyond = (point.length() - 1.0).max(0.0);
+        let (sin, cos) = libm::sincos(40.0 * point.x);
+        let wave = DVec3::X * (40.0 * WAVE * cos);
+        let fall = if beyond > 0.0 {
+            -point.normalize()
+        } else {
+            DVec3::ZERO
+        };
+        Jet {
+            value: THRESHOLD * (1.0 + WAVE * sin - beyond),
+            gradient: (THRESHOLD * (wave + fall)).to_array(),
+        }
+    }
+
+    fn jet32(&self, _: [f32; 3]) -> Jet<f32> {
+        unreachable!("meshes are made in double precision")
+    }
+
+    fn jet8(&self, _: [f32x8; 3]) -> Jet<f32x8> {
+        unreachable!("meshes are made in double precision")
+    }
+
+    fn enclose(&self, ball: Ball) -> Enclosure {
+        let distance = ball.center.length();
+        let value = |d: f64| THRESHOLD * (1.0 - (d - 1.0).max(0.0));
+        Enclosure {
+            value: [
+                value(distance + ball.radius) - 2.0 * WAVE * THRESHOLD,
+                value(distance - ball.radius) + 2.0 * WAVE * THRESHOLD,
+            ],
+            slope: 1.1 * THRESHOLD,
+            curvature: f64::INFINITY,
+        }
+    }
+
+    fn shares(&self, _: DVec3, _: &mut Vec<(u32, f64)>) {}
+
+    fn support(&self) -> Option<Ball> {
+        Some(Ball {
+            center: DVec3::ZERO,
+            radius: 1.0,
+        })
+    }
+}
+
+#[test]
+fn a_region_at_the_threshold_is_told() {
+    let options = Options {
+        max_triangles: 20_000,
+        ..Options::new(0.01)
+    };
+    let domain = box_of(Level.support().unwrap());
+    let mut report = |_| ControlFlow::Continue(());
+    let error = polygonize(&Level, &domain, &options, &mut Progress::new(&mut report))
+        .map(|mesh| mesh.mesh.triangles.len())
+        .unwrap_err();
+    let MeshError::Flat { near } = error else {
+        panic!("{error}")
+    };
+    assert!(DVec3::from_array(near).length() < 1.1, "{near:?}");
+    assert!(error.to_string().contains("lie on each other"), "{error}");
 }

@@ -49,7 +49,8 @@ fn shine(exponent: f32) -> f32 {
     (libm::log2f(finite(exponent).max(0.0) + 1.0) / SHINE_OCTAVES).min(1.0)
 }
 
-/// What the vertex shader reads of the whole mesh.
+/// The place and scale of a mesh, a uniform of the vertex shader: the origin in two single-precision parts, and the length of
+/// a unit of the vertices.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct Placed {

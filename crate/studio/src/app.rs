@@ -68,7 +68,7 @@ pub enum Tab {
     Fit,
 }
 
-/// What stands in for a traced picture that is not there yet.
+/// The stand-in for a traced picture that is not there yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StandIn {
     /// The elements before they melt together.
@@ -128,7 +128,7 @@ pub struct App {
     pub(crate) draft: Option<Draft>,
     /// The true surface for the draft.
     pub(crate) live: LiveMesh,
-    /// What stands in for the traced picture on the screen.
+    /// The stand-in for the traced picture on the screen.
     pub(crate) stand_in: Option<StandIn>,
     /// The draft where there is none on the window's device.
     pub(crate) apart: Apart,

@@ -11,7 +11,7 @@ use scene::Camera;
 pub struct Draft {
     state: RenderState,
     draft: preview::Draft,
-    /// What was uploaded: the session's count of shapes, and the number of a mesh.
+    /// The uploaded scene and mesh: the session's count of shapes, and the number of a mesh.
     scene: Option<u64>,
     mesh: Option<u64>,
     drawn: Option<(u64, Option<u64>, Camera, [u32; 2])>,

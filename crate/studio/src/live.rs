@@ -228,26 +228,10 @@ fn soft_part(mut scene: Scene) -> Option<Scene> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Kept;
-    use rats::{File, Project};
     use std::time::{Duration, Instant};
 
     const BALLS: &str =
         "surface a, diffuse Red, blobbiness -2\nsphere a 1, 0 0 0\nsphere a 1, 1.5 0 0\n";
-
-    fn session(text: &str) -> Session {
-        let file = File {
-            name: String::from("main.rat"),
-            text: text.to_owned(),
-        };
-        let kept = Kept {
-            project: Project { files: vec![file] },
-            ..Kept::default()
-        };
-        let mut session = Session::new(kept, true);
-        session.compile();
-        session
-    }
 
     /// Ticks at a moment of the app's clock until nothing is being made.
     fn settle(live: &mut LiveMesh, session: &Session, now: f64, rests: bool) {
@@ -264,7 +248,7 @@ mod tests {
 
     #[test]
     fn mesh_is_made_once_a_hand_moves_and_becomes_finer_when_it_rests() {
-        let session = session(BALLS);
+        let session = Session::of_text(BALLS);
         let mut live = LiveMesh::new(|| {});
         settle(&mut live, &session, 0.0, true);
         assert!(live.shown(&session, 0.0).is_none());
@@ -288,7 +272,7 @@ mod tests {
 
     #[test]
     fn quick_mesh_stands_in_for_the_next_one_but_not_for_long() {
-        let mut session = session(BALLS);
+        let mut session = Session::of_text(BALLS);
         let mut live = LiveMesh::new(|| {});
         live.want();
         settle(&mut live, &session, 1.0, false);
@@ -311,7 +295,7 @@ mod tests {
             "surface a, diffuse Red\nsphere a 1, 0 0 0\n",
             "surface a, diffuse Red, blobbiness -2, radius 0.3\nsphere a 1, 0 0 0\nplane a, <0 -2 0>, <0 1 0>\n",
         ] {
-            let session = session(text);
+            let session = Session::of_text(text);
             assert_eq!(session.errors(), 0);
             let mut live = LiveMesh::new(|| {});
             live.want();

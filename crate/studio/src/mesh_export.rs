@@ -668,25 +668,9 @@ fn encoded(channel: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Kept;
-    use rats::{File, Project};
     use std::cell::RefCell;
     use std::rc::Rc;
     use std::time::{Duration, Instant};
-
-    fn session(text: &str) -> Session {
-        let file = File {
-            name: String::from("main.rat"),
-            text: text.to_owned(),
-        };
-        let kept = Kept {
-            project: Project { files: vec![file] },
-            ..Kept::default()
-        };
-        let mut session = Session::new(kept, true);
-        session.compile();
-        session
-    }
 
     fn made_for_a_script(text: &str, order: Order) -> Result<Vec<u8>, String> {
         let mut export = MeshExport::new(|| {});
@@ -694,7 +678,7 @@ mod tests {
         let place = given.clone();
         let taker = Box::new(move |result| *place.borrow_mut() = Some(result));
         let film = Film { count: 5, rate: 12 };
-        export.make_for(&session(text), film, "ball", order, taker);
+        export.make_for(&Session::of_text(text), film, "ball", order, taker);
         let deadline = Instant::now() + Duration::from_secs(60);
         while given.borrow().is_none() {
             assert!(Instant::now() < deadline);
@@ -786,7 +770,7 @@ mod tests {
 
     #[test]
     fn another_format_or_size_makes_no_new_triangles() {
-        let (ball, arm) = (session(BALL), session(ARM));
+        let (ball, arm) = (Session::of_text(BALL), Session::of_text(ARM));
         let mut export = MeshExport::new(|| {});
         // Coat, mesh, file.
         assert_eq!(follow(&mut export, &ball), 3);
@@ -830,7 +814,7 @@ mod tests {
 
     #[test]
     fn stopping_is_not_undone_until_one_asks() {
-        let ball = session(BALL);
+        let ball = Session::of_text(BALL);
         let film = Film { count: 5, rate: 12 };
         let mut export = MeshExport::new(|| {});
         export.order.tolerance = 3e-4;

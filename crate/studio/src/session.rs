@@ -711,27 +711,26 @@ fn first_difference(old: &Project, new: &Project) -> (usize, usize) {
 }
 
 #[cfg(test)]
+impl Session {
+    /// A session of one text, compiled.
+    pub fn of_text(text: &str) -> Self {
+        let kept = Kept {
+            project: Project::single(text),
+            ..Kept::default()
+        };
+        let mut session = Self::new(kept, true);
+        session.compile();
+        session
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use rats::File;
 
     const TEXT: &str =
         "surface a, diffuse Red, blobbiness -1\nvar r = 0.5 hot\nsphere a r, 0 0 0\n";
-
-    fn session(text: &str) -> Session {
-        let file = File {
-            name: String::from("main.rat"),
-            text: text.to_owned(),
-        };
-        let project = Project { files: vec![file] };
-        let kept = Kept {
-            project,
-            ..Kept::default()
-        };
-        let mut session = Session::new(kept, true);
-        session.compile();
-        session
-    }
 
     fn edit(session: &mut Session, text: &str, now: f64) {
         session.set_text(0, text.to_owned(), now).unwrap();
@@ -740,7 +739,7 @@ mod tests {
 
     #[test]
     fn an_error_keeps_the_last_good_scene() {
-        let mut session = session(TEXT);
+        let mut session = Session::of_text(TEXT);
         assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
         let (scene, generation) = (session.scene(), session.generation());
         edit(&mut session, &format!("{TEXT}sphree a 1, 2 0 0\n"), 1.0);
@@ -753,14 +752,14 @@ mod tests {
 
     #[test]
     fn a_first_text_with_errors_shows_what_it_can() {
-        let session = session(&format!("sphree\n{TEXT}"));
+        let session = Session::of_text(&format!("sphree\n{TEXT}"));
         assert!(session.errors() > 0);
         assert_eq!(session.scene().unwrap().elements.len(), 1);
     }
 
     #[test]
     fn a_remark_draws_no_new_picture() {
-        let mut session = session(TEXT);
+        let mut session = Session::of_text(TEXT);
         let generation = session.generation();
         edit(&mut session, &format!("# words\n{TEXT}"), 1.0);
         assert_eq!(session.generation(), generation);
@@ -769,7 +768,7 @@ mod tests {
 
     #[test]
     fn editing_never_moves_a_camera_chosen_by_hand() {
-        let mut session = session(TEXT);
+        let mut session = Session::of_text(TEXT);
         let chosen = Camera {
             eye: glam::DVec3::new(1.0, 2.0, 3.0),
             ..Camera::default()
@@ -795,7 +794,7 @@ mod tests {
 
     #[test]
     fn a_slider_drag_is_one_step() {
-        let mut session = session(TEXT);
+        let mut session = Session::of_text(TEXT);
         session.hold();
         for step in 1..20 {
             let literal = session.compiled().hot[0].literal.clone().unwrap();
@@ -817,7 +816,7 @@ mod tests {
 
     #[test]
     fn files_come_and_go_and_can_be_undone() {
-        let mut session = session(TEXT);
+        let mut session = Session::of_text(TEXT);
         let added = session.add_file(1.0).unwrap();
         session.rename_file(added, "legs.rat", 1.1).unwrap();
         assert!(session.rename_file(added, "main.rat", 1.2).is_err());
@@ -855,7 +854,7 @@ mod tests {
 
     #[test]
     fn images_come_and_go_within_their_limits() {
-        let mut session = session(TEXT);
+        let mut session = Session::of_text(TEXT);
         let image = |name: &str, bytes: usize| Asset {
             name: name.to_owned(),
             bytes: vec![0; bytes].into(),
@@ -881,7 +880,7 @@ mod tests {
 
     #[test]
     fn files_from_outside_are_one_step() {
-        let mut session = session(TEXT);
+        let mut session = Session::of_text(TEXT);
         let file = |name: &str, text: &str| File {
             name: name.to_owned(),
             text: text.to_owned(),
@@ -899,7 +898,7 @@ mod tests {
 
     #[test]
     fn steps_back_and_forth_are_one_history() {
-        let mut session = session(TEXT);
+        let mut session = Session::of_text(TEXT);
         let file = |text: &str| File {
             name: String::from("main.rat"),
             text: text.to_owned(),
@@ -943,7 +942,7 @@ mod tests {
 
     #[test]
     fn too_much_text_is_refused_and_nothing_is_lost() {
-        let mut session = session(TEXT);
+        let mut session = Session::of_text(TEXT);
         let long = "x".repeat(MAX_TEXT + 1);
         let refused = session.set_text(0, long, 1.0).unwrap_err();
         assert!(refused.to_string().contains("257 kB"), "{refused}");

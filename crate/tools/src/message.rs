@@ -96,7 +96,7 @@ pub struct Coated {
     pub coatings: Vec<Coating>,
 }
 
-/// How near the mesh of a [`ViewJob`] is to the surface.
+/// The closeness of the mesh of a [`ViewJob`] to the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Detail {
     /// As near as can be had while a hand moves.
@@ -113,7 +113,7 @@ pub struct ViewJob {
     /// For each of its finishes the parameters that the view shows, 0 … 1, which are mixed by the shares of the elements: ambient,
     /// diffuse and specular colours, and the shine.
     pub looks: Vec<[f32; 10]>,
-    /// How near.
+    /// The closeness wanted.
     pub detail: Detail,
 }
 

@@ -18,7 +18,7 @@ use wide::f32x8;
 const CELLS: [f64; 2] = [1.0 / 300.0, 1.0 / 70.0];
 /// The same in radii of the thinnest part.
 const OF_RADIUS: f64 = 0.5;
-/// How much smaller cells are for a fine mesh.
+/// The size of cells for a fine mesh, in those of a coarse one.
 const FINER: f64 = 0.5;
 /// Most cells that a body's surface goes through.
 const MOST_CELLS: usize = 300_000;
@@ -86,7 +86,7 @@ fn radius(spoke: &Spoke) -> f64 {
     2.0 * spoke.step
 }
 
-/// Where rays first leave the inside of a function. Those that begin outside, or do not leave it, have no such place.
+/// The places where rays first leave the inside of a function. Those that begin outside, or do not leave it, have no such place.
 fn exits(function: &dyn Implicit, spokes: &[Spoke]) -> Vec<DVec3> {
     /// Rays of a cage that are looked at: the surface is followed from each.
     const RAYS: usize = 8;

@@ -66,7 +66,7 @@ pub struct FarField {
     root: OnceLock<Arc<Cell>>,
 }
 
-/// What a hierarchy is asked for.
+/// The use of a hierarchy, which says what its cells hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Purpose {
     /// The field.

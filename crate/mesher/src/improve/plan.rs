@@ -9,7 +9,7 @@ use mesh::{FaceId, HalfEdgeId, VertexId};
 const FAIR: f64 = 0.42;
 /// Most edges at a vertex after a collapse.
 const MOST_EDGES: usize = 9;
-/// How far edits that leave triangles unproved may go from the mesh before them, in tolerances: cells hide no part of the surface that
+/// The largest distance from the mesh before them that edits which leave triangles unproved may go, in tolerances: cells hide no part of the surface that
 /// is farther from that mesh than the rest.
 const LOST: f64 = 0.5;
 

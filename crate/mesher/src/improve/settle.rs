@@ -143,7 +143,7 @@ impl Improver<'_> {
         Ok(far.into_iter().filter(has_failed).collect())
     }
 
-    /// What may help a face that is not proved to be near the surface.
+    /// The edit that may help a face which is not proved to be near the surface, with its rank; `None` if there is none.
     pub fn remedy(&self, f: FaceId, round: usize) -> Option<(f64, Edit)> {
         let mesh = &self.mesh;
         let mut edges: Vec<(f64, HalfEdgeId)> = mesh

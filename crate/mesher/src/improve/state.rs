@@ -35,7 +35,7 @@ pub struct Plan {
     pub loss: f64,
 }
 
-/// How many faces are not proved to be near the surface at all, and how many only to be farther than the tolerance.
+/// The numbers of faces that are not proved to be near the surface at all, and of those proved only to be farther than the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Unproved {
     pub all: usize,
@@ -76,7 +76,7 @@ pub struct Improver<'a> {
     pub vertices: Vec<Vertex>,
     pub is_fixed: Vec<bool>,
     pub errors: Vec<f32>,
-    /// How far each vertex, and those that were merged into it, may be from where the mesh was before edits that left triangles unproved.
+    /// The largest distance that each vertex, and those that were merged into it, may be from where the mesh was before edits that left triangles unproved.
     pub losses: Vec<f64>,
     /// Results of the last attempts to prove the faces that are not proved to be within the tolerance, since they changed.
     pub attempts: Vec<Attempt>,
@@ -221,7 +221,7 @@ impl<'a> Improver<'a> {
         }
     }
 
-    /// How many of some faces are not proved to be near the surface.
+    /// The number of some faces that are not proved to be near the surface.
     pub fn unproved_among(&self, faces: impl Iterator<Item = FaceId>) -> Unproved {
         let mut unproved = Unproved::default();
         faces.for_each(|f| unproved.add(self.errors[f.index()], self.tolerance));

@@ -24,7 +24,7 @@ pub struct Known {
     pub error: f64,
 }
 
-/// Where to begin.
+/// The places to begin at.
 #[derive(Clone, Copy)]
 pub struct Start {
     /// Estimate of the crossing, and the end of the first step ([`MarchRays`]).

@@ -1,4 +1,4 @@
-//! What fields cost that never end: against those that do, and with more elements.
+//! The cost of fields that never end: against those that do, and with more elements.
 
 use super::goal::{Goal, Wanted, short};
 use super::scenes::Scenes;

@@ -12,9 +12,9 @@ pub struct Curve {
 
 /// One plot beside others.
 pub struct Panel {
-    /// What is measured.
+    /// The measured quantity.
     pub title: String,
-    /// By what.
+    /// The quantity that it grows with.
     pub across: String,
     /// The curves.
     pub curves: Vec<Curve>,
