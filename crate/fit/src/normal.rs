@@ -139,7 +139,7 @@ mod tests {
     fn normal_equations_are_solved() {
         // Residuals a·x − b of known x have their least sum there.
         let exact = [1.0, -2.0, 0.5, 3.0, 0.25, -1.5];
-        let mut normal = Normal::new(6);
+        let (mut normal, mut before) = (Normal::new(6), 0.0);
         for i in 0..40 {
             let t = f64::from(i);
             let row = [0, 1].map(|k| {
@@ -152,11 +152,15 @@ mod tests {
                 .map(|(k, way)| way.dot(DVec3::from_slice(&exact[3 * *k as usize..])))
                 .sum();
             normal.add(-value, &row, 2.0);
+            before += value * value;
         }
         let x = normal.solve(0.0).expect("a positive definite matrix");
         for (x, exact) in x.iter().zip(exact) {
             assert!((x - exact).abs() < 1e-9);
         }
+        // Nothing of half the sum of weighted squares is left.
+        assert!((normal.decrease(&x) / before - 1.0).abs() < 1e-9);
+        assert!(normal.decrease(&[0.0; 6]) == 0.0);
         assert!(Normal::new(3).solve(1.0).is_none());
     }
 }

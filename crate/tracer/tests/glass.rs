@@ -6,6 +6,7 @@ mod looks;
 use glam::DVec3;
 use looks::*;
 use scene::{Background, Element, Finish, Light, LightKind, Scene, Shape};
+use tracer::{Pass, Picture, Stats, Tile};
 
 const SIZE: [u32; 2] = [48, 36];
 
@@ -157,11 +158,10 @@ fn slabs_shift_light_whether_boxes_or_meshes() {
     }
 }
 
-#[test]
-fn a_prism_reflects_totally() {
-    // Light enters a leg, is reflected at the long side and leaves by the other leg, towards −x.
-    let mut scene = dark();
-    scene.camera.fov = 8.0;
+/// Adds a prism of glass, whose finish is number 1: legs towards −x and +z, the long side between them.
+fn add_prism(scene: &mut Scene, index: f32) {
+    assert_eq!(scene.finishes.len(), 1);
+    scene.finishes.push(glass(index));
     let (a, b, c) = (
         DVec3::new(-1.0, 0.0, 1.0),
         DVec3::new(1.0, 0.0, 1.0),
@@ -173,7 +173,6 @@ fn a_prism_reflects_totally() {
         corners.push([p - y, q - y, q + y]);
         corners.push([p - y, q + y, p + y]);
     }
-    scene.finishes.push(glass(1.5));
     for corners in corners {
         scene.elements.push(Element {
             finish: 1,
@@ -183,6 +182,50 @@ fn a_prism_reflects_totally() {
             })
         });
     }
+}
+
+/// Balls of half-silvered glass inside each other ask for twice the rays at each surface: without a limit 2³² for a pixel.
+#[test]
+fn rays_of_nested_glass_are_limited() {
+    let mut scene = dark();
+    (scene.settings.max_depth, scene.settings.vanish) = (32, 0.0);
+    for i in 0..8 {
+        let half = Finish {
+            reflective: [0.5; 3],
+            transparent: [0.5; 3],
+            ..glass(1.0 + 0.1 * i as f32)
+        };
+        add(
+            &mut scene,
+            ball(DVec3::ZERO, 1.0 - 0.1 * f64::from(i)),
+            half,
+        );
+    }
+    let tile = Tile {
+        x: 0,
+        y: 0,
+        width: 4,
+        height: 4,
+    };
+    let mut stats = Stats::default();
+    let picture = Picture::new(&scene, [4, 4]);
+    picture
+        .trace(tile, Pass::Full, &|| false, &mut stats)
+        .expect("nobody stops");
+    let each = stats.secondary_rays / stats.primary_rays;
+    assert!(
+        (1500..=2048).contains(&each),
+        "{each} of {}",
+        stats.primary_rays
+    );
+}
+
+#[test]
+fn a_prism_reflects_totally() {
+    // Light enters a leg, is reflected at the long side and leaves by the other leg, towards −x.
+    let mut scene = dark();
+    scene.camera.fov = 8.0;
+    add_prism(&mut scene, 1.5);
     let glow = |colour| Finish {
         ambient: colour,
         ..black()
@@ -206,28 +249,8 @@ fn colours_part_at_total_reflection() {
     let mut scene = dark();
     // Parallel light, nearly: an angle of a tenth of a degree would change the limit by 0.003.
     (scene.camera.eye, scene.camera.fov) = (DVec3::Z * 60.0, 0.2);
-    let (a, b, c) = (
-        DVec3::new(-1.0, 0.0, 1.0),
-        DVec3::new(1.0, 0.0, 1.0),
-        DVec3::new(-1.0, 0.0, -1.0),
-    );
-    let y = DVec3::Y * 2.0;
-    let mut corners = vec![[a - y, b - y, c - y], [a + y, b + y, c + y]];
-    for (p, q) in [(a, b), (b, c), (c, a)] {
-        corners.push([p - y, q - y, q + y]);
-        corners.push([p - y, q + y, p + y]);
-    }
-    scene.finishes.push(glass(1.414));
+    add_prism(&mut scene, 1.414);
     scene.finishes[1].dispersion = 0.1;
-    for corners in corners {
-        scene.elements.push(Element {
-            finish: 1,
-            ..Element::new(Shape::Triangle {
-                corners,
-                radius: 0.0,
-            })
-        });
-    }
     // Only what has been reflected totally comes here; red goes below it.
     let glow = Finish {
         ambient: [1.0; 3],
@@ -235,7 +258,7 @@ fn colours_part_at_total_reflection() {
     };
     let wall = Shape::Box {
         center: DVec3::X * -4.0,
-        axes: [DVec3::X * 0.1, y, DVec3::Z],
+        axes: [DVec3::X * 0.1, DVec3::Y * 2.0, DVec3::Z],
     };
     add(&mut scene, wall, glow);
     let middle = draw(&scene, [9, 9])[40];
