@@ -58,7 +58,7 @@ fn sheets_lie_on_each_other() {
         .into_iter()
         .zip([Kernel::Cubed, Kernel::Gauss, Kernel::Cauchy])
     {
-        let alone = [limb(-0.4, 0.5, kernel), limb(0.4, -0.5, kernel)];
+        let alone = [limb(-0.2, 0.5, kernel), limb(0.2, -0.5, kernel)];
         let pressed = [0, 1].map(|i| {
             let other = Arc::clone(&alone[1 - i]);
             Squashed::new(Arc::clone(&alone[i]), vec![(other, bulge)])
