@@ -44,10 +44,14 @@ impl Animate {
     /// what could be understood, and the result is false.
     pub fn run(&self) -> Outcome {
         let say = |problem: picture::Problem| problem.to_string();
-        let format = Format::of(&self.output).map_err(say)?;
-        if !matches!(format, Format::Png | Format::Gif) {
-            return Err(picture::Problem::NoAnimation(format.name()).to_string());
-        }
+        let format = Format::of(&self.output);
+        let format = format
+            .ok()
+            .filter(|format| matches!(format, Format::Png | Format::Gif));
+        let format = format.ok_or_else(|| {
+            let name = self.output.display();
+            format!("{name}: the name of an animation must end in .png or .gif")
+        })?;
         if !(1..=MAX_FRAMES).contains(&self.frames) {
             return Err(format!("--frames takes 1 to {MAX_FRAMES}"));
         }

@@ -157,7 +157,14 @@ pub fn read(path: &Path) -> Result<String, String> {
     }
     let bytes =
         std::fs::read(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-    String::from_utf8(bytes).map_err(|_| format!("{} is not UTF-8 text", path.display()))
+    String::from_utf8(bytes).map_err(|error| {
+        let sound = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + sound.iter().filter(|byte| **byte == b'\n').count();
+        format!(
+            "{}:{line}: this line is not UTF-8 text; save the file as UTF-8",
+            path.display()
+        )
+    })
 }
 
 #[cfg(test)]

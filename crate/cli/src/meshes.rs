@@ -2,6 +2,7 @@
 
 use crate::{Outcome, files, report, whole};
 use clap::Args;
+use mesh::limits::MILLIMETRES;
 use mesh::{Export, Format, Level, Part, Topology, TriangleMesh};
 use mesher::{Model, ModelPart, Phase, Progress, Step, Tolerance, Wishes, coat_scene, mesh_scene};
 use serde_json::{Value, json};
@@ -71,9 +72,13 @@ impl Mesh {
         let format = Format::of_name(&name).ok_or_else(|| {
             format!("{name}: the name must end in .glb, .3mf, .stl, .obj or .ply")
         })?;
-        let is_sound = self.size > 0.0 && self.size.is_finite();
+        let is_sound = MILLIMETRES.contains(&self.size);
         if !is_sound {
-            return Err("--size must be a positive number of millimetres".into());
+            return Err(format!(
+                "--size must be a number of millimetres from {:e} to {:e}",
+                MILLIMETRES.start(),
+                MILLIMETRES.end()
+            ));
         }
         if self.rig && format != Format::Glb {
             return Err(

@@ -7,6 +7,9 @@ use codespan_reporting::term;
 use rats::Severity;
 use std::io::IsTerminal;
 
+/// Characters of a source line that are shown.
+const EXCERPT_WIDTH: usize = 200;
+
 /// Writes all diagnostics to the standard error, with the lines they are about.
 ///
 /// Returns whether the dataset is free of errors.
@@ -64,7 +67,16 @@ pub fn text(loaded: &Loaded, least: Severity) -> String {
             ));
         }
     }
-    text
+    shortened(&text)
+}
+
+/// Cuts excerpts of long source lines; places are told by line and column before them.
+fn shortened(text: &str) -> String {
+    let cut = |line: &str| match line.char_indices().nth(EXCERPT_WIDTH) {
+        Some((end, _)) if line.contains('│') => format!("{}…\n", line[..end].trim_end()),
+        _ => format!("{line}\n"),
+    };
+    text.lines().map(cut).collect()
 }
 
 /// Whether a dataset has no errors (warnings are fine).
@@ -74,4 +86,21 @@ pub fn is_clean(loaded: &Loaded) -> bool {
         .diagnostics
         .iter()
         .all(|diagnostic| diagnostic.severity != Severity::Error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn excerpts_of_long_lines_are_cut() {
+        let long = "x".repeat(300);
+        let text = format!("error: {long}\n1 │ é{long}\n  │ ^\n\n");
+        let lines = shortened(&text);
+        let lines: Vec<&str> = lines.split('\n').collect();
+        assert_eq!(lines[0], format!("error: {long}"));
+        assert_eq!(lines[1].chars().count(), EXCERPT_WIDTH + 1);
+        assert!(lines[1].ends_with("x…"));
+        assert_eq!(lines[2..], ["  │ ^", "", ""]);
+    }
 }

@@ -78,6 +78,46 @@ fn a_missing_file_is_a_sentence_and_exit_2() {
 }
 
 #[test]
+fn files_that_are_no_use_are_told_with_their_lines() {
+    let folder = Folder::new("no-use");
+    let told = |arguments: &[&str]| {
+        let output = sinew(arguments, "");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let latin = folder.path("latin.rat");
+    std::fs::write(
+        &latin,
+        b"surface A, diffuse Red\n# \xe9\nsphere A 1 0 0 0\n",
+    )
+    .unwrap();
+    let said = told(&["check", &latin]);
+    assert!(
+        said.contains("latin.rat:2: this line is not UTF-8"),
+        "{said}"
+    );
+    folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    folder.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (mesh, words) in [
+        ("flat.obj", "no triangle in this file has an area"),
+        ("nan.obj", "line 2: numbers within ±1e12 are needed here"),
+    ] {
+        let text = format!("surface A, diffuse Red\nmesh A {mesh}\n");
+        let said = told(&["check", &folder.write("mesh.rat", &text)]);
+        assert!(said.contains(words), "{said}");
+    }
+    let ball = folder.write("ball.rat", "surface A, diffuse Red\nsphere A 1 0 0 0\n");
+    let film = folder.path("film.mp4");
+    let said = told(&["animate", &ball, "-f", "2", "-o", &film]);
+    assert!(said.contains("must end in .png or .gif"), "{said}");
+    for size in ["1e300", "1e-300", "nan", "-1"] {
+        let out = folder.path("ball.stl");
+        let size = format!("--size={size}");
+        let said = told(&["mesh", &ball, "-o", &out, &size]);
+        assert!(said.contains("from 1e-3 to 1e9"), "{said}");
+    }
+}
+
+#[test]
 fn render_writes_a_picture_and_counts_its_work() {
     let folder = Folder::new("render");
     let file = folder.write("ball.rat", BALL);
@@ -386,7 +426,7 @@ fn animate_follows_the_variables() {
         ),
         (
             ["animate", &file, "-o", "film.tga", "--frames", "2"],
-            "animations",
+            "an animation must end",
         ),
     ] {
         let output = sinew(&arguments, "");

@@ -1,7 +1,7 @@
 //! Triangle meshes: positions, triangles between them, and what a file may say beside.
 
 use crate::error::{Error, fail};
-use crate::limits::{MAX_TRIANGLES, MAX_VERTICES};
+use crate::limits::{MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES};
 use core::ops::Range;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -117,13 +117,19 @@ impl TriangleMesh {
             ));
         }
         // A mesh far from everything would come out as nothing.
-        let far = |p: &DVec3| !p.is_finite() || p.abs().max_element() > 1e12;
+        let far = |p: &DVec3| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE;
         if let Some(i) = self.positions.iter().position(far) {
-            return fail(format!("corner {i} (from 0) is not at a place within 1e12"));
+            return fail(format!(
+                "the coordinates of corner {i} (from 0) are not all within ±{MAX_COORDINATE:e}"
+            ));
         }
+        let count_of_triangles = self.triangles.len();
         self.remove_flat_triangles();
         if self.triangles.is_empty() {
-            return fail("there are no triangles in this file");
+            return fail(match count_of_triangles {
+                0 => String::from("there are no triangles in this file"),
+                _ => String::from("no triangle in this file has an area"),
+            });
         }
         match &mut self.normals {
             Some(normals) if normals.len() == count => {

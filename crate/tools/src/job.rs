@@ -6,6 +6,7 @@ use crate::message::{
 };
 use crate::view;
 use core::ops::ControlFlow;
+use mesh::limits::MILLIMETRES;
 use mesh::{Aabb, Export, Format, Part, TriangleMesh};
 
 /// Progress of a running job.
@@ -200,9 +201,13 @@ fn mesh_scene(job: MeshJob, progress: &mut Progress<'_>) -> Result<Meshed, Strin
 
 /// Tells what is wrong with the wishes for a file.
 fn check(size: f64, format: Option<Format>, rig: Option<&RigJob>) -> Result<(), String> {
-    let is_sound = size > 0.0 && size.is_finite();
+    let is_sound = MILLIMETRES.contains(&size);
     if !is_sound {
-        return Err("the size must be a positive number of millimetres".into());
+        return Err(format!(
+            "the size must be a number of millimetres from {:e} to {:e}",
+            MILLIMETRES.start(),
+            MILLIMETRES.end()
+        ));
     }
     if rig.is_some() && format != Some(Format::Glb) {
         return Err("joints are written to GLB files only".into());

@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{BENCH, EXAMPLES, compile, hash, say};
+use common::{BENCH, EXAMPLES, EXAMPLES_WITH_FILES, compile, hash, say};
 use scene::Scene;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -18,12 +18,14 @@ const PINS: &str = include_str!("../../../tests/pins.txt");
 /// Width and height of the pictures, pixels.
 const SIZE: u32 = 256;
 /// Scenes that take too long, and the sides of the squares in the middle of their pictures that are traced instead, pixels.
-const PARTS: [(&str, u32); 5] = [
+const PARTS: [(&str, u32); 7] = [
     ("generators", 128),
     ("flake-7381-cauchy", 16),
     ("coils", 24),
     ("folds", 64),
     ("grasp", 128),
+    ("elder", 8),
+    ("queen", 16),
 ];
 /// At most n×n rays a pixel, so that the smooth pass has something to do in every scene.
 const SAMPLES: u32 = 2;
@@ -137,7 +139,11 @@ fn changes(pinned: &BTreeMap<String, String>, drawn: &BTreeMap<String, String>) 
 fn pictures_are_as_pinned() {
     let folder = folder();
     let mut drawn = BTreeMap::new();
-    for (place, scenes) in [("example", &EXAMPLES[..]), ("bench", &BENCH[..])] {
+    for (place, scenes) in [
+        ("example", &EXAMPLES[..]),
+        ("example", &EXAMPLES_WITH_FILES[..]),
+        ("bench", &BENCH[..]),
+    ] {
         for (name, text) in scenes {
             let mut scene = compile(text);
             scene.settings.samples = SAMPLES;
@@ -155,7 +161,10 @@ fn pictures_are_as_pinned() {
             }
         }
     }
-    assert_eq!(drawn.len(), 2 * (EXAMPLES.len() + BENCH.len()));
+    assert_eq!(
+        drawn.len(),
+        2 * (EXAMPLES.len() + EXAMPLES_WITH_FILES.len() + BENCH.len())
+    );
     if folder.is_some() {
         return;
     }

@@ -3,7 +3,7 @@
 
 use crate::color::decode;
 use crate::error::{Error, fail};
-use crate::limits::{MAX_MATERIALS, MAX_VERTICES};
+use crate::limits::{MAX_COORDINATE, MAX_MATERIALS, MAX_VERTICES};
 use crate::triangle_mesh::{Group, Material, TriangleMesh};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -62,6 +62,12 @@ impl Reader {
             Some("v") => {
                 let mut numbers = words.clone();
                 triple(&mut self.positions, words)?;
+                let far = |p: &DVec3| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE;
+                if self.positions.last().is_some_and(far) {
+                    return fail(format!(
+                        "numbers within ±{MAX_COORDINATE:e} are needed here"
+                    ));
+                }
                 // Three more numbers are a colour, one more is a weight.
                 let mut next = || {
                     let number = numbers.next().and_then(|word| word.parse::<f64>().ok());

@@ -1,7 +1,7 @@
 //! The scenes of `www/examples/` and `tests/bench/`, compiled, and traced as a worker traces them.
 #![allow(dead_code)]
 
-use rats::{File, Project};
+use rats::{Asset, File, Project};
 use scene::Scene;
 use tracer::{Pass, Stats, Tile};
 use worker::{Answer, Engine, Kind, Order, Request, Step};
@@ -29,6 +29,24 @@ pub const EXAMPLES: [(&str, &str); 49] = examples![
     "time-map" "touching" "tshape" "urchin-patterns" "wrinkles"
 ];
 
+/// Names and texts of the examples that read meshes and strokes of their own.
+pub const EXAMPLES_WITH_FILES: [(&str, &str); 8] = examples![
+    "diamond" "dog" "elder" "fish" "heads" "queen" "slug" "triceratops"
+];
+
+macro_rules! files {
+    ($include:ident, $($name:literal)*) => {
+        [$((
+            $name,
+            $include!(concat!("../../../../www/examples/", $name)),
+        )),*]
+    };
+}
+
+const STROKES: [(&str, &str); 4] =
+    files![include_str, "dog.strokes" "fish.strokes" "slug.strokes" "triceratops.strokes"];
+const MESHES: [(&str, &str); 3] = files![include_str, "elder.obj" "head.obj" "queen.obj"];
+
 macro_rules! bench {
     ($name:literal) => {
         (
@@ -52,16 +70,22 @@ pub const BENCH: [(&str, &str); 10] = [
     bench!("tee"),
 ];
 
-/// Compiles a text; it may read `flake.rat`.
+/// Compiles a text; it may read `flake.rat`, and the meshes and strokes of the examples.
 pub fn compile(text: &str) -> Scene {
     let file = |name: &str, text: &str| File {
         name: name.into(),
         text: text.into(),
     };
+    let read = [("main.rat", text), ("flake.rat", FLAKE)];
+    let files = read.into_iter().chain(STROKES);
     let project = Project {
-        files: vec![file("main.rat", text), file("flake.rat", FLAKE)],
+        files: files.map(|(name, text)| file(name, text)).collect(),
     };
-    let compiled = rats::compile(&project);
+    let asset = |(name, text): (&str, &str)| Asset {
+        name: name.into(),
+        bytes: text.as_bytes().into(),
+    };
+    let compiled = rats::compile_at(&project, &MESHES.map(asset), 0.0);
     let mut errors = compiled.diagnostics.iter();
     assert_eq!(errors.find(|d| d.severity == rats::Severity::Error), None);
     compiled.scene
