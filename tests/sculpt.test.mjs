@@ -173,6 +173,14 @@ test('a finger sculpts and two fingers turn, on a phone', async () => {
     const place = places[name];
     assert.ok(place && place.x >= 0 && place.x + place.w <= 391, `${name}: ${JSON.stringify(place)}`);
   }
+
+  await page.keyboard.press('Escape');
+  await sinew.click('sculpt back');
+  await until(sinew, (now) => now === null);
+  const status = await sinew.finished();
+  assert.deepEqual([status.errors, status.elements], [0, 1152]);
+  assert.ok(colours(await sinew.image()) > 200, 'the sculpture is traced');
+  await sinew.keep('sculpt phone traced');
   assert.deepEqual(sinew.troubles, []);
   await sinew.close();
 });

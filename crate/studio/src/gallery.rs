@@ -137,20 +137,23 @@ impl Gallery {
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 8.0, if hot { palette.hover } else { palette.button });
         let place = Rect::from_min_size(rect.min, picture);
-        if let Some(Thumbnail::Here(texture, background)) = self.thumbnails.get(index) {
-            let round = CornerRadius {
-                nw: 8,
-                ne: 8,
+        if let Some(Thumbnail::Here(texture)) = self.thumbnails.get(index) {
+            // The card's upper corners are round.
+            let corner = |is_there: bool| if is_there { 8 } else { 0 };
+            let corners_of = |rect: Rect| CornerRadius {
+                nw: corner(rect.min == place.min),
+                ne: corner(rect.right_top() == place.right_top()),
                 sw: 0,
                 se: 0,
             };
-            painter.rect_filled(place, round, *background);
-            let inner = contain(texture.size_vec2(), place);
-            let round = if inner == place {
-                round
-            } else {
-                CornerRadius::ZERO
-            };
+            let size = texture.size_vec2();
+            let inner = contain(size, place);
+            // What the picture leaves free goes on as its edges do.
+            for (strip, uv) in strips(inner, place, size) {
+                let image = egui::Image::from_texture(texture).uv(uv);
+                image.corner_radius(corners_of(strip)).paint_at(ui, strip);
+            }
+            let round = corners_of(inner);
             egui::Image::from_texture(texture)
                 .corner_radius(round)
                 .paint_at(ui, inner);
@@ -271,6 +274,27 @@ fn ago(milliseconds: f64) -> String {
     }
 }
 
+/// What a place has beside a picture, with the part of the picture that is stretched over it: its first and last column or row.
+fn strips(inner: Rect, place: Rect, size: egui::Vec2) -> [(Rect, Rect); 2] {
+    let [column, row] = [0.5 / size.x, 0.5 / size.y];
+    let edge = |from: [f32; 2], to: [f32; 2]| Rect::from_min_max(from.into(), to.into());
+    if inner.width() < place.width() {
+        let [left, right] = [
+            place.with_max_x(inner.left()),
+            place.with_min_x(inner.right()),
+        ];
+        let at = |x: f32| edge([x, 0.0], [x, 1.0]);
+        [(left, at(column)), (right, at(1.0 - column))]
+    } else {
+        let [above, below] = [
+            place.with_max_y(inner.top()),
+            place.with_min_y(inner.bottom()),
+        ];
+        let at = |y: f32| edge([0.0, y], [1.0, y]);
+        [(above, at(row)), (below, at(1.0 - row))]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -285,6 +309,20 @@ mod tests {
             (high.size(), high.center()),
             (vec2(50.0, 150.0), place.center())
         );
+    }
+
+    #[test]
+    fn strips_fill_what_a_picture_leaves_free() {
+        let place = Rect::from_min_size(pos2(10.0, 20.0), vec2(200.0, 150.0));
+        for size in [vec2(100.0, 300.0), vec2(300.0, 100.0)] {
+            let inner = contain(size, place);
+            let [first, second] = strips(inner, place, size);
+            let all = inner.area() + first.0.area() + second.0.area();
+            assert!((all - place.area()).abs() < 1.0, "{all}");
+            assert!(first.1.area() == 0.0 && second.1.area() == 0.0);
+            assert_eq!(first.0.min, place.min);
+            assert_eq!(second.0.max, place.max);
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Small pictures that are files beside the page, fetched when they are first shown.
 
 use crate::{examples, platform};
-use egui::{Color32, ColorImage, TextureHandle, TextureOptions, Ui, Vec2};
+use egui::{ColorImage, TextureHandle, TextureOptions, Ui, Vec2};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -10,8 +10,8 @@ use std::rc::Rc;
 pub(crate) enum Thumbnail {
     /// Asked for.
     Coming(Rc<RefCell<Option<Vec<u8>>>>),
-    /// Here, with the colour of its background.
-    Here(TextureHandle, Color32),
+    /// Here.
+    Here(TextureHandle),
     /// It came, but is no picture.
     Broken,
 }
@@ -42,10 +42,8 @@ impl Thumbnail {
         let image = examples::decode(bytes)?;
         let size = image.size.map(|side| side as usize);
         let pixels = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
-        // A corner of the picture shows its background.
-        let background = *pixels.pixels.first()?;
         let texture = ui.load_texture("thumbnail", pixels, TextureOptions::LINEAR);
-        Some(Self::Here(texture, background))
+        Some(Self::Here(texture))
     }
 }
 
@@ -62,7 +60,7 @@ impl Thumbnails {
             .or_insert_with(|| Thumbnail::fetch(ui, path));
         picture.arrive(ui);
         match picture {
-            Thumbnail::Here(texture, _) => {
+            Thumbnail::Here(texture) => {
                 let image = egui::Image::new(&*texture).fit_to_exact_size(size);
                 ui.add(image.corner_radius(crate::theme::ROUND));
             }

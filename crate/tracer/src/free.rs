@@ -69,8 +69,12 @@ impl World {
     fn meet_soft_free(&self, alive: u32, seen: &mut Seen, work: &mut Workspace) {
         let live = |lane: &usize| alive >> lane & 1 != 0;
         let rays: Vec<Ray> = (0..PACKET).filter(live).map(|i| seen.rays[i]).collect();
-        let Some(beam) = Beam::around(&rays) else {
-            return;
+        let beam = match rays[..] {
+            [ray] => Beam::of_ray(ray),
+            _ => match Beam::around(&rays) {
+                Some(beam) => beam,
+                None => return,
+            },
         };
         let limits = seen.limits();
         let furthest = (0..PACKET).filter(live).map(|i| limits[i]);

@@ -56,6 +56,8 @@ pub(crate) struct SoftBody {
     range: Range<u32>,
     /// Primitives without a bounding ball.
     everywhere: Vec<u32>,
+    /// Whether all primitives have kernels that end or fall as the Gaussian, so that a lone ray has few near it.
+    is_local: bool,
     /// Ball outside which none of them counts; `None` if some count everywhere.
     pub ball: Option<(DVec3, f64)>,
     /// Data that only slabs need.
@@ -123,6 +125,7 @@ impl Soft {
                 number: surface.body,
                 range: first..primitives.len() as u32,
                 everywhere: Vec::new(),
+                is_local: false,
                 ball: None,
                 groups: OnceLock::new(),
                 far: OnceLock::new(),
@@ -147,6 +150,9 @@ impl Soft {
                     None => body.everywhere.push(i),
                 }
             }
+            let own = body.range.start as usize..body.range.end as usize;
+            let never_ends = |p: &Primitive| field::far_field::power(p.kernel).is_some();
+            body.is_local = body.everywhere.is_empty() && !primitives[own].iter().any(never_ends);
             if body.everywhere.is_empty() {
                 let (center, radius) = around(&balls[first..]);
                 body.ball = Some((center, radius));
@@ -301,7 +307,8 @@ impl Soft {
         // Parameters start at the first primitive's reach, so that single precision does not lose digits to a distant eye.
         let range = [0.0, to - from];
         let mut clusters = Some(&groups.clusters);
-        if self.precision.shared == 0.0 {
+        let is_alone = beam.radius == 0.0 && beam.spread == 0.0;
+        if self.precision.shared == 0.0 || is_alone && body.is_local {
             clusters = None;
             self.tree.search(&beam, |i, _, _| {
                 if body.range.contains(&i) {
