@@ -22,7 +22,7 @@ rotate 1 1 0 30, SHELL
 ";
 
 /// Hash (FNV-1a) of the scene's bytes.
-const SCENE: u64 = 0x41FE_190A_7E76_D0E1;
+const SCENE: u64 = 0xDE6F_AD6C_B6B5_40F7;
 
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
 #[cfg_attr(not(target_arch = "wasm32"), test)]
