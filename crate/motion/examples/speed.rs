@@ -39,7 +39,11 @@ fn knot(count: usize) -> (Vec<Body>, Vec<Obstacle>) {
     const NODES: usize = 10;
     let worm = |number: usize| {
         let angle = number as f64 * 2.4;
-        let along = DVec3::new(libm::cos(angle), 0.3 * libm::sin(3.0 * angle), libm::sin(angle));
+        let along = DVec3::new(
+            libm::cos(angle),
+            0.3 * libm::sin(3.0 * angle),
+            libm::sin(angle),
+        );
         body((0..NODES).map(move |i| DVec3::Y + along * (0.2 * (i as f64 - 4.5))))
     };
     ((0..count / NODES).map(worm).collect(), Vec::new())
@@ -67,7 +71,10 @@ fn measure(
         simulation.advance(&[]);
     }
     let frame = start.elapsed().as_secs_f64() / f64::from(frames);
-    let sum = simulation.positions().iter().fold(DVec3::ZERO, |a, b| a + b);
+    let sum = simulation
+        .positions()
+        .iter()
+        .fold(DVec3::ZERO, |a, b| a + b);
     println!(
         "{name}: {:.2} ms to begin, {:.3} ms a frame, {:.2} ns an operation; ends at {sum}",
         begun * 1e3,

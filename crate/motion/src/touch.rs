@@ -1,7 +1,7 @@
 //! Where flesh touches: samples of the surface, what they can meet, and how they are pushed back.
 
 use crate::field::{End, distance};
-use crate::obstacle::{Obstacle, foot};
+use crate::obstacle::{Standing, foot};
 use crate::setup::{Body, Settings};
 use crate::thickness::thickness;
 use glam::DVec3;
@@ -510,7 +510,7 @@ impl Flesh {
         previous: &mut [DVec3],
         velocities: &[DVec3],
         inverse: &[f64],
-        obstacles: &[Obstacle],
+        obstacles: &[Standing],
         friction: f64,
     ) {
         self.hits.clear();
@@ -520,7 +520,11 @@ impl Flesh {
                 continue;
             }
             let mut point = at(&sample.mean, places);
-            for obstacle in obstacles {
+            for standing in obstacles {
+                if standing.is_clear_of(point, sample.radius) {
+                    continue;
+                }
+                let obstacle = &standing.obstacle;
                 let (apart, normal) = obstacle.distance(point);
                 let depth = sample.radius - apart;
                 if depth <= 0.0 || depth.is_nan() {
@@ -598,10 +602,10 @@ impl Flesh {
     }
 
     /// How far the flesh reaches into each obstacle, at most.
-    pub fn deepest(&self, places: &[DVec3], obstacles: &[Obstacle]) -> f64 {
+    pub fn deepest(&self, places: &[DVec3], obstacles: &[Standing]) -> f64 {
         let depth = |sample: &Sample| {
             let point = at(&sample.mean, places);
-            let apart = obstacles.iter().map(|o| o.distance(point).0);
+            let apart = obstacles.iter().map(|o| o.obstacle.distance(point).0);
             sample.radius - apart.fold(f64::INFINITY, f64::min)
         };
         self.samples
