@@ -29,14 +29,17 @@ enum Kind {
     Crowd,
     /// A folded skeleton that touches a ball, with its own folds in contact.
     Grasp,
+    /// Many curves that meet in one node of a skeleton whose folds do not blend.
+    Star,
 }
 
-const KINDS: [Kind; 5] = [
+const KINDS: [Kind; 6] = [
     Kind::Folds,
     Kind::SelfContact,
     Kind::Pair,
     Kind::Crowd,
     Kind::Grasp,
+    Kind::Star,
 ];
 
 fn bulge(numbers: &mut Numbers, least: f64) -> Bulge {
@@ -95,9 +98,36 @@ fn worm(numbers: &mut Numbers, scene: &mut Scene, body: u32) {
         curves: curves.collect(),
     };
     let detail = 1 + (2.0 * numbers.unit()) as u32;
+    let reach = numbers.between(0.7, 1.1);
+    local(numbers, scene, body, (skeleton, detail, reach));
+}
+
+/// Six to nine curves from one node.
+fn star(numbers: &mut Numbers, scene: &mut Scene) {
+    let node = |position: DVec3, radius: f64| Node { position, radius };
+    let mut nodes = vec![node(0.2 * numbers.vector(), numbers.between(0.1, 0.2))];
+    let mut curves = Vec::new();
+    for _ in 0..6 + (4.0 * numbers.unit()) as usize {
+        let far = numbers.vector();
+        let middle = 0.5 * far + 0.15 * numbers.vector();
+        curves.push(vec![0, nodes.len(), nodes.len() + 1]);
+        nodes.push(node(middle, numbers.between(0.06, 0.14)));
+        nodes.push(node(far, 0.08));
+    }
+    let reach = numbers.between(0.5, 1.1);
+    local(numbers, scene, 0, (Skeleton { nodes, curves }, 1, reach));
+}
+
+/// Adds a skeleton at a level of detail that is convolved within a reach.
+fn local(
+    numbers: &mut Numbers,
+    scene: &mut Scene,
+    body: u32,
+    (skeleton, detail, reach): (Skeleton, u32, f64),
+) {
     let curves = Curves::new(skeleton, Scheme::Cubic, detail)
         .expect("it has curves")
-        .within(numbers.between(0.7, 1.1));
+        .within(reach);
     let flesh = flesh(numbers, scene);
     scene.elements.push(Element {
         flesh: Some(flesh),
@@ -138,7 +168,7 @@ fn lump(numbers: &mut Numbers, scene: &mut Scene, body: u32) {
 fn scene(kind: Kind, numbers: &mut Numbers) -> Scene {
     let mut scene = empty();
     let bodies = match kind {
-        Kind::Folds | Kind::SelfContact => 1,
+        Kind::Folds | Kind::SelfContact | Kind::Star => 1,
         Kind::Pair | Kind::Grasp => 2,
         Kind::Crowd => 3 + (3.0 * numbers.unit()) as u32,
     };
@@ -146,6 +176,7 @@ fn scene(kind: Kind, numbers: &mut Numbers) -> Scene {
     for body in 0..bodies {
         match kind {
             Kind::Folds | Kind::SelfContact => worm(numbers, &mut scene, body),
+            Kind::Star => star(numbers, &mut scene),
             Kind::Grasp if body == 0 => worm(numbers, &mut scene, body),
             _ => lump(numbers, &mut scene, body),
         }
@@ -198,7 +229,7 @@ fn judge(kind: Kind, rays: usize, first: u64, spoil: fn(&mut Option<f64>, usize)
 
 fn certify(kinds: &[Kind]) {
     for &kind in kinds {
-        let row = judge(kind, asked(1000) / KINDS.len(), 0, |_, _| {});
+        let row = judge(kind, asked(1200) / KINDS.len(), 0, |_, _| {});
         assert!(row.missed == 0 && row.invented == 0, "{kind:?} {row:?}");
         assert!(
             4 * row.hits > row.rays && 100 * row.uncertain <= row.rays,
@@ -209,7 +240,7 @@ fn certify(kinds: &[Kind]) {
 
 #[test]
 fn folds_are_within_the_tolerance() {
-    certify(&[Kind::Folds, Kind::SelfContact]);
+    certify(&[Kind::Folds, Kind::SelfContact, Kind::Star]);
 }
 
 #[test]
