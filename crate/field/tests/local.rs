@@ -442,44 +442,86 @@ fn bounds_hold_in_balls() {
     );
 }
 
-/// Across the planes at joints and branches the value is continuous and the slope jumps a little; where places vanish that lead, far
-/// out beside bends, the value jumps. With SINEW_POINTS as many points.
+/// Across the planes at joints and at the ends of curves in a branch the value is continuous and the slope jumps a little; where places
+/// vanish that lead, far out beside bends, the value jumps. With SINEW_POINTS as many points.
 #[test]
 fn jumps_are_small() {
     let points: u32 = (std::env::var("SINEW_POINTS").ok())
         .and_then(|n| n.parse().ok())
         .unwrap_or(3000);
-    let coarse = jumps(36, points);
-    let fine = jumps(144, points);
-    // The value has none. A slope's is that of the turn at a joint: the finer the curve, the smaller.
-    assert!(coarse[0].max(fine[0]) < 1e-6, "{coarse:?} {fine:?}");
-    assert!(
-        coarse[1] < 0.5 && fine[1] < 0.7 * coarse[1],
-        "{coarse:?} {fine:?}"
-    );
+    for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
+        let [coarse, fine] = [36, 144].map(|segments| {
+            let (figure, planes) = wave(segments, kernel);
+            jumps(&figure, &planes, points)
+        });
+        // The value has none. A slope's is that of the turn at a joint: the finer the curve, the smaller.
+        assert!(
+            coarse[0].max(fine[0]) < 1e-6,
+            "{kernel:?} {coarse:?} {fine:?}"
+        );
+        assert!(
+            coarse[1] < 0.2 && fine[1] < 0.7 * coarse[1],
+            "{kernel:?} {coarse:?} {fine:?}"
+        );
+        for arms in [3, 6] {
+            let (figure, planes) = star(arms, kernel);
+            let branch = jumps(&figure, &planes, points);
+            assert!(
+                branch[0] < 1e-6 && branch[1] < 0.2,
+                "{kernel:?} {arms}: {branch:?}"
+            );
+        }
+    }
 }
 
-/// The largest jump of the value and of the slope, relative to them, at joints of a wave of so many segments.
-fn jumps(segments: u32, points: u32) -> [f64; 2] {
-    let mut random = Random::new(74);
-    // A wave of flesh of a radius of 0.3, whose bends have a radius of 0.5: inside of them ∇s is large.
+/// A wave of flesh of a radius of 0.3, whose bends have a radius of 0.5: inside of them ∇s is large. And the planes of its joints: a
+/// point and the normal.
+fn wave(segments: u32, kernel: Kernel) -> (Figure, Vec<[DVec3; 2]>) {
     let places: Vec<(DVec3, f64)> = (0..=segments)
         .map(|i| {
             let x = 6.0 * f64::from(i) / f64::from(segments) - 3.0;
             (DVec3::new(x, 0.5 * libm::sin(2.0 * x), 0.0), 0.3)
         })
         .collect();
+    let planes = places.windows(3).map(|w| {
+        let [a, b, c] = [0, 1, 2].map(|i| w[i].0);
+        let normal = (b - a).normalize() + (c - b).normalize();
+        [b, normal.normalize()]
+    });
+    let planes = planes.collect();
     let curve: Vec<usize> = (0..places.len()).collect();
-    let figure = Figure::new(places, &[curve], 1.2, Kernel::Cubed);
+    (Figure::new(places, &[curve], 1.2, kernel), planes)
+}
+
+/// Arms that end in one branch, and the planes of their ends there.
+fn star(arms: usize, kernel: Kernel) -> (Figure, Vec<[DVec3; 2]>) {
+    let mut random = Random::new(76);
+    let mut places = vec![(DVec3::ZERO, 0.3)];
+    let (mut curves, mut planes) = (Vec::new(), Vec::new());
+    for _ in 0..arms {
+        let direction = random.direction();
+        let mut curve = vec![0];
+        for i in 1..=6 {
+            curve.push(places.len());
+            places.push((direction * (0.25 * f64::from(i)), 0.25));
+        }
+        curves.push(curve);
+        planes.push([DVec3::ZERO, direction]);
+    }
+    (Figure::new(places, &curves, 1.2, kernel), planes)
+}
+
+/// The largest jump of the value and of the slope, relative to them, at some planes.
+fn jumps(figure: &Figure, planes: &[[DVec3; 2]], points: u32) -> [f64; 2] {
+    let mut random = Random::new(74);
     let local = figure.local();
     let (mut largest, mut steepest, mut at_surface) = (0.0f64, 0.0f64, 0.0f64);
     for _ in 0..points {
-        // On the plane of a joint, as far from it as flesh is.
-        let joint = 1 + (random.range(0.0, 1.0) * f64::from(segments - 1)) as usize;
-        let [a, b, c] = [joint - 1, joint, joint + 1].map(|i| figure.points[i].0);
-        let normal = ((b - a).normalize() + (c - b).normalize()).normalize();
+        // On the plane, as far from its middle as flesh is.
+        let number = (random.range(0.0, 1.0) * planes.len() as f64) as usize;
+        let [middle, normal] = planes[number];
         let aside = normal.cross(random.direction()).normalize() * random.range(0.05, 0.45);
-        let sides = [-1e-7, 1e-7].map(|off| local.jet(b + aside + normal * off));
+        let sides = [-1e-7, 1e-7].map(|off| local.jet(middle + aside + normal * off));
         let [before, after] = sides.map(|jet| DVec3::from_array(jet.gradient));
         let jump = (sides[0].value - sides[1].value).abs() - 2e-7 * before.length();
         largest = largest.max(jump / sides[0].value);
@@ -490,7 +532,9 @@ fn jumps(segments: u32, points: u32) -> [f64; 2] {
         }
     }
     println!(
-        "{segments} segments: value {largest:.1e}, slope {steepest:.1e}, at the surface {at_surface:.1e}"
+        "{} segments, {:?}: value {largest:.1e}, slope {steepest:.1e}, at the surface {at_surface:.1e}",
+        figure.segments.len(),
+        figure.kernel
     );
     [largest, steepest]
 }

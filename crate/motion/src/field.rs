@@ -17,20 +17,52 @@ use glam::DVec3;
 /// ```
 #[must_use]
 pub fn line(p: DVec3, a: DVec3, b: DVec3) -> (f64, DVec3) {
-    let (to_a, to_b) = (p - a, p - b);
-    let (ra, rb) = (to_a.length(), to_b.length());
-    let product = ra * rb;
-    let length = a.distance(b);
-    // On the axis the sum is all rounding.
-    let least = 1e-10 * product;
-    let sum = (product + to_a.dot(to_b)).max(least);
-    if sum <= 0.0 {
-        return (0.0, DVec3::ZERO);
+    End::new(p, a).joined(&End::new(p, b), a.distance(b))
+}
+
+/// How a point is seen from an end of a segment: what all segments that meet there share.
+#[derive(Clone, Copy, Debug)]
+pub struct End {
+    /// From the end to the point, and how far that is.
+    to: DVec3,
+    distance: f64,
+    unit: DVec3,
+    /// The unit vector by the distance.
+    bend: DVec3,
+}
+
+impl End {
+    /// The end `a`, seen by a point.
+    pub fn new(p: DVec3, a: DVec3) -> Self {
+        let to = p - a;
+        let distance = to.length();
+        let unit = to / distance;
+        Self {
+            to,
+            distance,
+            unit,
+            bend: unit / distance,
+        }
     }
-    let value = length * (ra + rb) / (product * sum);
-    let (ua, ub) = (to_a / ra, to_b / rb);
-    let slope = (ua + ub) / (ra + rb) - ua / ra - ub / rb - (ua * rb + ub * ra + to_a + to_b) / sum;
-    (value, slope * value)
+
+    /// [`line`] of the segment to another end.
+    pub fn joined(&self, other: &Self, length: f64) -> (f64, DVec3) {
+        let (ra, rb) = (self.distance, other.distance);
+        let product = ra * rb;
+        // On the axis the sum is all rounding.
+        let least = 1e-10 * product;
+        let sum = (product + self.to.dot(other.to)).max(least);
+        if sum <= 0.0 {
+            return (0.0, DVec3::ZERO);
+        }
+        let value = length * (ra + rb) / (product * sum);
+        let (ua, ub) = (self.unit, other.unit);
+        let slope = (ua + ub) / (ra + rb)
+            - self.bend
+            - other.bend
+            - (ua * rb + ub * ra + self.to + other.to) / sum;
+        (value, slope * value)
+    }
 }
 
 /// The distance from an endless line whose field `∫ ds/d³` has this value: `√(2/value)`.

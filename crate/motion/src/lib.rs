@@ -36,7 +36,7 @@
 //! - `links`: edges of the control polygons, bending at their corners, twist along their edges.
 //! - `touch`: samples of the flesh, taken from the curves refined once, against obstacles (which do not give way) and against
 //!   stretches of curves through their field (a penalty: a spring that pushes when the flesh is pressed in).
-//! - `field`: the field of the kernel 1/d³ on segments, and the distance it stands for.
+//! - `thickness`: the radius of the flesh of curves; `field`: the field of the kernel 1/d³ on segments, and the distance it stands for.
 //! - `simulation`: the step.
 //!
 //! A general engine of rigid bodies would serve less: what touches here are convolution surfaces on subdivision curves, whose
@@ -48,6 +48,7 @@ mod links;
 mod obstacle;
 mod setup;
 mod simulation;
+mod thickness;
 mod touch;
 
 pub use field::{distance, line};

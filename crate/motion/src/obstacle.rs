@@ -57,6 +57,25 @@ impl Obstacle {
         }
     }
 
+    /// A ball around it, if it has an end; a little larger than need be.
+    fn ball(&self) -> Option<(DVec3, f64)> {
+        let (center, radius) = match self {
+            Self::Plane { .. } => return None,
+            Self::Box { center, axes } => {
+                let square: f64 = axes.iter().map(|axis| axis.length_squared()).sum();
+                (*center, square.sqrt())
+            }
+            Self::Rod {
+                ends: [a, b],
+                radii,
+            } => (
+                a.midpoint(*b),
+                0.5 * a.distance(*b) + radii[0].max(radii[1]),
+            ),
+        };
+        Some((center, radius * (1.0 + 1e-6)))
+    }
+
     /// Whether all numbers are finite and not too large, and normals have a direction.
     #[must_use]
     pub(crate) fn is_usable(&self) -> bool {
@@ -70,6 +89,30 @@ impl Obstacle {
                 ends.iter().all(usable) && radii.iter().all(|r| (0.0..=LARGEST).contains(r))
             }
         }
+    }
+}
+
+/// An obstacle and the ball around it, so that most samples need no look at more than that.
+#[derive(Clone, Debug)]
+pub struct Standing {
+    pub obstacle: Obstacle,
+    ball: Option<(DVec3, f64)>,
+}
+
+impl Standing {
+    pub fn new(obstacle: &Obstacle) -> Self {
+        Self {
+            ball: obstacle.ball(),
+            obstacle: obstacle.clone(),
+        }
+    }
+
+    /// Whether a ball is surely outside.
+    pub fn is_clear_of(&self, point: DVec3, radius: f64) -> bool {
+        self.ball.is_some_and(|(center, around)| {
+            let reach = around + radius;
+            point.distance_squared(center) > reach * reach * (1.0 + 1e-6)
+        })
     }
 }
 

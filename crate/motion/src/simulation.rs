@@ -1,7 +1,7 @@
 //! The step.
 
 use crate::links::{self, Link};
-use crate::obstacle::Obstacle;
+use crate::obstacle::Standing;
 use crate::setup::{Error, Settings, Setup};
 use crate::touch::Flesh;
 use glam::DVec3;
@@ -29,7 +29,7 @@ impl Energy {
 #[derive(Clone, Debug)]
 pub struct Simulation {
     settings: Settings,
-    obstacles: Vec<Obstacle>,
+    obstacles: Vec<Standing>,
     /// The nodes of all bodies, one body after another.
     places: Vec<DVec3>,
     previous: Vec<DVec3>,
@@ -76,7 +76,7 @@ impl Simulation {
             .map_or(f64::INFINITY, |radius| 0.5 * radius);
         Ok(Self {
             settings,
-            obstacles: setup.obstacles.clone(),
+            obstacles: setup.obstacles.iter().map(Standing::new).collect(),
             previous: places.clone(),
             velocities: vec![DVec3::ZERO; places.len()],
             places,

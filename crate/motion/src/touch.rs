@@ -1,8 +1,9 @@
 //! Where flesh touches: samples of the surface, what they can meet, and how they are pushed back.
 
-use crate::field::{distance, line};
-use crate::obstacle::{Obstacle, foot};
+use crate::field::{End, distance};
+use crate::obstacle::{Standing, foot};
 use crate::setup::{Body, Settings};
+use crate::thickness::thickness;
 use glam::DVec3;
 use skeleton::Polyline;
 use std::cmp::Reverse;
@@ -15,8 +16,6 @@ const SPACING: f64 = 1.5;
 /// The most samples of a segment, besides its ends.
 const MOST_BETWEEN: usize = 3;
 
-/// Radii within which curves add to the thickness of the flesh at a point.
-const NEAR: f64 = 8.0;
 /// The share of its radius by which a sample that begins in an obstacle is put out in a step.
 const RISE: f64 = 0.005;
 
@@ -78,14 +77,23 @@ pub struct Flesh {
     vertices: Vec<Mean>,
     segments: Vec<Segment>,
     samples: Vec<Sample>,
-    /// Places of the vertices in this step.
+    /// Places of the vertices in this step, and lengths of the segments.
     now: Vec<DVec3>,
+    lengths: Vec<f64>,
     before: Vec<DVec3>,
     /// Places of the nodes when near segments were last looked for.
     looked: Vec<DVec3>,
     /// By how much a sample may miss a segment and still be taken for near.
     margin: f64,
     hits: Vec<Hit>,
+    sight: Sight,
+}
+
+/// A sample as all vertices see it, and the gradients there of the fields of the segments that it can meet.
+#[derive(Clone, Debug, Default)]
+struct Sight {
+    ends: Vec<End>,
+    gradients: Vec<DVec3>,
 }
 
 impl Flesh {
@@ -96,10 +104,12 @@ impl Flesh {
             segments: Vec::new(),
             samples: Vec::new(),
             now: Vec::new(),
+            lengths: Vec::new(),
             before: Vec::new(),
             looked: Vec::new(),
             margin: 0.0,
             hits: Vec::new(),
+            sight: Sight::default(),
         };
         let mut first = 0;
         let mut starts = Vec::new();
@@ -128,9 +138,10 @@ impl Flesh {
         }
         flesh.margin = flesh.samples.iter().map(|s| s.radius).fold(0.0, f64::max);
         flesh.look(&places);
+        let mut sight = Sight::default();
         for index in 0..flesh.samples.len() {
             let overlap = flesh
-                .depth(index, &places)
+                .depth(index, &places, &mut sight)
                 .map_or(0.0, |(depth, _)| depth.max(0.0));
             flesh.samples[index].overlap = overlap;
         }
@@ -284,6 +295,12 @@ impl Flesh {
         self.now.clear();
         self.now
             .extend(self.vertices.iter().map(|mean| at(mean, places)));
+        let now = &self.now;
+        self.lengths.clear();
+        self.lengths.extend(self.segments.iter().map(|segment| {
+            let [a, b] = segment.ends.map(|end| now[end as usize]);
+            a.distance(b)
+        }));
     }
 
     /// Looks for the segments near each sample.
@@ -304,9 +321,9 @@ impl Flesh {
         }
     }
 
-    /// How deep a sample is in the flesh of other stretches, and by which gradient `Σ ∇∫ds/d³` it is pushed. The
-    /// field's value stands for a distance, from which both radii are taken.
-    fn depth(&self, index: usize, places: &[DVec3]) -> Option<(f64, Push)> {
+    /// How deep a sample is in the flesh of other stretches, and by which gradient `Σ ∇∫ds/d³` it is pushed; the gradient of each of
+    /// `far` is then in `sight`. The field's value stands for a distance, from which both radii are taken.
+    fn depth(&self, index: usize, places: &[DVec3], sight: &mut Sight) -> Option<(f64, Push)> {
         let sample = &self.samples[index];
         if sample.near.is_empty() {
             return None;
@@ -320,14 +337,19 @@ impl Flesh {
         if !touches {
             return None;
         }
+        let Sight { ends, gradients } = sight;
+        ends.clear();
+        ends.extend(self.now.iter().map(|vertex| End::new(point, *vertex)));
+        gradients.clear();
         let (mut value, mut slope, mut radii) = (0.0, DVec3::ZERO, 0.0);
         for &number in &sample.far {
-            let [a, b] = self.ends(number as usize);
-            let (own, gradient) = line(point, a, b);
-            let radius = self.segments[number as usize].radius;
+            let segment = &self.segments[number as usize];
+            let [a, b] = segment.ends.map(|end| &ends[end as usize]);
+            let (own, gradient) = a.joined(b, self.lengths[number as usize]);
             value += own;
             slope += gradient;
-            radii += radius * radius * own;
+            radii += segment.radius * segment.radius * own;
+            gradients.push(gradient);
         }
         if !(value > 0.0 && value.is_finite() && slope.is_finite()) {
             return None;
@@ -372,8 +394,9 @@ impl Flesh {
         let vertices = &self.vertices;
         self.before
             .extend(vertices.iter().map(|mean| at(mean, previous)));
+        let mut sight = core::mem::take(&mut self.sight);
         for index in 0..self.samples.len() {
-            let Some((depth, push_by)) = self.depth(index, places) else {
+            let Some((depth, push_by)) = self.depth(index, places, &mut sight) else {
                 continue;
             };
             let sample = &self.samples[index];
@@ -387,13 +410,13 @@ impl Flesh {
             let mut normal = DVec3::ZERO;
             let mut weight = 0.0;
             let least = 1e-6 * push_by.slope.length_squared();
-            for &number in &sample.far {
-                let [a, b] = self.ends(number as usize);
-                let own = line(push_by.point, a, b).1 * push_by.scale;
+            for (&number, gradient) in sample.far.iter().zip(&sight.gradients) {
+                let own = *gradient * push_by.scale;
                 if own.length_squared() < least {
                     continue;
                 }
                 normal += own;
+                let [a, b] = self.ends(number as usize);
                 let along = foot(push_by.point, a, b);
                 let [first, second] = self.segments[number as usize].ends;
                 let of = |end: u32| inverse_mass(&self.vertices[end as usize], inverse);
@@ -437,6 +460,7 @@ impl Flesh {
                 );
             }
         }
+        self.sight = sight;
     }
 
     /// The impulse against sliding: at most friction times the push, and no more than stops it.
@@ -486,7 +510,7 @@ impl Flesh {
         previous: &mut [DVec3],
         velocities: &[DVec3],
         inverse: &[f64],
-        obstacles: &[Obstacle],
+        obstacles: &[Standing],
         friction: f64,
     ) {
         self.hits.clear();
@@ -496,7 +520,11 @@ impl Flesh {
                 continue;
             }
             let mut point = at(&sample.mean, places);
-            for obstacle in obstacles {
+            for standing in obstacles {
+                if standing.is_clear_of(point, sample.radius) {
+                    continue;
+                }
+                let obstacle = &standing.obstacle;
                 let (apart, normal) = obstacle.distance(point);
                 let depth = sample.radius - apart;
                 if depth <= 0.0 || depth.is_nan() {
@@ -560,8 +588,9 @@ impl Flesh {
         self.refresh(places);
         self.look(places);
         let mut energy = 0.0;
+        let mut sight = Sight::default();
         for index in 0..self.samples.len() {
-            if let Some((depth, _)) = self.depth(index, places) {
+            if let Some((depth, _)) = self.depth(index, places, &mut sight) {
                 let sample = &self.samples[index];
                 let depth = (depth - sample.overlap).max(0.0);
                 if sample.radius > 0.0 {
@@ -573,10 +602,10 @@ impl Flesh {
     }
 
     /// How far the flesh reaches into each obstacle, at most.
-    pub fn deepest(&self, places: &[DVec3], obstacles: &[Obstacle]) -> f64 {
+    pub fn deepest(&self, places: &[DVec3], obstacles: &[Standing]) -> f64 {
         let depth = |sample: &Sample| {
             let point = at(&sample.mean, places);
-            let apart = obstacles.iter().map(|o| o.distance(point).0);
+            let apart = obstacles.iter().map(|o| o.obstacle.distance(point).0);
             sample.radius - apart.fold(f64::INFINITY, f64::min)
         };
         self.samples
@@ -620,50 +649,6 @@ fn mixed(a: &Mean, b: &Mean, along: f64) -> Mean {
         }
     }
     mixed
-}
-
-/// The radius of the flesh across a curve, where the field of all its segments is 1: `Σ R²/2 ∫ ds/d³`. At an end the mean of that
-/// across and that ahead.
-fn thickness(
-    pieces: &[(DVec3, DVec3, f64)],
-    point: DVec3,
-    along: DVec3,
-    radius: f64,
-    is_end: bool,
-) -> f64 {
-    let Some(along) = along.try_normalize().filter(|_| radius > 0.0) else {
-        return radius;
-    };
-    // Those farther away add a hundredth at most.
-    let is_near = |&&(a, b, _): &&(DVec3, DVec3, f64)| {
-        let reach = NEAR * radius + 0.5 * a.distance(b);
-        point.distance_squared((a + b) * 0.5) < reach * reach
-    };
-    let near: Vec<_> = pieces.iter().filter(is_near).collect();
-    let value = |p: DVec3| {
-        let field = |&&(a, b, r): &&(DVec3, DVec3, f64)| 0.5 * r * r * line(p, a, b).0;
-        near.iter().map(field).sum::<f64>()
-    };
-    let reach = |direction: DVec3| {
-        let mut reach = radius;
-        // Exact in a step where the field falls as 1/d².
-        for _ in 0..12 {
-            let next = reach * value(point + direction * reach).sqrt();
-            reach = next.clamp(0.25 * radius, 2.0 * radius);
-        }
-        reach
-    };
-    let across = along.any_orthonormal_vector();
-    let other = along.cross(across);
-    let sides = [across, other, -across, -other].map(reach);
-    let across = 0.25 * sides.iter().sum::<f64>();
-    if is_end {
-        // The curve goes on to one side only: the other is ahead.
-        let ahead = reach(along).min(reach(-along));
-        0.5 * (across + ahead)
-    } else {
-        across
-    }
 }
 
 /// Shortest ways along the curves from a vertex to all.

@@ -3,16 +3,18 @@
 //! With SINEW_RAYS as many rays; then the table is printed with `--nocapture`.
 #![cfg(not(target_arch = "wasm32"))]
 mod common;
+#[path = "common/judged.rs"]
+mod judged;
 
 use common::{Numbers, empty};
 use contact::Bulge;
 use field::Kernel;
 use glam::{DAffine3, DVec3};
-use scene::{Body, Contact, Curves, Element, Flesh, Form, Function, Scene, Shape, Surface};
+use judged::{Range, Row, asked, packet, reference};
+use scene::{Body, Contact, Curves, Element, Flesh, Form, Function, Scene, Shape};
 use skeleton::{Node, Scheme, Skeleton};
 use std::sync::Arc;
 use tracer::Picture;
-use tracer::reference::{Deformation, Fault, Near, Reference, Substance, TouchingBody};
 
 /// Kinds of scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,14 +29,17 @@ enum Kind {
     Crowd,
     /// A folded skeleton that touches a ball, with its own folds in contact.
     Grasp,
+    /// Many curves that meet in one node of a skeleton whose folds do not blend.
+    Star,
 }
 
-const KINDS: [Kind; 5] = [
+const KINDS: [Kind; 6] = [
     Kind::Folds,
     Kind::SelfContact,
     Kind::Pair,
     Kind::Crowd,
     Kind::Grasp,
+    Kind::Star,
 ];
 
 fn bulge(numbers: &mut Numbers, least: f64) -> Bulge {
@@ -52,41 +57,6 @@ fn bulge(numbers: &mut Numbers, least: f64) -> Bulge {
             n: (3.0 * numbers.unit()) as u32,
         },
     }
-}
-
-/// The bulges written out once more.
-fn deformation(bulge: Bulge) -> Deformation {
-    let fall = |f: f64, m: f64, h: f64| {
-        let w = 1.0 - m;
-        let x = (f - m) / w;
-        h + ((w - 3.0 * h) + (2.0 * h - w) * x) * x * x
-    };
-    let formula: Arc<dyn Fn(f64) -> f64 + Send + Sync> = match bulge {
-        Bulge::Fast { c } => Arc::new(move |f| {
-            let x = (f - c) / (1.0 - c);
-            (1.0 - c) * x * x * (1.0 - x)
-        }),
-        Bulge::Height { c, m, h } => Arc::new(move |f| {
-            let x = (f - c) / (m - c);
-            if f < m {
-                (3.0 - 2.0 * x) * x * x * h
-            } else {
-                fall(f, m, h)
-            }
-        }),
-        Bulge::Ripple { c, h, n } => Arc::new(move |f| {
-            let turns = f64::from(2 * n + 1);
-            let m = c + (1.0 - c) * (1.0 - 1.0 / f64::from(4 * n + 3));
-            let x = (f - c) / (m - c);
-            let wave = (libm::cos((turns * x + 1.0) * core::f64::consts::PI) + 1.0) / 2.0;
-            if f < m {
-                (3.0 - 2.0 * x) * x * x * h * wave
-            } else {
-                fall(f, m, h)
-            }
-        }),
-    };
-    Deformation::new(bulge.start(), formula)
 }
 
 fn flesh(numbers: &mut Numbers, scene: &mut Scene) -> u32 {
@@ -128,9 +98,36 @@ fn worm(numbers: &mut Numbers, scene: &mut Scene, body: u32) {
         curves: curves.collect(),
     };
     let detail = 1 + (2.0 * numbers.unit()) as u32;
+    let reach = numbers.between(0.7, 1.1);
+    local(numbers, scene, body, (skeleton, detail, reach));
+}
+
+/// Six to nine curves from one node.
+fn star(numbers: &mut Numbers, scene: &mut Scene) {
+    let node = |position: DVec3, radius: f64| Node { position, radius };
+    let mut nodes = vec![node(0.2 * numbers.vector(), numbers.between(0.1, 0.2))];
+    let mut curves = Vec::new();
+    for _ in 0..6 + (4.0 * numbers.unit()) as usize {
+        let far = numbers.vector();
+        let middle = 0.5 * far + 0.15 * numbers.vector();
+        curves.push(vec![0, nodes.len(), nodes.len() + 1]);
+        nodes.push(node(middle, numbers.between(0.06, 0.14)));
+        nodes.push(node(far, 0.08));
+    }
+    let reach = numbers.between(0.5, 1.1);
+    local(numbers, scene, 0, (Skeleton { nodes, curves }, 1, reach));
+}
+
+/// Adds a skeleton at a level of detail that is convolved within a reach.
+fn local(
+    numbers: &mut Numbers,
+    scene: &mut Scene,
+    body: u32,
+    (skeleton, detail, reach): (Skeleton, u32, f64),
+) {
     let curves = Curves::new(skeleton, Scheme::Cubic, detail)
         .expect("it has curves")
-        .within(numbers.between(0.7, 1.1));
+        .within(reach);
     let flesh = flesh(numbers, scene);
     scene.elements.push(Element {
         flesh: Some(flesh),
@@ -171,7 +168,7 @@ fn lump(numbers: &mut Numbers, scene: &mut Scene, body: u32) {
 fn scene(kind: Kind, numbers: &mut Numbers) -> Scene {
     let mut scene = empty();
     let bodies = match kind {
-        Kind::Folds | Kind::SelfContact => 1,
+        Kind::Folds | Kind::SelfContact | Kind::Star => 1,
         Kind::Pair | Kind::Grasp => 2,
         Kind::Crowd => 3 + (3.0 * numbers.unit()) as u32,
     };
@@ -179,6 +176,7 @@ fn scene(kind: Kind, numbers: &mut Numbers) -> Scene {
     for body in 0..bodies {
         match kind {
             Kind::Folds | Kind::SelfContact => worm(numbers, &mut scene, body),
+            Kind::Star => star(numbers, &mut scene),
             Kind::Grasp if body == 0 => worm(numbers, &mut scene, body),
             _ => lump(numbers, &mut scene, body),
         }
@@ -201,95 +199,12 @@ fn scene(kind: Kind, numbers: &mut Numbers) -> Scene {
     scene
 }
 
-/// The scene as the reference knows it.
-fn reference(scene: &Scene) -> Reference {
-    let partners = scene.partners();
-    let mut bodies = Vec::new();
-    for surface in scene.surfaces_apart() {
-        let body = surface.body();
-        let substance = match &surface {
-            Surface::Sum(soft) => Substance::Sum(soft.sum.primitives.clone()),
-            Surface::Composed(_) => {
-                let element = scene.elements.iter().find(|e| e.body == body);
-                let element = element.expect("the body has one");
-                let Shape::Function(function) = &element.shape else {
-                    panic!("the body is a skeleton");
-                };
-                let limbs = scene.limbs(element, function).expect("it is a skeleton");
-                Substance::Skeleton {
-                    points: limbs.points,
-                    limbs: limbs.limbs,
-                    reach: limbs.reach,
-                    fold: scene.fold(body).map(deformation),
-                }
-            }
-        };
-        assert_eq!(body as usize, bodies.len());
-        let partners = partners.get(&body).into_iter().flatten();
-        bodies.push(TouchingBody {
-            substance,
-            partners: partners
-                .map(|(j, b)| (*j as usize, deformation(*b)))
-                .collect(),
-        });
-    }
-    let mut reference = Reference::touching(bodies).expect("the numbers are usable");
-    reference.patience = 6000;
-    reference
-}
-
-/// A packet of rays from outside.
-fn packet(
-    numbers: &mut Numbers,
-    picture: &Picture,
-    reference: &mut Reference,
-) -> Vec<(DVec3, DVec3)> {
-    let eye = numbers.vector().normalize() * 4.5;
-    let aim = DVec3::new(0.8, 1.0, 0.3) * numbers.vector();
-    let mut rays: Vec<(DVec3, DVec3)> = match (3.0 * numbers.unit()) as u32 {
-        // Like neighbouring pixels.
-        0 => {
-            let spread = libm::pow(10.0, numbers.between(-3.0, -1.0));
-            let to = |numbers: &mut Numbers| aim + spread * numbers.vector() - eye;
-            (0..8).map(|_| (eye, to(numbers).normalize())).collect()
-        }
-        // Tangents, a little inside or outside.
-        1 => {
-            let ray = (eye, (aim - eye).normalize());
-            let met = picture.cast(&[ray])[0];
-            let Some(hit) = met else { return Vec::new() };
-            let along = hit.normal.cross(numbers.vector()).normalize_or(DVec3::X);
-            (0..8)
-                .map(|i| {
-                    let off = libm::pow(10.0, numbers.between(-6.0, -1.5));
-                    let off = if i % 4 == 3 { off } else { -off };
-                    (hit.position + hit.normal * off - along * 2.5, along)
-                })
-                .collect()
-        }
-        // Nothing to do with one another.
-        _ => (0..8)
-            .map(|_| {
-                let from = numbers.vector().normalize() * 3.0;
-                (from, (0.8 * numbers.vector() - from).normalize())
-            })
-            .collect(),
-    };
-    rays.retain(|(origin, _)| {
-        reference.excess(*origin).0 < 0.0 && reference.surface_near(*origin, 1e-4) == Near::Beyond
-    });
-    rays
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Row {
-    rays: usize,
-    hits: usize,
-    missed: usize,
-    grazed: usize,
-    invented: usize,
-    uncertain: usize,
-}
+/// Where the scenes are.
+const RANGE: Range = Range {
+    center: DVec3::ZERO,
+    half: DVec3::new(0.8, 1.0, 0.3),
+    far: 4.5,
+};
 
 /// Judges rays through scenes of a kind. With a fault that `spoil` makes, if it does.
 fn judge(kind: Kind, rays: usize, first: u64, spoil: fn(&mut Option<f64>, usize)) -> Row {
@@ -302,25 +217,9 @@ fn judge(kind: Kind, rays: usize, first: u64, spoil: fn(&mut Option<f64>, usize)
         let picture = Picture::new(&scene, [256; 2]);
         let mut reference = reference(&scene);
         for _ in 0..12 {
-            let rays = packet(&mut numbers, &picture, &mut reference);
-            for (number, (ray, hit)) in rays.iter().zip(picture.cast(&rays)).enumerate() {
-                let mut t = hit.map(|hit| hit.t);
-                spoil(&mut t, number);
-                let verdict = reference.judge(ray.0, ray.1, t, 9.0, |t| picture.tolerance(t));
-                row.rays += 1;
-                row.hits += usize::from(t.is_some());
-                row.uncertain += usize::from(!verdict.certain);
-                match verdict.fault {
-                    None => continue,
-                    Some(Fault::Missed { grazing: true, .. }) => row.grazed += 1,
-                    Some(Fault::Missed { .. }) => row.missed += 1,
-                    Some(Fault::Invented(_)) => row.invented += 1,
-                }
-                println!(
-                    "{kind:?} seed {seed} {ray:?} hit {t:?}: {:?}",
-                    verdict.fault
-                );
-            }
+            let rays = packet(&mut numbers, &RANGE, &picture, &mut reference);
+            let name = format!("{kind:?} seed {seed}");
+            row.judge(&name, (&picture, &mut reference), &rays, 9.0, spoil);
         }
         seed += 1;
     }
@@ -328,17 +227,14 @@ fn judge(kind: Kind, rays: usize, first: u64, spoil: fn(&mut Option<f64>, usize)
     row
 }
 
-fn asked() -> usize {
-    let asked = std::env::var("SINEW_RAYS").ok();
-    asked.and_then(|n| n.parse().ok()).unwrap_or(1000)
-}
-
 fn certify(kinds: &[Kind]) {
     for &kind in kinds {
-        let row = judge(kind, asked() / KINDS.len(), 0, |_, _| {});
+        let row = judge(kind, asked(1200) / KINDS.len(), 0, |_, _| {});
         assert!(row.missed == 0 && row.invented == 0, "{kind:?} {row:?}");
+        // Where many curves meet the reference leaves more of the grazing rays undecided.
+        let few = if kind == Kind::Star { 40 } else { 100 };
         assert!(
-            4 * row.hits > row.rays && 100 * row.uncertain <= row.rays,
+            4 * row.hits > row.rays && few * row.uncertain <= row.rays,
             "{kind:?} {row:?}"
         );
     }
@@ -346,7 +242,7 @@ fn certify(kinds: &[Kind]) {
 
 #[test]
 fn folds_are_within_the_tolerance() {
-    certify(&[Kind::Folds, Kind::SelfContact]);
+    certify(&[Kind::Folds, Kind::SelfContact, Kind::Star]);
 }
 
 #[test]

@@ -40,25 +40,29 @@ impl Window {
     /// Weight at a distance x ≥ 0 along the skeleton.
     #[must_use]
     pub fn weight(&self, x: f64) -> f64 {
-        let t = self.part(x);
-        1.0 - t * t * (3.0 - 2.0 * t)
+        self.at(x)[0]
     }
 
     /// `∫₀ˣ` of the weight.
     #[must_use]
     pub fn area(&self, x: f64) -> f64 {
-        let t = self.part(x);
-        x.min(self.flat()) + self.fade * t * (1.0 - t * t * (1.0 - 0.5 * t))
+        self.at(x)[1]
+    }
+
+    /// Both.
+    fn at(&self, x: f64) -> [f64; 2] {
+        let flat = self.flat();
+        let t = ((x - flat) / self.fade).clamp(0.0, 1.0);
+        [
+            1.0 - t * t * (3.0 - 2.0 * t),
+            x.min(flat) + self.fade * t * (1.0 - t * t * (1.0 - 0.5 * t)),
+        ]
     }
 
     /// Bound on the weight's first and second derivative.
     #[must_use]
     pub fn steepest(&self) -> [f64; 2] {
         [1.5 / self.fade, 6.0 / (self.fade * self.fade)]
-    }
-
-    fn part(&self, x: f64) -> f64 {
-        ((x - self.flat()) / self.fade).clamp(0.0, 1.0)
     }
 
     /// The mean weight over a piece of a length whose ends are at these distances from the window's middle, with the signs by which
@@ -72,19 +76,27 @@ impl Window {
             };
         }
         let meet = (0.5 * (a + b + length)).max(a).max(b);
-        let ends = self.weight(a) * along_a + self.weight(b) * along_b;
+        let [[weight_a, area_a], [weight_b, area_b]] = [a, b].map(|x| self.at(x));
+        // Mostly there is but one way.
+        let [weight, area] = match meet {
+            x if x == b => [weight_b, area_b],
+            x if x == a => [weight_a, area_a],
+            x => self.at(x),
+        };
+        let ends = weight_a * along_a + weight_b * along_b;
         Weight {
-            value: (2.0 * self.area(meet) - self.area(a) - self.area(b)) / length,
-            slope: (self.weight(meet) * (along_a + along_b) - ends) / length,
+            value: (2.0 * area - area_a - area_b) / length,
+            slope: (weight * (along_a + along_b) - ends) / length,
         }
     }
 
     /// The mean weight over a piece that the window's middle is on, at these distances from its ends.
     #[must_use]
     pub fn mean_around(&self, [a, b]: [f64; 2], length: f64) -> Weight {
+        let [[weight_a, area_a], [weight_b, area_b]] = [a, b].map(|x| self.at(x));
         Weight {
-            value: (self.area(a) + self.area(b)) / length,
-            slope: (self.weight(a) - self.weight(b)) / length,
+            value: (area_a + area_b) / length,
+            slope: (weight_a - weight_b) / length,
         }
     }
 }
