@@ -147,10 +147,10 @@ impl Parts {
     }
 }
 
-/// The connected parts of a mesh, with its vertex colours or the colours of its materials.
-pub fn shells(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
-    let mut colors = mesh.colors.clone();
-    if colors.is_none() {
+/// A mesh with the colours of its materials at its vertices, if it has none there.
+pub fn colored(mesh: &TriangleMesh) -> TriangleMesh {
+    let mut colored = mesh.clone();
+    colored.colors.get_or_insert_with(|| {
         let mut of = vec![[1.0; 3]; mesh.positions.len()];
         for group in &mesh.groups {
             let range = group.triangles.start as usize..group.triangles.end as usize;
@@ -158,8 +158,13 @@ pub fn shells(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
                 of[*i as usize] = group.material.as_ref().map_or([1.0; 3], |m| m.color);
             }
         }
-        colors = Some(of);
-    }
+        of
+    });
+    colored
+}
+
+/// The connected parts of a mesh, with its normals and vertex colours.
+pub fn shells(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
     let roots = roots(mesh);
     let mut number = BTreeMap::new();
     let mut shells: Vec<(TriangleMesh, BTreeMap<u32, u32>)> = Vec::new();
@@ -178,7 +183,7 @@ pub fn shells(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
                 if let Some(normals) = &mesh.normals {
                     shell.normals.get_or_insert_default().push(normals[from]);
                 }
-                if let Some(colors) = &colors {
+                if let Some(colors) = &mesh.colors {
                     shell.colors.get_or_insert_default().push(colors[from]);
                 }
                 shell.positions.len() as u32 - 1

@@ -189,7 +189,7 @@ fn surfaces_that_touch_are_told() {
 }
 
 #[test]
-fn union_joins_bodies_and_outer_drops_cavities() {
+fn union_joins_bodies() {
     let mut scene = soft([sphere(DVec3::ZERO, 1.0), sphere(DVec3::X * 1.2, 1.0)]);
     let second = Body {
         name: "second".into(),
@@ -224,6 +224,47 @@ fn union_joins_bodies_and_outer_drops_cavities() {
     let one = meshed(&scene, &wishes).unwrap();
     assert_eq!(one.parts.len(), 1);
     assert_eq!(one.parts[0].name, "second");
+}
+
+#[test]
+fn cavities_stay_in_unions_and_outer_drops_them() {
+    // A ball that another one carves from within, and a third one beside.
+    let mut scene = soft([
+        sphere(DVec3::ZERO, 1.0),
+        sphere(DVec3::ZERO, 0.5),
+        sphere(DVec3::X * 1.5, 0.8),
+    ]);
+    scene.flesh[0].kernel = Some(Kernel::Gauss);
+    scene.flesh.push(Flesh {
+        strength: -1.0,
+        ..scene.flesh[0].clone()
+    });
+    scene.elements[1].flesh = Some(1);
+    scene.elements[2].body = 1;
+    scene.bodies.push(Body::default());
+    let shells = |union: bool, outer: bool| {
+        let wishes = Wishes {
+            union,
+            outer,
+            ..coarse()
+        };
+        let model = meshed(&scene, &wishes).unwrap();
+        let part = &model.parts[0];
+        assert_manifold(&part.name, &part.mesh);
+        let genera = Topology::of(&part.mesh).unwrap().genera;
+        (genera, part.mesh.signed_volume())
+    };
+    let (hollow, volume) = shells(false, false);
+    assert_eq!(hollow, [0, 0]);
+    let (full, larger) = shells(false, true);
+    assert_eq!(full, [0]);
+    let cavity = larger - volume;
+    assert!(cavity > 0.01, "{cavity}");
+    let (joined, volume) = shells(true, false);
+    assert_eq!(joined, [0, 0], "the cavity is still there");
+    let (full, larger) = shells(true, true);
+    assert_eq!(full, [0]);
+    assert!((larger - volume - cavity).abs() < 1e-6, "{larger} {volume} {cavity}");
 }
 
 /// A function that waves by next to nothing about its threshold throughout a ball, and of which no more is known than that.
