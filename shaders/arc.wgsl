@@ -167,16 +167,16 @@ fn meet(ray: Ray, solid: Varying) -> Hit {
         if near_circle(ray, solid, begin).excess > 0.0 {
             let s = enter(ray, solid, begin, end);
             if s <= end {
-                return Hit(true, s, near_circle(ray, solid, s).normal);
+                return Hit(true, s, near_circle(ray, solid, s).normal, WHITE);
             }
         } else if begin_side != 0.0 {
-            return Hit(true, begin, lid_normal(solid, begin_side));
+            return Hit(true, begin, lid_normal(solid, begin_side), WHITE);
         } else {
             let s = leave(ray, solid, begin);
             if s < end || end_side == 0.0 {
-                return Hit(true, s, near_circle(ray, solid, s).normal);
+                return Hit(true, s, near_circle(ray, solid, s).normal, WHITE);
             }
-            return Hit(true, end, lid_normal(solid, end_side));
+            return Hit(true, end, lid_normal(solid, end_side), WHITE);
         }
         if !begins_swept {
             break;

@@ -41,7 +41,7 @@ fn meet(ray: Ray, solid: Varying) -> Hit {
             return MISS;
         }
         let s = select(wall.y, wall.x, shown.x);
-        return Hit(true, s, vec3f(ray.origin.xy + s * ray.direction.xy, 0.0));
+        return Hit(true, s, vec3f(ray.origin.xy + s * ray.direction.xy, 0.0), WHITE);
     }
     let near = max(lids.x, wall.x);
     let far = min(lids.y, wall.y);
@@ -51,7 +51,7 @@ fn meet(ray: Ray, solid: Varying) -> Hit {
     let s = boundary(ray, near, far);
     let point = ray.origin + s * ray.direction;
     if s == lids.x || s == lids.y {
-        return Hit(true, s, vec3f(0.0, 0.0, 1.0));
+        return Hit(true, s, vec3f(0.0, 0.0, 1.0), WHITE);
     }
-    return Hit(true, s, vec3f(point.xy, -solid.a.z * (solid.a.x + solid.a.z * point.z)));
+    return Hit(true, s, vec3f(point.xy, -solid.a.z * (solid.a.x + solid.a.z * point.z)), WHITE);
 }

@@ -52,9 +52,12 @@ struct Hit {
     s: f32,
     // Not necessarily of unit length, nor turned to the eye.
     normal: vec3f,
+    // Factor of the material's ambient and diffuse colours.
+    paint: vec3f,
 }
 
-const MISS: Hit = Hit(false, 0.0, vec3f(0.0));
+const WHITE = vec3f(1.0);
+const MISS: Hit = Hit(false, 0.0, vec3f(0.0), WHITE);
 
 fn rotate(q: vec4f, v: vec3f) -> vec3f {
     return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
@@ -145,7 +148,10 @@ fn draw(solid: Varying) -> Fragment {
     let distance = (hit.s - ray.start) * solid.eye.w;
     let outward = normalize(rotate(solid.rotation, hit.normal));
     let normal = select(outward, -outward, dot(outward, gaze) > 0.0);
-    let light = phong(look_of(solid.material), distance * gaze, normal);
+    var look = look_of(solid.material);
+    look.ambient *= hit.paint;
+    look.diffuse *= hit.paint;
+    let light = phong(look, distance * gaze, normal);
 
     var out: Fragment;
     out.colour = written(foggy(light, gaze, distance));

@@ -5,5 +5,5 @@ fn meet(ray: Ray, solid: Varying) -> Hit {
     if faces.x > faces.y {
         return MISS;
     }
-    return Hit(faces.y < 1e29, boundary(ray, faces.x, faces.y), vec3f(0.0, 0.0, 1.0));
+    return Hit(faces.y < 1e29, boundary(ray, faces.x, faces.y), vec3f(0.0, 0.0, 1.0), WHITE);
 }

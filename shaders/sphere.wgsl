@@ -8,5 +8,5 @@ fn meet(ray: Ray, solid: Varying) -> Hit {
     }
     let half_chord = sqrt(square);
     let s = boundary(ray, -half_chord, half_chord);
-    return Hit(true, s, ray.origin + s * ray.direction);
+    return Hit(true, s, ray.origin + s * ray.direction, WHITE);
 }

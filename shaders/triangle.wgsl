@@ -43,7 +43,7 @@ fn meet(ray: Ray, solid: Varying) -> Hit {
         return MISS;
     }
     if span.near > ray.start {
-        return Hit(true, span.near, span.near_normal);
+        return Hit(true, span.near, span.near_normal, WHITE);
     }
-    return Hit(true, span.far, span.far_normal);
+    return Hit(true, span.far, span.far_normal, WHITE);
 }

@@ -121,8 +121,10 @@ impl Draft {
                 continue;
             }
             drawn.elements += 1;
-            let material = materials.slot(element.finish as usize);
             for solid in solids {
+                let paint = element.paint.as_ref().filter(|_| solid.kind == Kind::Patch);
+                let finish = paint.map_or(element.finish, |paint| paint.finish);
+                let material = materials.slot(finish as usize);
                 let solid = solid.anchored(self.units.center);
                 lists[solid.kind as usize].push(Instance::new(&solid, material, self.units));
             }

@@ -3,7 +3,7 @@
 
 use crate::facets;
 use glam::{DMat3, DQuat, DVec2, DVec3};
-use scene::{Element, Scene, Shape};
+use scene::{Element, Rgb, Scene, Shape};
 
 /// Which shader draws a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +41,7 @@ pub(crate) struct Solid {
     /// The box around the solid, own coordinates. Means nothing for a plane.
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
-    /// Numbers that the shape's shader explains.
+    /// Numbers that the shape's shader explains; each is an `f32` for it.
     pub(crate) a: [f64; 4],
     pub(crate) b: [f64; 4],
     /// Of a patch: the unit normals at its corners, own coordinates.
@@ -67,15 +67,17 @@ impl Solid {
             Shape::Quadric(ref quadric) => facets::quadric(quadric, detail),
             ref other => other.parts(radius),
         };
+        let paint = element.paint.as_ref().map(|paint| paint.corners);
         let solid = |part: &Shape| {
             let radius = if is_function { part.radius() } else { radius };
-            Self::new(part, radius)
+            Self::new(part, radius, paint)
         };
         parts.iter().filter_map(solid).collect()
     }
 
     /// The offset surface of a shape at the given radius.
-    pub(crate) fn new(shape: &Shape, radius: f64) -> Option<Self> {
+    /// `paint` gives colours to the corners of a patch, and of a triangle without thickness, which then becomes a patch.
+    fn new(shape: &Shape, radius: f64, paint: Option<[Rgb; 3]>) -> Option<Self> {
         if !radius.is_finite() {
             return None;
         }
@@ -97,8 +99,13 @@ impl Solid {
                 angle,
                 ..
             } => Self::arc(center, u, v, sweep, angle, radius),
-            Shape::Triangle { corners, .. } => Self::triangle(corners, radius),
-            Shape::Patch { corners, normals } => Self::patch(corners, normals),
+            Shape::Triangle { corners, .. } => match paint {
+                Some(colors) if radius == 0.0 => Self::patch(corners, [DVec3::ZERO; 3], colors),
+                _ => Self::triangle(corners, radius),
+            },
+            Shape::Patch { corners, normals } => {
+                Self::patch(corners, normals, paint.unwrap_or([[1.0; 3]; 3]))
+            }
             Shape::Plane { point, normal, .. } => Self::plane(point, normal, radius),
             // Made of several solids.
             Shape::Polygon { .. }
@@ -186,27 +193,29 @@ impl Solid {
         Some(pipe)
     }
 
-    /// A flat triangle whose normals at the corners may have any length; 0 stands for the face's.
-    fn patch(corners: [DVec3; 3], normals: [DVec3; 3]) -> Option<Self> {
+    /// A flat triangle with colours at its corners, whose normals there may have any length; 0 stands for the face's.
+    fn patch(corners: [DVec3; 3], normals: [DVec3; 3], colors: [Rgb; 3]) -> Option<Self> {
         let flat = Self::triangle(corners, 0.0)?;
         let [p, q, r] = [
             [flat.a[0], flat.a[1]],
             [flat.a[2], flat.a[3]],
             [flat.b[0], flat.b[1]],
         ];
-        // The corners may have been renumbered; a normal belongs to the one nearest to its place.
+        // The corners may have been renumbered; a normal and a colour belong to the one nearest to their place.
         let back = flat.rotation.inverse();
-        let own = [p, q, r].map(|corner| {
+        let order = [p, q, r].map(|corner| {
             let world = flat.origin + flat.rotation * DVec2::from(corner).extend(0.0) * flat.unit;
             let nearest = (0..3).min_by(|&i, &j| {
                 let distance = |k: usize| corners[k].distance_squared(world);
                 distance(i).total_cmp(&distance(j))
             });
-            (back * normals[nearest.unwrap_or(0)]).normalize_or(DVec3::Z)
+            nearest.unwrap_or(0)
         });
+        let [high, low] = packed(order.map(|k| colors[k]));
         Some(Self {
             kind: Kind::Patch,
-            normals: own,
+            normals: order.map(|k| (back * normals[k]).normalize_or(DVec3::Z)),
+            b: [r[0], r[1], high, low],
             ..flat
         })
     }
@@ -310,4 +319,16 @@ fn with_z(direction: DVec3) -> Option<DQuat> {
     let z = direction.try_normalize()?;
     let x = z.any_orthonormal_vector();
     Some(DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize())
+}
+
+/// Three colours as two whole numbers below 2^24, for `patch.wgsl`: 16 bits each, of which red has 5, green 6, blue 5.
+fn packed(colors: [Rgb; 3]) -> [f64; 2] {
+    let bits = |[red, green, blue]: Rgb| {
+        let level = |channel: f32, most: f32| (channel.clamp(0.0, 1.0) * most).round() as u64;
+        level(red, 31.0) << 11 | level(green, 63.0) << 5 | level(blue, 31.0)
+    };
+    let all = colors
+        .into_iter()
+        .fold(0, |all, color| all << 16 | bits(color));
+    [all >> 24, all & 0xff_ffff].map(|number| number as f64)
 }

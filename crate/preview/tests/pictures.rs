@@ -7,7 +7,9 @@ use common::gpu::{gpus, open};
 use common::scenes::{arc, element, look};
 use glam::{DMat3, DQuat, DVec3};
 use preview::{Draft, Drawn, MAX_ELEMENTS, MAX_LIGHTS, Mesh, Sampling, VERTEX, looks};
-use scene::{Camera, Element, Finish, Flesh, Light, LightKind, Quadric, Scene, Settings, Shape};
+use scene::{
+    Camera, Element, Finish, Flesh, Light, LightKind, Paint, Quadric, Scene, Settings, Shape,
+};
 
 /// A ball of radius 1 at the origin, seen from z = 5.
 fn ball(finish: Finish, lights: Vec<Light>) -> Scene {
@@ -99,6 +101,80 @@ fn phong_with_point_and_distant_lights_and_gamma() {
             }
         }
         assert!(seen > 300);
+    }
+}
+
+#[test]
+fn colours_at_the_corners_of_a_triangle_are_mixed() {
+    let corners = [[1.3, -0.8], [0.1, 1.2], [-1.2, -1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+    // Multiples of 1/31 and 1/63.
+    let colors = [
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [10.0 / 31.0, 21.0 / 63.0, 1.0],
+    ];
+    let mut scene = ball(Finish::default(), Vec::new());
+    let glow = |ambient| Finish {
+        ambient,
+        diffuse: [0.0; 3],
+        ..Finish::default()
+    };
+    scene.finishes = vec![glow([0.9; 3]), glow([0.2, 0.9, 0.3])];
+    let flat = Shape::Triangle {
+        corners,
+        radius: 0.0,
+    };
+    let patch = Shape::Patch {
+        corners,
+        normals: [
+            DVec3::Z,
+            DVec3::new(0.3, 0.1, 1.0),
+            DVec3::new(0.0, 0.4, 1.0),
+        ],
+    };
+    let size = [48, 48];
+    let projection = scene.camera.projection(size[0], size[1]);
+    let place = |x: u32, y: u32| {
+        let [u, v] = [x, y].map(|i| (f64::from(i) + 0.5) / 48.0);
+        let ray = projection.direction(u, v);
+        projection.eye - ray * (projection.eye.z / ray.z)
+    };
+    let area = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).z;
+    let whole = area(corners[0], corners[1], corners[2]);
+    for shape in [flat, patch] {
+        scene.elements = vec![Element {
+            finish: 1,
+            paint: Some(Box::new(Paint {
+                finish: 0,
+                corners: colors,
+            })),
+            ..Element::new(shape)
+        }];
+        for gpu in gpus() {
+            let picture = gpu.draw(&scene, size);
+            let mut seen = 0;
+            for (x, y) in (0..48).flat_map(|y| (0..48).map(move |x| (x, y))) {
+                let point = place(x, y);
+                let opposite = |k: usize| area(point, corners[(k + 1) % 3], corners[(k + 2) % 3]);
+                let shares = [0, 1, 2].map(|k| opposite(k) / whole);
+                if shares.iter().all(|share| *share > 1e-3) {
+                    seen += 1;
+                    let mixed = |channel: usize| -> f64 {
+                        (0..3)
+                            .map(|k| shares[k] * f64::from(colors[k][channel]))
+                            .sum()
+                    };
+                    let expected = [0, 1, 2].map(|channel| 0.9 * mixed(channel));
+                    let drawn = picture.at(x, y);
+                    assert!(
+                        close(drawn, expected),
+                        "{x} {y} on {}: {drawn:?}, not {expected:?}",
+                        gpu.name
+                    );
+                }
+            }
+            assert!(seen > 300, "{seen}");
+        }
     }
 }
 

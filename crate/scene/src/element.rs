@@ -2,7 +2,7 @@
 //!
 //! All coordinates are world coordinates: objects and their transforms are already applied.
 
-use crate::{Curves, Function, Quadric};
+use crate::{Curves, Function, Quadric, Rgb};
 use field::Kernel;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -24,6 +24,8 @@ pub struct Element {
     pub kernel: Kernel,
     /// Where in the text this element was written.
     pub origin: Origin,
+    /// Colours at the corners of a triangle or patch; `None` for other shapes, and where the finish says all.
+    pub paint: Option<Box<Paint>>,
 }
 
 impl Element {
@@ -38,8 +40,20 @@ impl Element {
             frame: 0,
             kernel: Kernel::Cauchy,
             origin: Origin::default(),
+            paint: None,
         }
     }
+}
+
+/// Colours at the corners of a triangle, mixed linearly within it. [`Element::finish`] has about their mean, for what
+/// cannot mix colours within a triangle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Paint {
+    /// Index into [`Scene::finishes`](crate::Scene::finishes): the finish whose `ambient` and `diffuse` the colours
+    /// multiply.
+    pub finish: u32,
+    /// The colours, in the order of the shape's corners; each channel 0 to 1.
+    pub corners: [Rgb; 3],
 }
 
 /// Where an element comes from: a byte range of one of the project's files.

@@ -46,7 +46,7 @@ pub use body::{Body, Frame};
 pub use camera::{Camera, Projection};
 pub use contact::Contact;
 pub use curves::Curves;
-pub use element::{Element, Origin, Shape};
+pub use element::{Element, Origin, Paint, Shape};
 pub use extent::extent;
 pub use finish::{Finish, Skip};
 pub use flesh::Flesh;

@@ -27,6 +27,8 @@ struct Material {
     dispersion: f32,
     skip: Skip,
     layers: Vec<Texture>,
+    /// Whether an element with this finish is painted.
+    is_painted: bool,
 }
 
 /// Coordinates of an object.
@@ -39,10 +41,28 @@ struct Object {
     from_world: DMat3,
 }
 
-/// Where a textured element is.
+/// Where a textured or painted element is.
 struct Charted {
     object: u32,
     chart: Chart,
+    paint: Option<Painted>,
+}
+
+/// Colours at the corners of a triangle.
+struct Painted {
+    /// The finish whose colours they multiply.
+    finish: u32,
+    corners: [Vec3; 3],
+}
+
+impl Painted {
+    /// The colour at a point of the triangle: the corners' mixed by barycentric shares, which are cut to the triangle.
+    fn color(&self, uv: &Uv) -> Vec3 {
+        let [second, third] = uv.at.as_vec2().to_array();
+        let shares = [(1.0 - second - third).max(0.0), second, third];
+        let mixed: Vec3 = (0..3).map(|k| shares[k] * self.corners[k]).sum();
+        mixed / shares.iter().sum::<f32>()
+    }
 }
 
 /// The texture coordinates of a shape, in its object's coordinates.
@@ -70,11 +90,24 @@ pub(crate) struct Look {
 impl Materials {
     /// Collects a scene's materials. The scene is the unit scene.
     pub fn new(scene: &Scene) -> Self {
-        let finishes: Vec<Material> = scene.finishes.iter().map(material).collect();
+        let mut finishes: Vec<Material> = scene.finishes.iter().map(material).collect();
+        for element in scene.elements.iter().filter(|e| e.paint.is_some()) {
+            if let Some(finish) = finishes.get_mut(element.finish as usize) {
+                finish.is_painted = true;
+            }
+        }
         let mut places = Vec::new();
         let textured = |element: &Element| {
             let finish = finishes.get(element.finish as usize);
-            finish.is_some_and(|finish| !finish.layers.is_empty())
+            element.paint.is_some() || finish.is_some_and(|finish| !finish.layers.is_empty())
+        };
+        let painted = |element: &Element| {
+            let paint = element.paint.as_ref();
+            let paint = paint.filter(|paint| (paint.finish as usize) < finishes.len())?;
+            Some(Painted {
+                finish: paint.finish,
+                corners: paint.corners.map(Vec3::from),
+            })
         };
         let frames: Vec<Object> = scene.frames.iter().map(|f| object(f.to_world)).collect();
         let place_of = if scene.elements.iter().any(textured) {
@@ -84,6 +117,7 @@ impl Materials {
                 places.push(Charted {
                     object: element.frame,
                     chart,
+                    paint: painted(element),
                 });
                 Some(places.len() as u32 - 1)
             };
@@ -102,10 +136,11 @@ impl Materials {
 
     /// Whether surfaces with a finish look the same everywhere.
     pub fn is_even(&self, finish: u32) -> bool {
-        self.finishes[finish as usize].layers.is_empty()
+        let finish = &self.finishes[finish as usize];
+        finish.layers.is_empty() && !finish.is_painted
     }
 
-    /// The material of a finish without its textures, at a point with an outward normal.
+    /// The material of a finish without its textures and paint, at a point with an outward normal.
     pub fn plain(&self, finish: u32, normal: DVec3) -> Look {
         let material = &self.finishes[finish as usize];
         Look {
@@ -123,14 +158,25 @@ impl Materials {
         let mut look = self.plain(finish, normal);
         let place = self.place_of.get(element as usize).copied().flatten();
         if let Some(place) = place {
-            let Charted { object, chart } = &self.places[place as usize];
+            let Charted {
+                object,
+                chart,
+                paint,
+            } = &self.places[place as usize];
             let object = &self.frames[*object as usize];
             let at = object.to_object.transform_point3(point);
             let own = (object.from_world * normal).normalize_or(normal);
+            let uv = chart.uv(at);
+            if let Some(paint) = paint {
+                let color = paint.color(&uv);
+                look = self.plain(paint.finish, normal);
+                look.surface.diffuse *= color;
+                look.surface.ambient *= color;
+            }
             let site = Site {
                 point: at,
                 normal: own,
-                uv: chart.uv(at),
+                uv,
             };
             let images: Vec<&dyn Image> = self.images.iter().map(|i| &**i as &dyn Image).collect();
             let bare = Surface {
@@ -247,6 +293,7 @@ fn material(finish: &Finish) -> Material {
         },
         skip: finish.skip,
         layers: layers.take(texture::MAX_LAYERS).cloned().collect(),
+        is_painted: false,
     }
 }
 

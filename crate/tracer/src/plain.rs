@@ -8,6 +8,7 @@ use crate::meet::Seen;
 use crate::rich::Rich;
 use crate::sample::Sample;
 use crate::shade::{Finish, clamped, towards};
+use crate::soft::MakeUp;
 use crate::stats::Stats;
 use crate::workspace::{Shadow, State, Workspace};
 use crate::world::{Owner, SurfacePoint, World};
@@ -164,13 +165,20 @@ impl World {
         })
     }
 
-    /// The colours of a surface point without textures. Where materials blend they are mixed as paths mix them, so that a scene does not
+    /// The colours of a surface point of a scene without textures. Where materials blend they are mixed as paths mix them, so that a scene does not
     /// change its colours as soon as one thing in it is a mirror.
     fn direct_finish(&self, rich: &Rich, hit: &SurfacePoint) -> Finish {
-        match self.owner_of(hit.surface) {
-            Owner::Solid(_) => hit.finish,
-            Owner::Soft(body) if rich.make_up[body as usize].is_even => hit.finish,
-            _ => Finish::of_surface(&self.look(rich, hit).surface),
+        let is_even = match self.owner_of(hit.surface) {
+            Owner::Solid(number) => rich.materials.is_even(self.solids.finish(number) as u32),
+            Owner::Soft(body) => {
+                let MakeUp { is_even, first, .. } = rich.make_up[body as usize];
+                is_even && rich.materials.is_even(first)
+            }
+            Owner::Function(_) => false,
+        };
+        if is_even {
+            return hit.finish;
         }
+        Finish::of_surface(&self.look(rich, hit).surface)
     }
 }

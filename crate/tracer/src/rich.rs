@@ -42,6 +42,7 @@ fn does_without(scene: &Scene) -> bool {
     let sized = scene.settings.penumbra && scene.lights.iter().any(|light| light.size > 0.0);
     is_direct(scene)
         && !sized
+        && scene.elements.iter().all(|element| element.paint.is_none())
         && matches!(scene.background, Background::Colour(_))
         && (scene.ground, scene.fog) == (None, None)
         && scene.clouds.is_empty()
@@ -112,7 +113,9 @@ fn sheets(scene: &Scene, solids: &Solids) -> Vec<Option<u32>> {
             _ => false,
         };
         let next = SHEETS + keys.len() as u32;
-        let own = (element.finish, element.body, element.frame);
+        let paint = element.paint.as_ref();
+        let finish = paint.map_or(element.finish, |paint| paint.finish);
+        let own = (finish, element.body, element.frame);
         is_sheet.then(|| *keys.entry(own).or_insert(next))
     };
     (0..solids.len()).map(&mut key).collect()

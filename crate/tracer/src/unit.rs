@@ -23,6 +23,7 @@ const NOTHING: Element = Element {
         start: 0,
         end: 0,
     },
+    paint: None,
 };
 
 /// The map from the world to the unit scene: `scale·(p − center)`.

@@ -494,16 +494,19 @@ fn add_mesh<'a>(
     run.repeating += 1;
     let mut result = Ok(());
     for (index, shape) in assets::shapes(mesh).enumerate() {
-        let material = tinted.as_ref().map_or(material, |own| own[index]);
+        let own = tinted.as_ref().map_or(material, |own| own[index]);
         let shape = match transform {
             Some(transform) => transform.apply(&shape),
             None => shape,
         };
-        result = run
-            .add_of(command, material, shape, Kernel::Cauchy)
-            .map(drop);
+        result = run.add_of(command, own, shape, Kernel::Cauchy).map(drop);
         if result.is_err() {
             break;
+        }
+        if tinted.is_some()
+            && let Some(part) = run.model.parts.last_mut()
+        {
+            part.element.paint = tints::paint(material, mesh, index);
         }
     }
     run.repeating -= 1;

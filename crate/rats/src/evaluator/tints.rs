@@ -1,11 +1,11 @@
-//! Colours of a mesh's vertices as tints of its material: each triangle gets a material of its own colour. Colours are
-//! rounded, so that a painted mesh needs few materials.
+//! Colours of a mesh's vertices: each triangle gets them as paint, and a tint of the mesh's material for what cannot mix
+//! colours within a triangle. Tints are rounded, so that a painted mesh needs few materials.
 
 use super::palette::Palette;
 use crate::problem::Outcome;
 use crate::reader::Name;
 use mesh::TriangleMesh;
-use scene::Rgb;
+use scene::{Paint, Rgb};
 use std::collections::BTreeMap;
 
 /// Steps of a channel. A mesh with too many colours for the first is rounded to the next.
@@ -76,6 +76,20 @@ pub fn materials(
         all.push(index);
     }
     Ok(Some(all))
+}
+
+/// The colours at a triangle's corners, which multiply those of a material.
+pub fn paint(material: usize, mesh: &TriangleMesh, triangle: usize) -> Option<Box<Paint>> {
+    let colors = mesh.colors.as_ref()?;
+    let color = |corner: u32| {
+        let color = colors.get(corner as usize).copied().unwrap_or([1.0; 3]);
+        // The larger of a number that is none and 0 is 0.
+        color.map(|channel| channel.max(0.0).min(1.0))
+    };
+    Some(Box::new(Paint {
+        finish: material as u32,
+        corners: mesh.triangles[triangle].map(color),
+    }))
 }
 
 #[cfg(test)]
