@@ -5,7 +5,7 @@ use crate::coating::{Coat, Coating};
 use crate::level::QuadricFunction;
 use crate::measure::Measured;
 use crate::options::{MeshError, Options, Phase, Progress};
-use crate::paint::Paint;
+use crate::paint::{Paint, Parts};
 use crate::solids::{Solid, tessellate};
 use crate::surface::{SurfaceMesh as Mesh, box_of, extent, polygonize};
 use crate::unite;
@@ -499,8 +499,8 @@ fn hard_parts<'a>(
     model: &mut Model,
     progress: &mut Progress<'_>,
 ) -> Result<(), MeshError> {
-    let mut closed = crate::paint::Parts::default();
-    let mut open = crate::paint::Parts::default();
+    let mut closed = Parts::new(scene);
+    let mut open = Parts::new(scene);
     let mut body = 0;
     let mut error = 0.0_f64;
     for element in elements {
@@ -529,14 +529,14 @@ fn hard_parts<'a>(
         let shells: Vec<TriangleMesh> = shells.collect();
         match shells.len() {
             0 => {}
-            1 => closed.add(&shells[0], element.finish),
-            _ => closed.add(&unite::union(&shells, progress)?, element.finish),
+            1 => closed.add(&shells[0], element),
+            _ => closed.add(&unite::union(&shells, progress)?, element),
         }
         for sheet in solid.sheets.iter().filter(|m| is_sound(m)) {
-            open.add(sheet, element.finish);
+            open.add(sheet, element);
         }
     }
-    let (closed, open) = (closed.mesh(scene, false), open.mesh(scene, true));
+    let (closed, open) = (closed.mesh(false), open.mesh(true));
     for (mesh, overlaps, what) in [(closed, true, "hard"), (open, false, "open")] {
         if mesh.triangles.len() > wishes.max_triangles {
             return Err(MeshError::TooMany {

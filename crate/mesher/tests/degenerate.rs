@@ -264,7 +264,10 @@ fn cavities_stay_in_unions_and_outer_drops_them() {
     assert_eq!(joined, [0, 0], "the cavity is still there");
     let (full, larger) = shells(true, true);
     assert_eq!(full, [0]);
-    assert!((larger - volume - cavity).abs() < 1e-6, "{larger} {volume} {cavity}");
+    assert!(
+        (larger - volume - cavity).abs() < 1e-6,
+        "{larger} {volume} {cavity}"
+    );
 }
 
 /// A function that waves by next to nothing about its threshold throughout a ball, and of which no more is known than that.

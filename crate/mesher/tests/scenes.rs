@@ -3,7 +3,8 @@
 //! By default a small sample. `SINEW_MESHES=all` meshes all examples and 200 random scenes, `SINEW_MESHES=NAME` one example, `SINEW_MESHES=NUMBER`
 //! one random scene with the care of the sample, `SINEW_MESHES=NUMBER-NUMBER` some of the 200, and prints a line for each: `SINEW_MESHES=all cargo test --release -p mesher --test scenes -- --nocapture`.
 //! `SINEW_TOLERANCE=2e-3` asks for another tolerance, as a share of the model's size, than 1e-2 for random scenes and 1e-3 for examples.
-//! Meshes of the 200 scenes and of all examples that take longer than a minute of a processor are given up; they are told, and are not taken for wrong.
+//! Meshes of the 200 scenes and of all examples that take longer than a minute of a processor, or the seconds that `SINEW_SECONDS` says, are
+//! given up; they are told, and are not taken for wrong.
 
 #[path = "../../tracer/tests/common/mod.rs"]
 mod common;
@@ -305,7 +306,10 @@ fn tolerance(usual: f64) -> f64 {
 }
 
 /// Seconds after which one of many meshes is given up.
-const MINUTE: f64 = 60.0;
+fn limit() -> f64 {
+    let asked = std::env::var("SINEW_SECONDS").ok();
+    asked.map_or(60.0, |asked| asked.parse().expect("SINEW_SECONDS"))
+}
 
 /// Measures how long this thread has had a processor, where the system tells, else how long it took.
 struct Clock {
@@ -341,7 +345,7 @@ impl Clock {
 fn told(name: &str, result: &Result<Row, String>) -> bool {
     match result {
         Ok(row) if row.empty => println!("{name}: nothing there"),
-        Ok(row) if row.late => println!("{name}: LATE: given up after {MINUTE} s"),
+        Ok(row) if row.late => println!("{name}: LATE: given up after {} s", limit()),
         Ok(row) => println!(
             "{name}: {} triangles, {} undecided, {} unproved ({:.2} {:.2}), off {:.2} {:.2}, {} unknown, {:.2} s{}",
             row.triangles,
@@ -387,7 +391,7 @@ fn random_scenes() {
                 rays: 30,
                 genus: true,
                 threads: 1,
-                limit: MINUTE,
+                limit: limit(),
             },
         )
     } else {
@@ -455,7 +459,11 @@ fn examples() {
             rays: 60,
             genus: true,
             threads: 1,
-            limit: if wanted == "all" { MINUTE } else { f64::INFINITY },
+            limit: if wanted == "all" {
+                limit()
+            } else {
+                f64::INFINITY
+            },
         },
         None => Care {
             relative: 4e-3,
