@@ -24,8 +24,10 @@ const DEEPEST: u32 = 8;
 const ALIKE: f64 = 1.0 / 32.0;
 /// … and than this one where one ray stays inside.
 const ALIKE_INSIDE: f64 = 0.5;
-/// Vertices are brought so near to the surface, as a share of the bound on |f − T|.
-const CLOSE: f64 = 0.1;
+/// Vertices are brought so near to the surface, as a share of the bound on |f − T| …
+const CLOSE: f64 = 0.08;
+/// … where f may be off by this share of the bound, as a polynomial may stand for its far terms.
+const FAR: f64 = 0.02;
 /// Steps of Newton's method from a known place before the ray is searched from its start.
 const STEPS: usize = 4;
 /// Bisections of a bracket, Newton's steps included.
@@ -195,7 +197,7 @@ impl Work<'_> {
         };
         let slack = Slack {
             left_out: SLACK,
-            far: 0.0,
+            far: FAR * (self.bound)(center),
         };
         self.part = self.function.narrow(ball, None, slack);
         let terms = self.part.as_ref().map_or(count, |part| part.terms.len());

@@ -330,6 +330,13 @@ impl<'a> Plan<'a> {
         if !is_sound {
             return Err(MeshError::NotFinite("the tolerance".into()));
         }
+        let is_endless = domains.iter().flatten().any(Aabb::is_empty);
+        let finite = finite.size().max_element();
+        if is_endless && tolerance > finite {
+            return Err(MeshError::Failed(format!(
+                "the box is so large that the tolerance of {tolerance:.2e} is more than the size of all that is finite, {finite:.2e}, and nothing thinner would be seen; choose a smaller box or tolerance"
+            )));
+        }
         let with_domain = |(surface, domain): (Surface, Option<Aabb>)| {
             let domain = domain?;
             Some((surface, if domain.is_empty() { limits } else { domain }))

@@ -371,3 +371,27 @@ fn caller_may_cancel_at_any_report_and_loses_nothing() {
         assert_eq!(coatings, known, "the places of the last coating are kept");
     }
 }
+
+#[test]
+fn many_scattered_limbs_are_coated_with_a_polynomial_for_the_far_ones() {
+    let mut scene = Scene::default();
+    scene.flesh.push(Flesh {
+        blobbiness: -2.0,
+        ..Flesh::default()
+    });
+    let mut random = common::Random(9);
+    for _ in 0..600 {
+        let base = random.vector();
+        let apex = base + 0.1 * random.vector();
+        let radius = 0.01;
+        scene.elements.push(Element {
+            flesh: Some(0),
+            ..Element::new(Shape::Cylinder { base, apex, radius })
+        });
+    }
+    let bodies = coated(&scene, 0.5, &mut Vec::new());
+    let coat = &bodies[0].coat;
+    assert_eq!(coat.left_out, 0, "all within the bound on the work");
+    let surfaces = scene.surfaces();
+    check("limbs", surfaces[0].function(), coat, 0.5);
+}

@@ -79,6 +79,47 @@ fn nothing_and_planes_alone_are_told_in_words() {
 }
 
 #[test]
+fn boxes_too_large_for_the_tolerance_are_told_in_words() {
+    let scene = soft([plane(0.3), sphere(DVec3::Y, 0.5)]);
+    for (tolerance, word) in [
+        // Of the box, so that nothing finite would be seen.
+        (Tolerance::Relative(1e-3), "smaller box"),
+        // Of the model, so that there would be too many triangles.
+        (Tolerance::Absolute(0.01), "box very large"),
+    ] {
+        let wishes = Wishes {
+            tolerance,
+            box_scale: 1e9,
+            max_triangles: 20_000,
+            ..Wishes::default()
+        };
+        let error = meshed(&scene, &wishes).map(|_| ()).unwrap_err();
+        assert!(error.to_string().contains(word), "{error}");
+    }
+}
+
+#[test]
+fn soft_shell_whose_turns_touch_is_united() {
+    // Balls along a spiral, as the command `shell` lays them: each turn just touches the one inside.
+    let (growth, touch) = (1.7_f64, 0.7 / 2.7);
+    let balls = (0..=36).map(|i| {
+        let turns = f64::from(i) / 18.0;
+        let out = libm::pow(growth, -turns);
+        let (sine, cosine) = libm::sincos(core::f64::consts::TAU * turns);
+        sphere(DVec3::new(out * cosine, -out * sine, 0.0), out * touch)
+    });
+    let mut scene = soft(balls);
+    scene.flesh[0].radius = 0.0;
+    let wishes = Wishes {
+        union: true,
+        ..coarse()
+    };
+    let model = meshed(&scene, &wishes).unwrap();
+    assert_eq!(model.parts.len(), 1);
+    assert_manifold("shell", &model.parts[0].mesh);
+}
+
+#[test]
 fn hard_planes_are_cut_and_slabs_are_closed() {
     for (radius, is_closed) in [(0.0, false), (0.2, true)] {
         let mut scene = Scene::default();
