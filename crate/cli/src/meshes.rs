@@ -244,7 +244,16 @@ impl Mesh {
             return Err("--coat takes a positive number".into());
         }
         let start = Instant::now();
-        let bodies = coat_scene(&loaded.compiled.scene, bound, &mut Vec::new());
+        let mut bar = Bar::new();
+        let mut show = |step: Step| bar.show(step.fraction);
+        let bodies = coat_scene(
+            &loaded.compiled.scene,
+            bound,
+            &mut Vec::new(),
+            &mut Progress::new(&mut show),
+        );
+        bar.clear();
+        let bodies = bodies.map_err(|error| format!("{}: {error}", self.file.display()))?;
         let seconds = start.elapsed().as_secs_f64();
         if bodies.is_empty() {
             return Err(format!(

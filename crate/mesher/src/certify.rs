@@ -75,6 +75,74 @@ const FLAT: f64 = 1e-7;
 
 /// Divisions of an edge that are tried.
 const GRIDS: [usize; 3] = [2, 3, 6];
+/// The last of them, which has the points of all.
+const FINEST: usize = 6;
+/// Its number of points.
+const POINTS: usize = (FINEST + 1) * (FINEST + 2) / 2;
+
+/// Index of a point of the finest grid, at so many steps from two sides.
+const fn place([i, j]: [usize; 2]) -> usize {
+    // Row i starts after those before it, which have 7, 6, … points.
+    i * (2 * FINEST + 3 - i) / 2 + j
+}
+
+/// Whether a point of the finest grid is one of a coarser grid.
+fn is_in([i, j]: [usize; 2], grid: usize) -> bool {
+    let step = FINEST / grid;
+    i % step == 0 && j % step == 0
+}
+
+/// All points of the finest grid, those far from the corners first: where triangles fail to be proved it is mostly in the middle.
+const POINTS_IN_ORDER: [[usize; 2]; POINTS] = {
+    let mut all = [[0; 2]; POINTS];
+    let mut count = 0;
+    // The largest of the three distances from the sides, from that of the centre to that of the corners.
+    let mut most = FINEST / 3;
+    while most <= FINEST {
+        let mut i = 0;
+        while i <= FINEST {
+            let mut j = 0;
+            while j <= FINEST - i {
+                let k = FINEST - i - j;
+                let largest = if i > j { i } else { j };
+                let largest = if k > largest { k } else { largest };
+                if largest == most {
+                    all[count] = [i, j];
+                    count += 1;
+                }
+                j += 1;
+            }
+            i += 1;
+        }
+        most += 1;
+    }
+    all
+};
+
+/// The function at points of a triangle's finest grid, where it was evaluated.
+struct Points {
+    vertices: [Option<Vertex>; POINTS],
+    corners: [Vertex; 3],
+}
+
+impl Points {
+    /// The function at a point, by an evaluation if there was none.
+    fn at(&mut self, at: [usize; 2], evaluate: impl Fn(DVec3) -> Vertex) -> Vertex {
+        let [i, j] = at;
+        let shares = [i, j, FINEST - i - j];
+        let corners = &self.corners;
+        *self.vertices[place(at)].get_or_insert_with(|| {
+            match shares.iter().position(|n| *n == FINEST) {
+                Some(corner) => corners[corner],
+                None => {
+                    let [u, v, w] = shares.map(|n| n as f64 * (1.0 / FINEST as f64));
+                    let [a, b, c] = corners.map(|corner| corner.position);
+                    evaluate(a * u + b * v + c * w)
+                }
+            }
+        })
+    }
+}
 
 /// The largest distance of a triangle from the surface, as proved; `None` if it is not proved to be at most the tolerance.
 pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Option<f64> {
@@ -151,46 +219,36 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
     if let Some(distance) = proved(1, steep, bezier) {
         return Some(distance);
     }
-    for grid in GRIDS {
+    let mut known = Points {
+        vertices: [None; POINTS],
+        corners: whole,
+    };
+    GRIDS.into_iter().find_map(|grid| {
         // Without hope even if all went well within.
-        if proved(grid, steep, highest).is_none() {
-            continue;
-        }
-        let share = 1.0 / grid as f64;
-        let mut vertices = Vec::with_capacity(28);
-        for i in 0..=grid {
-            for j in 0..=grid - i {
-                let k = grid - i - j;
-                vertices.push(match [i, j, k].iter().position(|n| *n == grid) {
-                    Some(corner) => whole[corner],
-                    None => {
-                        let [u, v, w] = [i, j, k].map(|n| n as f64 * share);
-                        let point = a * u + b * v + c * w;
-                        Vertex::new(point, &space.jet(part, point))
-                    }
-                });
+        proved(grid, steep, highest)?;
+        let (mut steep, mut highest) = (steep, highest);
+        let mut at = |place| known.at(place, |point| Vertex::new(point, &space.jet(part, point)));
+        for place in POINTS_IN_ORDER {
+            if !is_in(place, grid) {
+                continue;
             }
+            let vertex = at(place);
+            steep = steep.min(steepness(vertex.gradient));
+            highest = highest.max(vertex.value.abs());
+            // Further points make it no better.
+            proved(grid, steep, highest)?;
         }
-        let steep = vertices
-            .iter()
-            .map(|v| steepness(v.gradient))
-            .fold(f64::INFINITY, f64::min);
-        let mut highest = vertices.iter().map(|v| v.value.abs()).fold(0.0, f64::max);
-        // Row i starts after those before it, which have grid + 1, grid, … vertices.
-        let at = |i: usize, j: usize| i * (2 * grid + 3 - i) / 2 + j;
-        for i in 0..grid {
-            for j in 0..grid - i {
-                let [p, q, r] = [at(i, j), at(i, j + 1), at(i + 1, j)];
-                for (one, other) in [(p, q), (q, r), (r, p)] {
-                    highest = highest.max(controls(&vertices, one, other));
+        let step = FINEST / grid;
+        for i in (0..FINEST).step_by(step) {
+            for j in (0..FINEST - i).step_by(step) {
+                let corners = [[i, j], [i, j + step], [i + step, j]].map(&mut at);
+                for (i, j) in edges {
+                    highest = highest.max(controls(&corners, i, j));
                 }
             }
         }
-        if let Some(distance) = proved(grid, steep, highest) {
-            return Some(distance);
-        }
-    }
-    None
+        proved(grid, steep, highest)
+    })
 }
 
 /// Whether no triangle near the middle of this one can be proved, however small: the gradient may jump there by as much as its

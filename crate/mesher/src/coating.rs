@@ -9,7 +9,9 @@
 //! [`crate::mesh_scene`] are for files.
 
 use crate::cages::{Cage, Spoke};
+use crate::options::{MeshError, Progress};
 use crate::space::SLACK;
+use core::ops::ControlFlow;
 use field::{Ball, Implicit, Jet, Part, Slack, THRESHOLD};
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
@@ -22,12 +24,16 @@ const DEEPEST: u32 = 8;
 const ALIKE: f64 = 1.0 / 32.0;
 /// … and than this one where one ray stays inside.
 const ALIKE_INSIDE: f64 = 0.5;
-/// Vertices are brought so near to the surface, as a share of the bound on |f − T|.
-const CLOSE: f64 = 0.1;
+/// Vertices are brought so near to the surface, as a share of the bound on |f − T| …
+const CLOSE: f64 = 0.08;
+/// … where f may be off by this share of the bound, as a polynomial may stand for its far terms.
+const FAR: f64 = 0.02;
 /// Steps of Newton's method from a known place before the ray is searched from its start.
 const STEPS: usize = 4;
 /// Bisections of a bracket, Newton's steps included.
 const NARROWINGS: usize = 40;
+/// Terms that are evaluated between two reports: some milliseconds.
+const BETWEEN: u64 = 100_000;
 
 /// The rays of a coating with where they met the surface last: what the next one starts from.
 ///
@@ -95,15 +101,33 @@ impl Coating {
         cages: &[Cage],
         bound: &dyn Fn(DVec3) -> f64,
     ) -> Coat {
+        let mut go_on = |_| ControlFlow::Continue(());
+        self.update_told(function, cages, bound, &mut Progress::new(&mut go_on))
+            // Nothing cancels it.
+            .unwrap_or_default()
+    }
+
+    /// The same with reports of the progress.
+    ///
+    /// # Errors
+    /// If the caller cancels; then all that was known before is kept.
+    pub fn update_told(
+        &mut self,
+        function: &dyn Implicit,
+        cages: &[Cage],
+        bound: &dyn Fn(DVec3) -> f64,
+        progress: &mut Progress<'_>,
+    ) -> Result<Coat, MeshError> {
         let mut work = Work {
             function,
             bound,
-            before: core::mem::take(&mut self.known),
+            before: &self.known,
             known: BTreeMap::new(),
             coat: Coat::default(),
             part: None,
             terms: 1,
             done: 0,
+            told: 0,
         };
         let mut positions = Vec::new();
         let mut normals = Vec::new();
@@ -115,7 +139,7 @@ impl Coating {
                 break;
             }
             work.narrow(cage, cages.len());
-            let (vertices, own) = work.shell(number, cage, left);
+            let (vertices, own) = work.shell(number, cage, left, progress)?;
             left = left.saturating_sub(own.len());
             let first = positions.len() as u32;
             for vertex in &vertices {
@@ -125,11 +149,11 @@ impl Coating {
             }
             triangles.extend(own.iter().map(|t| t.map(|i| i + first)));
         }
-        self.known = work.known;
-        let mut coat = work.coat;
-        coat.mesh = TriangleMesh::new(positions, triangles);
-        coat.mesh.normals = Some(normals);
-        coat
+        let Work { known, coat, .. } = work;
+        self.known = known;
+        let mut mesh = TriangleMesh::new(positions, triangles);
+        mesh.normals = Some(normals);
+        Ok(Coat { mesh, ..coat })
     }
 }
 
@@ -147,7 +171,7 @@ struct Vertex {
 struct Work<'a> {
     function: &'a dyn Implicit,
     bound: &'a dyn Fn(DVec3) -> f64,
-    before: BTreeMap<u64, f64>,
+    before: &'a BTreeMap<u64, f64>,
     known: BTreeMap<u64, f64>,
     coat: Coat,
     /// The terms of the function that matter around the present cage; `None` if all do.
@@ -156,6 +180,8 @@ struct Work<'a> {
     terms: u64,
     /// Terms that were evaluated.
     done: u64,
+    /// Terms that were evaluated when the progress was reported last.
+    told: u64,
 }
 
 impl Work<'_> {
@@ -171,11 +197,20 @@ impl Work<'_> {
         };
         let slack = Slack {
             left_out: SLACK,
-            far: 0.0,
+            far: FAR * (self.bound)(center),
         };
         self.part = self.function.narrow(ball, None, slack);
         let terms = self.part.as_ref().map_or(count, |part| part.terms.len());
         self.terms = terms.max(1) as u64;
+    }
+
+    /// Reports the progress now and then.
+    fn tell(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
+        if self.done < self.told + BETWEEN {
+            return Ok(());
+        }
+        self.told = self.done;
+        progress.at(self.done as f32 / (2 * Coating::MOST_WORK) as f32)
     }
 
     fn jet(&mut self, point: DVec3) -> Jet<f64> {
@@ -187,9 +222,17 @@ impl Work<'_> {
         }
     }
 
-    fn shell(&mut self, number: usize, cage: &Cage, most: usize) -> (Vec<Vertex>, Vec<[u32; 3]>) {
+    /// The vertices and triangles of a cage, most triangles as given.
+    fn shell(
+        &mut self,
+        number: usize,
+        cage: &Cage,
+        most: usize,
+        progress: &mut Progress<'_>,
+    ) -> Result<(Vec<Vertex>, Vec<[u32; 3]>), MeshError> {
         let mut vertices: Vec<Vertex> = Vec::with_capacity(cage.spokes.len());
         for (i, spoke) in cage.spokes.iter().enumerate() {
+            self.tell(progress)?;
             let number = mixed((number as u64) << 32 | i as u64);
             vertices.push(self.meet(cage, *spoke, number, None));
         }
@@ -199,7 +242,7 @@ impl Work<'_> {
             let may_split = depth < DEEPEST
                 && done.len() + 4 * open.len() <= most
                 && self.done <= Coating::MOST_WORK;
-            let middles = self.split(cage, &mut vertices, &open, may_split);
+            let middles = self.split(cage, &mut vertices, &open, may_split, progress)?;
             let of_edge = |a: u32, b: u32| {
                 let edge = [a.min(b), a.max(b)];
                 let found = middles.binary_search_by_key(&edge, |(edge, _)| *edge);
@@ -220,7 +263,7 @@ impl Work<'_> {
             }
         }
         done.extend(open);
-        (vertices, done)
+        Ok((vertices, done))
     }
 
     /// Splits the edges of some triangles that need it, and returns those with their new vertices, sorted.
@@ -230,7 +273,8 @@ impl Work<'_> {
         vertices: &mut Vec<Vertex>,
         triangles: &[[u32; 3]],
         may_split: bool,
-    ) -> Vec<([u32; 2], u32)> {
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<([u32; 2], u32)>, MeshError> {
         let mut edges: Vec<[u32; 2]> = triangles
             .iter()
             .flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]])
@@ -240,6 +284,7 @@ impl Work<'_> {
         edges.dedup();
         let mut middles = Vec::new();
         for edge in edges {
+            self.tell(progress)?;
             let [a, b] = edge.map(|i| vertices[i as usize]);
             if a.is_buried && b.is_buried {
                 continue;
@@ -262,7 +307,7 @@ impl Work<'_> {
                 self.coat.excess = self.coat.excess.max(excess);
             }
         }
-        middles
+        Ok(middles)
     }
 
     /// The vertex of a ray: from where it was last, else from a guess, else from the skeleton outwards.

@@ -5,11 +5,10 @@ use crate::coating::{Coat, Coating};
 use crate::level::QuadricFunction;
 use crate::measure::Measured;
 use crate::options::{MeshError, Options, Phase, Progress};
-use crate::paint::Paint;
+use crate::paint::{Paint, Parts};
 use crate::solids::{Solid, tessellate};
 use crate::surface::{SurfaceMesh as Mesh, box_of, extent, polygonize};
 use crate::unite;
-use core::ops::ControlFlow;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Topology, TriangleMesh};
 use scene::{Element, Scene, Shape, Surface};
@@ -83,8 +82,10 @@ pub struct ModelPart {
     pub name: String,
     /// The mesh, with normals, colours or materials.
     pub mesh: TriangleMesh,
-    /// Whether it is closed; it may consist of several shells that overlap.
+    /// Whether it is closed.
     pub is_closed: bool,
+    /// Whether its closed shells may overlap, as those of hard elements do.
+    pub overlaps: bool,
     /// The largest distance between mesh and surface, either way.
     pub error: f64,
     /// Centres of the cells in which the topology is not proved.
@@ -166,13 +167,20 @@ pub fn mesh_scene(
             .filter(|element| element.body == body);
         hard_parts(scene, wishes, &plan, elements, &mut model, progress)?;
     }
-    if wishes.outer {
+    let drop_cavities = |model: &mut Model| {
         for part in model.parts.iter_mut().filter(|part| part.is_closed) {
             part.mesh = without_cavities(&part.mesh);
         }
+    };
+    if wishes.outer {
+        drop_cavities(&mut model);
     }
     if wishes.union {
         unite(&mut model, progress)?;
+        if wishes.outer {
+            // Those between bodies.
+            drop_cavities(&mut model);
+        }
     }
     model.parts.retain(|part| !part.mesh.triangles.is_empty());
     if model.parts.is_empty() {
@@ -193,28 +201,39 @@ pub struct CoatedBody {
 
 /// Coats the skeletons of all bodies of a scene. `coatings` has one for each body, with what was found for the last scene: it is made
 /// as long as it must be.
-#[must_use]
-pub fn coat_scene(scene: &Scene, bound: f64, coatings: &mut Vec<Coating>) -> Vec<CoatedBody> {
+///
+/// # Errors
+/// If the caller cancels.
+pub fn coat_scene(
+    scene: &Scene,
+    bound: f64,
+    coatings: &mut Vec<Coating>,
+    progress: &mut Progress<'_>,
+) -> Result<Vec<CoatedBody>, MeshError> {
     let surfaces = scene.surfaces();
     coatings.resize_with(surfaces.len(), Coating::default);
-    let coated = surfaces.iter().zip(coatings).map(|(surface, coating)| {
+    let count = surfaces.len() as f32;
+    let mut bodies = Vec::new();
+    for (i, (surface, coating)) in surfaces.iter().zip(coatings).enumerate() {
+        let mut progress = progress.part(i as f32 / count, (i + 1) as f32 / count);
+        progress.at(0.0)?;
         let cages = Cage::of_surface(scene, surface);
-        let mut coat = coating.update(surface.function(), &cages, &|_| bound);
-        let paint = Paint::new(scene, surface);
-        // Nothing cancels it.
-        let _ = paint.apply(
-            &mut coat.mesh,
-            1,
-            &mut Progress::new(&mut |_| ControlFlow::Continue(())),
-        );
-        CoatedBody {
+        let mut coat = coating.update_told(
+            surface.function(),
+            &cages,
+            &|_| bound,
+            &mut progress.part(0.0, 0.9),
+        )?;
+        if coat.mesh.triangles.is_empty() {
+            continue;
+        }
+        Paint::new(scene, surface).apply(&mut coat.mesh, 1, &mut progress.part(0.9, 1.0))?;
+        bodies.push(CoatedBody {
             name: name_of(scene, surface.body(), ""),
             coat,
-        }
-    });
-    coated
-        .filter(|body| !body.coat.mesh.triangles.is_empty())
-        .collect()
+        });
+    }
+    Ok(bodies)
 }
 
 /// What is to be meshed.
@@ -310,6 +329,13 @@ impl<'a> Plan<'a> {
         let is_sound = tolerance > 0.0 && tolerance.is_finite();
         if !is_sound {
             return Err(MeshError::NotFinite("the tolerance".into()));
+        }
+        let is_endless = domains.iter().flatten().any(Aabb::is_empty);
+        let finite = finite.size().max_element();
+        if is_endless && tolerance > finite {
+            return Err(MeshError::Failed(format!(
+                "the box is so large that the tolerance of {tolerance:.2e} is more than the size of all that is finite, {finite:.2e}, and nothing thinner would be seen; choose a smaller box or tolerance"
+            )));
         }
         let with_domain = |(surface, domain): (Surface, Option<Aabb>)| {
             let domain = domain?;
@@ -460,6 +486,7 @@ fn soft_part(
         name,
         mesh,
         is_closed: true,
+        overlaps: false,
         error,
         undecided,
         unproved,
@@ -479,8 +506,8 @@ fn hard_parts<'a>(
     model: &mut Model,
     progress: &mut Progress<'_>,
 ) -> Result<(), MeshError> {
-    let mut closed = crate::paint::Parts::default();
-    let mut open = crate::paint::Parts::default();
+    let mut closed = Parts::new(scene);
+    let mut open = Parts::new(scene);
     let mut body = 0;
     let mut error = 0.0_f64;
     for element in elements {
@@ -509,15 +536,15 @@ fn hard_parts<'a>(
         let shells: Vec<TriangleMesh> = shells.collect();
         match shells.len() {
             0 => {}
-            1 => closed.add(&shells[0], element.finish),
-            _ => closed.add(&unite::union(&shells, progress)?, element.finish),
+            1 => closed.add(&shells[0], element),
+            _ => closed.add(&unite::union(&shells, progress)?, element),
         }
         for sheet in solid.sheets.iter().filter(|m| is_sound(m)) {
-            open.add(sheet, element.finish);
+            open.add(sheet, element);
         }
     }
-    let (closed, open) = (closed.mesh(scene, false), open.mesh(scene, true));
-    for (mesh, is_closed, what) in [(closed, true, "hard"), (open, false, "open")] {
+    let (closed, open) = (closed.mesh(false), open.mesh(true));
+    for (mesh, overlaps, what) in [(closed, true, "hard"), (open, false, "open")] {
         if mesh.triangles.len() > wishes.max_triangles {
             return Err(MeshError::TooMany {
                 limit: wishes.max_triangles,
@@ -535,11 +562,12 @@ fn hard_parts<'a>(
             let topology = Topology::of(&mesh);
             topology.is_ok_and(|t| t.is_closed_manifold()) && mesh.signed_volume() > 0.0
         };
-        let is_closed = is_closed || closes();
+        let is_closed = overlaps || closes();
         model.parts.push(ModelPart {
             name: name_of(scene, body, if is_closed { "hard" } else { what }),
             mesh,
             is_closed,
+            overlaps,
             error,
             undecided: Vec::new(),
             unproved: 0,
@@ -640,14 +668,21 @@ fn unite(model: &mut Model, progress: &mut Progress<'_>) -> Result<(), MeshError
         .into_iter()
         .partition(|part| part.is_closed);
     if !closed.is_empty() {
-        let meshes: Vec<TriangleMesh> = closed
-            .iter()
-            .flat_map(|part| crate::paint::shells(&part.mesh))
-            .collect();
+        // A cavity is a shell that must stay with the one around it.
+        let meshes = closed.iter().flat_map(|part| {
+            let mesh = crate::paint::colored(&part.mesh);
+            if part.overlaps {
+                crate::paint::shells(&mesh)
+            } else {
+                vec![mesh]
+            }
+        });
+        let meshes: Vec<TriangleMesh> = meshes.collect();
         model.parts.push(ModelPart {
             name: "union".into(),
             mesh: unite::union(&meshes, progress)?,
             is_closed: true,
+            overlaps: false,
             error: closed.iter().map(|part| part.error).fold(0.0, f64::max),
             undecided: closed
                 .iter()

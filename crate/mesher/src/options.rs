@@ -73,7 +73,7 @@ impl fmt::Display for MeshError {
                 write!(f, "the mesh needs more than {limit} triangles")?;
                 match fitting {
                     Some(tolerance) => write!(f, "; a tolerance of {tolerance:.2e} would fit"),
-                    None => f.write_str(", as the surface is very rough"),
+                    None => f.write_str(", as the surface is very rough or its box very large"),
                 }
             }
             Self::Flat { near: [x, y, z] } => write!(

@@ -4,7 +4,7 @@ use crate::options::{MeshError, Progress};
 use crate::parallel::map_told;
 use glam::DVec3;
 use mesh::{Group, Material, TriangleMesh, roughness_from_phong};
-use scene::{Finish, Scene, Surface};
+use scene::{Element, Finish, Scene, Shape, Surface};
 use std::collections::BTreeMap;
 
 /// The material of a finish.
@@ -87,28 +87,65 @@ impl<'a> Paint<'a> {
 }
 
 /// Meshes of hard elements, sorted by finish.
-#[derive(Default)]
-pub struct Parts {
+pub struct Parts<'a> {
+    scene: &'a Scene,
     of_finish: BTreeMap<u32, Vec<TriangleMesh>>,
 }
 
-impl Parts {
-    /// Adds a mesh.
-    pub fn add(&mut self, mesh: &TriangleMesh, finish: u32) {
-        self.of_finish.entry(finish).or_default().push(mesh.clone());
+impl<'a> Parts<'a> {
+    /// No meshes yet.
+    pub fn new(scene: &'a Scene) -> Self {
+        Self {
+            scene,
+            of_finish: BTreeMap::new(),
+        }
     }
 
-    /// One mesh with a group for each finish. If asked, vertices at the same place become one; their normals are added up.
-    pub fn mesh(self, scene: &Scene, is_welded: bool) -> TriangleMesh {
+    /// Adds a mesh of an element. Where that has paint the vertices get the colour at the nearest corner, and the finish is the one that
+    /// the colours multiply.
+    pub fn add(&mut self, mesh: &TriangleMesh, element: &Element) {
+        let mut mesh = mesh.clone();
+        let mut finish = element.finish;
+        if let Some((paint, corners)) = self.paint(element) {
+            finish = paint.finish;
+            let base = material(&self.scene.finishes[finish as usize]).color;
+            let color = |position: &DVec3| {
+                let off = |i: &usize| corners[*i].distance_squared(*position);
+                let nearest = (0..3).min_by(|i, j| off(i).total_cmp(&off(j)));
+                let own = paint.corners[nearest.unwrap_or(0)];
+                [0, 1, 2].map(|k| base[k] * own[k])
+            };
+            mesh.colors = Some(mesh.positions.iter().map(color).collect());
+        }
+        self.of_finish.entry(finish).or_default().push(mesh);
+    }
+
+    /// The paint of a triangle or patch, with its corners.
+    fn paint<'e>(&self, element: &'e Element) -> Option<(&'e scene::Paint, [DVec3; 3])> {
+        let (Shape::Triangle { corners, .. } | Shape::Patch { corners, .. }) = element.shape else {
+            return None;
+        };
+        let paint = element.paint.as_deref()?;
+        ((paint.finish as usize) < self.scene.finishes.len()).then_some((paint, corners))
+    }
+
+    /// One mesh with a group for each finish, and with vertex colours if there is paint. If asked, vertices at the same place become one:
+    /// their normals are added up, and their colours averaged.
+    pub fn mesh(self, is_welded: bool) -> TriangleMesh {
         let mut all = TriangleMesh::default();
-        let mut normals = Vec::new();
+        let (mut normals, mut colors) = (Vec::new(), Vec::new());
+        let mut is_painted = false;
         let mut places = BTreeMap::new();
         for (finish, meshes) in self.of_finish {
             let start = all.triangles.len() as u32;
+            let finish = &self.scene.finishes[finish as usize];
+            let material = material(finish);
             for mesh in meshes {
+                is_painted |= mesh.colors.is_some();
                 let mut add = |i: usize| {
                     let position = mesh.positions[i];
                     let normal = mesh.normals.as_ref().map_or(DVec3::ZERO, |n| n[i]);
+                    let color = mesh.colors.as_ref().map_or(material.color, |c| c[i]);
                     let next = all.positions.len() as u32;
                     // −0 is 0.
                     let key = (position + 0.0).to_array().map(f64::to_bits);
@@ -120,8 +157,12 @@ impl Parts {
                     if place == next {
                         all.positions.push(position);
                         normals.push(DVec3::ZERO);
+                        colors.push(([0.0; 3], 0));
                     }
                     normals[place as usize] += normal;
+                    let (sum, count) = &mut colors[place as usize];
+                    *sum = [0, 1, 2].map(|k| sum[k] + f64::from(color[k]));
+                    *count += 1;
                     place
                 };
                 let numbers: Vec<u32> = (0..mesh.positions.len()).map(&mut add).collect();
@@ -133,24 +174,27 @@ impl Parts {
                 all.triangles
                     .extend(triangles.filter(|[a, b, c]| a != b && b != c && c != a));
             }
-            let finish = &scene.finishes[finish as usize];
             all.groups.push(Group {
                 name: finish.name.clone(),
-                material: Some(material(finish)),
+                material: Some(material),
                 triangles: start..all.triangles.len() as u32,
             });
         }
         if normals.iter().any(|normal| *normal != DVec3::ZERO) {
             all.normals = Some(normals);
         }
+        if is_painted {
+            let mean = |(sum, count): ([f64; 3], u32)| sum.map(|c| (c / f64::from(count)) as f32);
+            all.colors = Some(colors.into_iter().map(mean).collect());
+        }
         all
     }
 }
 
-/// The connected parts of a mesh, with its vertex colours or the colours of its materials.
-pub fn shells(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
-    let mut colors = mesh.colors.clone();
-    if colors.is_none() {
+/// A mesh with the colours of its materials at its vertices, if it has none there.
+pub fn colored(mesh: &TriangleMesh) -> TriangleMesh {
+    let mut colored = mesh.clone();
+    colored.colors.get_or_insert_with(|| {
         let mut of = vec![[1.0; 3]; mesh.positions.len()];
         for group in &mesh.groups {
             let range = group.triangles.start as usize..group.triangles.end as usize;
@@ -158,8 +202,13 @@ pub fn shells(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
                 of[*i as usize] = group.material.as_ref().map_or([1.0; 3], |m| m.color);
             }
         }
-        colors = Some(of);
-    }
+        of
+    });
+    colored
+}
+
+/// The connected parts of a mesh, with its normals and vertex colours.
+pub fn shells(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
     let roots = roots(mesh);
     let mut number = BTreeMap::new();
     let mut shells: Vec<(TriangleMesh, BTreeMap<u32, u32>)> = Vec::new();
@@ -178,7 +227,7 @@ pub fn shells(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
                 if let Some(normals) = &mesh.normals {
                     shell.normals.get_or_insert_default().push(normals[from]);
                 }
-                if let Some(colors) = &colors {
+                if let Some(colors) = &mesh.colors {
                     shell.colors.get_or_insert_default().push(colors[from]);
                 }
                 shell.positions.len() as u32 - 1

@@ -14,7 +14,7 @@ use crate::refine::{Refinement, around, coarse_range, error, fine_range};
 use crate::space::Space;
 use field::THRESHOLD;
 use glam::DVec3;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Undecided cells are split down to so many tolerances, even where the interpolant changes its sign.
 const SEEN: f64 = 2.0;
@@ -45,13 +45,14 @@ pub fn deepen(
 ) -> Result<(), MeshError> {
     // Cells in which the surface hid, and what they were split into.
     let mut known = BTreeSet::new();
+    let mut searched = Searched::default();
     // Each pass makes all cells of a level one finer.
     for pass in 0..=LEVELS {
         progress.at(pass as f32 / (LEVELS + 1) as f32)?;
         let open = undecided(refinement.space, &seen);
         let thin = open.iter().filter(|(_, is_thin)| *is_thin);
         let thin: Vec<u32> = thin.map(|(node, _)| *node).collect();
-        let hiding = hiding(refinement, &thin, progress)?;
+        let hiding = searched.hiding(refinement, &thin, progress)?;
         known.extend(hiding.iter().copied());
         let is_open =
             |(node, _): &(u32, bool)| refinement.space.forest.cells[*node as usize].undecided;
@@ -74,7 +75,7 @@ pub fn deepen(
         .map(|(node, _)| node)
         .collect();
     let largest = FORCED * refinement.tolerances[1];
-    for node in hiding(refinement, &thin, progress)? {
+    for node in searched.hiding(refinement, &thin, progress)? {
         let forest = &refinement.space.forest;
         let cell = &forest.cells[node as usize];
         if forest.size(cell.level).max_element() <= largest {
@@ -157,28 +158,44 @@ fn chosen(
     fit.map_or_else(Vec::new, |(cells, _)| cells)
 }
 
-/// Those of some thin cells in which a search finds a point on the other side of the surface. Where it proves that there is none, the
-/// cell is no longer undecided.
-fn hiding(
-    refinement: &mut Refinement<'_, '_>,
-    thin: &[u32],
-    progress: &mut Progress<'_>,
-) -> Result<Vec<u32>, MeshError> {
-    let (space, lattice) = (&*refinement.space, &refinement.lattice);
-    let thin = &thin[..thin.len().min(MOST_SEARCHED)];
-    let found = map_by(LARGE, refinement.threads, thin, progress, |node| {
-        search(space, lattice, &space.forest.cells[*node as usize])
-    })?;
-    let mut hiding = Vec::new();
-    for (node, found) in thin.iter().zip(found) {
-        let cell = &mut refinement.space.forest.cells[*node as usize];
-        match found {
-            Found::Other => hiding.push(*node),
-            Found::None => (cell.is_empty, cell.undecided) = (true, false),
-            Found::Unknown => {}
+/// Results of searches for the other side of the surface in thin cells, by their numbers: values at the vertices of the lattice stay what
+/// they are, so that another search in the same cell would find the same.
+#[derive(Default)]
+struct Searched {
+    found: BTreeMap<u32, Found>,
+}
+
+impl Searched {
+    /// Those of some thin cells in which a search finds a point on the other side of the surface. Where it proves that there is none, the
+    /// cell is no longer undecided.
+    fn hiding(
+        &mut self,
+        refinement: &mut Refinement<'_, '_>,
+        thin: &[u32],
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<u32>, MeshError> {
+        let (space, lattice) = (&*refinement.space, &refinement.lattice);
+        let thin = &thin[..thin.len().min(MOST_SEARCHED)];
+        let new: Vec<u32> = thin
+            .iter()
+            .copied()
+            .filter(|node| !self.found.contains_key(node))
+            .collect();
+        let found = map_by(LARGE, refinement.threads, &new, progress, |node| {
+            search(space, lattice, &space.forest.cells[*node as usize])
+        })?;
+        self.found.extend(new.into_iter().zip(found));
+        let mut hiding = Vec::new();
+        for node in thin {
+            let cell = &mut refinement.space.forest.cells[*node as usize];
+            match self.found[node] {
+                Found::Other => hiding.push(*node),
+                Found::None => (cell.is_empty, cell.undecided) = (true, false),
+                Found::Unknown => {}
+            }
         }
+        Ok(hiding)
     }
-    Ok(hiding)
 }
 
 /// The result of a search for the other side of the surface in a cell.

@@ -1,13 +1,18 @@
 //! Boolean unions and convex hulls, by `manifold-rust`.
 
 use crate::options::{MeshError, Progress};
+use core::time::Duration;
 use glam::DVec3;
+use manifold_rust::cancel::CancelToken;
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64, OpType};
 use mesh::TriangleMesh;
+use std::sync::mpsc::{RecvTimeoutError, channel};
 
-/// Meshes that are united in one step.
-const TOGETHER: usize = 8;
+/// Triangles of two meshes that are united in a moment.
+const FEW: usize = 10_000;
+/// Time between two questions to the caller of a union that takes longer.
+const PAUSE: Duration = Duration::from_millis(20);
 
 /// Numbers of a vertex: position, normal, colour.
 const PROPERTIES: usize = 9;
@@ -43,6 +48,48 @@ fn manifold(mesh: &TriangleMesh) -> Result<Manifold, MeshError> {
     }
 }
 
+/// The union of two. The caller is asked before, and natively all the while: then another thread computes, and ends soon after the
+/// caller cancels. In wasm a page ends the worker instead.
+fn joined(
+    one: &Manifold,
+    other: &Manifold,
+    progress: &mut Progress<'_>,
+) -> Result<Manifold, MeshError> {
+    progress.again()?;
+    if one.num_tri() + other.num_tri() <= FEW || cfg!(target_arch = "wasm32") {
+        return Ok(one.boolean(other, OpType::Add));
+    }
+    let token = CancelToken::new();
+    let (sender, united) = channel();
+    let compute = {
+        let token = token.clone();
+        move || {
+            // Nobody listens any more to what was cancelled.
+            let _ = sender.send(one.boolean_with_token(other, OpType::Add, Some(&token)));
+        }
+    };
+    std::thread::scope(|scope| {
+        let computing = scope.spawn(compute);
+        loop {
+            match united.recv_timeout(PAUSE) {
+                Ok(united) => return Ok(united),
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Err(cancelled) = progress.again() {
+                        token.cancel();
+                        return Err(cancelled);
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    if let Err(panic) = computing.join() {
+                        std::panic::resume_unwind(panic);
+                    }
+                    return Err(MeshError::Cancelled);
+                }
+            }
+        }
+    })
+}
+
 /// The union of closed meshes, with colours and normals; where two surfaces meet, normals are 0.
 ///
 /// # Errors
@@ -51,13 +98,19 @@ pub fn union(
     meshes: &[TriangleMesh],
     progress: &mut Progress<'_>,
 ) -> Result<TriangleMesh, MeshError> {
-    let mut manifolds = meshes.iter().map(manifold).collect::<Result<Vec<_>, _>>()?;
-    // Some at a time, so that each step is short.
+    let mut manifolds = Vec::with_capacity(meshes.len());
+    for mesh in meshes {
+        progress.again()?;
+        manifolds.push(manifold(mesh)?);
+    }
+    // In pairs, so that each step is short and few triangles are copied often.
     while manifolds.len() > 1 {
-        let mut larger = Vec::new();
-        for some in manifolds.chunks(TOGETHER) {
-            progress.again()?;
-            larger.push(Manifold::batch_boolean(some, OpType::Add));
+        let mut larger = Vec::with_capacity(manifolds.len().div_ceil(2));
+        for pair in manifolds.chunks(2) {
+            larger.push(match pair {
+                [one, other] => joined(one, other, progress)?,
+                _ => pair[0].clone(),
+            });
         }
         manifolds = larger;
     }
@@ -125,4 +178,64 @@ pub fn convex_hull(points: &[DVec3]) -> Option<TriangleMesh> {
             .map(|t| [t[0], t[1], t[2]].map(|i| i as u32))
             .collect(),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::ops::ControlFlow;
+    use scene::Shape;
+
+    fn ball(center: DVec3, tolerance: f64) -> TriangleMesh {
+        let shape = Shape::Sphere {
+            center,
+            radius: 1.0,
+        };
+        let mut solid = crate::solids::tessellate(&shape, 1.0, tolerance, &mesh::Aabb::EMPTY);
+        solid.shells.swap_remove(0)
+    }
+
+    /// A union the caller of which cancels at a question; the result, and the number of questions.
+    fn cancelled_at(
+        question: usize,
+        meshes: &[TriangleMesh],
+    ) -> (Result<TriangleMesh, MeshError>, usize) {
+        let mut asked = 0;
+        let mut report = |_| {
+            asked += 1;
+            if asked == question {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let result = union(meshes, &mut Progress::new(&mut report));
+        (result, asked)
+    }
+
+    #[test]
+    fn caller_is_asked_between_all_pairs() {
+        let balls: Vec<TriangleMesh> = (0..5)
+            .map(|i| ball(DVec3::X * 0.7 * f64::from(i), 0.1))
+            .collect();
+        // Once for each mesh, and once for each pair.
+        let (all, asked) = cancelled_at(0, &balls);
+        assert_eq!(asked, 9);
+        assert!(all.unwrap().signed_volume() > 8.0);
+        for question in 1..=9 {
+            let (result, asked) = cancelled_at(question, &balls);
+            assert_eq!(result, Err(MeshError::Cancelled));
+            assert_eq!(asked, question);
+        }
+    }
+
+    #[test]
+    fn large_pair_is_given_up_while_it_is_computed() {
+        let balls = [DVec3::ZERO, DVec3::X].map(|center| ball(center, 2e-4));
+        assert!(balls[0].triangles.len() > FEW);
+        // The third question is before the computation, the fourth during it.
+        let (result, asked) = cancelled_at(4, &balls);
+        assert_eq!(result, Err(MeshError::Cancelled));
+        assert_eq!(asked, 4);
+    }
 }

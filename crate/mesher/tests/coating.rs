@@ -6,8 +6,9 @@ use common::{assert_manifold, on_surface};
 use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use mesh::Topology;
-use mesher::{Cage, Coat, Coating, coat_scene};
+use mesher::{Cage, Coat, CoatedBody, Coating, MeshError, Progress, coat_scene};
 use scene::{Element, Flesh, Scene, Shape};
+use std::ops::ControlFlow;
 
 fn shaping(radius: f64) -> Shaping {
     Shaping {
@@ -38,6 +39,12 @@ fn chain(points: &[DVec3], radius: f64) -> (Sum, Vec<Cage>) {
         points.windows(2).filter_map(segment).collect(),
         Cage::around_lines(&lines),
     )
+}
+
+/// The coatings of a scene that nobody cancels.
+fn coated(scene: &Scene, bound: f64, coatings: &mut Vec<Coating>) -> Vec<CoatedBody> {
+    let mut report = |_| ControlFlow::Continue(());
+    coat_scene(scene, bound, coatings, &mut Progress::new(&mut report)).unwrap()
 }
 
 fn check(name: &str, function: &dyn Implicit, coat: &Coat, bound: f64) {
@@ -245,7 +252,7 @@ fn scenes_are_coated_and_what_cannot_be_is_left_out() {
     }));
     let mut coatings = Vec::new();
     assert!(
-        coat_scene(&scene, 0.1, &mut coatings).is_empty(),
+        coated(&scene, 0.1, &mut coatings).is_empty(),
         "planes have no end"
     );
     scene.elements.clear();
@@ -255,10 +262,10 @@ fn scenes_are_coated_and_what_cannot_be_is_left_out() {
             radius: 0.2,
         }));
     }
-    let bodies = coat_scene(&scene, 0.1, &mut coatings);
+    let bodies = coated(&scene, 0.1, &mut coatings);
     assert!(bodies.len() <= 1);
     for number in [1e-300, 1e300] {
-        let _ = coat_scene(&scene, number, &mut coatings);
+        let _ = coated(&scene, number, &mut coatings);
     }
 }
 
@@ -314,4 +321,77 @@ fn no_webs_between_limbs() {
             assert!(web < 0.01, "{name} {radius}: {web}");
         }
     }
+}
+
+#[test]
+fn caller_may_cancel_at_any_report_and_loses_nothing() {
+    let mut scene = Scene::default();
+    scene.flesh.push(Flesh {
+        blobbiness: -2.0,
+        radius: 0.05,
+        ..Flesh::default()
+    });
+    let mut random = common::Random(5);
+    for _ in 0..100 {
+        let base = random.vector();
+        let apex = base + 0.3 * random.vector();
+        let radius = 0.05;
+        scene.elements.push(Element {
+            flesh: Some(0),
+            ..Element::new(Shape::Cylinder { base, apex, radius })
+        });
+    }
+    let mut coatings = Vec::new();
+    let coated = |coatings: &mut Vec<Coating>, last: usize| {
+        let mut fractions = Vec::new();
+        let mut report = |step: mesher::Step| {
+            fractions.push(step.fraction);
+            if fractions.len() == last {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let bodies = coat_scene(&scene, 0.2, coatings, &mut Progress::new(&mut report));
+        (bodies.map(|bodies| bodies[0].coat.clone()), fractions)
+    };
+    let (first, fractions) = coated(&mut coatings, 0);
+    let evaluations = first.unwrap().evaluations;
+    // No kernel ends, so that each evaluation takes a hundred terms: a report comes after a thousand or so.
+    assert!(
+        fractions.len() as u64 > evaluations / 2000 && fractions.is_sorted(),
+        "{} reports, {evaluations} evaluations",
+        fractions.len()
+    );
+    let known = coatings.clone();
+    for last in [1, 2, fractions.len() / 4] {
+        let (result, fractions) = coated(&mut coatings, last);
+        assert_eq!(result, Err(MeshError::Cancelled));
+        assert_eq!(fractions.len(), last);
+        assert_eq!(coatings, known, "the places of the last coating are kept");
+    }
+}
+
+#[test]
+fn many_scattered_limbs_are_coated_with_a_polynomial_for_the_far_ones() {
+    let mut scene = Scene::default();
+    scene.flesh.push(Flesh {
+        blobbiness: -2.0,
+        ..Flesh::default()
+    });
+    let mut random = common::Random(9);
+    for _ in 0..600 {
+        let base = random.vector();
+        let apex = base + 0.1 * random.vector();
+        let radius = 0.01;
+        scene.elements.push(Element {
+            flesh: Some(0),
+            ..Element::new(Shape::Cylinder { base, apex, radius })
+        });
+    }
+    let bodies = coated(&scene, 0.5, &mut Vec::new());
+    let coat = &bodies[0].coat;
+    assert_eq!(coat.left_out, 0, "all within the bound on the work");
+    let surfaces = scene.surfaces();
+    check("limbs", surfaces[0].function(), coat, 0.5);
 }

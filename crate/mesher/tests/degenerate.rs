@@ -79,6 +79,47 @@ fn nothing_and_planes_alone_are_told_in_words() {
 }
 
 #[test]
+fn boxes_too_large_for_the_tolerance_are_told_in_words() {
+    let scene = soft([plane(0.3), sphere(DVec3::Y, 0.5)]);
+    for (tolerance, word) in [
+        // Of the box, so that nothing finite would be seen.
+        (Tolerance::Relative(1e-3), "smaller box"),
+        // Of the model, so that there would be too many triangles.
+        (Tolerance::Absolute(0.01), "box very large"),
+    ] {
+        let wishes = Wishes {
+            tolerance,
+            box_scale: 1e9,
+            max_triangles: 20_000,
+            ..Wishes::default()
+        };
+        let error = meshed(&scene, &wishes).map(|_| ()).unwrap_err();
+        assert!(error.to_string().contains(word), "{error}");
+    }
+}
+
+#[test]
+fn soft_shell_whose_turns_touch_is_united() {
+    // Balls along a spiral, as the command `shell` lays them: each turn just touches the one inside.
+    let (growth, touch) = (1.7_f64, 0.7 / 2.7);
+    let balls = (0..=36).map(|i| {
+        let turns = f64::from(i) / 18.0;
+        let out = libm::pow(growth, -turns);
+        let (sine, cosine) = libm::sincos(core::f64::consts::TAU * turns);
+        sphere(DVec3::new(out * cosine, -out * sine, 0.0), out * touch)
+    });
+    let mut scene = soft(balls);
+    scene.flesh[0].radius = 0.0;
+    let wishes = Wishes {
+        union: true,
+        ..coarse()
+    };
+    let model = meshed(&scene, &wishes).unwrap();
+    assert_eq!(model.parts.len(), 1);
+    assert_manifold("shell", &model.parts[0].mesh);
+}
+
+#[test]
 fn hard_planes_are_cut_and_slabs_are_closed() {
     for (radius, is_closed) in [(0.0, false), (0.2, true)] {
         let mut scene = Scene::default();
@@ -189,7 +230,7 @@ fn surfaces_that_touch_are_told() {
 }
 
 #[test]
-fn union_joins_bodies_and_outer_drops_cavities() {
+fn union_joins_bodies() {
     let mut scene = soft([sphere(DVec3::ZERO, 1.0), sphere(DVec3::X * 1.2, 1.0)]);
     let second = Body {
         name: "second".into(),
@@ -224,6 +265,50 @@ fn union_joins_bodies_and_outer_drops_cavities() {
     let one = meshed(&scene, &wishes).unwrap();
     assert_eq!(one.parts.len(), 1);
     assert_eq!(one.parts[0].name, "second");
+}
+
+#[test]
+fn cavities_stay_in_unions_and_outer_drops_them() {
+    // A ball that another one carves from within, and a third one beside.
+    let mut scene = soft([
+        sphere(DVec3::ZERO, 1.0),
+        sphere(DVec3::ZERO, 0.5),
+        sphere(DVec3::X * 1.5, 0.8),
+    ]);
+    scene.flesh[0].kernel = Some(Kernel::Gauss);
+    scene.flesh.push(Flesh {
+        strength: -1.0,
+        ..scene.flesh[0].clone()
+    });
+    scene.elements[1].flesh = Some(1);
+    scene.elements[2].body = 1;
+    scene.bodies.push(Body::default());
+    let shells = |union: bool, outer: bool| {
+        let wishes = Wishes {
+            union,
+            outer,
+            ..coarse()
+        };
+        let model = meshed(&scene, &wishes).unwrap();
+        let part = &model.parts[0];
+        assert_manifold(&part.name, &part.mesh);
+        let genera = Topology::of(&part.mesh).unwrap().genera;
+        (genera, part.mesh.signed_volume())
+    };
+    let (hollow, volume) = shells(false, false);
+    assert_eq!(hollow, [0, 0]);
+    let (full, larger) = shells(false, true);
+    assert_eq!(full, [0]);
+    let cavity = larger - volume;
+    assert!(cavity > 0.01, "{cavity}");
+    let (joined, volume) = shells(true, false);
+    assert_eq!(joined, [0, 0], "the cavity is still there");
+    let (full, larger) = shells(true, true);
+    assert_eq!(full, [0]);
+    assert!(
+        (larger - volume - cavity).abs() < 1e-6,
+        "{larger} {volume} {cavity}"
+    );
 }
 
 /// A function that waves by next to nothing about its threshold throughout a ball, and of which no more is known than that.

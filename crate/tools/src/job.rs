@@ -119,7 +119,13 @@ pub fn run(job: Job, progress: &mut Progress<'_>) -> Result<Output, String> {
             if !is_sound {
                 return Err("the bound must be a positive number".into());
             }
-            let bodies = mesher::coat_scene(&scene, bound, &mut coatings);
+            let mut report = |step: mesher::Step| {
+                progress.report(step.fraction);
+                progress.goes_on()
+            };
+            let told = &mut mesher::Progress::new(&mut report);
+            let bodies = mesher::coat_scene(&scene, bound, &mut coatings, told)
+                .map_err(|error| error.to_string())?;
             let parts = bodies.into_iter().map(|body| (body.name, body.coat.mesh));
             Ok(Output::Coated(Box::new(Coated {
                 parts: parts.collect(),

@@ -13,6 +13,12 @@ const MOST_EDGES: usize = 9;
 /// is farther from that mesh than the rest.
 const LOST: f64 = 0.5;
 
+/// Square of the longest side of a triangle.
+fn size([a, b, c]: &[Vertex; 3]) -> f64 {
+    let side = |p: &Vertex, q: &Vertex| p.position.distance_squared(q.position);
+    side(a, b).max(side(b, c)).max(side(c, a))
+}
+
 impl Improver<'_> {
     pub fn plan(&self, edit: Edit) -> Option<Plan> {
         match edit {
@@ -132,11 +138,15 @@ impl Improver<'_> {
         if !corners.iter().all(is_likely) {
             return None;
         }
-        let proved = faces.iter().zip(corners).map(|(f, corners)| {
-            let distance = distance(self.space, corners.each_ref(), tolerance)?;
-            Some((*f, distance as f32))
-        });
-        proved.collect()
+        // Large ones fail first, and one is enough.
+        let mut order: Vec<(f64, usize)> = (0..).zip(corners).map(|(i, c)| (-size(c), i)).collect();
+        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut proved = vec![(FaceId(0), 0.0); faces.len()];
+        for (_, i) in order {
+            let distance = distance(self.space, corners[i].each_ref(), tolerance)?;
+            proved[i] = (faces[i], distance as f32);
+        }
+        Some(proved)
     }
 
     /// Distances of triangles from the surface, infinite where none is proved; `None` if they are no better than before: fewer
