@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn large_pair_is_given_up_while_it_is_computed() {
-        let balls = [DVec3::ZERO, DVec3::X].map(|center| ball(center, 2e-4));
+        let balls = [DVec3::ZERO, DVec3::X].map(|center| ball(center, 5e-5));
         assert!(balls[0].triangles.len() > FEW);
         // The third question is before the computation, the fourth during it.
         let (result, asked) = cancelled_at(4, &balls);

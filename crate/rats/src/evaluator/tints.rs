@@ -83,8 +83,8 @@ pub fn paint(material: usize, mesh: &TriangleMesh, triangle: usize) -> Option<Bo
     let colors = mesh.colors.as_ref()?;
     let color = |corner: u32| {
         let color = colors.get(corner as usize).copied().unwrap_or([1.0; 3]);
-        // The larger of a number that is none and 0 is 0.
-        color.map(|channel| channel.max(0.0).min(1.0))
+        // A number that is none counts as 0.
+        color.map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 })
     };
     Some(Box::new(Paint {
         finish: material as u32,
