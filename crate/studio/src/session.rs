@@ -8,7 +8,7 @@
 use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
 use rats::{Compiled, Diagnostic, Project, Severity};
-use scene::{Camera, Scene};
+use scene::{Camera, Element, Scene};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -673,13 +673,7 @@ impl Session {
 /// a remark above them draws no new picture.
 fn same_picture(a: &Scene, b: &Scene) -> bool {
     a.elements.len() == b.elements.len()
-        && a.elements.iter().zip(&b.elements).all(|(a, b)| {
-            a.shape == b.shape
-                && a.flesh == b.flesh
-                && a.finish == b.finish
-                && a.body == b.body
-                && a.kernel == b.kernel
-        })
+        && a.elements.iter().zip(&b.elements).all(is_same_but_written)
         && a.flesh == b.flesh
         && a.finishes == b.finishes
         && a.frames == b.frames
@@ -691,6 +685,23 @@ fn same_picture(a: &Scene, b: &Scene) -> bool {
         && (a.camera, a.lens) == (b.camera, b.lens)
         && a.moments == b.moments
         && a.settings == b.settings
+}
+
+/// Whether two elements are the same, wherever they are written.
+fn is_same_but_written((a, b): (&Element, &Element)) -> bool {
+    let Element {
+        shape,
+        flesh,
+        finish,
+        body,
+        frame,
+        kernel,
+        origin: _,
+        paint,
+    } = a;
+    (shape, paint) == (&b.shape, &b.paint)
+        && (flesh, finish) == (&b.flesh, &b.finish)
+        && (body, frame, kernel) == (&b.body, &b.frame, &b.kernel)
 }
 
 /// The file and the byte in the new text where it starts to differ from the old one.
@@ -755,6 +766,27 @@ mod tests {
         let session = Session::of_text(&format!("sphree\n{TEXT}"));
         assert!(session.errors() > 0);
         assert_eq!(session.scene().unwrap().elements.len(), 1);
+    }
+
+    #[test]
+    fn every_part_of_an_element_draws_a_new_picture_but_its_place_in_the_text() {
+        let ball = scene::Shape::Sphere {
+            center: glam::DVec3::ZERO,
+            radius: 1.0,
+        };
+        let element = Element::new(ball);
+        let with = |change: &dyn Fn(&mut Element)| {
+            let mut other = element.clone();
+            change(&mut other);
+            is_same_but_written((&element, &other))
+        };
+        assert!(with(&|other| other.origin.start = 7));
+        assert!(!with(&|other| other.frame = 1));
+        let paint = scene::Paint {
+            finish: 0,
+            corners: [[1.0; 3]; 3],
+        };
+        assert!(!with(&|other| other.paint = Some(Box::new(paint.clone()))));
     }
 
     #[test]
