@@ -35,6 +35,8 @@ fn check(project: &Project) {
                 .flesh
                 .is_none_or(|flesh| (flesh as usize) < scene.flesh.len())
         );
+        let paint = element.paint.as_ref();
+        assert!(paint.is_none_or(|paint| (paint.finish as usize) < scene.finishes.len()));
         assert!((element.body as usize) < scene.bodies.len());
         assert!((element.frame as usize) < scene.frames.len());
         let origin = element.origin;
@@ -60,7 +62,8 @@ fn absent(scene: &scene::Scene) -> usize {
         ]
     };
     let flesh = scene.flesh.iter().flat_map(of);
-    let hard = scene.elements.iter().map(|element| element.flesh.is_none());
+    let elements = scene.elements.iter();
+    let hard = elements.flat_map(|element| [element.flesh.is_none(), element.paint.is_none()]);
     let whole = scene
         .elements
         .iter()
