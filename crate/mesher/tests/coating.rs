@@ -323,24 +323,28 @@ fn no_webs_between_limbs() {
     }
 }
 
-#[test]
-fn caller_may_cancel_at_any_report_and_loses_nothing() {
+/// A body of cylinders at random places, of about this length and radius.
+fn scattered(count: usize, (length, radius): (f64, f64), seed: u64) -> Scene {
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
         blobbiness: -2.0,
-        radius: 0.05,
         ..Flesh::default()
     });
-    let mut random = common::Random(5);
-    for _ in 0..100 {
+    let mut random = common::Random(seed);
+    for _ in 0..count {
         let base = random.vector();
-        let apex = base + 0.3 * random.vector();
-        let radius = 0.05;
+        let apex = base + length * random.vector();
         scene.elements.push(Element {
             flesh: Some(0),
             ..Element::new(Shape::Cylinder { base, apex, radius })
         });
     }
+    scene
+}
+
+#[test]
+fn caller_may_cancel_at_any_report_and_loses_nothing() {
+    let scene = scattered(100, (0.3, 0.05), 5);
     let mut coatings = Vec::new();
     let coated = |coatings: &mut Vec<Coating>, last: usize| {
         let mut fractions = Vec::new();
@@ -374,21 +378,7 @@ fn caller_may_cancel_at_any_report_and_loses_nothing() {
 
 #[test]
 fn many_scattered_limbs_are_coated_with_a_polynomial_for_the_far_ones() {
-    let mut scene = Scene::default();
-    scene.flesh.push(Flesh {
-        blobbiness: -2.0,
-        ..Flesh::default()
-    });
-    let mut random = common::Random(9);
-    for _ in 0..600 {
-        let base = random.vector();
-        let apex = base + 0.1 * random.vector();
-        let radius = 0.01;
-        scene.elements.push(Element {
-            flesh: Some(0),
-            ..Element::new(Shape::Cylinder { base, apex, radius })
-        });
-    }
+    let scene = scattered(600, (0.1, 0.01), 9);
     let bodies = coated(&scene, 0.5, &mut Vec::new());
     let coat = &bodies[0].coat;
     assert_eq!(coat.left_out, 0, "all within the bound on the work");

@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 
 const CORNERS: [DVec3; 4] = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-/// What the colours of the corners multiply.
+/// Diffuse colour of the finish, which the colours at the corners multiply.
 const BASE: Rgb = [1.0, 0.5, 0.25];
 const COLORS: [Rgb; 4] = [
     [1.0, 0.0, 0.0],

@@ -148,7 +148,7 @@ impl Gallery {
             };
             let size = texture.size_vec2();
             let inner = contain(size, place);
-            // What the picture leaves free goes on as its edges do.
+            // Edges of the picture are stretched over the free space beside it.
             for (strip, uv) in strips(inner, place, size) {
                 let image = egui::Image::from_texture(texture).uv(uv);
                 image.corner_radius(corners_of(strip)).paint_at(ui, strip);
@@ -274,7 +274,7 @@ fn ago(milliseconds: f64) -> String {
     }
 }
 
-/// What a place has beside a picture, with the part of the picture that is stretched over it: its first and last column or row.
+/// The two strips of free space beside a picture in a place, each with the texture coordinates of the nearest column or row of the picture.
 fn strips(inner: Rect, place: Rect, size: egui::Vec2) -> [(Rect, Rect); 2] {
     let [column, row] = [0.5 / size.x, 0.5 / size.y];
     let edge = |from: [f32; 2], to: [f32; 2]| Rect::from_min_max(from.into(), to.into());

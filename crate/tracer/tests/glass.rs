@@ -3,6 +3,7 @@
 #[path = "common/looks.rs"]
 mod looks;
 
+use field::Kernel;
 use glam::DVec3;
 use looks::*;
 use scene::{Background, Element, Finish, Light, LightKind, Scene, Shape};
@@ -63,17 +64,18 @@ fn compare(
 #[test]
 fn a_ball_of_glass_bends_light_by_snells_law() {
     for index in [1.5_f32, 1.1, 0.8] {
-        for soft in [false, true] {
+        for kernel in [None, Some(Kernel::Cauchy), Some(Kernel::Gauss)] {
             let mut scene = dark();
             ruler(&mut scene, -3.0, 4.0);
             let shape = ball(DVec3::ZERO, 1.0);
-            if soft {
+            if kernel.is_some() {
+                scene.flesh[0].kernel = kernel;
                 add_soft(&mut scene, shape, glass(index));
             } else {
                 add(&mut scene, shape, glass(index));
             }
             // A soft ball is found within its tolerance, which bends rays by as much.
-            let bound = if soft { 6.0 } else { 1.5 };
+            let bound = if kernel.is_some() { 6.0 } else { 1.5 };
             let count = compare(&scene, 4.0, (0, bound), |o, d| {
                 through_ball(o, d, f64::from(index))
             });

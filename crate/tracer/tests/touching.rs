@@ -231,10 +231,10 @@ fn certify(kinds: &[Kind]) {
     for &kind in kinds {
         let row = judge(kind, asked(1200) / KINDS.len(), 0, |_, _| {});
         assert!(row.missed == 0 && row.invented == 0, "{kind:?} {row:?}");
-        // Of rays that graze folds and branches the reference leaves more undecided.
+        // Of rays that graze folds the reference leaves 1.5 % undecided, counted over 10,000 of them.
         let few = match kind {
-            Kind::Folds | Kind::SelfContact | Kind::Star => 40,
-            Kind::Pair | Kind::Crowd | Kind::Grasp => 100,
+            Kind::Folds | Kind::SelfContact => 60,
+            Kind::Pair | Kind::Crowd | Kind::Grasp | Kind::Star => 100,
         };
         assert!(
             4 * row.hits > row.rays && few * row.uncertain <= row.rays,
