@@ -3,7 +3,7 @@
 use assist::{format, highlight};
 use rats::link::{self, Shared};
 use rats::{Compiled, File, Project, Severity, compile};
-use scene::Origin;
+use scene::{Element, Origin};
 
 /// Elements of the largest scene that is looked through for numbers that are none, which takes long.
 const LOOKED_THROUGH: usize = 5000;
@@ -145,8 +145,14 @@ pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
     // Places move, and hints tell of them.
     let scene = |compiled: &Compiled| {
         let mut scene = compiled.scene.clone();
-        for element in &mut scene.elements {
-            element.origin = Origin::default();
+        let forget = |elements: &mut [Element]| {
+            for element in elements {
+                element.origin = Origin::default();
+            }
+        };
+        forget(&mut scene.elements);
+        for moment in &mut scene.moments {
+            forget(&mut moment.elements);
         }
         scene
     };
