@@ -235,6 +235,63 @@ fn cells_are_the_same_in_any_order() {
     }
 }
 
+/// After an edit of few primitives a hierarchy takes over most of an earlier one's cells, and has the same bits as one made anew.
+#[test]
+fn edits_give_the_bits_of_a_fresh_hierarchy() {
+    let mut n = Numbers(17);
+    for case in 0..9 {
+        let kinds = [1, 2, 4][case % 3];
+        let mut primitives: Vec<Primitive> = (0..500)
+            .map(|i| primitive(Kernel::Cauchy, i % kinds, 0.02, &mut n))
+            .collect();
+        let make = |primitives: &[Primitive]| {
+            let field = FarField::new(primitives, DVec3::ZERO, 2.0);
+            match case / 3 {
+                0 => field,
+                1 => field.surface_only(),
+                _ => field.with_derivatives(),
+            }
+        };
+        let mut places: Vec<DVec3> = (0..30).map(|_| n.vector()).collect();
+        let mut field = make(&primitives);
+        for place in &places {
+            descend(&field, &primitives, *place, 7);
+        }
+        for _ in 0..4 {
+            let moved = (n.unit() * 500.0) as usize;
+            primitives[moved] = primitive(Kernel::Cauchy, 0, 0.02, &mut n);
+            places[0] = primitives[moved].blob_middle();
+            let changed: Arc<[u32]> = [moved as u32].into();
+            let [old, fresh] = [field, make(&primitives)];
+            field = make(&primitives).after(old.earlier(&changed));
+            let (mut taken, mut all) = (0, 0);
+            for place in &places {
+                for depth in 0..=7 {
+                    let [own, new] =
+                        [&field, &fresh].map(|field| descend(field, &primitives, *place, depth));
+                    assert_eq!(own.near, new.near);
+                    let bits = |cell: &Cell| {
+                        let bounds = [cell.error, cell.far_least, cell.far_most, cell.most];
+                        let jet = cell.expansion.jet([0.3, -0.2, 0.5], f64::from);
+                        let all = bounds
+                            .into_iter()
+                            .chain([jet.value, cell.smooth.slope_error]);
+                        let all = all.chain(jet.gradient).chain(cell.smooth.derivatives);
+                        all.map(f64::to_bits).collect::<Vec<_>>()
+                    };
+                    assert_eq!(bits(own), bits(new));
+                    let before = descend(&old, &primitives, *place, depth);
+                    taken += usize::from(own.has_part_of(before));
+                    all += usize::from(!own.is_empty);
+                }
+            }
+            // Where the surface alone is looked for, few small cells are not empty.
+            let least = if case / 3 == 1 { 20 } else { 4 };
+            assert!(taken * least > all, "case {case}: {taken} of {all}");
+        }
+    }
+}
+
 /// Gradients are no further off than the bound, derivatives no larger than theirs, and both bounds are of use.
 #[test]
 fn slopes_are_within_their_bounds() {

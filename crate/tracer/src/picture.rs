@@ -90,6 +90,18 @@ impl Picture {
         }
     }
 
+    /// Whether a picture of a scene that differs little is made sooner with [`Picture::follow`].
+    #[must_use]
+    pub fn can_be_followed(&self) -> bool {
+        self.sampler.world.soft.has_far_cells()
+    }
+
+    /// Takes over from the picture of an earlier scene what is still true of fields that never end. If few elements differ, the first
+    /// tiles are traced sooner; their pixels are the same.
+    pub fn follow(&mut self, before: &Self) {
+        self.sampler.world.soft.take_over(&before.sampler.world.soft);
+    }
+
     /// Adds a body whose surface is that of any implicit function, in the world's coordinates, and gives its number among the
     /// scene's bodies. `finish` tells the finish, an index into [`Scene::finishes`], of each of the function's elements.
     pub fn add_function(&mut self, function: Arc<dyn Implicit>, finish: Vec<u32>) -> u32 {

@@ -13,11 +13,12 @@ use crate::root_isolation::{Along, BoundedTerms, RootIsolator};
 use crate::roots::bracketed;
 use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::walk::{Bundle, Memories, Quest, Walk};
+use field::far_field::Earlier;
 use field::{Bound, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::{Scene, SoftSurface};
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 /// The convolution surfaces of a scene's bodies.
 ///
@@ -64,6 +65,18 @@ pub(crate) struct SoftBody {
     groups: OnceLock<Groups>,
     /// The hierarchy of its far field, if it is of many points that never end.
     far: OnceLock<Option<Box<FarBody>>>,
+    /// Cells of an earlier one.
+    earlier: Mutex<Vec<Option<Earlier>>>,
+}
+
+#[cfg(test)]
+impl SoftBody {
+    /// Whether it will take over cells of an earlier body.
+    pub fn takes_over(&self) -> bool {
+        self.earlier
+            .lock()
+            .is_ok_and(|earlier| earlier.iter().any(Option::is_some))
+    }
 }
 
 /// What the material of a body's surface is made of.
@@ -90,6 +103,9 @@ const OTHERS_LEFT_OUT: f64 = 1e-5;
 
 /// End of rays along infinitely wide primitives, in units of the scene's size.
 const FAR: f64 = 1e4;
+
+/// Most primitives that may change for far fields to be taken over.
+const MOST_CHANGED: usize = 64;
 
 /// Steps along a beam after which it counts as near a primitive …
 const MOST_STRIDES: usize = 32;
@@ -129,6 +145,7 @@ impl Soft {
                 ball: None,
                 groups: OnceLock::new(),
                 far: OnceLock::new(),
+                earlier: Mutex::default(),
             });
         }
         let ranges: Vec<Range<u32>> = bodies.iter().map(|body| body.range.clone()).collect();
@@ -338,9 +355,52 @@ impl Soft {
             let strong = &self.groups(body).strong;
             let ball = (strong.len() > 0).then(|| strong.ball(0))?;
             let primitives = &self.primitives[own.clone()];
-            FarBody::new(primitives, &self.finish[own.clone()], own.start, ball).map(Box::new)
+            let earlier = body
+                .earlier
+                .lock()
+                .map(|mut earlier| core::mem::take(&mut *earlier));
+            let earlier = earlier.unwrap_or_default();
+            FarBody::new(
+                primitives,
+                &self.finish[own.clone()],
+                own.start,
+                ball,
+                earlier,
+            )
+            .map(Box::new)
         };
         body.far.get_or_init(make).as_deref()
+    }
+
+    /// Whether cells of far fields were made, which a later scene may take over.
+    pub fn has_far_cells(&self) -> bool {
+        self.bodies
+            .iter()
+            .any(|body| matches!(body.far.get(), Some(Some(_))))
+    }
+
+    /// Takes over what is still true of the far fields of an earlier scene, from which this one differs in few primitives; it is the same
+    /// as if it were made anew.
+    pub fn take_over(&mut self, before: &Self) {
+        if self.finish != before.finish || self.primitives.len() != before.primitives.len() {
+            return;
+        }
+        for (body, old) in self.bodies.iter_mut().zip(&before.bodies) {
+            let Some(Some(far)) = old.far.get() else {
+                continue;
+            };
+            if body.range != old.range {
+                continue;
+            }
+            let differs = |i: &u32| {
+                let place = (body.range.start + i) as usize;
+                self.primitives[place] != before.primitives[place]
+            };
+            let changed: Vec<u32> = (0..body.range.len() as u32).filter(differs).collect();
+            if changed.len() <= MOST_CHANGED {
+                body.earlier = Mutex::new(far.earlier(&changed.into()));
+            }
+        }
     }
 
     /// Whether a body is one for [`Soft::far_first`].

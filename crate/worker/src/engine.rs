@@ -28,6 +28,8 @@ pub struct Engine {
     /// Whether other workers want to hear of first samples.
     shared: bool,
     prepared: Option<Prepared>,
+    /// The picture before, until the next scene is prepared, if that is of use then.
+    before: Option<Box<Picture>>,
     /// First samples that others took, at most [`KEPT`], until the scene is prepared.
     learnt: Vec<Known>,
     queue: VecDeque<Order>,
@@ -159,7 +161,10 @@ impl Engine {
         if let Some((scene, size, kind)) = self.wanted.take() {
             self.prepared = Some(match kind {
                 Kind::Colours => {
-                    let picture = Picture::new(&scene, size);
+                    let mut picture = Picture::new(&scene, size);
+                    if let Some(before) = self.before.take() {
+                        picture.follow(&before);
+                    }
                     let mut cache = picture.cache(KEPT);
                     self.learnt.drain(..).for_each(|known| cache.learn(&known));
                     Prepared::Colours(Box::new(picture), cache)
@@ -213,7 +218,11 @@ impl Engine {
         self.generation = generation;
         self.new = true;
         self.wanted = None;
-        self.prepared = None;
+        if let Some(Prepared::Colours(picture, _)) = self.prepared.take()
+            && picture.can_be_followed()
+        {
+            self.before = Some(picture);
+        }
         self.learnt.clear();
         self.queue.clear();
         self.begun = None;

@@ -11,7 +11,7 @@ use wide::f32x8;
 /// Nodes along each axis.
 pub const NODES: usize = 5;
 /// Nodes of a box.
-const ALL: usize = NODES * PLANE;
+pub const ALL: usize = NODES * PLANE;
 /// Vectors of eight that hold a value for each node.
 pub const VECTORS: usize = ALL.div_ceil(8);
 /// Largest total degree.
@@ -36,11 +36,56 @@ pub struct Expansion {
     terms: [f32; TERMS],
 }
 
+/// An interpolant: coefficients of products of Chebyshev polynomials, in the order of an expansion's terms.
+#[derive(Clone, Debug)]
+pub struct Series {
+    terms: [f32; TERMS],
+    /// Bound on what dropped terms and rounding change.
+    pub error: f64,
+}
+
+impl Series {
+    /// The series 0.
+    pub const ZERO: Self = Self {
+        terms: [0.0; TERMS],
+        error: 0.0,
+    };
+
+    /// The interpolant of values at the [`nodes`].
+    pub fn fit(values: &[f64; ALL]) -> Self {
+        let mut all = *values;
+        apply([&tables().chebyshev; 3], &mut all);
+        let size: f64 = all.iter().map(|term| term.abs()).sum();
+        let mut terms = [0.0; TERMS];
+        let (mut next, mut kept) = (0, 0.0);
+        each_term(|node| {
+            kept += all[node].abs();
+            terms[next] = all[node] as f32;
+            next += 1;
+        });
+        Self {
+            terms,
+            error: (size - kept) + STORED * size,
+        }
+    }
+}
+
+/// Calls a function with the number of each node whose degrees add up to no more than [`DEGREE`].
+fn each_term(mut act: impl FnMut(usize)) {
+    for k in 0..=most(0) {
+        for j in 0..=most(k) {
+            for i in 0..=most(j + k) {
+                act((k * NODES + j) * NODES + i);
+            }
+        }
+    }
+}
+
 /// An expansion with what is known of it.
 pub struct Fitted {
     /// The polynomial.
     pub expansion: Expansion,
-    /// Bound on its difference from the interpolant.
+    /// Bound on the rounding of its coefficients.
     pub error: f64,
     /// Bound on the rounding of its evaluation.
     pub evaluation: f64,
@@ -89,14 +134,19 @@ fn tables() -> &'static Tables {
     })
 }
 
-/// Coordinates of the nodes, −1 to 1, eight at a time; those beyond the last repeat it.
+/// Coordinates of the nodes along an axis, −1 to 1.
+pub fn axis() -> [f32; NODES] {
+    tables().nodes.map(|x| x as f32)
+}
+
+/// Coordinates of the nodes eight at a time, x innermost; those beyond the last repeat it.
 pub fn nodes() -> [[f32x8; 3]; VECTORS] {
-    let x = tables().nodes;
+    let x = axis();
     core::array::from_fn(|v| {
         core::array::from_fn(|axis| {
             let place = |lane: usize| {
                 let node = (8 * v + lane).min(ALL - 1);
-                x[node / [1, NODES, NODES * NODES][axis] % NODES] as f32
+                x[node / [1, NODES, NODES * NODES][axis] % NODES]
             };
             f32x8::new(core::array::from_fn(place))
         })
@@ -142,45 +192,30 @@ impl Expansion {
         terms: [0.0; TERMS],
     };
 
-    /// The interpolant of values at the [`nodes`], plus a polynomial's [coefficients](Expansion::moved).
-    pub fn fit(values: &[f32x8; VECTORS], more: Option<&Coefficients>) -> Fitted {
+    /// The sum of an interpolant and of a polynomial's [coefficients](Expansion::moved).
+    pub fn of(series: &Series, more: Option<&Coefficients>) -> Fitted {
         let mut all = [0.0; ALL];
-        for (eight, values) in all.chunks_mut(8).zip(values) {
-            for (own, value) in eight.iter_mut().zip(values.to_array()) {
-                *own = f64::from(value);
-            }
-        }
-        let tables = tables();
-        apply([&tables.chebyshev; 3], &mut all);
-        let (mut dropped, mut size) = (0.0, 0.0);
-        for (node, value) in all.iter_mut().enumerate() {
-            let degree = node % NODES + node / NODES % NODES + node / (NODES * NODES);
-            if degree > DEGREE {
-                dropped += value.abs();
-                *value = 0.0;
-            }
-            if let Some(more) = more {
-                *value += more[node];
-            }
-            size += value.abs();
-        }
+        let mut size = 0.0;
+        let mut next = 0;
+        each_term(|node| {
+            let own = f64::from(series.terms[next]) + more.map_or(0.0, |more| more[node]);
+            size += own.abs();
+            all[node] = own;
+            next += 1;
+        });
         let first = all[0];
         let change = size - first.abs();
-        apply([&tables.powers; 3], &mut all);
+        apply([&tables().powers; 3], &mut all);
         let mut terms = [0.0; TERMS];
         let mut next = 0;
         let mut largest = 0.0;
-        for k in 0..=most(0) {
-            for j in 0..=most(k) {
-                for i in 0..=most(j + k) {
-                    let term = all[(k * NODES + j) * NODES + i];
-                    largest += term.abs();
-                    terms[next] = term as f32;
-                    next += 1;
-                }
-            }
-        }
-        let error = dropped + STORED * largest;
+        each_term(|node| {
+            let term = all[node];
+            largest += term.abs();
+            terms[next] = term as f32;
+            next += 1;
+        });
+        let error = STORED * largest;
         let evaluation = ROUNDING * largest;
         let change = change + evaluation;
         Fitted {
@@ -266,14 +301,10 @@ impl Expansion {
     pub fn moved(&self, shift: [f64; 3], scale: f64) -> Coefficients {
         let mut all = [0.0; ALL];
         let mut next = 0;
-        for k in 0..=most(0) {
-            for j in 0..=most(k) {
-                for i in 0..=most(j + k) {
-                    all[(k * NODES + j) * NODES + i] = f64::from(self.terms[next]);
-                    next += 1;
-                }
-            }
-        }
+        each_term(|node| {
+            all[node] = f64::from(self.terms[next]);
+            next += 1;
+        });
         // Column k: the coefficients of (shift + scale·x)ᵏ, by x·Tₙ = (Tₙ₋₁ + Tₙ₊₁)/2.
         let of_axis = |shift: f64| {
             let mut matrix: Matrix = [[0.0; NODES]; NODES];
@@ -311,6 +342,11 @@ mod tests {
         }
     }
 
+    /// A node's coordinates.
+    fn place_of(node: usize) -> [f64; 3] {
+        nodes()[node / 8].map(|x| f64::from(x.to_array()[node % 8]))
+    }
+
     /// A polynomial within the degrees is reproduced, with its gradient, and along lines.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
@@ -322,20 +358,18 @@ mod tests {
                 let mixed = c[3] * x * x * y * z * z + c[4] * x.powi(4) * y;
                 c[0] + c[1] * x + c[2] * y * z + mixed + c[5] * y * y * z * z * x
             };
-            let values = nodes().map(|place| {
-                let of = |lane: usize| place.map(|x| f64::from(x.to_array()[lane]));
-                f32x8::new(core::array::from_fn(|lane| f(of(lane)) as f32))
-            });
-            let fitted = Expansion::fit(&values, None);
-            assert!(fitted.error < 1e-4, "{}", fitted.error);
+            let values = core::array::from_fn(|node| f(place_of(node)));
+            let series = Series::fit(&values);
+            let fitted = Expansion::of(&series, None);
+            let error = fitted.error + series.error;
+            assert!(error < 1e-4, "{error}");
             let (shift, scale) = ([next(), next(), next()].map(|x| 0.5 * x), 0.4);
             let moved = fitted.expansion.moved(shift, scale);
-            let zero = [f32x8::splat(0.0); VECTORS];
-            let moved = Expansion::fit(&zero, Some(&moved)).expansion;
+            let moved = Expansion::of(&Series::ZERO, Some(&moved)).expansion;
             for _ in 0..20 {
                 let place = [next(), next(), next()];
                 let jet = fitted.expansion.jet(place, f64::from);
-                assert!((jet.value - f(place)).abs() <= fitted.error + 1e-6);
+                assert!((jet.value - f(place)).abs() <= error + 1e-6);
                 let outer = core::array::from_fn(|i| shift[i] + scale * place[i]);
                 let want = fitted.expansion.jet(outer, f64::from).value;
                 let told = moved.jet(place, f64::from).value;
@@ -362,11 +396,16 @@ mod tests {
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn terms_of_higher_degree_count_as_error() {
-        let values = nodes().map(|[x, y, z]| x * x * x * y * y * z);
-        let fitted = Expansion::fit(&values, None);
+        let values = core::array::from_fn(|node| {
+            let [x, y, z] = place_of(node);
+            x * x * x * y * y * z
+        });
+        let series = Series::fit(&values);
         // x³y²z = (T₃ + 3T₁)/4·(T₂ + 1)/2·T₁: its part of degree 6 is an eighth.
-        assert!((fitted.error - 0.125).abs() < 1e-3, "{}", fitted.error);
-        let jet = fitted.expansion.jet([1.0; 3], f64::from);
+        assert!((series.error - 0.125).abs() < 1e-3, "{}", series.error);
+        let jet = Expansion::of(&series, None)
+            .expansion
+            .jet([1.0; 3], f64::from);
         assert!((jet.value - 0.875).abs() < 1e-5, "{jet:?}");
     }
 }

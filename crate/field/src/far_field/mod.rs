@@ -5,6 +5,10 @@
 //! evaluated for a bounded number of cells of each size. Cells are made where and when they are first asked for, and depend on the
 //! primitives alone.
 //!
+//! What a cell adds to its parent's polynomial depends on the primitives near the parent alone, and so do its lists: no threshold
+//! depends on what the parent inherited. After an edit of few primitives a hierarchy takes these parts from [an
+//! earlier one](FarField::after) wherever none of those was or is near the parent, and has the same bits as if it were made anew.
+//!
 //! # The bound
 //!
 //! The kernels that never end are `G = (ε² + u²)^(−e/2)`, with e = 1, 2, 3 for the inverse, the squared and the cubed kernel, and
@@ -24,9 +28,10 @@ mod expansion;
 mod source;
 mod sums;
 
-use crate::{Cut, Jet, Kernel, Primitive, THRESHOLD, inverse};
+use crate::{Jet, Kernel, Primitive, THRESHOLD, inverse};
+use core::cell::OnceCell;
 pub use expansion::{DEGREE, Expansion};
-use expansion::{VECTORS, slope_of};
+use expansion::{Series, VECTORS, slope_of};
 use glam::DVec3;
 use source::{Points, Seen, Source};
 use std::sync::{Arc, OnceLock};
@@ -35,15 +40,17 @@ use wide::f32x8;
 
 /// Half the extent of the box in which a cell's polynomial holds, over half the cell's own: rays of a beam may leave the cell by the
 /// difference.
-pub const LOOSE: f64 = 1.5;
+pub const LOOSE: f64 = 1.3;
 /// Largest error of a cell's polynomial, in T.
 pub const MOST_ERROR: f64 = 1e-4 * THRESHOLD;
-/// Part of what is left of [`MOST_ERROR`] that one more cell may use up.
-const PORTION: f64 = 0.25;
-/// Error up to which a primitive is far, as a part of what the cell may use up, at first.
-const FIRST_SHARE: f64 = 0.06;
+/// Part of [`MOST_ERROR`] that a cell may use up …
+const PORTION: f64 = 1.0 / 16.0;
+/// … down to this number of halvings of the cube; the smaller ones may use half as much each.
+const EVEN: i32 = 12;
+/// Error below which a primitive is far, at first: a power of two.
+const FIRST_SHARE: f64 = 1.0 / (1 << 22) as f64;
 /// Largest number of halvings of that.
-const MOST_HALVINGS: u32 = 24;
+const MOST_HALVINGS: usize = 24;
 /// Rounding of coordinates in single precision, in the world and in a primitive's own frame, relative to them.
 const MISPLACED: f64 = 2.5e-7;
 /// Near primitives up to which [`FarField::around`] divides no cell.
@@ -64,6 +71,19 @@ pub struct FarField {
     nodes: [[f32x8; 3]; VECTORS],
     purpose: Purpose,
     root: OnceLock<Arc<Cell>>,
+    earlier: Option<Earlier>,
+}
+
+/// The cells of a hierarchy for one of slightly other primitives.
+#[derive(Debug)]
+pub struct Earlier {
+    center: DVec3,
+    half: f64,
+    purpose: Purpose,
+    members: Vec<u32>,
+    root: Arc<Cell>,
+    /// Numbers of the primitives that differ.
+    changed: Arc<[u32]>,
 }
 
 /// The use of a hierarchy, which says what its cells hold.
@@ -93,7 +113,7 @@ pub struct Cell {
     /// Half its side.
     pub half: f64,
     /// Numbers of the primitives near it, in ascending order.
-    pub near: Vec<u32>,
+    pub near: Arc<[u32]>,
     /// Sum of all others in the cube of half side `LOOSE·half`, in coordinates from −1 to 1 there.
     pub expansion: Expansion,
     /// Bound on its error.
@@ -110,7 +130,25 @@ pub struct Cell {
     pub smooth: Smooth,
     /// Those of the error and of its slope that parts inherit: without the rounding of evaluation.
     passed: [f64; 2],
+    /// Number of halvings of the hierarchy's cube.
+    depth: i32,
+    /// Sum of bounds on the primitives near its parent that add to the field.
+    offered: f64,
+    /// What depends on the primitives near its parent alone; nothing in an empty cell.
+    own: Option<Arc<Own>>,
     children: [OnceLock<Arc<Cell>>; 8],
+}
+
+/// The part of a cell that it does not inherit: of the primitives that are near its parent.
+#[derive(Debug)]
+struct Own {
+    near: Arc<[u32]>,
+    /// Sum of bounds on those near ones that add to the field.
+    near_most: f64,
+    /// The others, with the error of their interpolation and of the sums' rounding.
+    series: Series,
+    error: f64,
+    smooth: Smooth,
 }
 
 /// Bounds on the far field of a cell, in its loose cube; infinite where they are not known.
@@ -133,6 +171,18 @@ impl Smooth {
         for (sum, own) in self.derivatives.iter_mut().zip(other.derivatives) {
             *sum += own;
         }
+    }
+}
+
+/// Returns a kernel `(ε² + u²)^(−e/2)`, given e and `1/(ε² + u²)`.
+#[inline(always)]
+#[must_use]
+pub fn decay(power: i32, inverse: f32x8) -> f32x8 {
+    match power {
+        1 => inverse.sqrt(),
+        2 => inverse,
+        3 => inverse * inverse.sqrt(),
+        _ => inverse * inverse,
     }
 }
 
@@ -167,6 +217,32 @@ impl FarField {
             nodes: expansion::nodes(),
             purpose: Purpose::Values,
             root: OnceLock::new(),
+            earlier: None,
+        }
+    }
+
+    /// What another hierarchy may take over, given the numbers of the primitives that will have changed, in ascending order. `None` if
+    /// this one has no cells.
+    #[must_use]
+    pub fn earlier(&self, changed: &Arc<[u32]>) -> Option<Earlier> {
+        Some(Earlier {
+            center: self.center,
+            half: self.half,
+            purpose: self.purpose,
+            members: self.members.clone(),
+            root: self.root.get()?.clone(),
+            changed: changed.clone(),
+        })
+    }
+
+    /// The same, taking over from an earlier hierarchy what is still true. Of one in another cube or of another use that is nothing.
+    #[must_use]
+    pub fn after(self, earlier: Option<Earlier>) -> Self {
+        let place = (self.center, self.half, self.purpose);
+        let is_like = |e: &Earlier| (e.center, e.half, e.purpose) == place;
+        Self {
+            earlier: earlier.filter(is_like),
+            ..self
         }
     }
 
@@ -199,6 +275,7 @@ impl FarField {
             members: (0..each.len() as u32).filter(counts).collect(),
             purpose: Purpose::Values,
             root: OnceLock::new(),
+            earlier: None,
             ..*self
         }
     }
@@ -213,8 +290,18 @@ impl FarField {
     /// The cube itself, given the primitives of which the hierarchy was made.
     pub fn root(&self, primitives: &[Primitive]) -> &Arc<Cell> {
         self.root.get_or_init(|| {
-            let (center, half) = (self.center, self.half);
-            Arc::new(self.cell(primitives, center, half, &self.members, None))
+            let own = self
+                .earlier
+                .as_ref()
+                .filter(|earlier| earlier.members == self.members && earlier.changed.is_empty());
+            let own = own.map(|earlier| &earlier.root);
+            Arc::new(self.cell(
+                primitives,
+                (self.center, self.half),
+                &self.members,
+                None,
+                own,
+            ))
         })
     }
 
@@ -229,8 +316,10 @@ impl FarField {
             return of;
         }
         of.children[number].get_or_init(|| {
-            let (center, half) = (of.middle_of(number), 0.5 * of.half);
-            Arc::new(self.cell(primitives, center, half, &of.near, Some(of)))
+            let place = (of.middle_of(number), 0.5 * of.half);
+            let earlier = self.earlier.as_ref();
+            let before = earlier.and_then(|earlier| earlier.part(of, number));
+            Arc::new(self.cell(primitives, place, &of.near, Some(of), before))
         })
     }
 
@@ -274,59 +363,88 @@ impl FarField {
         seen
     }
 
-    /// Makes a cell from those primitives that are near its parent.
+    /// Makes a cell from those primitives that are near its parent, or from an earlier one to which the same were near.
     fn cell(
         &self,
         primitives: &[Primitive],
-        center: DVec3,
-        half: f64,
+        (center, half): (DVec3, f64),
         candidates: &[u32],
         parent: Option<&Cell>,
+        before: Option<&Arc<Cell>>,
     ) -> Cell {
-        let sources = &self.sources.each;
         let loose = LOOSE * half;
-        let [inherited, inherited_slope] = parent.map_or([0.0; 2], |parent| parent.passed);
-        let seen = self.seen(center, loose, candidates);
-        let adding = candidates.iter().zip(&seen);
-        let adding = adding.filter(|(i, _)| sources[**i as usize].adds);
-        let bound = parent.map_or(0.0, |parent| parent.far_most)
-            + adding.map(|(_, seen)| seen.magnitude).sum::<f64>();
+        let seen = OnceCell::new();
+        let seen = || seen.get_or_init(|| self.seen(center, loose, candidates));
+        let offered = before.map(|before| before.offered);
+        let offered = offered.unwrap_or_else(|| self.adding(candidates, seen()));
+        let inherited = parent.map_or([0.0; 2], |parent| parent.passed);
+        let bound = parent.map_or(0.0, |parent| parent.far_most) + offered;
+        let depth = parent.map_or(0, |parent| parent.depth + 1);
         let mut cell = Cell {
             center,
             half,
-            near: Vec::new(),
+            near: Arc::default(),
             expansion: Expansion::ZERO,
-            error: inherited,
+            error: inherited[0],
             far_most: bound,
             far_least: f64::NEG_INFINITY,
             most: bound,
             is_empty: true,
             smooth: Smooth::UNKNOWN,
-            passed: [inherited, inherited_slope],
+            passed: inherited,
+            depth,
+            offered,
+            own: None,
             children: Default::default(),
         };
         if self.purpose == Purpose::Surface && bound < THRESHOLD * (1.0 - BELOW) {
             return cell;
         }
         cell.is_empty = false;
-        let portion = PORTION * (MOST_ERROR - inherited).at_least(0.0);
-        let mut share = FIRST_SHARE * portion;
-        for _ in 0..MOST_HALVINGS {
-            let far = seen.iter().filter(|seen| seen.error <= share);
-            if far.map(|seen| seen.error).sum::<f64>() <= portion {
-                break;
-            }
-            share *= 0.5;
+        let before = before.and_then(|before| before.own.clone());
+        let own = before.unwrap_or_else(|| {
+            Arc::new(self.own(primitives, (center, loose), depth, candidates, seen()))
+        });
+        cell.near = own.near.clone();
+        cell.inherit(&own, parent);
+        cell.most = own.near_most + cell.far_most;
+        if self.purpose != Purpose::Derivatives {
+            cell.smooth = Smooth::UNKNOWN;
         }
+        cell.own = Some(own);
+        cell
+    }
+
+    /// Sum of bounds on those primitives that add to the field.
+    fn adding(&self, candidates: &[u32], seen: &[Seen]) -> f64 {
+        let both = candidates.iter().zip(seen);
+        let adding = both.filter(|(i, _)| self.sources.each[**i as usize].adds);
+        adding.map(|(_, seen)| seen.magnitude).sum()
+    }
+
+    /// Tells near primitives from far ones and sums the latter, in a box.
+    fn own(
+        &self,
+        primitives: &[Primitive],
+        (center, loose): (DVec3, f64),
+        depth: i32,
+        candidates: &[u32],
+        seen: &[Seen],
+    ) -> Own {
+        let sources = &self.sources.each;
+        let smaller = (depth - EVEN).max(0);
+        let [portion, first] =
+            [PORTION * MOST_ERROR, FIRST_SHARE].map(|x| x * 0.5f64.powi(smaller));
+        let share = share_of(portion, first, seen);
         let mut smooth = Smooth {
-            slope_error: inherited_slope,
-            derivatives: parent.map_or([0.0; 3], |parent| parent.smooth.derivatives),
+            slope_error: 0.0,
+            derivatives: [0.0; 3],
         };
-        let mut sums = NodeSums::new(self, center, loose);
-        let mut near_most = 0.0;
-        for (&i, seen) in candidates.iter().zip(&seen) {
+        let mut sums = NodeSums::new(&self.nodes, center, loose);
+        let (mut near, mut near_most, mut error) = (Vec::new(), 0.0, 0.0);
+        for (&i, seen) in candidates.iter().zip(seen) {
             let source = &sources[i as usize];
-            let mut is_far = seen.error <= share;
+            let mut is_far = seen.error < share;
             if is_far && self.purpose == Purpose::Derivatives {
                 let own = source.smooth(center, loose, seen.error);
                 is_far = own.derivatives.iter().all(|bound| bound.is_finite());
@@ -335,41 +453,96 @@ impl FarField {
                 }
             }
             if is_far {
-                cell.error += seen.error;
+                error += seen.error;
                 if source.power > 0 {
                     sums.add(source, &primitives[i as usize], seen);
                 }
             } else {
-                cell.near.push(i);
+                near.push(i);
                 if source.adds {
                     near_most += seen.magnitude;
                 }
             }
         }
-        if sums.count > 0 || parent.is_some() {
-            let rounding = sums.rounding();
-            let fitted = sums.fit(parent);
-            let own = rounding + fitted.error;
-            smooth.slope_error += slope_of(own, loose);
-            cell.passed = [cell.error + own, smooth.slope_error];
-            cell.error += own + fitted.evaluation;
-            smooth.slope_error += slope_of(fitted.evaluation, loose);
-            cell.far_most = fitted.range[1] + cell.error;
-            cell.far_least = fitted.range[0] - cell.error;
-            cell.expansion = fitted.expansion;
-        } else {
-            cell.passed = [cell.error, smooth.slope_error];
-            (cell.far_least, cell.far_most) = (-cell.error, cell.error);
+        let rounding = sums.rounding();
+        let series = sums.fit();
+        let rounding = rounding + series.error;
+        smooth.slope_error += slope_of(rounding, loose);
+        Own {
+            near: near.into(),
+            near_most,
+            series,
+            error: error + rounding,
+            smooth,
         }
-        cell.most = near_most + cell.far_most;
-        if self.purpose == Purpose::Derivatives {
-            cell.smooth = smooth;
+    }
+}
+
+/// Returns the error below which primitives are far, such that those of all far ones add up to about a portion or less: a power of two,
+/// halved as often as need be.
+fn share_of(portion: f64, first: f64, seen: &[Seen]) -> f64 {
+    // Sums of the errors between one halving and the next, as their exponents of two tell.
+    let mut sums = [0.0; MOST_HALVINGS];
+    let exponent = |x: f64| (x.to_bits() >> 52) as usize;
+    let top = exponent(0.5 * first);
+    for seen in seen.iter().filter(|seen| seen.error < first) {
+        let halvings = top - exponent(seen.error);
+        sums[halvings.min(MOST_HALVINGS - 1)] += seen.error;
+    }
+    let mut sum: f64 = sums.iter().sum();
+    let mut share = first;
+    for own in sums {
+        if sum <= portion {
+            break;
         }
-        cell
+        sum -= own;
+        share *= 0.5;
+    }
+    share
+}
+
+impl Earlier {
+    /// The part that a cell had, if it had the same candidates as now, none of which have changed.
+    fn part(&self, of: &Cell, number: usize) -> Option<&Arc<Cell>> {
+        let mut cell = &self.root;
+        for _ in 0..of.depth {
+            cell = cell.children[cell.part_of(of.center)].get()?;
+        }
+        let part = cell.children[number].get()?;
+        let same = cell.near == of.near
+            && !self
+                .changed
+                .iter()
+                .any(|i| of.near.binary_search(i).is_ok());
+        same.then_some(part)
     }
 }
 
 impl Cell {
+    /// Adds what a cell inherits to its own part.
+    fn inherit(&mut self, own: &Own, parent: Option<&Cell>) {
+        let more = parent.map(|parent| {
+            let outer = 1.0 / parent.reach();
+            let shift = ((self.center - parent.center) * outer).to_array();
+            parent.expansion.moved(shift, self.reach() * outer)
+        });
+        let fitted = Expansion::of(&own.series, more.as_ref());
+        let mut smooth = own.smooth;
+        let [error, slope_error] = self.passed;
+        smooth.slope_error += slope_error + slope_of(fitted.error, self.reach());
+        if let Some(parent) = parent {
+            let inherited = smooth.derivatives.iter_mut().zip(parent.smooth.derivatives);
+            inherited.for_each(|(sum, parent)| *sum += parent);
+        }
+        self.passed = [error + own.error + fitted.error, smooth.slope_error];
+        self.error = self.passed[0] + fitted.evaluation;
+        smooth.slope_error += slope_of(fitted.evaluation, self.reach());
+        self.smooth = smooth;
+        self.far_most = fitted.range[1] + self.error;
+        self.far_least = fitted.range[0] - self.error;
+        self.expansion = fitted.expansion;
+    }
+
     /// The number of the part that holds a place.
     #[inline]
     #[must_use]
@@ -390,6 +563,13 @@ impl Cell {
     #[must_use]
     pub fn holds(&self, place: DVec3) -> bool {
         (place - self.center).abs().max_element() <= self.half
+    }
+
+    /// Whether the cell has taken over the part of another one ([`FarField::after`]).
+    #[must_use]
+    pub fn has_part_of(&self, other: &Self) -> bool {
+        let both = self.own.as_ref().zip(other.own.as_ref());
+        both.is_some_and(|(own, other)| Arc::ptr_eq(own, other))
     }
 
     /// Half the side of the box in which the expansion holds.

@@ -2,7 +2,7 @@
 use super::expansion::{AXES, NODES};
 use super::{DIAGONAL, MISPLACED, Smooth, power};
 use crate::bone::Bone;
-use crate::{Bound, Cut, Kernel, Primitive, Skeleton};
+use crate::{Bound, Cut, Primitive, Skeleton};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -24,7 +24,6 @@ pub struct Source {
     /// The bounds of all others.
     pub bound: Option<Box<Bound>>,
     pub adds: bool,
-    pub kernel: Kernel,
     /// The kernel's exponent and softening; an exponent of 0 tells that there is no expansion.
     pub power: i32,
     pub softening: f64,
@@ -72,7 +71,6 @@ impl Source {
             finest: primitive.width,
             point: is_point.then_some(term.amplitude as f32),
             adds: bound.adds(),
-            kernel: primitive.kernel,
             power,
             softening,
             bound: (!is_point).then(|| Box::new(bound)),

@@ -1,8 +1,8 @@
-//! Sums of primitives at the nodes of a box, in single precision, with bounds on their rounding.
-use super::expansion::{Expansion, Fitted, LEBESGUE, VECTORS};
+//! Sums of primitives at the nodes of a box, with bounds on their rounding.
+use super::expansion::{ALL, LEBESGUE, NODES, Series, VECTORS, axis};
 use super::source::{Seen, Source};
-use super::{Cell, FarField, MISPLACED};
-use crate::{Cut, Kernel, Primitive};
+use super::{MISPLACED, decay};
+use crate::{Cut, Primitive};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -16,8 +16,11 @@ pub struct NodeSums<'f> {
     nodes: &'f [[f32x8; 3]; VECTORS],
     center: DVec3,
     half: f64,
-    whole: [f32x8; VECTORS],
-    partial: [f32x8; VECTORS],
+    whole: [f64; ALL],
+    /// Sums of points, of which eight are added at a time, in single precision.
+    partial: [f32x8; ALL],
+    blocks: usize,
+    waiting: Waiting,
     pub count: usize,
     /// Sum of the bounds on the primitives' sizes.
     pub size: f64,
@@ -25,14 +28,28 @@ pub struct NodeSums<'f> {
     loss: f64,
 }
 
+/// Up to eight points of one kernel.
+#[derive(Default)]
+struct Waiting {
+    count: usize,
+    power: i32,
+    softening: f32,
+    /// The box's middle as seen from each, and half the box's side, in kernel widths.
+    away: [[f32; 8]; 3],
+    half: [f32; 8],
+    amplitude: [f32; 8],
+}
+
 impl<'f> NodeSums<'f> {
-    pub fn new(field: &'f FarField, center: DVec3, half: f64) -> Self {
+    pub fn new(nodes: &'f [[f32x8; 3]; VECTORS], center: DVec3, half: f64) -> Self {
         Self {
-            nodes: &field.nodes,
+            nodes,
             center,
             half,
-            whole: [f32x8::splat(0.0); VECTORS],
-            partial: [f32x8::splat(0.0); VECTORS],
+            whole: [0.0; ALL],
+            partial: [f32x8::splat(0.0); ALL],
+            blocks: 0,
+            waiting: Waiting::default(),
             count: 0,
             size: 0.0,
             loss: 0.0,
@@ -45,72 +62,88 @@ impl<'f> NodeSums<'f> {
         self.loss += seen.magnitude * (MISPLACED * coordinates * seen.steep).at_most(1.0);
         self.count += 1;
         if let Some(amplitude) = source.point {
-            // Relative to the box, in kernel widths: single precision then has its digits whatever the place.
-            let scale = source.finest;
-            let away = ((self.center - source.center) * scale).as_vec3();
-            self.add_point(
-                source.kernel,
-                away.to_array(),
-                (self.half * scale) as f32,
-                amplitude,
-            );
-        } else {
-            let half = f32x8::splat(self.half as f32);
-            let center = self.center.as_vec3().to_array();
-            for (sum, node) in self.partial.iter_mut().zip(self.nodes) {
-                let place = core::array::from_fn(|i| f32x8::splat(center[i]) + node[i] * half);
-                *sum += primitive.value::<f32x8>(place);
-            }
+            self.add_point(source, amplitude);
+            return;
         }
-        if self.count.is_multiple_of(PARTIAL_SUM) {
-            for (whole, partial) in self.whole.iter_mut().zip(&mut self.partial) {
-                *whole += *partial;
-                *partial = f32x8::splat(0.0);
+        let half = f32x8::splat(self.half as f32);
+        let center = self.center.as_vec3().to_array();
+        for (eight, node) in self.whole.chunks_mut(8).zip(self.nodes) {
+            let place = core::array::from_fn(|i| f32x8::splat(center[i]) + node[i] * half);
+            let values = primitive.value::<f32x8>(place).to_array();
+            for (sum, value) in eight.iter_mut().zip(values) {
+                *sum += f64::from(value);
             }
         }
     }
 
-    fn add_point(&mut self, kernel: Kernel, away: [f32; 3], half: f32, amplitude: f32) {
-        let [x, y, z] = away.map(f32x8::splat);
-        let (half, amplitude) = (f32x8::splat(half), f32x8::splat(amplitude));
-        let mut all = |value: &dyn Fn(f32x8) -> f32x8| {
-            for (sum, node) in self.partial.iter_mut().zip(self.nodes) {
-                let [dx, dy, dz] = [x + node[0] * half, y + node[1] * half, z + node[2] * half];
-                *sum += amplitude * value(dx * dx + dy * dy + dz * dz);
-            }
-        };
-        if kernel == Kernel::Cauchy {
-            let one = f32x8::splat(1.0);
-            return self.add_cauchy([x, y, z], half, amplitude, one);
+    fn add_point(&mut self, source: &Source, amplitude: f32) {
+        if self.waiting.count == 8 || self.waiting.power != source.power {
+            self.add_waiting();
         }
-        all(&|square| kernel.falling(square).0);
+        let waiting = &mut self.waiting;
+        (waiting.power, waiting.softening) = (source.power, source.softening as f32);
+        // Relative to the box, in kernel widths: single precision then has its digits whatever the place.
+        let scale = source.finest;
+        let away = ((self.center - source.center) * scale).as_vec3().to_array();
+        let lane = waiting.count;
+        for (row, x) in waiting.away.iter_mut().zip(away) {
+            row[lane] = x;
+        }
+        waiting.half[lane] = (self.half * scale) as f32;
+        waiting.amplitude[lane] = amplitude;
+        waiting.count += 1;
     }
 
-    /// [`NodeSums::add_point`] for the most common kernel, as a loop without calls.
-    #[inline(always)]
-    fn add_cauchy(&mut self, [x, y, z]: [f32x8; 3], half: f32x8, amplitude: f32x8, one: f32x8) {
-        for (sum, node) in self.partial.iter_mut().zip(self.nodes) {
-            let [dx, dy, dz] = [x + node[0] * half, y + node[1] * half, z + node[2] * half];
-            let base = one + dx * dx + dy * dy + dz * dz;
-            *sum += amplitude / (base * base);
+    /// Adds the points that wait.
+    fn add_waiting(&mut self) {
+        let waiting = core::mem::take(&mut self.waiting);
+        if waiting.count == 0 {
+            return;
+        }
+        let (half, amplitude) = (f32x8::new(waiting.half), f32x8::new(waiting.amplitude));
+        let nodes = axis();
+        let squares = waiting.away.map(|away| {
+            let away = f32x8::new(away);
+            nodes.map(|node| {
+                let place = away + f32x8::splat(node) * half;
+                place * place
+            })
+        });
+        let softening = f32x8::splat(waiting.softening);
+        let one = f32x8::splat(1.0);
+        let rows = self.partial.chunks_exact_mut(NODES);
+        for (at, row) in rows.enumerate() {
+            let base = softening + squares[1][at % NODES] + squares[2][at / NODES];
+            for (sum, x) in row.iter_mut().zip(squares[0]) {
+                *sum += amplitude * decay(waiting.power, one / (base + x));
+            }
+        }
+        self.blocks += 1;
+        if self.blocks.is_multiple_of(PARTIAL_SUM) {
+            self.carry();
+        }
+    }
+
+    /// Adds the partial sums to the whole.
+    fn carry(&mut self) {
+        for (whole, partial) in self.whole.iter_mut().zip(&mut self.partial) {
+            for value in partial.to_array() {
+                *whole += f64::from(value);
+            }
+            *partial = f32x8::splat(0.0);
         }
     }
 
     /// Bound on the rounding of the sums, as the interpolant's error.
     pub fn rounding(&self) -> f64 {
         let [own, addition] = ROUNDING;
-        let additions = (PARTIAL_SUM + self.count / PARTIAL_SUM + 2) as f64;
-        LEBESGUE * (self.size * (own + addition * additions) + self.loss)
+        LEBESGUE * (self.size * (own + addition * PARTIAL_SUM as f64) + self.loss)
     }
 
-    /// Returns the polynomial of the sums and of the parent's.
-    pub fn fit(self, parent: Option<&Cell>) -> Fitted {
-        let all: [f32x8; VECTORS] = core::array::from_fn(|i| self.whole[i] + self.partial[i]);
-        let more = parent.map(|parent| {
-            let outer = 1.0 / parent.reach();
-            let shift = ((self.center - parent.center) * outer).to_array();
-            parent.expansion.moved(shift, self.half * outer)
-        });
-        Expansion::fit(&all, more.as_ref())
+    /// Returns the interpolant of the sums.
+    pub fn fit(mut self) -> Series {
+        self.add_waiting();
+        self.carry();
+        Series::fit(&self.whole)
     }
 }

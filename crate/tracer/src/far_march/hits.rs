@@ -254,7 +254,7 @@ impl FarBody {
                 let cell = field.around(primitives, center, radius)?;
                 let local = piece.local(cell, place);
                 own = cell.expansion.jet(local, f32x8::splat).value;
-                for number in &cell.near {
+                for number in &*cell.near {
                     own += primitives[*number as usize].value(world);
                 }
                 work.evaluations += 8 * cell.near.len() as u64;

@@ -24,7 +24,7 @@ use crate::ray::Ray;
 use crate::root_isolation::BoundedTerms;
 use crate::surface_samples::SurfaceSamples;
 use crate::walk::Quest;
-use field::far_field::{Cell, FEW_NEAR, LOOSE, SMALLEST};
+use field::far_field::{Cell, Earlier, FEW_NEAR, LOOSE, SMALLEST};
 use field::{Cut, FarField, Kernel, Primitive, THRESHOLD};
 use glam::DVec3;
 use piece::{Piece, leaves};
@@ -43,6 +43,8 @@ const MOST_OF_CELLS: f64 = 2e-4 * THRESHOLD;
 const ROUNDING: f64 = 4e-6 * THRESHOLD;
 /// Half the side of the hierarchy's cube, over the radius of the ball that holds the surface.
 const ROOM: f64 = 1.25;
+/// Near points of a cell beyond which a packet that is too wide for the cell's parts is divided.
+const MANY: usize = 128;
 /// Most cells that a packet visits.
 const MOST_CELLS: u32 = 4096;
 
@@ -98,22 +100,26 @@ pub struct FarQuery<'r> {
 
 impl FarBody {
     /// Prepares a body of primitives numbered from `first` on, with the radius of a ball outside which the field is below T. `None`
-    /// if it is no body of many points of one endless kernel that add to the field.
+    /// if it is no body of many points of one endless kernel that add to the field. What is still true of an earlier body is taken over.
     pub fn new(
         primitives: &[Primitive],
         finishes: &[u32],
         first: usize,
         (center, radius): (DVec3, f64),
+        earlier: Vec<Option<Earlier>>,
     ) -> Option<Self> {
         // A field that falls as 1/r is so large where there are many elements that its rounding leaves nothing to save.
         if primitives.iter().any(|p| p.kernel == Kernel::Inverse) {
             return None;
         }
-        if primitives.len() < FEWEST {
+        if primitives.len() < FEWEST || !(radius > 0.0 && radius < f64::INFINITY) {
             return None;
         }
         let points = Points::of(primitives)?;
-        let field = FarField::new(primitives, center, ROOM * radius);
+        let (middle, half) = cube(center, radius);
+        let mut earlier = earlier.into_iter();
+        let field = FarField::new(primitives, middle, half).surface_only();
+        let field = field.after(earlier.next().flatten());
         let mut members: BTreeMap<u32, Option<FarField>> = BTreeMap::new();
         for finish in finishes {
             members.insert(*finish, None);
@@ -123,18 +129,26 @@ impl FarBody {
         }
         if members.len() > 1 {
             for (finish, own) in &mut members {
-                *own = Some(field.of_positive(|i| finishes[i as usize] == *finish));
+                let field = field.of_positive(|i| finishes[i as usize] == *finish);
+                *own = Some(field.after(earlier.next().flatten()));
             }
         }
         Some(Self {
             points,
-            field: field.surface_only(),
+            field,
             first,
             count: primitives.len(),
             finishes: members.into_iter().collect(),
             center,
             radius,
         })
+    }
+
+    /// What a later body may take over, given the numbers of the primitives that will have changed, counted from its first one.
+    pub fn earlier(&self, changed: &Arc<[u32]>) -> Vec<Option<Earlier>> {
+        let finishes = self.finishes.iter().filter_map(|(_, field)| field.as_ref());
+        let fields = core::iter::once(&self.field).chain(finishes);
+        fields.map(|field| field.earlier(changed)).collect()
     }
 
     fn primitives<'a>(&self, query: &FarQuery<'a>) -> &'a [Primitive] {
@@ -145,25 +159,33 @@ impl FarBody {
     /// rays that cross, a bit each, with the surface there in `work.flesh`. `None` if this is not the way for these rays; the caller
     /// then takes the general one.
     pub fn first(&self, query: &FarQuery<'_>, work: &mut FarWork) -> Option<u32> {
-        let primitives = self.primitives(query);
-        let followed = (0..PACKET).filter(|i| query.alive >> i & 1 != 0);
-        let followed: Vec<Ray> = followed.map(|i| query.rays[i]).collect();
-        let beam = Beam::around(&followed)?;
-        let [from, to] = self.range(&beam)?;
-        let mut furthest = 0.0;
-        for lane in (0..PACKET).filter(|i| query.alive >> i & 1 != 0) {
-            furthest = query.limits[lane].at_least(furthest);
-        }
-        let to = to.at_most(furthest);
-        let root = self.field.root(primitives);
-        let (mut alive, mut met) = (query.alive, 0);
-        let mut t = from;
         if query.quest != Quest::Entry {
             work.flesh.weights.clear();
             let zero = f32x8::splat(0.0);
             let weights = self.finishes.iter().map(|(finish, _)| (*finish, zero));
             work.flesh.weights.extend(weights);
         }
+        self.first_of(query, query.alive, 0.0, work)
+    }
+
+    /// Follows some of the rays from a parameter on.
+    fn first_of(
+        &self,
+        query: &FarQuery<'_>,
+        mut alive: u32,
+        from: f64,
+        work: &mut FarWork,
+    ) -> Option<u32> {
+        let primitives = self.primitives(query);
+        let lanes = (0..PACKET).filter(|i| alive >> i & 1 != 0);
+        let followed: Vec<Ray> = lanes.clone().map(|i| query.rays[i]).collect();
+        let beam = Beam::around(&followed)?;
+        let [first, last] = self.range(&beam)?;
+        let furthest = lanes.fold(0.0, |most, i| query.limits[i].at_least(most));
+        let to = last.at_most(furthest);
+        let mut t = first.at_least(from);
+        let root = self.field.root(primitives);
+        let mut met = 0;
         // The present cell and those that contain it, the largest first.
         let mut path = vec![root];
         let mut cells = 0;
@@ -195,28 +217,43 @@ impl FarBody {
                 path.pop();
             }
             let mut cell: &Arc<Cell> = path[path.len() - 1];
+            let mut is_wide = false;
             let empty = loop {
                 if cell.most < THRESHOLD - ROUNDING {
                     break true;
                 }
                 let half = 0.5 * cell.half;
-                if cell.near.len() <= FEW_NEAR
-                    || width(half) > room * half
-                    || half < SMALLEST * root.half
-                {
+                if cell.near.len() <= FEW_NEAR || half < SMALLEST * root.half {
+                    break false;
+                }
+                is_wide = width(half) > room * half;
+                if is_wide {
                     break false;
                 }
                 cell = self.field.part(primitives, cell, cell.part_of(place));
                 path.push(cell);
             };
             let end = leaves(&beam.axis, t, cell).at_most(to);
+            let is_one = alive & (alive - 1) == 0;
             if !empty {
-                if cell.error > MOST_OF_CELLS {
-                    return None;
+                let mut found = None;
+                if is_one || !is_wide || cell.near.len() <= MANY {
+                    if cell.error > MOST_OF_CELLS {
+                        return None;
+                    }
+                    let piece = Piece::new(cell, &beam, query.rays, [t, end]);
+                    let is_start = t <= 0.0;
+                    found = self.follow_points(query, &piece, alive, is_start, work);
                 }
-                let piece = Piece::new(cell, &beam, query.rays, [t, end]);
-                let is_start = t <= 0.0;
-                let found = self.follow_points(query, &piece, alive, is_start, work)?;
+                let Some(found) = found else {
+                    if is_one {
+                        return None;
+                    }
+                    for half in halves(query.rays, alive, t) {
+                        met |= self.first_of(query, half, t, work)?;
+                    }
+                    return Some(met);
+                };
                 met |= found;
                 alive &= !found;
             }
@@ -243,6 +280,38 @@ impl FarBody {
         let half = square.sqrt();
         Some([(along - half).at_least(0.0), along + half])
     }
+}
+
+/// Returns the middle and half the side of a cube for the hierarchy of what a ball holds: multiples of a sixteenth of the ball's radius,
+/// about, so that small edits do not change it.
+fn cube(center: DVec3, radius: f64) -> (DVec3, f64) {
+    let step = libm::exp2(libm::floor(libm::log2(radius))) / 16.0;
+    let middle = center.to_array().map(|x| libm::round(x / step) * step);
+    (
+        middle.into(),
+        libm::ceil(ROOM * radius / step) * step + step,
+    )
+}
+
+/// Divides two or more rays by their places at a parameter.
+fn halves(rays: &[Ray; PACKET], alive: u32, t: f64) -> [u32; 2] {
+    let places = rays.map(|ray| ray.at(t));
+    let lanes = (0..PACKET).filter(|i| alive >> i & 1 != 0);
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for i in lanes.clone() {
+        low = low.min(places[i]);
+        high = high.max(places[i]);
+    }
+    let axis = (high - low).max_position();
+    let middle = 0.5 * (low + high)[axis];
+    let below = lanes.filter(|i| places[*i][axis] < middle);
+    let below = below.fold(0, |mask, i| mask | 1 << i);
+    if below == 0 {
+        // All at one place.
+        let first = alive & alive.wrapping_neg();
+        return [first, alive & !first];
+    }
+    [below, alive & !below]
 }
 
 #[cfg(test)]
@@ -353,5 +422,57 @@ mod tests {
         let outside = DVec3::new(-5.0, center.y, center.z);
         assert_eq!(first(outside, f64::INFINITY), Some(255));
         assert_eq!(first(outside, 1.0), Some(0));
+    }
+
+    /// A scene in which one ball has moved takes over cells of the scene before, and gives the same picture as if it were made anew.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn edits_give_the_picture_of_a_fresh_scene() {
+        let mut numbers = Numbers(8);
+        let mut scene = empty();
+        clothe(&mut scene, vec![soft(-4.0, 1.0); 2]);
+        for i in 0..300 {
+            let shape = Shape::Sphere {
+                center: numbers.vector(),
+                radius: numbers.between(0.02, 0.07),
+            };
+            let kernel = Kernel::Cauchy;
+            let element = element(shape, i % 2);
+            scene.elements.push(Element { kernel, ..element });
+        }
+        scene.camera.eye = DVec3::new(0.5, -4.0, 1.0).to_array().into();
+        let size = [64, 48];
+        let trace = |picture: &crate::Picture| {
+            let [width, height] = size;
+            let tile = crate::Tile {
+                x: 0,
+                y: 0,
+                width,
+                height,
+            };
+            let never = &|| false;
+            let stats = &mut crate::Stats::default();
+            picture
+                .trace(tile, crate::Pass::Full, never, stats)
+                .expect("pixels")
+        };
+        let mut picture = crate::Picture::new(&scene, size);
+        let mut pixels = trace(&picture);
+        for number in [7, 100, 101] {
+            if let Shape::Sphere { center, .. } = &mut scene.elements[number].shape {
+                *center = 0.8 * *center + DVec3::new(0.05, -0.1, 0.02);
+            }
+            let mut next = crate::Picture::new(&scene, size);
+            let fresh = trace(&next);
+            assert!(fresh != pixels, "the edit shows");
+            next = crate::Picture::new(&scene, size);
+            next.follow(&picture);
+            assert!(picture.can_be_followed());
+            let soft = &next.sampler.world.soft;
+            assert!(soft.bodies[0].takes_over(), "{number}");
+            pixels = trace(&next);
+            assert!(fresh == pixels);
+            picture = next;
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::piece::Piece;
 use super::{FarBody, FarQuery, FarWork, ROUNDING};
 use crate::blob_march::{RayBlob, RayInterval, mask};
 use crate::spans::Node;
-use field::far_field::power;
+use field::far_field::{decay, power};
 use field::{Blob, Primitive, THRESHOLD};
 use glam::DVec3;
 use wide::f32x8;
@@ -141,7 +141,7 @@ impl Points {
             ];
             let apart = ((x * x + y * y + z * z).sqrt() - width).fast_max(zero) * scale;
             let inverse = f32x8::splat(1.0) / (softening + apart * apart);
-            let size = amplitude * self.decay(inverse);
+            let size = amplitude * decay(self.power, inverse);
             most += size;
             let square = scale * scale;
             let off = quartic * size * (square * square) * (inverse * inverse);
@@ -173,7 +173,7 @@ impl Points {
                     let square = f32x8::splat(point.scale * point.scale);
                     let inverse =
                         f32x8::splat(1.0) / (softening + square * (x * x + y * y + z * z));
-                    let value = f32x8::splat(point.amplitude) * self.decay(inverse);
+                    let value = f32x8::splat(point.amplitude) * decay(self.power, inverse);
                     let [dx, dy, dz] = piece.direction;
                     let pace = x * dx + y * dy + z * dz;
                     sum.value += value;
@@ -210,17 +210,6 @@ impl Points {
             backdrop,
             error: error + added,
         })
-    }
-
-    /// The kernel, given `1/(ε² + u²)`.
-    #[inline(always)]
-    fn decay(&self, inverse: f32x8) -> f32x8 {
-        match self.power {
-            1 => inverse.sqrt(),
-            2 => inverse,
-            3 => inverse * inverse.sqrt(),
-            _ => inverse * inverse,
-        }
     }
 
     /// Estimates where rays cross: where they enter a point's own surface, and a little before.
