@@ -263,7 +263,7 @@ fn edits_give_the_bits_of_a_fresh_hierarchy() {
             places[0] = primitives[moved].blob_middle();
             let changed: Arc<[u32]> = [moved as u32].into();
             let [old, fresh] = [field, make(&primitives)];
-            field = make(&primitives).after(old.earlier(&changed));
+            field = make(&primitives).after(Some(&old), &changed);
             let (mut taken, mut all) = (0, 0);
             for place in &places {
                 for depth in 0..=7 {

@@ -4,7 +4,6 @@ use crate::hierarchy::Hierarchy;
 use crate::nearby::{Extent, NearBlob, Nearby, Other};
 use field::{Blob, ChainBlob, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Largest sum of the fields that slabs leave out of their lists, in T: below the accuracy of root isolation, which uses those
@@ -45,7 +44,7 @@ impl BlobSet {
     #[must_use]
     pub fn new(primitives: &[Primitive], finish: &[u32], bodies: &[Range<u32>]) -> Self {
         let mut chain = 0;
-        let strings: BTreeMap<usize, Vec<ChainBlob>> = primitives
+        let strings: Vec<(usize, Vec<ChainBlob>)> = primitives
             .iter()
             .enumerate()
             .filter_map(|(i, p)| {
@@ -88,7 +87,8 @@ impl BlobSet {
                 blob_set
                     .items
                     .push(item(blob, p.blob_middle(), square, core, false));
-            } else if let Some(chain) = strings.get(&i) {
+            } else if let Ok(own) = strings.binary_search_by_key(&i, |own| own.0) {
+                let chain = &strings[own].1;
                 let blobs: Option<Vec<_>> = chain.iter().map(ChainBlob::blob).collect();
                 let own = blobs.into_iter().flatten().zip(chain).map(|(blob, point)| {
                     // The bone's surface, as if its field at the point were that of a Gaussian.

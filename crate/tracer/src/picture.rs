@@ -96,10 +96,11 @@ impl Picture {
         self.sampler.world.soft.has_far_cells()
     }
 
-    /// Takes over from the picture of an earlier scene what is still true of fields that never end. If few elements differ, the first
-    /// tiles are traced sooner; their pixels are the same.
-    pub fn follow(&mut self, before: &Self) {
-        self.sampler.world.soft.take_over(&before.sampler.world.soft);
+    /// Takes over from the picture of an earlier scene what is still true of fields that never end, and that one loses. If few
+    /// elements differ, the first tiles are traced sooner; their pixels are the same.
+    pub fn follow(&mut self, before: &mut Self) {
+        let soft = &mut self.sampler.world.soft;
+        soft.take_over(&mut before.sampler.world.soft);
     }
 
     /// Adds a body whose surface is that of any implicit function, in the world's coordinates, and gives its number among the

@@ -204,7 +204,7 @@ impl Reference {
             .map(crossing)
             .filter(|t| *t > 0.0 && *t < to)
             .collect();
-        found.sort_by(f64::total_cmp);
+        found.sort_unstable_by(f64::total_cmp);
         found
     }
 

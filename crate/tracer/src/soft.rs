@@ -13,7 +13,6 @@ use crate::root_isolation::{Along, BoundedTerms, RootIsolator};
 use crate::roots::bracketed;
 use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::walk::{Bundle, Memories, Quest, Walk};
-use field::far_field::Earlier;
 use field::{Bound, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::{Scene, SoftSurface};
@@ -65,17 +64,15 @@ pub(crate) struct SoftBody {
     groups: OnceLock<Groups>,
     /// The hierarchy of its far field, if it is of many points that never end.
     far: OnceLock<Option<Box<FarBody>>>,
-    /// Cells of an earlier one.
-    earlier: Mutex<Vec<Option<Earlier>>>,
+    /// An earlier one, until then.
+    earlier: Mutex<Option<Box<FarBody>>>,
 }
 
 #[cfg(test)]
 impl SoftBody {
     /// Whether it will take over cells of an earlier body.
     pub fn takes_over(&self) -> bool {
-        self.earlier
-            .lock()
-            .is_ok_and(|earlier| earlier.iter().any(Option::is_some))
+        self.earlier.lock().is_ok_and(|earlier| earlier.is_some())
     }
 }
 
@@ -103,9 +100,6 @@ const OTHERS_LEFT_OUT: f64 = 1e-5;
 
 /// End of rays along infinitely wide primitives, in units of the scene's size.
 const FAR: f64 = 1e4;
-
-/// Most primitives that may change for far fields to be taken over.
-const MOST_CHANGED: usize = 64;
 
 /// Steps along a beam after which it counts as near a primitive …
 const MOST_STRIDES: usize = 32;
@@ -365,7 +359,7 @@ impl Soft {
                 &self.finish[own.clone()],
                 own.start,
                 ball,
-                earlier,
+                earlier.as_deref(),
             )
             .map(Box::new)
         };
@@ -379,27 +373,10 @@ impl Soft {
             .any(|body| matches!(body.far.get(), Some(Some(_))))
     }
 
-    /// Takes over what is still true of the far fields of an earlier scene, from which this one differs in few primitives; it is the same
-    /// as if it were made anew.
-    pub fn take_over(&mut self, before: &Self) {
-        if self.finish != before.finish || self.primitives.len() != before.primitives.len() {
-            return;
-        }
-        for (body, old) in self.bodies.iter_mut().zip(&before.bodies) {
-            let Some(Some(far)) = old.far.get() else {
-                continue;
-            };
-            if body.range != old.range {
-                continue;
-            }
-            let differs = |i: &u32| {
-                let place = (body.range.start + i) as usize;
-                self.primitives[place] != before.primitives[place]
-            };
-            let changed: Vec<u32> = (0..body.range.len() as u32).filter(differs).collect();
-            if changed.len() <= MOST_CHANGED {
-                body.earlier = Mutex::new(far.earlier(&changed.into()));
-            }
+    /// Takes over what is still true of the far fields of an earlier scene, which loses them. Pictures stay the same.
+    pub fn take_over(&mut self, before: &mut Self) {
+        for (body, old) in self.bodies.iter_mut().zip(&mut before.bodies) {
+            body.earlier = Mutex::new(old.far.take().flatten());
         }
     }
 

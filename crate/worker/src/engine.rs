@@ -162,8 +162,8 @@ impl Engine {
             self.prepared = Some(match kind {
                 Kind::Colours => {
                     let mut picture = Picture::new(&scene, size);
-                    if let Some(before) = self.before.take() {
-                        picture.follow(&before);
+                    if let Some(mut before) = self.before.take() {
+                        picture.follow(&mut before);
                     }
                     let mut cache = picture.cache(KEPT);
                     self.learnt.drain(..).for_each(|known| cache.learn(&known));

@@ -74,12 +74,9 @@ pub struct FarField {
     earlier: Option<Earlier>,
 }
 
-/// The cells of a hierarchy for one of slightly other primitives.
+/// The cells of a hierarchy of slightly other primitives.
 #[derive(Debug)]
-pub struct Earlier {
-    center: DVec3,
-    half: f64,
-    purpose: Purpose,
+struct Earlier {
     members: Vec<u32>,
     root: Arc<Cell>,
     /// Numbers of the primitives that differ.
@@ -221,29 +218,20 @@ impl FarField {
         }
     }
 
-    /// What another hierarchy may take over, given the numbers of the primitives that will have changed, in ascending order. `None` if
-    /// this one has no cells.
+    /// The same, taking over what is still true of an earlier hierarchy, given the numbers of the primitives that have changed since.
+    /// Of one in another cube or of another use that is nothing.
     #[must_use]
-    pub fn earlier(&self, changed: &Arc<[u32]>) -> Option<Earlier> {
-        Some(Earlier {
-            center: self.center,
-            half: self.half,
-            purpose: self.purpose,
-            members: self.members.clone(),
-            root: self.root.get()?.clone(),
-            changed: changed.clone(),
-        })
-    }
-
-    /// The same, taking over from an earlier hierarchy what is still true. Of one in another cube or of another use that is nothing.
-    #[must_use]
-    pub fn after(self, earlier: Option<Earlier>) -> Self {
-        let place = (self.center, self.half, self.purpose);
-        let is_like = |e: &Earlier| (e.center, e.half, e.purpose) == place;
-        Self {
-            earlier: earlier.filter(is_like),
-            ..self
-        }
+    pub fn after(self, earlier: Option<&Self>, changed: &Arc<[u32]>) -> Self {
+        let place = |field: &Self| (field.center, field.half, field.purpose);
+        let earlier = earlier.filter(|earlier| place(earlier) == place(&self));
+        let earlier = earlier.and_then(|earlier| {
+            Some(Earlier {
+                members: earlier.members.clone(),
+                root: earlier.root.get()?.clone(),
+                changed: changed.clone(),
+            })
+        });
+        Self { earlier, ..self }
     }
 
     /// The same for those who look for the surface alone: where bounds show that the field is below T, cells have no list, no

@@ -108,7 +108,7 @@ impl Swept {
             }
         }
         let breaks = &mut breaks[..count];
-        breaks.sort_by(f64::total_cmp);
+        breaks.sort_unstable_by(f64::total_cmp);
         let mut open: Option<f64> = None;
         let mut tell = |from: f64, to: f64| {
             let parts = [(from - ROUNDING).max(0.0), (to + ROUNDING).min(1.0)];

@@ -24,12 +24,11 @@ use crate::ray::Ray;
 use crate::root_isolation::BoundedTerms;
 use crate::surface_samples::SurfaceSamples;
 use crate::walk::Quest;
-use field::far_field::{Cell, Earlier, FEW_NEAR, LOOSE, SMALLEST};
+use field::far_field::{Cell, FEW_NEAR, LOOSE, SMALLEST};
 use field::{Cut, FarField, Kernel, Primitive, THRESHOLD};
 use glam::DVec3;
 use piece::{Piece, leaves};
 use points::Points;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use wide::f32x8;
 
@@ -106,7 +105,7 @@ impl FarBody {
         finishes: &[u32],
         first: usize,
         (center, radius): (DVec3, f64),
-        earlier: Vec<Option<Earlier>>,
+        earlier: Option<&Self>,
     ) -> Option<Self> {
         // A field that falls as 1/r is so large where there are many elements that its rounding leaves nothing to save.
         if primitives.iter().any(|p| p.kernel == Kernel::Inverse) {
@@ -117,38 +116,36 @@ impl FarBody {
         }
         let points = Points::of(primitives)?;
         let (middle, half) = cube(center, radius);
-        let mut earlier = earlier.into_iter();
+        let changed = earlier.and_then(|earlier| points.changed_from(&earlier.points));
+        let earlier = earlier.filter(|_| changed.is_some());
+        let changed: Arc<[u32]> = changed.unwrap_or_default().into();
         let field = FarField::new(primitives, middle, half).surface_only();
-        let field = field.after(earlier.next().flatten());
-        let mut members: BTreeMap<u32, Option<FarField>> = BTreeMap::new();
-        for finish in finishes {
-            members.insert(*finish, None);
-        }
+        let field = field.after(earlier.map(|earlier| &earlier.field), &changed);
+        let mut members = finishes.to_vec();
+        members.sort_unstable();
+        members.dedup();
         if members.len() > MOST_FINISHES {
             return None;
         }
-        if members.len() > 1 {
-            for (finish, own) in &mut members {
-                let field = field.of_positive(|i| finishes[i as usize] == *finish);
-                *own = Some(field.after(earlier.next().flatten()));
-            }
-        }
+        let is_mixed = members.len() > 1;
+        let own = |finish: u32| {
+            let field = field.of_positive(|i| finishes[i as usize] == finish);
+            let of_finish = |body: &&Self| body.finishes.iter().position(|own| own.0 == finish);
+            let before = earlier.and_then(|body| body.finishes[of_finish(&body)?].1.as_ref());
+            field.after(before, &changed)
+        };
+        let members = members.into_iter();
+        let finishes = members.map(|finish| (finish, is_mixed.then(|| own(finish))));
+        let finishes = finishes.collect();
         Some(Self {
             points,
             field,
             first,
             count: primitives.len(),
-            finishes: members.into_iter().collect(),
+            finishes,
             center,
             radius,
         })
-    }
-
-    /// What a later body may take over, given the numbers of the primitives that will have changed, counted from its first one.
-    pub fn earlier(&self, changed: &Arc<[u32]>) -> Vec<Option<Earlier>> {
-        let finishes = self.finishes.iter().filter_map(|(_, field)| field.as_ref());
-        let fields = core::iter::once(&self.field).chain(finishes);
-        fields.map(|field| field.earlier(changed)).collect()
     }
 
     fn primitives<'a>(&self, query: &FarQuery<'a>) -> &'a [Primitive] {
@@ -466,8 +463,8 @@ mod tests {
             let fresh = trace(&next);
             assert!(fresh != pixels, "the edit shows");
             next = crate::Picture::new(&scene, size);
-            next.follow(&picture);
             assert!(picture.can_be_followed());
+            next.follow(&mut picture);
             let soft = &next.sampler.world.soft;
             assert!(soft.bodies[0].takes_over(), "{number}");
             pixels = trace(&next);

@@ -11,6 +11,8 @@ use wide::f32x8;
 
 /// Largest error of all spans in a cell together, in T.
 const OF_SPANS: f64 = 3e-5 * THRESHOLD;
+/// Most points that may change for a hierarchy to be taken over.
+const MOST_CHANGED: usize = 64;
 /// Rounding of one addition near T.
 const ADDITION: f64 = 6e-8 * THRESHOLD;
 /// Field of a point where it begins to be strong ([`RayBlob::strong`]).
@@ -86,6 +88,25 @@ impl Points {
             power,
             softening: softening as f32,
         })
+    }
+
+    /// Numbers of the points that differ from others, in ascending order. `None` if they are too many or not as many points.
+    pub fn changed_from(&self, others: &Self) -> Option<Vec<u32>> {
+        let kernel = |points: &Self| (points.power, points.each.len());
+        if kernel(self) != kernel(others) {
+            return None;
+        }
+        let mut changed = Vec::new();
+        for (i, (own, other)) in self.each.iter().zip(&others.each).enumerate() {
+            let parts = |point: &Point| (point.center, point.scale, point.amplitude);
+            if parts(own) != parts(other) {
+                if changed.len() == MOST_CHANGED {
+                    return None;
+                }
+                changed.push(i as u32);
+            }
+        }
+        Some(changed)
     }
 
     /// Collects the blobs of a piece, and the backdrop of all that is not among them, with its error. `None` if the field is below T

@@ -155,7 +155,14 @@ impl Tube {
             }
         }
         let cuts = &mut cuts[..count];
-        cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Few, and those at one place stay in order.
+        for end in 1..cuts.len() {
+            let mut place = end;
+            while place > 0 && cuts[place].0 < cuts[place - 1].0 {
+                cuts.swap(place, place - 1);
+                place -= 1;
+            }
+        }
         let mut was_inside = false;
         for i in 0..cuts.len() {
             let (t, lid) = cuts[i];
