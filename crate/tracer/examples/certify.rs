@@ -1,9 +1,10 @@
 //! Holds pictures against the true surface on very many rays, and prints a table.
 //!
-//! `cargo run --release -p tracer --example certify -- [--exact] [RAYS [THREADS [FIRST | KERNEL KIND SEED]]]`
+//! `cargo run --release -p tracer --example certify -- [--exact] [--endless | --clouds] [RAYS [THREADS [FIRST | KERNEL KIND SEED]]]`
 //!
 //! Scenes have the seeds from FIRST (or 0) on. With a kernel, a kind and a seed only that scene is looked at. Faults go to standard error. With
-//! `--exact` before them the crossings that picking uses are judged instead of those of pictures.
+//! `--exact` before them the crossings that picking uses are judged instead of those of pictures. `--endless` takes kernels that never end
+//! alone, and `--clouds` of them scenes of very many points, which have a hierarchy of far fields.
 #[path = "../tests/common/mod.rs"]
 mod common;
 #[path = "../tests/common/trials.rs"]
@@ -37,10 +38,14 @@ fn as_picking(trial: &Trial, picture: &Picture) -> Vec<Option<Hit>> {
 
 fn main() {
     let mut args: Vec<String> = std::env::args().skip(1).collect();
-    let exact = args.first().is_some_and(|a| a == "--exact");
-    if exact {
-        args.remove(0);
-    }
+    let mut option = |name: &str| {
+        let is_given = args.first().is_some_and(|a| a == name);
+        if is_given {
+            args.remove(0);
+        }
+        is_given
+    };
+    let [exact, endless, clouds] = ["--exact", "--endless", "--clouds"].map(&mut option);
     let cast = if exact { as_picking } else { as_pictures };
     let number =
         |i: usize, default: usize| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(default);
@@ -56,11 +61,16 @@ fn main() {
         return;
     }
     let first = number(2, 0);
-    let cells: Vec<(Kernel, Kind)> = Kernel::ALL
+    let never_ends = |kernel: &Kernel| field::far_field::power(*kernel).is_some();
+    let kernels = Kernel::ALL.into_iter();
+    let kernels = kernels.filter(|kernel| !(endless || clouds) || never_ends(kernel));
+    let kinds = KINDS
         .into_iter()
-        .flat_map(|kernel| KINDS.map(|kind| (kernel, kind)))
-        .collect();
-    let in_each: usize = KINDS.iter().map(|&k| 8 * packets(k)).sum::<usize>() * Kernel::ALL.len();
+        .filter(|kind| !clouds || matches!(kind, Kind::Cloud));
+    let kinds: Vec<Kind> = kinds.collect();
+    let cells = kernels.flat_map(|kernel| kinds.iter().map(move |&kind| (kernel, kind)));
+    let cells: Vec<(Kernel, Kind)> = cells.collect();
+    let in_each: usize = cells.iter().map(|&(_, kind)| 8 * packets(kind)).sum();
     let scenes = rays.div_ceil(in_each);
     let rows = Mutex::new(vec![Row::default(); cells.len()]);
     let next = AtomicUsize::new(0);
