@@ -360,7 +360,7 @@ mod tests {
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
     fn interpolants_of_points_are_within_their_bounds() {
-        use crate::{BlobScale, Shaping, Skeleton};
+        use crate::{BlobScale, Kernel, Shaping, Skeleton};
         let mut state = 6u64;
         let mut next = || {
             state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
