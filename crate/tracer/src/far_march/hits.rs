@@ -74,7 +74,8 @@ impl FarBody {
             guess: begin.guess,
             first: begin.first,
             alive: alive & !inside,
-            tolerance: query.tolerance(piece.t) as f32,
+            // At the nearest place where a ray may meet something.
+            tolerance: query.tolerance(piece.t - piece.half) as f32,
             noise: match query.quest {
                 Quest::Entry => 0.0,
                 _ => (known.error + ROUNDING) as f32,
@@ -166,8 +167,9 @@ impl FarBody {
         marched: &Marched,
         work: &mut FarWork,
     ) -> Option<()> {
-        let tolerance = query.tolerance(piece.t);
         let met = marched.met;
+        let (nearest, _) = extremes(marched.t, marched.t, met);
+        let tolerance = query.tolerance(piece.t + f64::from(nearest));
         let blobs = RayBlobs {
             blobs: &work.blobs,
             intervals: &work.intervals,
