@@ -91,7 +91,7 @@ impl Coating {
     pub const MOST_TRIANGLES: usize = 400_000;
     /// Most primitives that are evaluated at a point, summed over all points: some seconds. Edges are not split further beyond, and
     /// beyond twice as many the cages that are left get no shells.
-    pub const MOST_WORK: u64 = 30_000_000;
+    pub const MOST_WORK: u64 = 40_000_000;
 
     /// Coats the cages of a function with the bound on |f − T| in the middles of edges, which may depend on the place: larger far from
     /// the eye, say.
