@@ -90,14 +90,14 @@ impl Picture {
         }
     }
 
-    /// Whether a picture of a scene that differs little is made sooner with [`Picture::follow`].
+    /// Whether [`Picture::follow`] makes the picture of a slightly different scene sooner.
     #[must_use]
     pub fn can_be_followed(&self) -> bool {
         self.sampler.world.soft.has_far_cells()
     }
 
-    /// Takes over from the picture of an earlier scene what is still true of fields that never end, and that one loses. If few
-    /// elements differ, the first tiles are traced sooner; their pixels are the same.
+    /// Moves the far fields of an earlier scene's picture into this one, before it is traced. Where few elements differ its first tiles
+    /// are traced sooner; all pixels stay the same.
     pub fn follow(&mut self, before: &mut Self) {
         let soft = &mut self.sampler.world.soft;
         soft.take_over(&mut before.sampler.world.soft);

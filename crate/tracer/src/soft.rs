@@ -64,15 +64,15 @@ pub(crate) struct SoftBody {
     groups: OnceLock<Groups>,
     /// The hierarchy of its far field, if it is of many points that never end.
     far: OnceLock<Option<Box<FarBody>>>,
-    /// An earlier one, until then.
+    /// The one of the scene before, which helps to make `far`.
     earlier: Mutex<Option<Box<FarBody>>>,
 }
 
 #[cfg(test)]
 impl SoftBody {
-    /// Whether it will take over cells of an earlier body.
-    pub fn takes_over(&self) -> bool {
-        self.earlier.lock().is_ok_and(|earlier| earlier.is_some())
+    /// The hierarchy of its far field, if it was made.
+    pub fn far_body(&self) -> Option<&FarBody> {
+        self.far.get()?.as_deref()
     }
 }
 
@@ -91,6 +91,8 @@ pub(crate) struct MakeUp {
 struct Groups {
     /// Balls such that the field is below T outside all of them.
     strong: Hierarchy,
+    /// A ball that holds these balls; `None` if there are none.
+    surface: Option<(DVec3, f64)>,
     clusters: Clusters,
     kinks: Kinks,
 }
@@ -346,14 +348,9 @@ impl Soft {
                 return None;
             }
             field::far_field::power(kernel)?;
-            let strong = &self.groups(body).strong;
-            let ball = (strong.len() > 0).then(|| strong.ball(0))?;
+            let ball = self.groups(body).surface?;
             let primitives = &self.primitives[own.clone()];
-            let earlier = body
-                .earlier
-                .lock()
-                .map(|mut earlier| core::mem::take(&mut *earlier));
-            let earlier = earlier.unwrap_or_default();
+            let earlier = body.earlier.lock().ok()?.take();
             FarBody::new(
                 primitives,
                 &self.finish[own.clone()],
@@ -366,14 +363,14 @@ impl Soft {
         body.far.get_or_init(make).as_deref()
     }
 
-    /// Whether cells of far fields were made, which a later scene may take over.
+    /// Whether far fields were made, which a later scene may take over.
     pub fn has_far_cells(&self) -> bool {
         self.bodies
             .iter()
             .any(|body| matches!(body.far.get(), Some(Some(_))))
     }
 
-    /// Takes over what is still true of the far fields of an earlier scene, which loses them. Pictures stay the same.
+    /// Moves the far fields of an earlier scene into this one, whose own are made sooner with their help and are the same.
     pub fn take_over(&mut self, before: &mut Self) {
         for (body, old) in self.bodies.iter_mut().zip(&mut before.bodies) {
             body.earlier = Mutex::new(old.far.take().flatten());
@@ -431,6 +428,7 @@ impl Soft {
         }
         let own = |i: u32| (i, &self.primitives[i as usize]);
         Groups {
+            surface: (!strong.is_empty()).then(|| around(&strong)),
             strong: Hierarchy::new(strong),
             clusters: Clusters::new(skeletons, self.bounds()),
             kinks: Kinks::new(body.range.clone().map(own)),

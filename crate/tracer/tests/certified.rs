@@ -128,6 +128,16 @@ fn pictures_of_clouds_are_within_the_tolerance() {
     assert!(row.hits > 300, "{row:?}");
 }
 
+/// A ray that starts close to a cloud's surface is as exact as its own distance asks, not that of the middle of its cell.
+#[test]
+fn rays_that_start_beside_a_cloud_are_within_the_tolerance() {
+    let cast = |trial: &Trial, picture: &Picture| picture.cast(&trial.rays);
+    let mut told = String::new();
+    let row = check(Kernel::Cubed, Kind::Cloud, 911, 3, &cast, &mut told);
+    assert!(row.faults() == 0, "{row:?}\n{told}");
+    assert!(row.hits >= 12, "{row:?}");
+}
+
 /// Kinds in whose pictures each of the following faults would show.
 const PLAIN: [Kind; 3] = [Kind::Point, Kind::Segment, Kind::Arc];
 

@@ -28,7 +28,7 @@ pub struct Engine {
     /// Whether other workers want to hear of first samples.
     shared: bool,
     prepared: Option<Prepared>,
-    /// The picture before, until the next scene is prepared, if that is of use then.
+    /// The last scene's picture, kept for [`Picture::follow`] until the next scene is prepared.
     before: Option<Box<Picture>>,
     /// First samples that others took, at most [`KEPT`], until the scene is prepared.
     learnt: Vec<Known>,

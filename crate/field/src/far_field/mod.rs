@@ -5,9 +5,10 @@
 //! evaluated for a bounded number of cells of each size. Cells are made where and when they are first asked for, and depend on the
 //! primitives alone.
 //!
-//! What a cell adds to its parent's polynomial depends on the primitives near the parent alone, and so do its lists: no threshold
-//! depends on what the parent inherited. After an edit of few primitives a hierarchy takes these parts from [an
-//! earlier one](FarField::after) wherever none of those was or is near the parent, and has the same bits as if it were made anew.
+//! A cell's list and its share of the polynomial depend on the primitives near its parent alone: thresholds depend on the cell's
+//! depth, not on the error that it inherits. After an edit of few primitives a hierarchy takes lists and shares from an
+//! [earlier one](FarField::after) in all cells near whose parents nothing has changed, and has the same bits as if it were made
+//! anew.
 //!
 //! # The bound
 //!
@@ -43,13 +44,13 @@ use wide::f32x8;
 pub const LOOSE: f64 = 1.3;
 /// Largest error of a cell's polynomial, in T.
 pub const MOST_ERROR: f64 = 1e-4 * THRESHOLD;
-/// Part of [`MOST_ERROR`] that a cell may use up …
+/// Part of [`MOST_ERROR`] that a cell adds to its parent's error, at most.
 const PORTION: f64 = 1.0 / 16.0;
-/// … down to this number of halvings of the cube; the smaller ones may use half as much each.
+/// Number of halvings of the cube beyond which that part is halved with each further one, so that the sum stays below 1.
 const EVEN: i32 = 12;
-/// Error below which a primitive is far, at first: a power of two.
+/// Largest error of the interpolant of a primitive that is taken for far. A power of two, so that halvings of it are told by exponents.
 const FIRST_SHARE: f64 = 1.0 / (1 << 22) as f64;
-/// Largest number of halvings of that.
+/// Largest number of halvings of [`FIRST_SHARE`] in a cell that has too many far primitives.
 const MOST_HALVINGS: usize = 24;
 /// Rounding of coordinates in single precision, in the world and in a primitive's own frame, relative to them.
 const MISPLACED: f64 = 2.5e-7;
@@ -74,12 +75,12 @@ pub struct FarField {
     earlier: Option<Earlier>,
 }
 
-/// The cells of a hierarchy of slightly other primitives.
+/// A hierarchy that was made before a few primitives changed.
 #[derive(Debug)]
 struct Earlier {
     members: Vec<u32>,
     root: Arc<Cell>,
-    /// Numbers of the primitives that differ.
+    /// Numbers of the primitives that have changed since, in ascending order.
     changed: Arc<[u32]>,
 }
 
@@ -130,20 +131,21 @@ pub struct Cell {
     /// Number of halvings of the hierarchy's cube.
     depth: i32,
     /// Sum of bounds on the primitives near its parent that add to the field.
-    offered: f64,
-    /// What depends on the primitives near its parent alone; nothing in an empty cell.
+    candidates_most: f64,
+    /// The part that is not inherited; `None` in an empty cell.
     own: Option<Arc<Own>>,
     children: [OnceLock<Arc<Cell>>; 8],
 }
 
-/// The part of a cell that it does not inherit: of the primitives that are near its parent.
+/// The part of a cell that is not inherited: its list and the polynomial of primitives that are far from it but near its parent.
 #[derive(Debug)]
 struct Own {
     near: Arc<[u32]>,
     /// Sum of bounds on those near ones that add to the field.
     near_most: f64,
-    /// The others, with the error of their interpolation and of the sums' rounding.
+    /// Interpolant of the far ones.
     series: Series,
+    /// Bound on its error, with the rounding of the sums.
     error: f64,
     smooth: Smooth,
 }
@@ -218,12 +220,16 @@ impl FarField {
         }
     }
 
-    /// The same, taking over what is still true of an earlier hierarchy, given the numbers of the primitives that have changed since.
-    /// Of one in another cube or of another use that is nothing.
+    /// The same hierarchy, made sooner with the help of an earlier one: cells near whose parents nothing has changed take their lists
+    /// and shares of polynomials from it. `changed` lists the numbers of the primitives that differ, in ascending order. An earlier
+    /// hierarchy in another cube, of another use or of another number of primitives is of no help.
     #[must_use]
     pub fn after(self, earlier: Option<&Self>, changed: &Arc<[u32]>) -> Self {
-        let place = |field: &Self| (field.center, field.half, field.purpose);
-        let earlier = earlier.filter(|earlier| place(earlier) == place(&self));
+        let frame = |field: &Self| {
+            let count = field.sources.each.len();
+            (field.center, field.half, field.purpose, count)
+        };
+        let earlier = earlier.filter(|earlier| frame(earlier) == frame(&self));
         let earlier = earlier.and_then(|earlier| {
             Some(Earlier {
                 members: earlier.members.clone(),
@@ -232,6 +238,12 @@ impl FarField {
             })
         });
         Self { earlier, ..self }
+    }
+
+    /// Whether an earlier hierarchy helps to make this one ([`FarField::after`]).
+    #[must_use]
+    pub fn is_helped(&self) -> bool {
+        self.earlier.is_some()
     }
 
     /// The same for those who look for the surface alone: where bounds show that the field is below T, cells have no list, no
@@ -351,7 +363,8 @@ impl FarField {
         seen
     }
 
-    /// Makes a cell from those primitives that are near its parent, or from an earlier one to which the same were near.
+    /// Makes a cell from the primitives near its parent (`candidates`). `before` is an earlier cell at the place that was made from the
+    /// same ones.
     fn cell(
         &self,
         primitives: &[Primitive],
@@ -363,10 +376,10 @@ impl FarField {
         let loose = LOOSE * half;
         let seen = OnceCell::new();
         let seen = || seen.get_or_init(|| self.seen(center, loose, candidates));
-        let offered = before.map(|before| before.offered);
-        let offered = offered.unwrap_or_else(|| self.adding(candidates, seen()));
+        let candidates_most = before.map(|before| before.candidates_most);
+        let candidates_most = candidates_most.unwrap_or_else(|| self.adding(candidates, seen()));
         let inherited = parent.map_or([0.0; 2], |parent| parent.passed);
-        let bound = parent.map_or(0.0, |parent| parent.far_most) + offered;
+        let bound = parent.map_or(0.0, |parent| parent.far_most) + candidates_most;
         let depth = parent.map_or(0, |parent| parent.depth + 1);
         let mut cell = Cell {
             center,
@@ -381,7 +394,7 @@ impl FarField {
             smooth: Smooth::UNKNOWN,
             passed: inherited,
             depth,
-            offered,
+            candidates_most,
             own: None,
             children: Default::default(),
         };
@@ -410,7 +423,7 @@ impl FarField {
         adding.map(|(_, seen)| seen.magnitude).sum()
     }
 
-    /// Tells near primitives from far ones and sums the latter, in a box.
+    /// Divides candidates into near and far ones, and interpolates the sum of the far ones in a box.
     fn own(
         &self,
         primitives: &[Primitive],
@@ -490,7 +503,7 @@ fn share_of(portion: f64, first: f64, seen: &[Seen]) -> f64 {
 }
 
 impl Earlier {
-    /// The part that a cell had, if it had the same candidates as now, none of which have changed.
+    /// One of the eight parts that a cell had, if it was made from the same candidates as it would be now, none of which have changed.
     fn part(&self, of: &Cell, number: usize) -> Option<&Arc<Cell>> {
         let mut cell = &self.root;
         for _ in 0..of.depth {

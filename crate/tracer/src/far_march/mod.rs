@@ -8,6 +8,8 @@
 //! - near points whose cubic Hermite span over the cell has a small enough error are added to it by that,
 //! - the rest are blobs, and [`march_before`](crate::blob_march::march_before) follows the rays among them.
 //!
+//! A packet that is too wide for small cells where many points are near is divided, down to single rays.
+//!
 //! So the surface found is that of a field that differs from the true one by a stated bound, which counts like rounding: what it may
 //! hide is searched again among all points in double precision.
 //!
@@ -130,8 +132,10 @@ impl FarBody {
         let is_mixed = members.len() > 1;
         let own = |finish: u32| {
             let field = field.of_positive(|i| finishes[i as usize] == finish);
-            let of_finish = |body: &&Self| body.finishes.iter().position(|own| own.0 == finish);
-            let before = earlier.and_then(|body| body.finishes[of_finish(&body)?].1.as_ref());
+            let before = earlier.and_then(|earlier| {
+                let mut finishes = earlier.finishes.iter();
+                finishes.find(|(other, _)| *other == finish)?.1.as_ref()
+            });
             field.after(before, &changed)
         };
         let members = members.into_iter();
@@ -279,8 +283,8 @@ impl FarBody {
     }
 }
 
-/// Returns the middle and half the side of a cube for the hierarchy of what a ball holds: multiples of a sixteenth of the ball's radius,
-/// about, so that small edits do not change it.
+/// Returns the middle and half the side of the hierarchy's cube, given the ball that holds the surface. Both are multiples of a step of
+/// 1/32 to 1/16 of the radius, so that small edits leave the cube where it is.
 fn cube(center: DVec3, radius: f64) -> (DVec3, f64) {
     let step = libm::exp2(libm::floor(libm::log2(radius))) / 16.0;
     let middle = center.to_array().map(|x| libm::round(x / step) * step);
@@ -393,6 +397,38 @@ mod tests {
         }
     }
 
+    /// Packets that are too wide for small cells among many points are divided, and no ray of them is lost.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn wide_packets_meet_what_exact_rays_meet() {
+        let mut numbers = Numbers(5);
+        let soft = cloud(Kernel::Cauchy, 800, 1, &mut numbers);
+        let mut work = FarWork::default();
+        let (mut taken, mut hits) = (0, 0);
+        for _ in 0..20 {
+            let eye = numbers.vector().normalize() * 4.0;
+            let aim = numbers.vector() * 0.9;
+            let rays: [Ray; PACKET] = core::array::from_fn(|_| Ray {
+                origin: eye,
+                direction: (aim + numbers.vector() * 2.5e-2 - eye).normalize(),
+            });
+            let limits = [f64::INFINITY; PACKET];
+            let Some(met) = soft.far_first(0, &rays, &limits, 255, Quest::First, &mut work) else {
+                continue;
+            };
+            taken += 1;
+            for (lane, ray) in rays.iter().enumerate() {
+                let exact = soft.crossings(0, ray).first().copied();
+                assert_eq!(met >> lane & 1 != 0, exact.is_some(), "{ray:?}");
+                let Some((t, gradient)) = exact else { continue };
+                hits += 1;
+                let off = (work.flesh.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
+                assert!(off < 2e-4 * gradient.length(), "{off}");
+            }
+        }
+        assert!(taken >= 15 && hits > 60, "{taken} {hits}");
+    }
+
     /// A ray that starts inside is left to the general way, and an end before the surface hides it.
     #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
     #[cfg_attr(not(target_arch = "wasm32"), test)]
@@ -438,14 +474,14 @@ mod tests {
             scene.elements.push(Element { kernel, ..element });
         }
         scene.camera.eye = DVec3::new(0.5, -4.0, 1.0).to_array().into();
-        let size = [64, 48];
+        // So many pixels that packets are narrow, of which those in the middle are enough.
+        let size = [512, 384];
         let trace = |picture: &crate::Picture| {
-            let [width, height] = size;
             let tile = crate::Tile {
-                x: 0,
-                y: 0,
-                width,
-                height,
+                x: 192,
+                y: 128,
+                width: 128,
+                height: 128,
             };
             let never = &|| false;
             let stats = &mut crate::Stats::default();
@@ -457,7 +493,7 @@ mod tests {
         let mut pixels = trace(&picture);
         for number in [7, 100, 101] {
             if let Shape::Sphere { center, .. } = &mut scene.elements[number].shape {
-                *center = 0.8 * *center + DVec3::new(0.05, -0.1, 0.02);
+                *center = -*center;
             }
             let mut next = crate::Picture::new(&scene, size);
             let fresh = trace(&next);
@@ -465,9 +501,12 @@ mod tests {
             next = crate::Picture::new(&scene, size);
             assert!(picture.can_be_followed());
             next.follow(&mut picture);
-            let soft = &next.sampler.world.soft;
-            assert!(soft.bodies[0].takes_over(), "{number}");
             pixels = trace(&next);
+            let body = next.sampler.world.soft.bodies[0].far_body();
+            let body = body.expect("many points");
+            assert!(body.field.is_helped(), "{number}");
+            let fields = body.finishes.iter().map(|(_, field)| field.as_ref());
+            assert!(fields.flatten().all(|field| field.is_helped()), "{number}");
             assert!(fresh == pixels);
             picture = next;
         }

@@ -11,7 +11,7 @@ use wide::f32x8;
 
 /// Largest error of all spans in a cell together, in T.
 const OF_SPANS: f64 = 3e-5 * THRESHOLD;
-/// Most points that may change for a hierarchy to be taken over.
+/// Largest number of changed points with which a hierarchy is taken over.
 const MOST_CHANGED: usize = 64;
 /// Rounding of one addition near T.
 const ADDITION: f64 = 6e-8 * THRESHOLD;
