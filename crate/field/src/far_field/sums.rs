@@ -21,7 +21,6 @@ pub struct NodeSums<'f> {
     partial: [f32x8; ALL],
     blocks: usize,
     waiting: Waiting,
-    pub count: usize,
     /// Sum of the bounds on the primitives' sizes.
     pub size: f64,
     /// Bound on the effect of rounded places.
@@ -50,7 +49,6 @@ impl<'f> NodeSums<'f> {
             partial: [f32x8::splat(0.0); ALL],
             blocks: 0,
             waiting: Waiting::default(),
-            count: 0,
             size: 0.0,
             loss: 0.0,
         }
@@ -60,7 +58,6 @@ impl<'f> NodeSums<'f> {
         self.size += seen.magnitude;
         let coordinates = self.center.abs().max_element() + self.half;
         self.loss += seen.magnitude * (MISPLACED * coordinates * seen.steep).at_most(1.0);
-        self.count += 1;
         if let Some(amplitude) = source.point {
             self.add_point(source, amplitude);
             return;

@@ -307,8 +307,8 @@ fn halves(rays: &[Ray; PACKET], alive: u32, t: f64) -> [u32; 2] {
     let middle = 0.5 * (low + high)[axis];
     let below = lanes.filter(|i| places[*i][axis] < middle);
     let below = below.fold(0, |mask, i| mask | 1 << i);
-    if below == 0 {
-        // All at one place.
+    if below == 0 || below == alive {
+        // All at one place, or at none.
         let first = alive & alive.wrapping_neg();
         return [first, alive & !first];
     }
