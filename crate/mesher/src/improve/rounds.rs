@@ -61,8 +61,8 @@ impl Improver<'_> {
             Edit::Move(v) => [v; 2],
         };
         let changed = vertices.map(|v| self.changed[v.index()]);
-        let refused = self.refused.get(&edit);
-        refused.is_some_and(|round| changed.iter().all(|changed| changed <= round))
+        let refused = self.refused.round(edit);
+        refused.is_some_and(|round| changed.iter().all(|changed| *changed <= round))
     }
 
     pub fn collapse(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {

@@ -8,7 +8,6 @@ use crate::options::MeshError;
 use crate::space::Space;
 use glam::DVec3;
 use mesh::{FaceId, HalfEdgeId, HalfEdgeMesh, TriangleMesh, VertexId};
-use std::collections::BTreeMap;
 
 /// A change of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,6 +22,42 @@ pub enum Edit {
     Split(HalfEdgeId),
     /// Moves a vertex.
     Move(VertexId),
+}
+
+/// For each edit the last round in which it was refused.
+#[derive(Debug, Default)]
+pub struct Refused {
+    /// For each kind, by the number of the half-edge or the vertex; 0 for none.
+    rounds: [Vec<u32>; 5],
+}
+
+impl Refused {
+    fn place(edit: Edit) -> (usize, usize) {
+        match edit {
+            Edit::Collapse(h) => (0, h.index()),
+            Edit::Merge(h) => (1, h.index()),
+            Edit::Flip(h) => (2, h.index()),
+            Edit::Split(h) => (3, h.index()),
+            Edit::Move(v) => (4, v.index()),
+        }
+    }
+
+    /// The round in which an edit was refused, if it was.
+    pub fn round(&self, edit: Edit) -> Option<u32> {
+        let (kind, i) = Self::place(edit);
+        let round = self.rounds[kind].get(i).copied();
+        round.filter(|round| *round > 0)
+    }
+
+    /// Takes note that an edit was refused.
+    pub fn insert(&mut self, edit: Edit, round: u32) {
+        let (kind, i) = Self::place(edit);
+        let rounds = &mut self.rounds[kind];
+        if rounds.len() <= i {
+            rounds.resize(i + 1, 0);
+        }
+        rounds[i] = round;
+    }
 }
 
 /// A change that was proved to be good.
@@ -84,7 +119,7 @@ pub struct Improver<'a> {
     /// The round in which something around a vertex has changed.
     pub changed: Vec<u32>,
     /// The round in which an edit was refused: as long as nothing changes at its vertices it would be again.
-    pub refused: BTreeMap<Edit, u32>,
+    pub refused: Refused,
     pub round: u32,
 }
 
@@ -129,7 +164,7 @@ impl<'a> Improver<'a> {
             coarse,
             threads,
             changed: vec![1; vertices.len()],
-            refused: BTreeMap::new(),
+            refused: Refused::default(),
             attempts: vec![Attempt::None; mesh.face_slots()],
             losses: vec![0.0; mesh.vertex_slots()],
             guard,
