@@ -37,14 +37,10 @@ struct Look {
     part: Option<Part>,
 }
 
-/// Bounds in a ball around a box, with so much room around it that the radius is at most doubled.
-pub fn around(space: &Space<'_>, part: u32, center: DVec3, size: DVec3, room: f64) -> Variation {
+/// Bounds in the ball around a box.
+pub fn around(space: &Space<'_>, part: u32, center: DVec3, size: DVec3) -> Variation {
     let radius = 0.5 * size.length() * (1.0 + 1e-9);
-    let ball = Ball {
-        center,
-        radius: radius + room.min(radius),
-    };
-    space.variation(part, ball)
+    space.variation(part, Ball { center, radius })
 }
 
 /// The error of values in a box that a part of the function leaves.
@@ -84,13 +80,13 @@ fn side([low, high]: [f64; 2]) -> Side {
     }
 }
 
-/// Looks at a cell, with so much room around it that a path of the length of the finer tolerance does not leave the ball.
+/// Looks at a cell.
 fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     let forest = &space.forest;
     let size = forest.size(cell.level);
     let center = forest.center(cell);
     let radius = 0.5 * size.length();
-    let variation = around(space, cell.part, center, size, fine);
+    let variation = around(space, cell.part, center, size);
     let Variation {
         curvature,
         third,

@@ -1,7 +1,7 @@
-//! Proofs of triangles, and remedies for those that are not proved.
+//! Remedies for triangles that are not near the surface, and proofs of those that are.
 
-use super::state::{Attempt, Edit, Improver};
-use crate::certify::{distance, is_hopeless};
+use super::state::{Edit, Improver};
+use crate::certify::is_within;
 use crate::options::{MeshError, Progress};
 use crate::parallel::{LARGE, map_by};
 use mesh::{FaceId, HalfEdgeId, VertexId};
@@ -21,14 +21,14 @@ const THIN: f64 = 0.25;
 const SLIVER: f64 = 0.02;
 
 impl Improver<'_> {
-    /// Proves triangles that are not yet proved to be near the surface; divides those that are too large, and removes flat ones.
+    /// Looks at triangles of which nothing is known yet; divides those that are too far from the surface, and removes flat ones.
     pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
         let (mut least, mut stalled) = (usize::MAX, 0);
         let start = self.space.evaluations();
         let most = LEAST_WORK + MOST_WORK * self.mesh.face_count() as u64;
         for round in 0..SETTLE_ROUNDS {
             progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
-            let far = self.unproved(progress)?;
+            let far = self.off(progress)?;
             // All kinds of remedies have been tried without much success.
             if far.len() < least - least / 20 {
                 (least, stalled) = (far.len(), 0);
@@ -60,14 +60,23 @@ impl Improver<'_> {
                 break;
             }
         }
-        self.unproved(progress)?;
+        self.off(progress)?;
         Ok(())
+    }
+
+    /// Whether each face is proved to be near the surface, in their order.
+    pub fn proved(&self, progress: &mut Progress<'_>) -> Result<Vec<bool>, MeshError> {
+        let faces: Vec<FaceId> = self.mesh.faces().collect();
+        map_by(LARGE, self.threads, &faces, progress, |f| {
+            let corners = self.corners(*f).map(|v| self.mesh.position(v));
+            self.is_fixed_face(*f) || is_within(self.space, corners, self.limit)
+        })
     }
 
     /// Tries every edit at each of the faces that are left, one after the other, until one helps. Returns how many were helped.
     pub fn rescue(&mut self, progress: &mut Progress<'_>) -> Result<usize, MeshError> {
         let mut done = 0;
-        let far = self.unproved(progress)?;
+        let far = self.off(progress)?;
         if far.len() > MOST_RESCUED {
             return Ok(0);
         }
@@ -91,7 +100,7 @@ impl Improver<'_> {
                 if is_known || !self.is_allowed(edit) {
                     continue;
                 }
-                // Divisions of flat triangles that prove nothing would be repeated for ever.
+                // Divisions of flat triangles that do not help would be repeated for ever.
                 let plan = match edit {
                     Edit::Split(h) => self.plan_split(h, self.angle(f) <= SLIVER),
                     _ => self.plan(edit),
@@ -110,24 +119,22 @@ impl Improver<'_> {
         Ok(done)
     }
 
-    /// The faces that are not proved to be within the tolerance, also after another attempt, but might be if they were others.
-    pub fn unproved(&mut self, progress: &mut Progress<'_>) -> Result<Vec<FaceId>, MeshError> {
+    /// The faces that are not within the tolerance.
+    pub fn off(&mut self, progress: &mut Progress<'_>) -> Result<Vec<FaceId>, MeshError> {
         let tolerance = self.tolerance as f32;
         let faces = self.mesh.faces();
         let far: Vec<FaceId> = faces
             .filter(|f| self.errors[f.index()] > tolerance && !self.is_fixed_face(*f))
             .collect();
-        let is_new = |f: &FaceId| self.attempts[f.index()] == Attempt::None;
+        let is_new = |f: &FaceId| !self.is_off[f.index()];
         let new: Vec<FaceId> = far.iter().copied().filter(is_new).collect();
         let this = &*self;
-        let proved = map_by(LARGE, self.threads, &new, progress, |f| {
+        let distances = map_by(LARGE, self.threads, &new, progress, |f| {
             let corners = this.corners(*f).map(|v| this.vertices[v.index()]);
-            let proved = distance(this.space, corners.each_ref(), this.tolerance);
-            let is_hopeless = proved.is_none() && is_hopeless(this.space, &corners, this.tolerance);
-            (proved, is_hopeless)
+            this.distance(&corners, this.tolerance)
         })?;
-        for (f, (proved, is_hopeless)) in new.into_iter().zip(proved) {
-            match proved {
+        for (f, distance) in new.into_iter().zip(distances) {
+            match distance {
                 Some(distance) => {
                     self.errors[f.index()] = distance as f32;
                     // Edits there are judged in another way from now on.
@@ -135,15 +142,13 @@ impl Improver<'_> {
                         self.changed[v.index()] = self.round + 1;
                     }
                 }
-                None if is_hopeless => self.attempts[f.index()] = Attempt::Hopeless,
-                None => self.attempts[f.index()] = Attempt::Failed,
+                None => self.is_off[f.index()] = true,
             }
         }
-        let has_failed = |f: &FaceId| self.attempts[f.index()] == Attempt::Failed;
-        Ok(far.into_iter().filter(has_failed).collect())
+        Ok(far.into_iter().filter(|f| self.is_off[f.index()]).collect())
     }
 
-    /// The edit that may help a face which is not proved to be near the surface, with its rank; `None` if there is none.
+    /// The edit that may help a face which is not near the surface, with its rank; `None` if there is none.
     pub fn remedy(&self, f: FaceId, round: usize) -> Option<(f64, Edit)> {
         let mesh = &self.mesh;
         let mut edges: Vec<(f64, HalfEdgeId)> = mesh
