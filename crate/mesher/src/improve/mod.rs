@@ -45,7 +45,7 @@ impl Improver<'_> {
         }
         self.flip(&mut progress.part(0.98, 0.985))?;
         self.relax(&mut progress.part(0.985, 0.99))?;
-        let proved = self.proved(&mut progress.part(0.99, 1.0))?;
+        let proved = self.prove(&mut progress.part(0.99, 1.0))?;
         let mesh = &self.mesh;
         let is_lid = |f| self.is_fixed_face(f) && self.errors[f.index()] == 0.0;
         let is_lid = mesh.faces().map(is_lid).collect();

@@ -20,6 +20,12 @@ const THIN: f64 = 0.25;
 /// That below which it is not divided even if nothing else helps.
 const SLIVER: f64 = 0.02;
 
+/// Rounds in which triangles that are not proved are divided.
+const DIVISIONS: usize = 5;
+/// Most triangles of such a round, as a part of all, unless there are fewer than so many.
+const FEW: usize = 8;
+const LEAST_DIVIDED: usize = 60;
+
 impl Improver<'_> {
     /// Looks at triangles of which nothing is known yet; divides those that are too far from the surface, and removes flat ones.
     pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
@@ -64,13 +70,57 @@ impl Improver<'_> {
         Ok(())
     }
 
-    /// Whether each face is proved to be near the surface, in their order.
-    pub fn proved(&self, progress: &mut Progress<'_>) -> Result<Vec<bool>, MeshError> {
-        let faces: Vec<FaceId> = self.mesh.faces().collect();
-        map_by(LARGE, self.threads, &faces, progress, |f| {
-            let corners = self.corners(*f).map(|v| self.mesh.position(v));
-            self.is_fixed_face(*f) || is_within(self.space, corners, self.limit)
-        })
+    /// Proves faces to be near the surface, and divides those that are not, as long as they are few. Returns whether each is proved, in the
+    /// order of the faces.
+    pub fn prove(&mut self, progress: &mut Progress<'_>) -> Result<Vec<bool>, MeshError> {
+        for round in 0..=DIVISIONS {
+            progress.at(round as f32 / (DIVISIONS + 1) as f32)?;
+            let faces = self.mesh.faces();
+            let new: Vec<FaceId> = faces.filter(|f| self.proofs[f.index()].is_none()).collect();
+            let this = &*self;
+            let found = map_by(LARGE, self.threads, &new, progress, |f| {
+                let corners = this.corners(*f).map(|v| this.mesh.position(v));
+                this.is_fixed_face(*f) || is_within(this.space, corners, this.limit)
+            })?;
+            for (f, is_proved) in new.into_iter().zip(found) {
+                self.proofs[f.index()] = Some(is_proved);
+            }
+            let faces = self.mesh.faces();
+            let open: Vec<FaceId> = faces
+                .filter(|f| self.proofs[f.index()] == Some(false))
+                .collect();
+            let many = LEAST_DIVIDED.max(self.mesh.face_count() / FEW);
+            if round == DIVISIONS || open.len() > many {
+                break;
+            }
+            let long = open.into_iter().filter_map(|f| self.split_of_longest(f));
+            let mut edits: Vec<(f64, Edit)> = long.collect();
+            edits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            edits.dedup_by_key(|(_, edit)| *edit);
+            let edits = edits.into_iter().map(|(_, edit)| edit).collect();
+            if self.do_round(edits, progress)? == 0 {
+                break;
+            }
+        }
+        let faces = self.mesh.faces();
+        Ok(faces
+            .map(|f| self.proofs[f.index()] == Some(true))
+            .collect())
+    }
+
+    /// The division of a face at its longest edge, with its rank; `None` if it is too flat, or in a lid.
+    fn split_of_longest(&self, f: FaceId) -> Option<(f64, Edit)> {
+        let length = |h: &HalfEdgeId| {
+            let [a, b] = [self.mesh.origin(*h), self.mesh.target(*h)];
+            self.mesh
+                .position(a)
+                .distance_squared(self.mesh.position(b))
+        };
+        let edges = self.mesh.face_half_edges(f);
+        let edges = edges.map(|h| (length(&h), h.min(self.mesh.twin(h))));
+        let (length, h) = edges.max_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+        let edit = Edit::Split(h);
+        (self.angle(f) > SLIVER && self.is_allowed(edit)).then_some((-length, edit))
     }
 
     /// Tries every edit at each of the faces that are left, one after the other, until one helps. Returns how many were helped.

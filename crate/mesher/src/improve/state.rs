@@ -111,6 +111,8 @@ pub struct Improver<'a> {
     pub kept: Vec<Vec<u32>>,
     /// The faces that were looked at since they changed, and are not within the tolerance.
     pub is_off: Vec<bool>,
+    /// Whether each face was proved to be near the surface, if that was tried since it changed.
+    pub proofs: Vec<Option<bool>>,
     pub guard: Guard,
     /// The round in which something around a vertex has changed.
     pub changed: Vec<u32>,
@@ -172,6 +174,7 @@ impl<'a> Improver<'a> {
             changed: vec![1; vertices.len()],
             refused: Refused::default(),
             is_off: vec![false; mesh.face_slots()],
+            proofs: vec![None; mesh.face_slots()],
             places,
             kept,
             guard,
@@ -447,9 +450,11 @@ impl<'a> Improver<'a> {
                     .map(|(_, distance)| *distance)
                     .fold(0.0, f32::max);
                 self.is_off.resize(self.mesh.face_slots(), false);
+                self.proofs.resize(self.mesh.face_slots(), None);
                 for f in self.mesh.vertex_faces(v) {
                     self.errors[f.index()] = farthest;
                     self.is_off[f.index()] = false;
+                    self.proofs[f.index()] = None;
                 }
                 return Some(v);
             }
@@ -466,6 +471,7 @@ impl<'a> Improver<'a> {
         for (face, distance) in &plan.faces {
             self.errors[face.index()] = *distance;
             self.is_off[face.index()] = false;
+            self.proofs[face.index()] = None;
         }
         self.changed[center.index()] = self.round;
         for n in self.mesh.neighbors(center) {
