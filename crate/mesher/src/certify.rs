@@ -237,7 +237,8 @@ fn height(space: &Space<'_>, corners: &[Vertex; 3], sign: f64) -> Option<f64> {
     let lowest = corners.iter().map(|v| sign * v.value);
     let lowest = lowest.fold(f64::INFINITY, f64::min) - SLACK - error;
     // Not so for NaN.
-    if !(lowest > 0.0) {
+    let is_on_side = lowest > 0.0;
+    if !is_on_side {
         return None;
     }
     let control = |one: &Vertex, other: &Vertex| {
@@ -321,4 +322,101 @@ pub fn project(space: &Space<'_>, position: DVec3, reach: f64, tolerance: f64) -
         vertex = Vertex::new(next, &space.jet_at(next));
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forest::Forest;
+    use crate::surface::box_of;
+    use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
+
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn unit(&mut self) -> f64 {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(99);
+            (self.0 >> 33) as f64 / f64::from(1_u32 << 31)
+        }
+
+        fn vector(&mut self) -> DVec3 {
+            DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
+        }
+    }
+
+    fn sum(kernel: Kernel, n: &mut Numbers) -> Sum {
+        let shaping = Shaping {
+            kernel,
+            radius: 0.2 + 0.3 * n.unit(),
+            blobbiness: -2.0,
+            blob_scale: BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: None,
+        };
+        let limb = |base: DVec3| Skeleton::Segment {
+            base,
+            apex: base + n.vector(),
+        };
+        let limbs = [DVec3::ZERO, DVec3::X].map(limb);
+        let limbs = limbs.into_iter();
+        limbs
+            .filter_map(|limb| Primitive::new(limb, &shaping, None))
+            .collect()
+    }
+
+    #[test]
+    fn what_is_proved_of_triangles_is_true_at_all_their_points() {
+        let mut n = Numbers(5);
+        let (mut proved, mut refuted) = (0, 0);
+        for trial in 0..240 {
+            let kernel = [Kernel::Gauss, Kernel::Cauchy, Kernel::Quartic][trial % 3];
+            let sum = sum(kernel, &mut n);
+            let domain = box_of(sum.support().unwrap());
+            let size = (domain.max - domain.min).max_element();
+            let space = Space::new(&sum, Forest::new(&domain, 0.01 * size, 0), 0.01);
+            for _ in 0..40 {
+                let Some(start) = project(&space, 0.7 * n.vector(), 1.0, 1e-3) else {
+                    continue;
+                };
+                let reach = 0.02 + 0.3 * n.unit();
+                let corner = |n: &mut Numbers| {
+                    let near = start.position + n.vector() * reach;
+                    project(&space, near, 1.0, 1e-3).map(|vertex| vertex.position)
+                };
+                let corners = [corner(&mut n), corner(&mut n), corner(&mut n)];
+                let [Some(a), Some(b), Some(c)] = corners else {
+                    continue;
+                };
+                let tolerance = reach * reach * n.unit();
+                let Some(normal) = normal([a, b, c]) else {
+                    continue;
+                };
+                let value = |p: DVec3| sum.jet(p).value - THRESHOLD;
+                let is_true = (0..300).all(|_| {
+                    let (u, v) = (n.unit(), n.unit());
+                    let [u, v] = if u + v > 1.0 {
+                        [1.0 - u, 1.0 - v]
+                    } else {
+                        [u, v]
+                    };
+                    let p = a + (b - a) * u + (c - a) * v;
+                    WAYS.iter().any(|way| {
+                        let way = normal * (way * tolerance);
+                        value(p + way) < 0.0 && value(p - way) > 0.0
+                    })
+                });
+                if is_within(&space, [a, b, c], tolerance) {
+                    assert!(is_true, "{kernel:?} {a} {b} {c} {tolerance}");
+                    proved += 1;
+                } else if !is_true {
+                    refuted += 1;
+                }
+            }
+        }
+        assert!(proved > 100 && refuted > 100, "{proved} {refuted}");
+    }
 }

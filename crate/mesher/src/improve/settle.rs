@@ -8,6 +8,9 @@ use mesh::{FaceId, HalfEdgeId, VertexId};
 
 /// Rounds in which triangles are divided or removed until all are near the surface.
 const SETTLE_ROUNDS: usize = 40;
+/// Rounds in which nothing but divisions are tried, as long as more than one of so many triangles are far.
+const COARSE_ROUNDS: usize = 12;
+const COARSE: usize = 4;
 /// Rounds in which every edit is tried at the triangles that are left.
 const RESCUE_ROUNDS: usize = 8;
 /// Most triangles of such a round: where more are left, there are kinks, or the surface touches itself, and no edit would help.
@@ -35,10 +38,12 @@ impl Improver<'_> {
         for round in 0..SETTLE_ROUNDS {
             progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
             let far = self.off(progress)?;
+            // A mesh that is too coarse has more such faces at first, and each half of one is nearer.
+            let is_coarse = round < COARSE_ROUNDS && COARSE * far.len() > self.mesh.face_count();
             // All kinds of remedies have been tried without much success.
             if far.len() < least - least / 20 {
                 (least, stalled) = (far.len(), 0);
-            } else {
+            } else if !is_coarse {
                 stalled += 1;
                 if stalled == 8 {
                     break;
@@ -49,7 +54,7 @@ impl Improver<'_> {
             }
             let mut edits: Vec<(f64, Edit)> = far
                 .into_iter()
-                .filter_map(|f| self.remedy(f, round))
+                .filter_map(|f| self.remedy(f, if is_coarse { 0 } else { round }))
                 .collect();
             edits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             edits.dedup_by_key(|(_, edit)| *edit);
