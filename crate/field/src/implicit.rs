@@ -262,6 +262,12 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
         Variation::rough(self.enclose(ball))
     }
 
+    /// The function's logarithm, where bounds on it are much sharper than those on the function itself; `None` if they are not, or not
+    /// known.
+    fn logarithm(&self) -> Option<crate::Logarithm<'_>> {
+        None
+    }
+
     /// Bounds on the function in a ball as [`Implicit::variation`] gives them, and value and gradient at its centre, where finding
     /// the bounds finds these, too.
     fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {

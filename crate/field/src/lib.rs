@@ -76,6 +76,7 @@ pub mod kernel;
 pub mod kinks;
 mod legendre;
 pub mod local;
+mod logarithm;
 mod metaballs;
 mod placed;
 mod plane;
@@ -108,6 +109,7 @@ pub use implicit::{Ball, Clearance, Enclosure, Implicit, Part, Slack, Variation}
 pub use kernel::{Derivatives, Kernel};
 pub use kinks::Kink;
 pub use local::Local;
+pub use logarithm::Logarithm;
 pub use placed::Placed;
 pub use primitive::{Jet, Primitive};
 pub use profile::{Profile, Wave};

@@ -2,7 +2,7 @@
 use crate::far_field::{Cell, FarField};
 use crate::implicit::{Part, Slack, Variation};
 use crate::kinks::{self, Kink};
-use crate::{Ball, Bound, Enclosure, Evaluate, Implicit, Jet, Primitive, THRESHOLD};
+use crate::{Ball, Bound, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 use wide::f32x8;
@@ -45,8 +45,8 @@ const ROOM: f64 = 1.25;
 
 /// A primitive's bounds, and where its profile is not smooth.
 #[derive(Debug)]
-struct Known {
-    bound: Bound,
+pub(crate) struct Known {
+    pub(crate) bound: Bound,
     kinks: Vec<Kink>,
 }
 
@@ -286,6 +286,10 @@ impl Implicit for Sum {
             None => known.iter().for_each(add),
         }
         all
+    }
+
+    fn logarithm(&self) -> Option<Logarithm<'_>> {
+        Logarithm::new(&self.primitives, self.known())
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {

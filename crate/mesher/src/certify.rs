@@ -1,17 +1,11 @@
-//! Proof that a triangle is near the surface, and looks the same way.
+//! Whether triangles are near the surface: by samples, and by proofs.
 //!
-//! Let a triangle have the unit normal n and be divided into a grid of equal triangles in balls of radius ρ, and let D bound the third
-//! derivative of F nearby. The gradients at the corners of a triangle of the grid, interpolated linearly, are the
-//! gradient in it up to e = D·ρ²/2 (terms whose second derivative jumps add their curvature times ρ). So
-//! −∇F·n is at least its least value s at those corners less e, and F − T is within 3e·ρ of a polynomial of the second degree, whose
-//! size is at most that of its Bézier coefficients: the values at corners, and values plus half the slope along edges. With that
-//! bound m on |F − T| and a bound C on the curvature within d of the triangle, the line of steepest ascent or descent
-//! from any point of the triangle meets the surface within d, if d·(s − e − C·d) ≥ m.
-//!
-//! A closed mesh of such triangles that was made from an isotopic one by changes near the surface covers each point of the
-//! surface exactly once: along those lines it is mapped to the surface with positive orientation and degree 1. So it is
-//! isotopic to the surface, does not cut itself, and no point of the surface is farther from it than from the mesh the
-//! points of which are mapped there.
+//! Let a triangle have the unit normal n, and let all points of it be outside the surface when they are moved by d·n, and inside when
+//! moved by −d·n. Then on each of these ways is a point of the surface: no point of the triangle is farther from it than d. That is proved for parts of the
+//! triangle in balls of radius ρ, by bounds C and D on the function's second and third derivative in them: F is within ½·C·ρ² of the linear
+//! function with its values at the corners (Waldron 1998), and within 3e·ρ of a polynomial of the second degree with e = D·ρ²/2, which is no larger or smaller
+//! than its Bézier coefficients: the values at corners, and values plus half the slope along edges. (Terms whose second derivative
+//! jumps add their curvature times ρ to e.)
 
 use crate::space::{SLACK, Space};
 use field::{Ball, Jet, THRESHOLD, Variation};
@@ -73,106 +67,190 @@ fn ball([a, b, c]: &[DVec3; 3]) -> Ball {
 /// Twice the area of a triangle over the square of its longest side, below which it counts as flat.
 const FLAT: f64 = 1e-7;
 
-/// Divisions of an edge that are tried.
-const GRIDS: [usize; 3] = [2, 3, 6];
-/// The last of them, which has the points of all.
-const FINEST: usize = 6;
-/// Its number of points.
-const POINTS: usize = (FINEST + 1) * (FINEST + 2) / 2;
+/// Shares of the corners at the points where a triangle is looked at: a few in any case, and others where it is far from the surface or turned from it.
+const FEW_SAMPLES: [[f64; 3]; 4] = [
+    [1.0 / 3.0; 3],
+    [0.5, 0.5, 0.0],
+    [0.0, 0.5, 0.5],
+    [0.5, 0.0, 0.5],
+];
+/// The others.
+const MORE_SAMPLES: [[f64; 3]; 9] = [
+    [0.6, 0.2, 0.2],
+    [0.2, 0.6, 0.2],
+    [0.2, 0.2, 0.6],
+    [0.75, 0.25, 0.0],
+    [0.25, 0.75, 0.0],
+    [0.0, 0.75, 0.25],
+    [0.0, 0.25, 0.75],
+    [0.75, 0.0, 0.25],
+    [0.25, 0.0, 0.75],
+];
+/// Where all edges bend by less than a share of the tolerance, and all corners' normals are near the triangle's, as the cosine of the angle tells, one sample is enough.
+pub const EASY: f64 = 0.05;
+/// That cosine.
+const EVEN: f64 = 0.95;
+/// The least cosine of the angle between a triangle's normal and the surface's anywhere.
+const FACING: f64 = 0.3;
+/// The largest distance to first order that may be smaller in truth, in tolerances.
+const FARTHEST: f64 = 2.0;
+/// That above which few samples are enough, if they are nearer to the surface than a share of the tolerance.
+const FLUSH: f64 = 0.9;
+/// That share.
+const NEAR: f64 = 0.3;
 
-/// Index of a point of the finest grid, at so many steps from two sides.
-const fn place([i, j]: [usize; 2]) -> usize {
-    // Row i starts after those before it, which have 7, 6, … points.
-    i * (2 * FINEST + 3 - i) / 2 + j
-}
-
-/// Whether a point of the finest grid is one of a coarser grid.
-fn is_in([i, j]: [usize; 2], grid: usize) -> bool {
-    let step = FINEST / grid;
-    i % step == 0 && j % step == 0
-}
-
-/// All points of the finest grid, those far from the corners first: where triangles fail to be proved it is mostly in the middle.
-const POINTS_IN_ORDER: [[usize; 2]; POINTS] = {
-    let mut all = [[0; 2]; POINTS];
-    let mut count = 0;
-    // The largest of the three distances from the sides, from that of the centre to that of the corners.
-    let mut most = FINEST / 3;
-    while most <= FINEST {
-        let mut i = 0;
-        while i <= FINEST {
-            let mut j = 0;
-            while j <= FINEST - i {
-                let k = FINEST - i - j;
-                let largest = if i > j { i } else { j };
-                let largest = if k > largest { k } else { largest };
-                if largest == most {
-                    all[count] = [i, j];
-                    count += 1;
-                }
-                j += 1;
-            }
-            i += 1;
+/// The distance of a triangle from the surface as samples tell it; `None` if it is more than the tolerance, or if the triangle is turned
+/// away from the surface somewhere.
+pub fn estimate(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Option<f64> {
+    let normal = normal(corners.map(|v| v.position))?;
+    let (mut most, mut facing) = (0.0_f64, 1.0_f64);
+    let mut look = |vertex: &Vertex| {
+        let steep = -vertex.gradient.dot(normal);
+        let cosine = steep / vertex.gradient.length();
+        let distance = vertex.value.abs() / steep;
+        // Not so for NaN.
+        let is_likely = cosine >= FACING && distance <= FARTHEST * tolerance;
+        if !is_likely {
+            return None;
         }
-        most += 1;
-    }
-    all
-};
-
-/// The function at points of a triangle's finest grid, where it was evaluated.
-struct Points {
-    vertices: [Option<Vertex>; POINTS],
-    corners: [Vertex; 3],
-}
-
-impl Points {
-    /// The function at a point, by an evaluation if there was none.
-    fn at(&mut self, at: [usize; 2], evaluate: impl Fn(DVec3) -> Vertex) -> Vertex {
-        let [i, j] = at;
-        let shares = [i, j, FINEST - i - j];
-        let corners = &self.corners;
-        *self.vertices[place(at)].get_or_insert_with(|| {
-            match shares.iter().position(|n| *n == FINEST) {
-                Some(corner) => corners[corner],
-                None => {
-                    let [u, v, w] = shares.map(|n| n as f64 * (1.0 / FINEST as f64));
-                    let [a, b, c] = corners.map(|corner| corner.position);
-                    evaluate(a * u + b * v + c * w)
-                }
+        if distance > NEAR * tolerance {
+            // To first order alone this is not known: the surface has to be passed on the way.
+            let way = normal
+                * if vertex.value > 0.0 {
+                    tolerance
+                } else {
+                    -tolerance
+                };
+            let beyond = space.jet_at(vertex.position + way).value - THRESHOLD;
+            if (beyond > 0.0) == (vertex.value > 0.0) {
+                return None;
             }
-        })
+        }
+        most = most.max(distance.min(tolerance));
+        facing = facing.min(cosine);
+        Some((most, facing))
+    };
+    for corner in corners {
+        look(corner)?;
     }
+    let at = |[u, v, w]: [f64; 3]| {
+        let [a, b, c] = corners.map(|corner| corner.position);
+        let point = a * u + b * v + c * w;
+        Vertex::new(point, &space.jet_at(point))
+    };
+    let [a, b, c] = corners;
+    let is_easy = is_even(corners, normal)
+        && [(a, b), (b, c), (c, a)]
+            .iter()
+            .all(|(one, other)| sag(one, other) <= EASY * tolerance);
+    let mut found = (0.0, 1.0);
+    for shares in &FEW_SAMPLES[..if is_easy { 1 } else { FEW_SAMPLES.len() }] {
+        found = look(&at(*shares))?;
+    }
+    let (distance, facing) = found;
+    if distance > NEAR * tolerance || facing < FLUSH {
+        for shares in MORE_SAMPLES {
+            found = look(&at(shares))?;
+        }
+    }
+    Some(found.0)
 }
 
-/// The largest distance of a triangle from the surface, as proved; `None` if it is not proved to be at most the tolerance.
-pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Option<f64> {
-    let positions = corners.map(|v| v.position);
-    let [a, b, c] = positions;
+/// Whether a triangle's corners all look nearly the way that it does.
+fn is_even(corners: [&Vertex; 3], normal: DVec3) -> bool {
+    corners
+        .iter()
+        .all(|corner| corner.normal().dot(normal) >= EVEN)
+}
+
+/// The height of a circular arc between two vertices with their normals.
+pub fn sag(one: &Vertex, other: &Vertex) -> f64 {
+    let turn = (one.normal() - other.normal()).dot(one.position - other.position);
+    turn.abs() / 8.0
+}
+
+/// The unit normal of a triangle; `None` if it is so flat that it would be noise.
+fn normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     let cross = (b - a).cross(c - a);
     let longest = a
         .distance_squared(b)
         .max(b.distance_squared(c))
         .max(c.distance_squared(a));
-    // The normal of a flat triangle is noise.
     if cross.length() <= FLAT * longest {
         return None;
     }
-    let normal = cross.try_normalize()?;
-    let steepness = |gradient: DVec3| -gradient.dot(normal);
-    let highest = corners.iter().map(|v| v.value.abs()).fold(0.0, f64::max);
-    let steep = corners
-        .iter()
-        .map(|v| steepness(v.gradient))
-        .fold(f64::INFINITY, f64::min);
-    if !(steep > 0.0 && highest <= tolerance * steep) {
+    cross.try_normalize()
+}
+
+/// Most times that a triangle is divided into four for its proof.
+const DEPTH: u32 = 3;
+/// Ways along the normal on which the surface is looked for, in tolerances: short ones for parts that are thinner.
+const WAYS: [f64; 2] = [1.0, 0.25];
+
+/// Whether no point of a triangle is farther from the surface than the tolerance, as proved: all points that are so far in front of it
+/// are outside, and all that are so far behind it inside.
+pub fn is_within(space: &Space<'_>, corners: [DVec3; 3], tolerance: f64) -> bool {
+    let Some(normal) = normal(corners) else {
+        return false;
+    };
+    WAYS.iter().any(|way| {
+        let way = normal * (way * tolerance);
+        let beside = |way: DVec3| corners.map(|corner| at(space, corner + way));
+        is_between(space, [beside(way), beside(-way)], 0)
+    })
+}
+
+fn at(space: &Space<'_>, point: DVec3) -> Vertex {
+    Vertex::new(point, &space.jet_at(point))
+}
+
+/// Whether the first of two triangles is outside and the second one inside; they are parts of such that were divided so often.
+fn is_between(space: &Space<'_>, pair: [[Vertex; 3]; 2], depth: u32) -> bool {
+    let [front, back] = pair;
+    let sides = [(&front, -1.0), (&back, 1.0)].map(|(corners, sign)| height(space, corners, sign));
+    let [Some(front_height), Some(back_height)] = sides else {
+        return false;
+    };
+    if front_height.min(back_height) > 0.0 {
+        return true;
+    }
+    if depth == DEPTH {
+        return false;
+    }
+    let divided = pair.map(|corners| {
+        let [a, b, c] = corners;
+        let middle = |a: &Vertex, b: &Vertex| at(space, a.position.midpoint(b.position));
+        let [ab, bc, ca] = [middle(&a, &b), middle(&b, &c), middle(&c, &a)];
+        // Where triangles fail to be proved it is mostly in the middle.
+        [[ab, bc, ca], [a, ab, ca], [ab, b, bc], [ca, bc, c]]
+    });
+    let [front, back] = divided;
+    front
+        .into_iter()
+        .zip(back)
+        .all(|(front, back)| is_between(space, [front, back], depth + 1))
+}
+
+/// A lower bound on the function less the threshold, times a sign, in a triangle; `None` if it is not positive at a corner.
+fn height(space: &Space<'_>, corners: &[Vertex; 3], sign: f64) -> Option<f64> {
+    let [error, steep_error] = space.worst_error();
+    let lowest = corners.iter().map(|v| sign * v.value);
+    let lowest = lowest.fold(f64::INFINITY, f64::min) - SLACK - error;
+    // Not so for NaN.
+    let is_on_side = lowest > 0.0;
+    if !is_on_side {
         return None;
     }
-    let Ball { center, radius } = ball(&positions);
-    let reach = Ball {
-        center,
-        radius: radius + tolerance,
+    let control = |one: &Vertex, other: &Vertex| {
+        sign * (one.value + 0.5 * one.gradient.dot(other.position - one.position))
     };
-    let part = space.part_for(reach);
+    let [a, b, c] = corners;
+    let edges = [(a, b), (b, c), (c, a)];
+    let bezier = edges.into_iter().fold(lowest, |least, (one, other)| {
+        least.min(control(one, other)).min(control(other, one))
+    });
+    let ball = ball(&corners.map(|v| v.position));
+    let radius = ball.radius;
     let Variation {
         curvature,
         third,
@@ -180,92 +258,12 @@ pub fn distance(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
         jump,
         step,
         ..
-    } = space.variation(part, reach);
-    // The corners may have been evaluated in other parts.
-    let [error, steep_error] = space.worst_error();
-    // What is proved with the least steepness and the highest value at the corners of a grid.
-    let proved = |grid: usize, steep: f64, highest: f64| {
-        let radius = radius / grid as f64;
-        let rest =
-            (0.5 * third * radius + rough).min(curvature) * radius + jump + SLACK + steep_error;
-        // Coefficients that are found from different corners differ by e times an edge.
-        let (steep, off) = (
-            steep - rest,
-            highest + 3.0 * rest * radius + step + SLACK + error,
-        );
-        let square = steep * steep - 4.0 * curvature * off;
-        // Not so for NaN.
-        if !(steep > 0.0 && square >= 0.0) {
-            return None;
-        }
-        let distance = 2.0 * off / (steep + square.sqrt());
-        (distance <= tolerance).then_some(distance)
-    };
-    let edges = [(0, 1), (1, 2), (2, 0)];
-    let controls = |vertices: &[Vertex], i: usize, j: usize| {
-        let (one, other) = (&vertices[i], &vertices[j]);
-        let along = 0.5 * (other.position - one.position);
-        let [p, q] = [
-            one.value + one.gradient.dot(along),
-            other.value - other.gradient.dot(along),
-        ];
-        p.abs().max(q.abs())
-    };
-    let whole = corners.map(|v| *v);
-    let bezier = edges
-        .iter()
-        .map(|(i, j)| controls(&whole, *i, *j))
-        .fold(highest, f64::max);
-    if let Some(distance) = proved(1, steep, bezier) {
-        return Some(distance);
-    }
-    let mut known = Points {
-        vertices: [None; POINTS],
-        corners: whole,
-    };
-    GRIDS.into_iter().find_map(|grid| {
-        // Without hope even if all went well within.
-        proved(grid, steep, highest)?;
-        let (mut steep, mut highest) = (steep, highest);
-        let mut at = |place| known.at(place, |point| Vertex::new(point, &space.jet(part, point)));
-        for place in POINTS_IN_ORDER {
-            if !is_in(place, grid) {
-                continue;
-            }
-            let vertex = at(place);
-            steep = steep.min(steepness(vertex.gradient));
-            highest = highest.max(vertex.value.abs());
-            // Further points make it no better.
-            proved(grid, steep, highest)?;
-        }
-        let step = FINEST / grid;
-        for i in (0..FINEST).step_by(step) {
-            for j in (0..FINEST - i).step_by(step) {
-                let corners = [[i, j], [i, j + step], [i + step, j]].map(&mut at);
-                for (i, j) in edges {
-                    highest = highest.max(controls(&corners, i, j));
-                }
-            }
-        }
-        proved(grid, steep, highest)
-    })
-}
-
-/// Whether no triangle near the middle of this one can be proved, however small: the gradient may jump there by as much as its
-/// length.
-pub fn is_hopeless(space: &Space<'_>, corners: &[Vertex; 3], tolerance: f64) -> bool {
-    let center = corners.iter().map(|v| v.position).sum::<DVec3>() / 3.0;
-    let reach = Ball {
-        center,
-        radius: tolerance,
-    };
-    let part = space.part_for(reach);
-    let Variation { jump, rough, .. } = space.variation(part, reach);
-    let jet = space.jet(part, center);
-    let steep = DVec3::from_array(jet.gradient).length();
-    // Not so for NaN.
-    let may_be_proved = steep > jump + rough * tolerance;
-    !may_be_proved
+    } = space.variation(space.part_for(ball), ball);
+    let rest = (0.5 * third * radius + rough).min(curvature) * radius + jump + SLACK + steep_error;
+    // Coefficients that are found from different corners differ by the rest times an edge.
+    let quadratic = bezier - 3.0 * rest * radius;
+    let linear = lowest - (0.5 * curvature * radius + 2.0 * jump) * radius;
+    Some(quadratic.max(linear) - step - SLACK - error)
 }
 
 /// The place of the surface on a segment between two points where the function, less the threshold, has other signs:
@@ -324,4 +322,101 @@ pub fn project(space: &Space<'_>, position: DVec3, reach: f64, tolerance: f64) -
         vertex = Vertex::new(next, &space.jet_at(next));
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forest::Forest;
+    use crate::surface::box_of;
+    use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
+
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn unit(&mut self) -> f64 {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(99);
+            (self.0 >> 33) as f64 / f64::from(1_u32 << 31)
+        }
+
+        fn vector(&mut self) -> DVec3 {
+            DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
+        }
+    }
+
+    fn sum(kernel: Kernel, n: &mut Numbers) -> Sum {
+        let shaping = Shaping {
+            kernel,
+            radius: 0.2 + 0.3 * n.unit(),
+            blobbiness: -2.0,
+            blob_scale: BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: None,
+        };
+        let limb = |base: DVec3| Skeleton::Segment {
+            base,
+            apex: base + n.vector(),
+        };
+        let limbs = [DVec3::ZERO, DVec3::X].map(limb);
+        let limbs = limbs.into_iter();
+        limbs
+            .filter_map(|limb| Primitive::new(limb, &shaping, None))
+            .collect()
+    }
+
+    #[test]
+    fn what_is_proved_of_triangles_is_true_at_all_their_points() {
+        let mut n = Numbers(5);
+        let (mut proved, mut refuted) = (0, 0);
+        for trial in 0..240 {
+            let kernel = [Kernel::Gauss, Kernel::Cauchy, Kernel::Quartic][trial % 3];
+            let sum = sum(kernel, &mut n);
+            let domain = box_of(sum.support().unwrap());
+            let size = (domain.max - domain.min).max_element();
+            let space = Space::new(&sum, Forest::new(&domain, 0.01 * size, 0), 0.01);
+            for _ in 0..40 {
+                let Some(start) = project(&space, 0.7 * n.vector(), 1.0, 1e-3) else {
+                    continue;
+                };
+                let reach = 0.02 + 0.3 * n.unit();
+                let corner = |n: &mut Numbers| {
+                    let near = start.position + n.vector() * reach;
+                    project(&space, near, 1.0, 1e-3).map(|vertex| vertex.position)
+                };
+                let corners = [corner(&mut n), corner(&mut n), corner(&mut n)];
+                let [Some(a), Some(b), Some(c)] = corners else {
+                    continue;
+                };
+                let tolerance = reach * reach * n.unit();
+                let Some(normal) = normal([a, b, c]) else {
+                    continue;
+                };
+                let value = |p: DVec3| sum.jet(p).value - THRESHOLD;
+                let is_true = (0..300).all(|_| {
+                    let (u, v) = (n.unit(), n.unit());
+                    let [u, v] = if u + v > 1.0 {
+                        [1.0 - u, 1.0 - v]
+                    } else {
+                        [u, v]
+                    };
+                    let p = a + (b - a) * u + (c - a) * v;
+                    WAYS.iter().any(|way| {
+                        let way = normal * (way * tolerance);
+                        value(p + way) < 0.0 && value(p - way) > 0.0
+                    })
+                });
+                if is_within(&space, [a, b, c], tolerance) {
+                    assert!(is_true, "{kernel:?} {a} {b} {c} {tolerance}");
+                    proved += 1;
+                } else if !is_true {
+                    refuted += 1;
+                }
+            }
+        }
+        assert!(proved > 100 && refuted > 100, "{proved} {refuted}");
+    }
 }

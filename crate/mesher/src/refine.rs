@@ -37,14 +37,10 @@ struct Look {
     part: Option<Part>,
 }
 
-/// Bounds in a ball around a box, with so much room around it that the radius is at most doubled.
-pub fn around(space: &Space<'_>, part: u32, center: DVec3, size: DVec3, room: f64) -> Variation {
+/// Bounds in the ball around a box.
+pub fn around(space: &Space<'_>, part: u32, center: DVec3, size: DVec3) -> Variation {
     let radius = 0.5 * size.length() * (1.0 + 1e-9);
-    let ball = Ball {
-        center,
-        radius: radius + room.min(radius),
-    };
-    space.variation(part, ball)
+    space.variation(part, Ball { center, radius })
 }
 
 /// The error of values in a box that a part of the function leaves.
@@ -84,13 +80,13 @@ fn side([low, high]: [f64; 2]) -> Side {
     }
 }
 
-/// Looks at a cell, with so much room around it that a path of the length of the finer tolerance does not leave the ball.
+/// Looks at a cell.
 fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     let forest = &space.forest;
     let size = forest.size(cell.level);
     let center = forest.center(cell);
     let radius = 0.5 * size.length();
-    let variation = around(space, cell.part, center, size, fine);
+    let variation = around(space, cell.part, center, size);
     let Variation {
         curvature,
         third,
@@ -222,6 +218,10 @@ pub struct Refinement<'s, 'a> {
     pub threads: usize,
     /// Number of cells that were looked at.
     fresh: usize,
+    /// For each cell that was judged since something changed beside it, those around it in which the interpolant changes its sign.
+    verdicts: Vec<Option<Vec<u32>>>,
+    /// Number of cells that there were then, and the errors of values and gradients.
+    judged: (usize, [f64; 2]),
     fraction: f32,
 }
 
@@ -240,6 +240,8 @@ impl<'s, 'a> Refinement<'s, 'a> {
             max_cells,
             threads,
             fresh: 0,
+            verdicts: Vec::new(),
+            judged: (0, [0.0; 2]),
             fraction: 0.0,
         }
     }
@@ -254,25 +256,31 @@ impl<'s, 'a> Refinement<'s, 'a> {
         let threads = self.threads;
         loop {
             look_at_all(self, progress)?;
-            look_beside(self.space, self.tolerances, threads, progress)?;
             let crossing = crossing(&self.space.forest);
             // Each becomes about ten triangles, which are there before they are made fewer.
             if crossing.len() > self.max_cells / 2 {
                 return Err(too_many(self.space));
             }
             progress.at(self.fraction)?;
+            self.forget();
+            let new = |node: &u32| self.verdicts[*node as usize].is_none();
+            let new: Vec<u32> = crossing.iter().copied().filter(new).collect();
+            look_beside(self.space, &new, self.tolerances, threads, progress)?;
             let coarse = self.tolerances[0];
             self.lattice
-                .extend(self.space, &crossing, coarse, threads, progress)?;
+                .extend(self.space, &new, coarse, threads, progress)?;
             let (space, lattice) = (&*self.space, &self.lattice);
-            let verdicts = map_told(threads, &crossing, progress, |node| {
+            let verdicts = map_told(threads, &new, progress, |node| {
                 verdict(space, lattice, *node, coarse)
             })?;
             let (mut failing, mut open, mut seen) = (Vec::new(), Vec::new(), Vec::new());
-            for verdict in verdicts {
-                failing.extend(verdict.failing);
-                open.extend(verdict.open);
-                seen.extend(verdict.seen);
+            for (node, verdict) in new.iter().zip(verdicts) {
+                failing.extend_from_slice(&verdict.failing);
+                open.extend_from_slice(&verdict.open);
+                self.verdicts[*node as usize] = Some(verdict.seen);
+            }
+            for node in &crossing {
+                seen.extend(self.verdicts[*node as usize].iter().flatten());
             }
             for all in [&mut failing, &mut open, &mut seen] {
                 all.sort_unstable();
@@ -297,6 +305,41 @@ impl<'s, 'a> Refinement<'s, 'a> {
                 return Ok(seen);
             }
         }
+    }
+
+    /// Forgets the verdicts on cells beside others that were split since they were judged.
+    fn forget(&mut self) {
+        let forest = &self.space.forest;
+        let error = self.space.worst_error();
+        let (before, old_error) = self.judged;
+        if error != old_error {
+            self.verdicts.clear();
+        }
+        self.verdicts.resize_with(forest.cells.len(), || None);
+        let verdicts = &mut self.verdicts;
+        let mut forget = |node: u32| verdicts[node as usize] = None;
+        // The children of a cell come one after the other.
+        for first in (before..forest.cells.len()).step_by(8) {
+            let child = &forest.cells[first];
+            let Some(level) = child.level.checked_sub(1) else {
+                continue;
+            };
+            let at = child.at.map(|x| i64::from(x / 2));
+            for i in 0..27 {
+                let direction = [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1];
+                let place = [0, 1, 2].map(|k| at[k] + direction[k]);
+                let mut open: Vec<u32> = forest.find(level, place).into_iter().collect();
+                // Leaves beside the children are at most one level finer than these.
+                while let Some(node) = open.pop() {
+                    forget(node);
+                    let cell = &forest.cells[node as usize];
+                    if cell.child != NONE && cell.level < level + 2 {
+                        open.extend(cell.child..cell.child + 8);
+                    }
+                }
+            }
+        }
+        self.judged = (forest.cells.len(), error);
     }
 
     /// Splits a leaf, with the part of the function that its children need.
@@ -416,17 +459,18 @@ fn fitting(forest: &Forest) -> Option<f64> {
     errors.get(errors.len() * 9 / 10).copied()
 }
 
-/// Computes bounds for leaves without the surface that share a face with one that has it.
+/// Computes bounds for leaves without the surface that share a face with some that have it.
 fn look_beside(
     space: &mut Space<'_>,
+    crossing: &[u32],
     tolerances: [f64; 2],
     threads: usize,
     progress: &mut Progress<'_>,
 ) -> Result<(), MeshError> {
     let forest = &space.forest;
     let mut open = Vec::new();
-    for node in crossing(forest) {
-        let cell = forest.cells[node as usize];
+    for node in crossing {
+        let cell = forest.cells[*node as usize];
         for side in 0..6 {
             let neighbor = forest.neighbor(&cell, crate::lattice::direction(side));
             open.extend(neighbor.into_iter().filter(|i| {

@@ -1,7 +1,7 @@
 //! A function with its terms sorted by place, so that evaluations cost what is nearby.
 
 use core::sync::atomic::{AtomicU64, Ordering};
-use field::{Ball, Implicit, Jet, Part, Slack, Variation};
+use field::{Ball, Implicit, Jet, Logarithm, Part, Slack, Variation};
 use glam::DVec3;
 
 use crate::forest::{Cell, Forest, NONE};
@@ -27,8 +27,9 @@ struct Nested {
 /// A function in a forest of cells.
 #[derive(Debug)]
 pub struct Space<'a> {
-    /// The function.
-    pub function: &'a dyn Implicit,
+    function: &'a dyn Implicit,
+    /// The function's logarithm, which is looked at in its place where it has sharper bounds.
+    logarithm: Option<Logarithm<'a>>,
     /// The cells.
     pub forest: Forest,
     parts: Vec<Nested>,
@@ -44,6 +45,7 @@ impl<'a> Space<'a> {
     pub fn new(function: &'a dyn Implicit, forest: Forest, tolerance: f64) -> Self {
         Self {
             function,
+            logarithm: function.logarithm(),
             forest,
             parts: Vec::new(),
             far: BORNE * tolerance,
@@ -59,16 +61,23 @@ impl<'a> Space<'a> {
     /// Value and gradient at a point of the ball of a part.
     pub fn jet(&self, part: u32, point: DVec3) -> Jet<f64> {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
-        match self.part(part) {
+        let jet = match self.part(part) {
             Some(part) => self.function.jet_of(part, point),
             None => self.function.jet(point),
+        };
+        match self.logarithm {
+            Some(_) => Logarithm::of(&jet),
+            None => jet,
         }
     }
 
     /// Bounds in a ball within that of a part.
     pub fn variation(&self, part: u32, ball: Ball) -> Variation {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
-        self.function.variation(self.part(part), ball)
+        match &self.logarithm {
+            Some(logarithm) => logarithm.variation(self.part(part), ball),
+            None => self.function.variation(self.part(part), ball),
+        }
     }
 
     /// Bounds on the error of values in a part, and on that of gradients, beyond what is left out.
@@ -98,7 +107,10 @@ impl<'a> Space<'a> {
             radius: self.forest.size(cell.level).length(),
         };
         let slack = Slack {
-            left_out: SLACK,
+            left_out: match self.logarithm {
+                Some(_) => Logarithm::slack(SLACK),
+                None => SLACK,
+            },
             far: self.far,
         };
         self.function.narrow(ball, part, slack)

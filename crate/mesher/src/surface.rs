@@ -18,19 +18,17 @@ use mesh::{Aabb, TriangleMesh};
 pub struct SurfaceMesh {
     /// A closed manifold with normals, oriented outward.
     pub mesh: TriangleMesh,
-    /// No point of the mesh is farther from the surface than this, and no point of the surface farther from the mesh, but for
-    /// undecided cells and unproved triangles.
+    /// No point of a triangle is farther from the surface than this, but for unproved ones.
     pub error: f64,
-    /// Triangles that are not proved to be within the tolerance: near undecided cells and kinks.
+    /// Triangles that are not proved to be within the tolerance: in parts as thin as it, near undecided cells and kinks.
     pub unproved: usize,
     /// Distances that samples found.
     pub measured: Measured,
     /// Pairs of triangles that cut or touch each other, a hundred at most: none but where vertices are nearer to each other than
     /// numbers can tell.
     pub crossings: usize,
-    /// Centres of the cells in which the topology of the surface is not proved before it is meshed: none if all is. If all triangles
-    /// are proved, components of the surface may be missing there that are as small as a cell; the others have the topology of
-    /// the mesh.
+    /// Centres of the cells in which the topology of the surface is not proved before it is meshed: none if all is. Components of the
+    /// surface may be missing there that are as small as a cell.
     pub undecided: Vec<DVec3>,
     /// The least edge length that cells may have.
     pub finest: f64,
@@ -164,7 +162,7 @@ fn guarded(
         threads,
         guarded,
     };
-    let (improved, crossings) = start.improved(is_cut, &mut progress.part(0.4, 0.98))?;
+    let (improved, crossings) = start.improved(&mut progress.part(0.4, 0.98))?;
     if improved.mesh.triangles.len() > max_triangles {
         return Err(MeshError::TooMany {
             limit: max_triangles,
@@ -186,7 +184,7 @@ fn guarded(
     let unproved = improved.is_unproved.iter().filter(|is| **is).count();
     Ok(SurfaceMesh {
         mesh: improved.mesh,
-        error: improved.error,
+        error: tolerance,
         unproved,
         measured,
         crossings,
@@ -212,22 +210,13 @@ struct Start<'a> {
 }
 
 impl Start<'_> {
-    /// The improved mesh, with its number of crossings. Each change is kept from making any where proofs may fail; if there are some
+    /// The improved mesh, with its number of crossings. Each change is kept from making any where cells leave the surface open; if there are some
     /// nonetheless, a second attempt does so everywhere, and takes longer.
-    fn improved(
-        &self,
-        is_cut: bool,
-        progress: &mut Progress<'_>,
-    ) -> Result<(Improved, usize), MeshError> {
+    fn improved(&self, progress: &mut Progress<'_>) -> Result<(Improved, usize), MeshError> {
         let attempt = |guarded: Guarded, progress: &mut Progress<'_>| {
             let raw = self.raw.clone();
             let improver = Improver::new(self.space, raw, self.tolerances, self.threads, guarded)?;
             let improved = improver.run(&mut progress.part(0.0, 0.95))?;
-            // A mesh of which all is proved has none.
-            let is_proved = !is_cut && !improved.is_unproved.contains(&true);
-            if is_proved {
-                return Ok((improved, 0));
-            }
             progress.at(0.95)?;
             let found = mesh::self_intersections(&improved.mesh, MOST_CROSSINGS);
             let crossings = found.map_or(0, |found| found.pairs.len() + found.flat.len());

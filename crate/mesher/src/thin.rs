@@ -248,7 +248,7 @@ fn search(space: &Space<'_>, lattice: &Lattice, cell: &Cell) -> Found {
         };
         let (_, middle, depth) = open.swap_remove(best);
         let own = size / f64::from(1_u32 << depth);
-        let variation = around(space, cell.part, middle, own, 0.0);
+        let variation = around(space, cell.part, middle, own);
         let error = error(space, cell.part, own);
         if promise(coarse_range(&variation, error)) < 0.0 {
             continue;

@@ -37,7 +37,7 @@ fn sculpture_with_flesh_on_it_is_printed() {
         (
             "convolved",
             "soft on\nsurface Flesh, diffuse Coral, kernel quartic, blobbiness -2, radius 0.25\nmesh Flesh clay.strokes\n",
-            7.0..11.0,
+            6.5..11.0,
         ),
         (
             "metaballs",

@@ -1,7 +1,7 @@
-//! Plans of edits: where vertices go, and whether the new triangles are proved to be near the surface.
+//! Plans of edits: where vertices go, and whether the new triangles are near the surface.
 
-use super::state::{Edit, Improver, Plan, Unproved, sine};
-use crate::certify::{Vertex, distance, project};
+use super::state::{Edit, Improver, Off, Plan, sine};
+use crate::certify::{EASY, Vertex, project, sag};
 use glam::DVec3;
 use mesh::{FaceId, HalfEdgeId, VertexId};
 
@@ -9,10 +9,6 @@ use mesh::{FaceId, HalfEdgeId, VertexId};
 const FAIR: f64 = 0.42;
 /// Most edges at a vertex after a collapse.
 const MOST_EDGES: usize = 9;
-/// The largest distance from the mesh before them that edits which leave triangles unproved may go, in tolerances: cells hide no part of the surface that
-/// is farther from that mesh than the rest.
-const LOST: f64 = 0.5;
-
 /// Square of the longest side of a triangle.
 fn size([a, b, c]: &[Vertex; 3]) -> f64 {
     let side = |p: &Vertex, q: &Vertex| p.position.distance_squared(q.position);
@@ -40,7 +36,7 @@ impl Improver<'_> {
         common.count() == 2 && mesh.degree(u) + mesh.degree(v) <= MOST_EDGES + 4
     }
 
-    /// A collapse after which more triangles are proved to be near the surface.
+    /// A collapse after which more triangles are near the surface.
     pub fn plan_merge(&self, h: HalfEdgeId) -> Option<Plan> {
         let mesh = &self.mesh;
         let ends = [mesh.origin(h), mesh.target(h)];
@@ -49,7 +45,7 @@ impl Improver<'_> {
             return None;
         }
         let around = |v: VertexId| mesh.vertex_faces(v).filter(move |f| !beside.contains(f));
-        let before = self.unproved_among(around(ends[0]).chain(around(ends[1])).chain(beside));
+        let before = self.off_among(around(ends[0]).chain(around(ends[1])).chain(beside));
         let faces: Vec<FaceId> = around(ends[0]).chain(around(ends[1])).collect();
         // No flatter than they are: flat ones beside each other go one after the other.
         let least_angle = self.star_angle(ends[0]).min(self.star_angle(ends[1]));
@@ -61,12 +57,13 @@ impl Improver<'_> {
             if corners.iter().map(angle).fold(1.0, f64::min) < least_angle {
                 return None;
             }
-            let faces = self.prove_more(&faces, &corners, before)?;
-            let loss = self.loss(&ends, &faces, &corners)?;
-            Some(Plan {
+            if !self.holds(faces.iter().copied().chain(beside), &corners) {
+                return None;
+            }
+            let faces = self.judge_better(&faces, &corners, before)?;
+            (!self.looks_in(&faces, &corners)).then_some(Plan {
                 vertex: Some(vertex),
                 faces,
-                loss,
             })
         };
         let [at_u, at_v] = ends.map(|v| self.vertices[v.index()]);
@@ -89,6 +86,13 @@ impl Improver<'_> {
         let [at_u, at_v] = [u, v].map(|v| self.vertices[v.index()]);
         if self.is_fixed[v.index()] {
             return self.try_collapse(h, at_v, false);
+        }
+        // A vertex between them is found by evaluations, and moves all triangles around both.
+        let easily = || self.try_collapse(h, at_v, false);
+        if sag(&at_u, &at_v) <= EASY * self.tolerance
+            && let Some(plan) = easily()
+        {
+            return Some(plan);
         }
         let length = at_u.position.distance(at_v.position);
         let middle = 0.5 * (at_u.position + at_v.position);
@@ -118,16 +122,20 @@ impl Improver<'_> {
             .iter()
             .map(|f| self.corners_with(*f, &ends, vertex))
             .collect();
-        let plan = self.prove(&faces, &corners, before, self.tolerance)?;
+        let is_likely = |corners| self.is_likely(corners, before, self.tolerance);
+        let gone = faces.iter().copied().chain(beside.into_iter().flatten());
+        if !(corners.iter().all(is_likely) && self.holds(gone, &corners)) {
+            return None;
+        }
+        let plan = self.judge(&faces, &corners, before, self.tolerance)?;
         Some(Plan {
             vertex: Some(vertex),
             faces: plan,
-            loss: 0.0,
         })
     }
 
     /// Distances of triangles from the surface; `None` if one is not good.
-    pub fn prove(
+    pub fn judge(
         &self,
         faces: &[FaceId],
         corners: &[[Vertex; 3]],
@@ -141,86 +149,73 @@ impl Improver<'_> {
         // Large ones fail first, and one is enough.
         let mut order: Vec<(f64, usize)> = (0..).zip(corners).map(|(i, c)| (-size(c), i)).collect();
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let mut proved = vec![(FaceId(0), 0.0); faces.len()];
+        let mut judged = vec![(FaceId(0), 0.0); faces.len()];
         for (_, i) in order {
-            let distance = distance(self.space, corners[i].each_ref(), tolerance)?;
-            proved[i] = (faces[i], distance as f32);
+            let distance = self.distance(&corners[i], tolerance)?;
+            judged[i] = (faces[i], distance as f32);
         }
-        Some(proved)
+        Some(judged)
     }
 
-    /// Distances of triangles from the surface, infinite where none is proved; `None` if they are no better than before: fewer
-    /// may not be proved at all, or as few and fewer not to be within the tolerance.
-    pub fn prove_more(
+    /// Distances of triangles from the surface, infinite where none is found; `None` if they are no better than before: fewer
+    /// are to have none, or as few and fewer are to be beyond the tolerance.
+    pub fn judge_better(
         &self,
         faces: &[FaceId],
         corners: &[[Vertex; 3]],
-        before: Unproved,
+        before: Off,
     ) -> Option<Vec<(FaceId, f32)>> {
-        let mut now = Unproved::default();
-        let mut proved = Vec::with_capacity(faces.len());
+        let mut now = Off::default();
+        let mut judged = Vec::with_capacity(faces.len());
         for (f, corners) in faces.iter().zip(corners) {
-            let distance = distance(self.space, corners.each_ref(), self.coarse);
+            let distance = self.distance(corners, self.coarse);
             let distance = distance.map_or(f32::INFINITY, |d| d as f32);
             now.add(distance, self.tolerance);
             if now >= before {
                 return None;
             }
-            proved.push((*f, distance));
+            judged.push((*f, distance));
         }
-        Some(proved)
+        Some(judged)
     }
 
-    /// The loss of a vertex in the place of others, with its new faces: none if all are proved, `None` if it is too large, or if one of them
-    /// looks inwards. Without it many
-    /// small edits where nothing is proved could remove whole parts of the surface.
-    pub fn loss(
-        &self,
-        replaced: &[VertexId],
-        faces: &[(FaceId, f32)],
-        corners: &[[Vertex; 3]],
-    ) -> Option<f64> {
-        let is_far = |(_, distance): &(FaceId, f32)| *distance > self.tolerance as f32;
-        if !faces.iter().any(is_far) {
-            return Some(0.0);
-        }
-        let looks_in = |corners: &[Vertex; 3]| {
+    /// Whether triangles in the place of some faces are near all places of the surface that are kept there.
+    pub fn holds(&self, faces: impl Iterator<Item = FaceId>, corners: &[[Vertex; 3]]) -> bool {
+        let most = self.tolerance * self.tolerance;
+        let triangles: Vec<[DVec3; 3]> = corners.iter().map(|c| c.map(|v| v.position)).collect();
+        let is_near = |i: &u32| {
+            let place = self.places[*i as usize];
+            let square = |t: &[DVec3; 3]| mesh::closest_point(t, place).distance_squared(place);
+            triangles.iter().any(|t| square(t) <= most)
+        };
+        faces
+            .into_iter()
+            .all(|f| self.kept[f.index()].iter().all(is_near))
+    }
+
+    /// Whether one of some triangles looks inwards, where not all are near the surface.
+    fn looks_in(&self, faces: &[(FaceId, f32)], corners: &[[Vertex; 3]]) -> bool {
+        let is_in = |corners: &[Vertex; 3]| {
             let [a, b, c] = corners.map(|vertex| vertex.position);
             let out: DVec3 = corners.iter().map(Vertex::normal).sum();
             (b - a).cross(c - a).dot(out) <= 0.0
         };
-        if corners.iter().any(looks_in) {
-            return None;
-        }
-        let lost = |v: &VertexId| {
-            let position = self.mesh.position(*v);
-            let distances = corners.iter().map(|corners| {
-                let corners = corners.map(|vertex| vertex.position);
-                mesh::closest_point(&corners, position).distance(position)
-            });
-            self.losses[v.index()] + distances.fold(f64::INFINITY, f64::min)
-        };
-        let loss = replaced.iter().map(lost).fold(0.0, f64::max);
-        (loss <= LOST * self.tolerance).then_some(loss)
+        let is_far = |(_, distance): &(FaceId, f32)| *distance > self.tolerance as f32;
+        faces.iter().any(is_far) && corners.iter().any(is_in)
     }
 
-    /// Whether a triangle has a chance to be proved, and no angle is below the least one.
+    /// Whether a triangle may be near the surface as its corners tell, and no angle is below the least one.
     pub fn is_likely(&self, corners: &[Vertex; 3], least_angle: f64, tolerance: f64) -> bool {
         let [a, b, c] = corners.map(|v| v.position);
         let Some(normal) = (b - a).cross(c - a).try_normalize() else {
             return false;
         };
         let looks_out = |v: &Vertex| -v.gradient.dot(normal) > 0.3 * v.gradient.length();
-        let sag = |i: usize, j: usize| {
-            let (one, other) = (&corners[i], &corners[j]);
-            let turn = (one.normal() - other.normal()).dot(one.position - other.position);
-            turn.abs() / 8.0
-        };
         sine([a, b, c]) >= least_angle
             && corners.iter().all(looks_out)
             && [(0, 1), (1, 2), (2, 0)]
                 .iter()
-                .all(|(i, j)| sag(*i, *j) <= 1.2 * tolerance)
+                .all(|(i, j)| sag(&corners[*i], &corners[*j]) <= 1.2 * tolerance)
     }
 
     pub fn flip_gain(&self, h: HalfEdgeId) -> Option<f64> {
@@ -244,28 +239,30 @@ impl Improver<'_> {
         }
         let faces = [mesh.face(h)?, mesh.face(mesh.twin(h))?];
         let corners = [[s, r, p], [r, s, q]];
-        let before = self.unproved_among(faces.into_iter());
-        let mut proved = if before == Unproved::default() {
-            self.prove(&faces, &corners, 0.0, self.tolerance)?
+        if !self.holds(faces.into_iter(), &corners) {
+            return None;
+        }
+        let before = self.off_among(faces.into_iter());
+        let mut judged = if before == Off::default() {
+            self.judge(&faces, &corners, 0.0, self.tolerance)?
         } else {
-            self.prove_more(&faces, &corners, before)?
+            self.judge_better(&faces, &corners, before)?
         };
         // Either may get either number.
-        let farthest = proved
+        let farthest = judged
             .iter()
             .map(|(_, distance)| *distance)
             .fold(0.0, f32::max);
-        proved
+        judged
             .iter_mut()
             .for_each(|(_, distance)| *distance = farthest);
         Some(Plan {
             vertex: None,
-            faces: proved,
-            loss: 0.0,
+            faces: judged,
         })
     }
 
-    /// A division of two triangles into four; `helps` if fewer have to be unproved afterwards.
+    /// A division of two triangles into four; `helps` if fewer have to be off the surface afterwards.
     pub fn plan_split(&self, h: HalfEdgeId, helps: bool) -> Option<Plan> {
         let mesh = &self.mesh;
         let [p, q, r, s] = self.diamond(h).map(|v| self.vertices[v.index()]);
@@ -275,22 +272,17 @@ impl Improver<'_> {
         let (left, right) = (mesh.face(h)?, mesh.face(mesh.twin(h))?);
         let corners = [[p, m, r], [m, q, r], [q, m, s], [m, p, s]];
         let faces = [left, left, right, right];
-        // All may be too far, as they can be divided again, but no more may be unproved.
-        let before = self.unproved_among([left, right].into_iter());
-        let allowed = Unproved {
+        // All may be too far, as they can be divided again, but no more may be off the surface.
+        let before = self.off_among([left, right].into_iter());
+        let allowed = Off {
             all: before.all,
             far: 5,
         };
         let allowed = if helps { before } else { allowed };
-        let proved = self.prove_more(&faces, &corners, allowed)?;
-        let ends = [mesh.origin(h), mesh.target(h)];
+        let judged = self.judge_better(&faces, &corners, allowed)?;
         Some(Plan {
             vertex: Some(m),
-            faces: proved,
-            loss: ends
-                .map(|v| self.losses[v.index()])
-                .into_iter()
-                .fold(0.0, f64::max),
+            faces: judged,
         })
     }
 
@@ -304,14 +296,9 @@ impl Improver<'_> {
         let along = along - normal * along.dot(normal);
         let before = self.star_angle(v);
         let is_off = own.value.abs() > 1e-2 * self.tolerance * own.gradient.length();
-        let unproved = self.unproved_among(mesh.vertex_faces(v));
-        let is_proved = unproved == Unproved::default();
-        let reach = along.length()
-            + if is_proved {
-                self.tolerance
-            } else {
-                self.coarse
-            };
+        let off = self.off_among(mesh.vertex_faces(v));
+        let is_near = off == Off::default();
+        let reach = along.length() + if is_near { self.tolerance } else { self.coarse };
         [1.0, 0.5, 0.0].into_iter().find_map(|share| {
             let start = own.position + along * share;
             let vertex = project(self.space, start, reach, self.tolerance)?;
@@ -320,13 +307,14 @@ impl Improver<'_> {
                 .iter()
                 .map(|f| self.corners_with(*f, &[v], vertex))
                 .collect();
-            if !is_proved {
-                let proved = self.prove_more(&faces, &corners, unproved)?;
-                let loss = self.loss(&[v], &proved, &corners)?;
-                return Some(Plan {
+            if !self.holds(faces.iter().copied(), &corners) {
+                return None;
+            }
+            if !is_near {
+                let judged = self.judge_better(&faces, &corners, off)?;
+                return (!self.looks_in(&judged, &corners)).then_some(Plan {
                     vertex: Some(vertex),
-                    faces: proved,
-                    loss,
+                    faces: judged,
                 });
             }
             // Better by a little, or as fair where the vertex has to come to the surface.
@@ -335,11 +323,10 @@ impl Improver<'_> {
             } else {
                 before + 0.01
             };
-            let proved = self.prove(&faces, &corners, least, self.tolerance)?;
+            let judged = self.judge(&faces, &corners, least, self.tolerance)?;
             Some(Plan {
                 vertex: Some(vertex),
-                faces: proved,
-                loss: 0.0,
+                faces: judged,
             })
         })
     }

@@ -24,15 +24,19 @@ impl Improver<'_> {
         let mut chosen = Vec::new();
         let mut touched = Vec::new();
         for edit in edits {
-            if self.is_refused(edit) {
-                continue;
-            }
             touched.clear();
             self.touched(edit, &mut touched);
-            if touched.iter().all(|v| !is_taken[v.index()]) {
-                touched.iter().for_each(|v| is_taken[v.index()] = true);
-                chosen.push(edit);
+            // Two edits change a common face only where an end of one is beside an end of the other.
+            let ends = match edit {
+                Edit::Collapse(_) | Edit::Merge(_) => &touched[..2],
+                Edit::Flip(_) | Edit::Split(_) => &touched[..],
+                Edit::Move(_) => &touched[..1],
+            };
+            if self.is_refused(edit) || ends.iter().any(|v| is_taken[v.index()]) {
+                continue;
             }
+            touched.iter().for_each(|v| is_taken[v.index()] = true);
+            chosen.push(edit);
         }
         let this = &*self;
         let plans = map_by(LARGE, self.threads, &chosen, progress, |edit| {
@@ -61,8 +65,8 @@ impl Improver<'_> {
             Edit::Move(v) => [v; 2],
         };
         let changed = vertices.map(|v| self.changed[v.index()]);
-        let refused = self.refused.get(&edit);
-        refused.is_some_and(|round| changed.iter().all(|changed| changed <= round))
+        let refused = self.refused.round(edit);
+        refused.is_some_and(|round| changed.iter().all(|changed| *changed <= round))
     }
 
     pub fn collapse(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {

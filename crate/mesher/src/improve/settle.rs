@@ -1,13 +1,16 @@
-//! Proofs of triangles, and remedies for those that are not proved.
+//! Remedies for triangles that are not near the surface, and proofs of those that are.
 
-use super::state::{Attempt, Edit, Improver};
-use crate::certify::{distance, is_hopeless};
+use super::state::{Edit, Improver};
+use crate::certify::is_within;
 use crate::options::{MeshError, Progress};
 use crate::parallel::{LARGE, map_by};
 use mesh::{FaceId, HalfEdgeId, VertexId};
 
 /// Rounds in which triangles are divided or removed until all are near the surface.
 const SETTLE_ROUNDS: usize = 40;
+/// Rounds in which nothing but divisions are tried, as long as more than one of so many triangles are far.
+const COARSE_ROUNDS: usize = 12;
+const COARSE: usize = 4;
 /// Rounds in which every edit is tried at the triangles that are left.
 const RESCUE_ROUNDS: usize = 8;
 /// Most triangles of such a round: where more are left, there are kinks, or the surface touches itself, and no edit would help.
@@ -20,19 +23,27 @@ const THIN: f64 = 0.25;
 /// That below which it is not divided even if nothing else helps.
 const SLIVER: f64 = 0.02;
 
+/// Rounds in which triangles that are not proved are divided.
+const DIVISIONS: usize = 5;
+/// Most triangles of such a round, as a part of all, unless there are fewer than so many.
+const FEW: usize = 8;
+const LEAST_DIVIDED: usize = 60;
+
 impl Improver<'_> {
-    /// Proves triangles that are not yet proved to be near the surface; divides those that are too large, and removes flat ones.
+    /// Looks at triangles of which nothing is known yet; divides those that are too far from the surface, and removes flat ones.
     pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
         let (mut least, mut stalled) = (usize::MAX, 0);
         let start = self.space.evaluations();
         let most = LEAST_WORK + MOST_WORK * self.mesh.face_count() as u64;
         for round in 0..SETTLE_ROUNDS {
             progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
-            let far = self.unproved(progress)?;
+            let far = self.off(progress)?;
+            // A mesh that is too coarse has more such faces at first, and each half of one is nearer.
+            let is_coarse = round < COARSE_ROUNDS && COARSE * far.len() > self.mesh.face_count();
             // All kinds of remedies have been tried without much success.
             if far.len() < least - least / 20 {
                 (least, stalled) = (far.len(), 0);
-            } else {
+            } else if !is_coarse {
                 stalled += 1;
                 if stalled == 8 {
                     break;
@@ -43,7 +54,7 @@ impl Improver<'_> {
             }
             let mut edits: Vec<(f64, Edit)> = far
                 .into_iter()
-                .filter_map(|f| self.remedy(f, round))
+                .filter_map(|f| self.remedy(f, if is_coarse { 0 } else { round }))
                 .collect();
             edits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             edits.dedup_by_key(|(_, edit)| *edit);
@@ -60,14 +71,67 @@ impl Improver<'_> {
                 break;
             }
         }
-        self.unproved(progress)?;
+        self.off(progress)?;
         Ok(())
+    }
+
+    /// Proves faces to be near the surface, and divides those that are not, as long as they are few. Returns whether each is proved, in the
+    /// order of the faces.
+    pub fn prove(&mut self, progress: &mut Progress<'_>) -> Result<Vec<bool>, MeshError> {
+        for round in 0..=DIVISIONS {
+            progress.at(round as f32 / (DIVISIONS + 1) as f32)?;
+            let faces = self.mesh.faces();
+            let new: Vec<FaceId> = faces.filter(|f| self.proofs[f.index()].is_none()).collect();
+            let this = &*self;
+            let found = map_by(LARGE, self.threads, &new, progress, |f| {
+                let corners = this.corners(*f).map(|v| this.mesh.position(v));
+                this.is_fixed_face(*f) || is_within(this.space, corners, this.limit)
+            })?;
+            for (f, is_proved) in new.into_iter().zip(found) {
+                self.proofs[f.index()] = Some(is_proved);
+            }
+            let faces = self.mesh.faces();
+            let open: Vec<FaceId> = faces
+                .filter(|f| self.proofs[f.index()] == Some(false))
+                .collect();
+            let many = LEAST_DIVIDED.max(self.mesh.face_count() / FEW);
+            if round == DIVISIONS || open.len() > many {
+                break;
+            }
+            let long = open.into_iter().filter_map(|f| self.split_of_longest(f));
+            let mut edits: Vec<(f64, Edit)> = long.collect();
+            edits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            edits.dedup_by_key(|(_, edit)| *edit);
+            let edits = edits.into_iter().map(|(_, edit)| edit).collect();
+            if self.do_round(edits, progress)? == 0 {
+                break;
+            }
+        }
+        let faces = self.mesh.faces();
+        Ok(faces
+            .map(|f| self.proofs[f.index()] == Some(true))
+            .collect())
+    }
+
+    /// The division of a face at its longest edge, with its rank; `None` if it is too flat, or in a lid.
+    fn split_of_longest(&self, f: FaceId) -> Option<(f64, Edit)> {
+        let length = |h: &HalfEdgeId| {
+            let [a, b] = [self.mesh.origin(*h), self.mesh.target(*h)];
+            self.mesh
+                .position(a)
+                .distance_squared(self.mesh.position(b))
+        };
+        let edges = self.mesh.face_half_edges(f);
+        let edges = edges.map(|h| (length(&h), h.min(self.mesh.twin(h))));
+        let (length, h) = edges.max_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+        let edit = Edit::Split(h);
+        (self.angle(f) > SLIVER && self.is_allowed(edit)).then_some((-length, edit))
     }
 
     /// Tries every edit at each of the faces that are left, one after the other, until one helps. Returns how many were helped.
     pub fn rescue(&mut self, progress: &mut Progress<'_>) -> Result<usize, MeshError> {
         let mut done = 0;
-        let far = self.unproved(progress)?;
+        let far = self.off(progress)?;
         if far.len() > MOST_RESCUED {
             return Ok(0);
         }
@@ -91,7 +155,7 @@ impl Improver<'_> {
                 if is_known || !self.is_allowed(edit) {
                     continue;
                 }
-                // Divisions of flat triangles that prove nothing would be repeated for ever.
+                // Divisions of flat triangles that do not help would be repeated for ever.
                 let plan = match edit {
                     Edit::Split(h) => self.plan_split(h, self.angle(f) <= SLIVER),
                     _ => self.plan(edit),
@@ -110,24 +174,22 @@ impl Improver<'_> {
         Ok(done)
     }
 
-    /// The faces that are not proved to be within the tolerance, also after another attempt, but might be if they were others.
-    pub fn unproved(&mut self, progress: &mut Progress<'_>) -> Result<Vec<FaceId>, MeshError> {
+    /// The faces that are not within the tolerance.
+    pub fn off(&mut self, progress: &mut Progress<'_>) -> Result<Vec<FaceId>, MeshError> {
         let tolerance = self.tolerance as f32;
         let faces = self.mesh.faces();
         let far: Vec<FaceId> = faces
             .filter(|f| self.errors[f.index()] > tolerance && !self.is_fixed_face(*f))
             .collect();
-        let is_new = |f: &FaceId| self.attempts[f.index()] == Attempt::None;
+        let is_new = |f: &FaceId| !self.is_off[f.index()];
         let new: Vec<FaceId> = far.iter().copied().filter(is_new).collect();
         let this = &*self;
-        let proved = map_by(LARGE, self.threads, &new, progress, |f| {
+        let distances = map_by(LARGE, self.threads, &new, progress, |f| {
             let corners = this.corners(*f).map(|v| this.vertices[v.index()]);
-            let proved = distance(this.space, corners.each_ref(), this.tolerance);
-            let is_hopeless = proved.is_none() && is_hopeless(this.space, &corners, this.tolerance);
-            (proved, is_hopeless)
+            this.distance(&corners, this.tolerance)
         })?;
-        for (f, (proved, is_hopeless)) in new.into_iter().zip(proved) {
-            match proved {
+        for (f, distance) in new.into_iter().zip(distances) {
+            match distance {
                 Some(distance) => {
                     self.errors[f.index()] = distance as f32;
                     // Edits there are judged in another way from now on.
@@ -135,15 +197,13 @@ impl Improver<'_> {
                         self.changed[v.index()] = self.round + 1;
                     }
                 }
-                None if is_hopeless => self.attempts[f.index()] = Attempt::Hopeless,
-                None => self.attempts[f.index()] = Attempt::Failed,
+                None => self.is_off[f.index()] = true,
             }
         }
-        let has_failed = |f: &FaceId| self.attempts[f.index()] == Attempt::Failed;
-        Ok(far.into_iter().filter(has_failed).collect())
+        Ok(far.into_iter().filter(|f| self.is_off[f.index()]).collect())
     }
 
-    /// The edit that may help a face which is not proved to be near the surface, with its rank; `None` if there is none.
+    /// The edit that may help a face which is not near the surface, with its rank; `None` if there is none.
     pub fn remedy(&self, f: FaceId, round: usize) -> Option<(f64, Edit)> {
         let mesh = &self.mesh;
         let mut edges: Vec<(f64, HalfEdgeId)> = mesh

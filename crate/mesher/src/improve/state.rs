@@ -1,6 +1,6 @@
 //! A mesh that is being improved: what is known of its vertices and faces, and how edits change it.
 
-use crate::certify::Vertex;
+use crate::certify::{Vertex, estimate};
 use crate::forest::Forest;
 use crate::guard::{Corner, Guard, Guarded};
 use crate::march::Raw;
@@ -8,7 +8,11 @@ use crate::options::MeshError;
 use crate::space::Space;
 use glam::DVec3;
 use mesh::{FaceId, HalfEdgeId, HalfEdgeMesh, TriangleMesh, VertexId};
-use std::collections::BTreeMap;
+
+/// Samples may be so far from the surface, in tolerances: proofs need some room, and between samples it may be a little more.
+const SHARE: f64 = 0.8;
+/// The largest distance from the surface of vertices whose places are kept, in tolerances.
+const ON: f64 = 0.25;
 
 /// A change of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,24 +29,58 @@ pub enum Edit {
     Move(VertexId),
 }
 
-/// A change that was proved to be good.
+/// For each edit the last round in which it was refused.
+#[derive(Debug, Default)]
+pub struct Refused {
+    /// For each kind, by the number of the half-edge or the vertex; 0 for none.
+    rounds: [Vec<u32>; 5],
+}
+
+impl Refused {
+    fn place(edit: Edit) -> (usize, usize) {
+        match edit {
+            Edit::Collapse(h) => (0, h.index()),
+            Edit::Merge(h) => (1, h.index()),
+            Edit::Flip(h) => (2, h.index()),
+            Edit::Split(h) => (3, h.index()),
+            Edit::Move(v) => (4, v.index()),
+        }
+    }
+
+    /// The round in which an edit was refused, if it was.
+    pub fn round(&self, edit: Edit) -> Option<u32> {
+        let (kind, i) = Self::place(edit);
+        let round = self.rounds[kind].get(i).copied();
+        round.filter(|round| *round > 0)
+    }
+
+    /// Takes note that an edit was refused.
+    pub fn insert(&mut self, edit: Edit, round: u32) {
+        let (kind, i) = Self::place(edit);
+        let rounds = &mut self.rounds[kind];
+        if rounds.len() <= i {
+            rounds.resize(i + 1, 0);
+        }
+        rounds[i] = round;
+    }
+}
+
+/// A change that was found to be good.
 pub struct Plan {
     /// The remaining or moved vertex.
     pub vertex: Option<Vertex>,
     /// The faces that change, with their new distances from the surface.
     pub faces: Vec<(FaceId, f32)>,
-    /// The new loss of that vertex.
-    pub loss: f64,
 }
 
-/// The numbers of faces that are not proved to be near the surface at all, and of those proved only to be farther than the tolerance.
+/// The numbers of faces that are not found to be near the surface at all, and of those found to be farther than the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Unproved {
+pub struct Off {
     pub all: usize,
     pub far: usize,
 }
 
-impl Unproved {
+impl Off {
     /// Counts a face with such a distance from the surface.
     pub fn add(&mut self, distance: f32, tolerance: f64) {
         if distance.is_infinite() {
@@ -53,22 +91,13 @@ impl Unproved {
     }
 }
 
-/// Result of an attempt to prove a face.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Attempt {
-    /// There was none.
-    #[default]
-    None,
-    /// It failed.
-    Failed,
-    /// Nor would a smaller face there be proved.
-    Hopeless,
-}
-
 /// A mesh that is being improved.
 pub struct Improver<'a> {
     pub space: &'a Space<'a>,
+    /// The tolerance of samples.
     pub tolerance: f64,
+    /// That of proofs.
+    pub limit: f64,
     /// The largest distance of the mesh from the surface at the start.
     pub coarse: f64,
     pub threads: usize,
@@ -76,15 +105,19 @@ pub struct Improver<'a> {
     pub vertices: Vec<Vertex>,
     pub is_fixed: Vec<bool>,
     pub errors: Vec<f32>,
-    /// The largest distance that each vertex, and those that were merged into it, may be from where the mesh was before edits that left triangles unproved.
-    pub losses: Vec<f64>,
-    /// Results of the last attempts to prove the faces that are not proved to be within the tolerance, since they changed.
-    pub attempts: Vec<Attempt>,
+    /// Places of the surface: where vertices were at the start.
+    pub places: Vec<DVec3>,
+    /// For each face, the places that it is nearest to, of those that were kept by faces in its place.
+    pub kept: Vec<Vec<u32>>,
+    /// The faces that were looked at since they changed, and are not within the tolerance.
+    pub is_off: Vec<bool>,
+    /// Whether each face was proved to be near the surface, if that was tried since it changed.
+    pub proofs: Vec<Option<bool>>,
     pub guard: Guard,
     /// The round in which something around a vertex has changed.
     pub changed: Vec<u32>,
     /// The round in which an edit was refused: as long as nothing changes at its vertices it would be again.
-    pub refused: BTreeMap<Edit, u32>,
+    pub refused: Refused,
     pub round: u32,
 }
 
@@ -115,6 +148,15 @@ impl<'a> Improver<'a> {
         let positions = vertices.iter().map(|v| v.position).collect();
         let mesh = HalfEdgeMesh::from_triangles(&TriangleMesh::new(positions, triangles))
             .map_err(|error| MeshError::Failed(error.to_string()))?;
+        let places: Vec<DVec3> = vertices.iter().map(|v| v.position).collect();
+        let mut kept = vec![Vec::new(); mesh.face_slots()];
+        for v in mesh.vertices().filter(|v| !is_fixed[v.index()]) {
+            let vertex = &vertices[v.index()];
+            let is_on = vertex.value.abs() <= ON * tolerance * vertex.gradient.length();
+            if let Some(f) = mesh.vertex_faces(v).next().filter(|_| is_on) {
+                kept[f.index()].push(v.index() as u32);
+            }
+        }
         let guard = Guard::new(&mesh, |v| match guarded {
             #[cfg(test)]
             Guarded::Nowhere => false,
@@ -125,13 +167,16 @@ impl<'a> Improver<'a> {
         });
         Ok(Self {
             space,
-            tolerance,
+            tolerance: SHARE * tolerance,
+            limit: tolerance,
             coarse,
             threads,
             changed: vec![1; vertices.len()],
-            refused: BTreeMap::new(),
-            attempts: vec![Attempt::None; mesh.face_slots()],
-            losses: vec![0.0; mesh.vertex_slots()],
+            refused: Refused::default(),
+            is_off: vec![false; mesh.face_slots()],
+            proofs: vec![None; mesh.face_slots()],
+            places,
+            kept,
             guard,
             mesh,
             vertices,
@@ -143,6 +188,11 @@ impl<'a> Improver<'a> {
                 .collect(),
             round: 1,
         })
+    }
+
+    /// The distance of a triangle from the surface as samples tell it; `None` if it is more than the tolerance.
+    pub fn distance(&self, corners: &[Vertex; 3], tolerance: f64) -> Option<f64> {
+        estimate(self.space, corners.each_ref(), tolerance)
     }
 
     pub fn corners(&self, f: FaceId) -> [VertexId; 3] {
@@ -221,11 +271,11 @@ impl<'a> Improver<'a> {
         }
     }
 
-    /// The number of some faces that are not proved to be near the surface.
-    pub fn unproved_among(&self, faces: impl Iterator<Item = FaceId>) -> Unproved {
-        let mut unproved = Unproved::default();
-        faces.for_each(|f| unproved.add(self.errors[f.index()], self.tolerance));
-        unproved
+    /// The number of some faces that are not near the surface.
+    pub fn off_among(&self, faces: impl Iterator<Item = FaceId>) -> Off {
+        let mut off = Off::default();
+        faces.for_each(|f| off.add(self.errors[f.index()], self.tolerance));
+        off
     }
 
     /// The triangles that an edit makes, in the place of which faces. A vertex that is new has the number after all others.
@@ -310,8 +360,59 @@ impl<'a> Improver<'a> {
         center.is_some()
     }
 
+    /// Hands places over to the nearest of some faces.
+    fn keep(&mut self, places: &[u32], faces: &[FaceId]) {
+        for i in places {
+            let place = self.places[*i as usize];
+            let mut best = (f64::INFINITY, None);
+            for f in faces {
+                let triangle = self.corners(*f).map(|v| self.mesh.position(v));
+                let square = mesh::closest_point(&triangle, place).distance_squared(place);
+                if square < best.0 {
+                    best = (square, Some(f));
+                }
+            }
+            if let (_, Some(f)) = best {
+                self.kept[f.index()].push(*i);
+            }
+        }
+    }
+
+    /// The faces whose places an edit hands over to others.
+    fn giving(&self, edit: Edit) -> Vec<FaceId> {
+        let mesh = &self.mesh;
+        match edit {
+            Edit::Collapse(h) | Edit::Merge(h) => mesh
+                .vertex_faces(mesh.origin(h))
+                .chain(mesh.vertex_faces(mesh.target(h)))
+                .collect(),
+            Edit::Move(v) => mesh.vertex_faces(v).collect(),
+            Edit::Flip(h) | Edit::Split(h) => [mesh.face(h), mesh.face(mesh.twin(h))]
+                .into_iter()
+                .flatten()
+                .collect(),
+        }
+    }
+
     /// Changes the mesh as planned, if it stays a manifold. Returns the vertex in the middle of the change, or an end of a flipped edge.
     pub fn change(&mut self, edit: Edit, plan: &Plan) -> Option<VertexId> {
+        let giving = self.giving(edit);
+        let center = self.change_mesh(edit, plan)?;
+        self.kept.resize(self.mesh.face_slots(), Vec::new());
+        let mut places = Vec::new();
+        for f in &giving {
+            places.append(&mut self.kept[f.index()]);
+        }
+        places.sort_unstable();
+        let taking: Vec<FaceId> = match edit {
+            Edit::Flip(_) => giving,
+            _ => self.mesh.vertex_faces(center).collect(),
+        };
+        self.keep(&places, &taking);
+        Some(center)
+    }
+
+    fn change_mesh(&mut self, edit: Edit, plan: &Plan) -> Option<VertexId> {
         let center = match (edit, plan.vertex) {
             (Edit::Collapse(h) | Edit::Merge(h), Some(vertex)) => {
                 let v = self.mesh.target(h);
@@ -319,7 +420,6 @@ impl<'a> Improver<'a> {
                     return None;
                 }
                 self.vertices[v.index()] = vertex;
-                self.losses[v.index()] = plan.loss;
                 v
             }
             (Edit::Move(v), Some(vertex)) => {
@@ -327,7 +427,6 @@ impl<'a> Improver<'a> {
                     return None;
                 }
                 self.vertices[v.index()] = vertex;
-                self.losses[v.index()] = plan.loss;
                 v
             }
             (Edit::Split(h), Some(vertex)) => {
@@ -336,8 +435,6 @@ impl<'a> Improver<'a> {
                 };
                 self.vertices.resize(self.mesh.vertex_slots(), vertex);
                 self.vertices[v.index()] = vertex;
-                self.losses.resize(self.mesh.vertex_slots(), plan.loss);
-                self.losses[v.index()] = plan.loss;
                 self.is_fixed.resize(self.mesh.vertex_slots(), false);
                 self.is_fixed[v.index()] = false;
                 self.guard.set_guarded(v, false);
@@ -352,10 +449,12 @@ impl<'a> Improver<'a> {
                     .iter()
                     .map(|(_, distance)| *distance)
                     .fold(0.0, f32::max);
-                self.attempts.resize(self.mesh.face_slots(), Attempt::None);
+                self.is_off.resize(self.mesh.face_slots(), false);
+                self.proofs.resize(self.mesh.face_slots(), None);
                 for f in self.mesh.vertex_faces(v) {
                     self.errors[f.index()] = farthest;
-                    self.attempts[f.index()] = Attempt::None;
+                    self.is_off[f.index()] = false;
+                    self.proofs[f.index()] = None;
                 }
                 return Some(v);
             }
@@ -371,7 +470,8 @@ impl<'a> Improver<'a> {
         };
         for (face, distance) in &plan.faces {
             self.errors[face.index()] = *distance;
-            self.attempts[face.index()] = Attempt::None;
+            self.is_off[face.index()] = false;
+            self.proofs[face.index()] = None;
         }
         self.changed[center.index()] = self.round;
         for n in self.mesh.neighbors(center) {
