@@ -30,7 +30,7 @@ pub struct Logarithm<'a> {
     known: &'a [Known],
 }
 
-/// What is known of the logarithm of a term in a ball.
+/// Value, gradient and bounds of a term's logarithm in a ball.
 struct Term {
     /// At the centre: the value, and the gradient.
     value: f64,
@@ -99,7 +99,7 @@ impl<'a> Logarithm<'a> {
             None => terms.extend((0..self.primitives.len()).map(|i| self.term(i, ball))),
         }
         let all = bounds(&terms, ball.radius);
-        // What is left out adds little: it is at most δ times the slack.
+        // Terms left out of the part: their sum is at most δ times the slack.
         let rest = part.map_or(Enclosure::ZERO, |part| part.rest);
         let size = rest.value[1].max(-rest.value[0]);
         let slope = all.slope;

@@ -67,14 +67,14 @@ fn ball([a, b, c]: &[DVec3; 3]) -> Ball {
 /// Twice the area of a triangle over the square of its longest side, below which it counts as flat.
 const FLAT: f64 = 1e-7;
 
-/// Shares of the corners at the points where a triangle is looked at: a few in any case, and others where it is far from the surface or turned from it.
+/// Barycentric coordinates of the points where each triangle is sampled.
 const FEW_SAMPLES: [[f64; 3]; 4] = [
     [1.0 / 3.0; 3],
     [0.5, 0.5, 0.0],
     [0.0, 0.5, 0.5],
     [0.5, 0.0, 0.5],
 ];
-/// The others.
+/// Barycentric coordinates of further points, for triangles far from the surface or turned from it.
 const MORE_SAMPLES: [[f64; 3]; 9] = [
     [0.6, 0.2, 0.2],
     [0.2, 0.6, 0.2],
@@ -86,17 +86,17 @@ const MORE_SAMPLES: [[f64; 3]; 9] = [
     [0.75, 0.0, 0.25],
     [0.25, 0.0, 0.75],
 ];
-/// Where all edges bend by less than a share of the tolerance, and all corners' normals are near the triangle's, as the cosine of the angle tells, one sample is enough.
+/// Largest [`sag`] of an edge, in tolerances, at which one sample is enough for a triangle whose corners' normals are near its own.
 pub const EASY: f64 = 0.05;
-/// That cosine.
+/// Least cosine of the angle between a corner's normal and the triangle's at which one sample is enough.
 const EVEN: f64 = 0.95;
 /// The least cosine of the angle between a triangle's normal and the surface's anywhere.
 const FACING: f64 = 0.3;
-/// The largest distance to first order that may be smaller in truth, in tolerances.
+/// Largest distance from the surface by a first-order estimate, in tolerances, of a point that may be within the tolerance.
 const FARTHEST: f64 = 2.0;
-/// That above which few samples are enough, if they are nearer to the surface than a share of the tolerance.
+/// Least cosine of the angle between a triangle's normal and the surface's at which the first samples are enough.
 const FLUSH: f64 = 0.9;
-/// That share.
+/// Largest distance from the surface, in tolerances, at which the first samples are enough.
 const NEAR: f64 = 0.3;
 
 /// The distance of a triangle from the surface as samples tell it; `None` if it is more than the tolerance, or if the triangle is turned
@@ -204,7 +204,7 @@ fn at(space: &Space<'_>, point: DVec3) -> Vertex {
     Vertex::new(point, &space.jet_at(point))
 }
 
-/// Whether the first of two triangles is outside and the second one inside; they are parts of such that were divided so often.
+/// Whether the first of two triangles is outside the surface and the second one inside, after `depth` divisions.
 fn is_between(space: &Space<'_>, pair: [[Vertex; 3]; 2], depth: u32) -> bool {
     let [front, back] = pair;
     let sides = [(&front, -1.0), (&back, 1.0)].map(|(corners, sign)| height(space, corners, sign));
