@@ -105,6 +105,7 @@ mod free;
 mod function;
 pub mod hard;
 mod hierarchy;
+mod inner_ball;
 mod kinks;
 mod known;
 mod lamps;

@@ -5,6 +5,7 @@ use crate::blob_set::{BlobSet, NEXT_TO_NOTHING};
 use crate::clusters::Clusters;
 use crate::far_march::{FarBody, FarQuery, FarWork};
 use crate::hierarchy::Hierarchy;
+use crate::inner_ball::InnerBall;
 use crate::kinks::Kinks;
 use crate::layout::PACKET;
 use crate::nearby::{Nearby, Other};
@@ -93,6 +94,7 @@ struct Groups {
     strong: Hierarchy,
     /// A ball that holds these balls; `None` if there are none.
     surface: Option<(DVec3, f64)>,
+    inside: Option<InnerBall>,
     clusters: Clusters,
     kinks: Kinks,
 }
@@ -313,6 +315,9 @@ impl Soft {
             let [near, far] = beam.reach(center, radius);
             range = [range[0].at_most(near), range[1].at_least(far)];
         });
+        if let Some(ball) = &groups.inside {
+            range[0] = range[0].at_least(ball.left_at(&beam));
+        }
         let [from, to] = [range[0], range[1].min(limit)];
         if from.is_nan() || to.is_nan() || from >= to {
             return None;
@@ -427,8 +432,12 @@ impl Soft {
             }
         }
         let own = |i: u32| (i, &self.primitives[i as usize]);
+        let all = body.range.start as usize..body.range.end as usize;
         Groups {
             surface: (!strong.is_empty()).then(|| around(&strong)),
+            inside: (!skeletons.is_empty())
+                .then(|| InnerBall::new(&self.bounds()[all], around(&skeletons)))
+                .flatten(),
             strong: Hierarchy::new(strong),
             clusters: Clusters::new(skeletons, self.bounds()),
             kinks: Kinks::new(body.range.clone().map(own)),

@@ -1,0 +1,167 @@
+//! A ball that is wholly inside a body, to leave out the start of rays that begin there.
+//!
+//! Many elements whose kernel has a pole have a surface far from all of them. Between them the field is thousands of times T, and so
+//! is the error of its interpolants, so that it takes long to prove that it does not cross T. But these kernels are bounded from
+//! below by their distance, which proves it for a whole ball at once.
+use crate::beam::Beam;
+use field::{Bound, Cut, THRESHOLD};
+use glam::DVec3;
+
+/// A ball in which a body's field is above T.
+#[derive(Clone, Copy, Debug)]
+pub struct InnerBall {
+    center: DVec3,
+    radius: f64,
+}
+
+/// How far above T the field is there, relative to T, for rounding.
+const MARGIN: f64 = 1e-6;
+/// Halvings of the step that finds the radius.
+const STEPS: u32 = 24;
+/// Largest radius.
+const LARGEST: f64 = 1e12;
+
+impl InnerBall {
+    /// The ball around a body's skeletons, enlarged, given the bounds of its terms and a ball that holds their skeletons. `None` if the
+    /// field is not known to be above T even there, or if some term carves: near its pole nothing is inside.
+    #[must_use]
+    pub fn new(bounds: &[Bound], (center, skeletons): (DVec3, f64)) -> Option<Self> {
+        let is_inside = |radius: f64| {
+            let least = bounds.iter().map(|bound| bound.least(center, radius));
+            least.sum::<f64>() > THRESHOLD * (1.0 + MARGIN)
+        };
+        let carves = bounds.iter().any(Bound::carves);
+        if carves || !(skeletons > 0.0 && is_inside(skeletons)) {
+            return None;
+        }
+        let mut radius = skeletons;
+        while radius < LARGEST && is_inside(2.0 * radius) {
+            radius *= 2.0;
+        }
+        let mut step = 0.5 * radius;
+        for _ in 0..STEPS {
+            if is_inside(radius + step) {
+                radius += step;
+            }
+            step *= 0.5;
+        }
+        Some(Self { center, radius })
+    }
+
+    /// Returns a parameter up to which all rays of a beam are in the ball; 0 if not all start there.
+    #[must_use]
+    pub fn left_at(&self, beam: &Beam) -> f64 {
+        let away = beam.axis.origin - self.center;
+        let along = away.dot(beam.axis.direction);
+        let end = |radius: f64| {
+            let square = radius * radius - (away.length_squared() - along * along);
+            square.at_least(0.0).sqrt() - along
+        };
+        let width = |t: f64| beam.width(t) + beam.lag(t);
+        let is_inside = |t: f64| beam.axis.at(t).distance(self.center) + width(t) <= self.radius;
+        // A beam never narrows, and a ball is convex.
+        let t = end(self.radius - width(end(self.radius))) * (1.0 - 1e-9);
+        if is_inside(0.0) && is_inside(t) {
+            t.at_least(0.0)
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ray::Ray;
+    use crate::tests::common::Numbers;
+    use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton};
+
+    /// Points and segments in a cube, of which some carve.
+    fn body(kernel: Kernel, carving: f64, numbers: &mut Numbers) -> Vec<Primitive> {
+        let primitive = |i: u32| {
+            let base = numbers.vector();
+            let skeleton = if i % 3 == 0 {
+                let apex = base + numbers.vector() * 0.2;
+                Skeleton::Segment { base, apex }
+            } else {
+                Skeleton::Point { center: base }
+            };
+            let shaping = Shaping {
+                kernel,
+                radius: 0.05,
+                blobbiness: -2.0,
+                blob_scale: BlobScale::Relative,
+                strength: if i % 7 == 1 { carving } else { 1.0 },
+                influence: 1e-3,
+                taper: None,
+            };
+            Primitive::new(skeleton, &shaping, None).expect("flesh")
+        };
+        (0..300).map(primitive).collect()
+    }
+
+    /// The field is above T everywhere in the ball, whose radius is near that of the surface.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn the_field_is_above_the_threshold_in_the_ball() {
+        let mut numbers = Numbers(7);
+        let primitives = body(Kernel::Inverse, 1.0, &mut numbers);
+        let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
+        let ball = InnerBall::new(&bounds, (DVec3::ZERO, 2.0)).expect("a ball");
+        let value = |place: DVec3| field::sum(&primitives, place.to_array()).value;
+        for i in 0..300 {
+            let radius = ball.radius * f64::from(i + 1) / 300.0;
+            let place = numbers.vector().normalize() * radius;
+            assert!(value(place) > THRESHOLD, "{place}");
+        }
+        let outside = DVec3::X * (ball.radius + 4.0);
+        assert!(value(outside) < THRESHOLD, "{outside}");
+        // Other kernels have no bound from below, and what carves is stronger than all near its pole.
+        for (kernel, carving) in [(Kernel::Cauchy, 1.0), (Kernel::Inverse, -0.1)] {
+            let primitives = body(kernel, carving, &mut numbers);
+            let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
+            assert!(InnerBall::new(&bounds, (DVec3::ZERO, 2.0)).is_none());
+        }
+    }
+
+    /// All rays of a beam are in the ball until the beam leaves it, which is not much later.
+    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    fn a_beam_is_in_the_ball_until_it_leaves_it() {
+        let mut numbers = Numbers(8);
+        let (mut within, mut outside) = (0, 0);
+        for _ in 0..400 {
+            let ball = InnerBall {
+                center: numbers.vector(),
+                radius: numbers.between(1.0, 3.0),
+            };
+            let origin = numbers.vector() * 3.0;
+            let (direction, narrow) = (numbers.vector().normalize(), numbers.between(0.0, 0.1));
+            let rays: Vec<Ray> = (0..8)
+                .map(|_| Ray {
+                    origin: origin + numbers.vector() * narrow,
+                    direction: (direction + numbers.vector() * narrow).normalize(),
+                })
+                .collect();
+            let beam = Beam::around(&rays).expect("a beam");
+            let t = ball.left_at(&beam);
+            if t == 0.0 {
+                outside += 1;
+                continue;
+            }
+            within += 1;
+            for ray in &rays {
+                for part in [0.0, 0.3, 0.7, 1.0] {
+                    assert!(ray.at(part * t).distance(ball.center) <= ball.radius);
+                }
+            }
+            let after = beam.axis.at(t + 1e-6).distance(ball.center);
+            let wide = beam.width(2.0 * ball.radius) + beam.lag(2.0 * ball.radius);
+            assert!(
+                after + wide + 1e-3 > ball.radius || wide > 0.4,
+                "{after} {wide}"
+            );
+        }
+        assert!(within > 60 && outside > 60, "{within} {outside}");
+    }
+}
