@@ -462,8 +462,13 @@ impl Bound {
             }
             1 if self.crowding.is_some() => near.arc_factor * line(),
             1 => line(),
-            // A finite plane may have a larger field than the windowed one that stands for an infinite one.
-            _ if self.whole.is_finite() && !kernel.falls_fast() => f64::INFINITY,
+            // The integral over an infinite plane diverges; that over a face is largest for a disc of its area around the foot of the
+            // perpendicular.
+            _ if self.whole.is_finite() && !kernel.falls_fast() => {
+                let near = u * u;
+                let far = near + self.size / core::f64::consts::PI;
+                core::f64::consts::PI * kernel.over_ring(near, far) * (1.0 + 1e-12)
+            }
             _ => plane::jet(kernel, [0.0, 0.0, u]).value,
         };
         // Infinity times 0 is NaN: no bound.

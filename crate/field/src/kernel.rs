@@ -325,11 +325,14 @@ impl Kernel {
     /// is π times this.
     #[must_use]
     pub fn over_ring(self, p: f64, q: f64) -> f64 {
-        if self == Self::Cubed {
-            let [near, far] = [p, q].map(|q| (q + inverse::POLE2).sqrt());
-            return 2.0 * (q - p) / (near * far * (near + far));
+        // Differences of large numbers would lose the digits of a small ring far away.
+        let [near, far] = [p, q].map(|q| (q + inverse::POLE2).sqrt());
+        match self {
+            Self::Inverse => 2.0 * (q - p) / (near + far),
+            Self::Squared => libm::log1p((q - p) / (near * near)),
+            Self::Cubed => 2.0 * (q - p) / (near * far * (near + far)),
+            _ => self.over_disc(q) - self.over_disc(p),
         }
-        self.over_disc(q) - self.over_disc(p)
     }
 
     /// `∫₀^q G`: over a disc around the point, of area πq, the kernel's integral is π times this.
@@ -338,12 +341,7 @@ impl Kernel {
         match self {
             Self::Cauchy => q / (1.0 + q),
             Self::Gauss => -libm::expm1(-q),
-            Self::Inverse => {
-                let pole = inverse::POLE2.sqrt();
-                2.0 * q / ((q + inverse::POLE2).sqrt() + pole)
-            }
-            Self::Squared => libm::log1p(q / inverse::POLE2),
-            Self::Cubed => self.over_ring(0.0, q),
+            Self::Inverse | Self::Squared | Self::Cubed => self.over_ring(0.0, q),
             Self::Metaballs => {
                 // 2∫(1−u)²u du from 0.
                 let cone = |u: f64| {

@@ -19,7 +19,7 @@ use crate::shared::{CORNERS, Cell, Shared, Sums};
 use crate::spans::{KnownPart, Node};
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
-use field::{Cut, Primitive, THRESHOLD};
+use field::{Cut, Kernel, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -881,10 +881,12 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Whether the kernel of a primitive of the list has a pole.
-    fn has_pole(&self, id: u32) -> bool {
+    /// Whether a primitive of the list has a pole, and it is near. Faces of the inverse kernel have a small field and none; those of
+    /// the squared one grow by a logarithm alone, so that their field does not tell.
+    fn is_at_pole(&self, id: u32, magnitude: f64, touches: bool) -> bool {
         let primitive = self.list[id as usize] as usize;
-        self.terms.primitives[primitive].kernel.has_pole()
+        let kernel = self.terms.primitives[primitive].kernel;
+        kernel.has_pole() && (magnitude >= POLAR || touches && kernel != Kernel::Inverse)
     }
 
     /// Estimate of a list entry's largest slope over its size, at a distance ([`Bound::relative_slope`]).
@@ -1169,7 +1171,8 @@ impl<'a> Slabs<'a> {
                     }
                     if id & GROUP == 0 {
                         sorted.blurring |= 2.0 * rounding * self.cancels(id) >= THRESHOLD;
-                        sorted.polar |= magnitude >= POLAR && self.has_pole(id);
+                        let touches = candidate.distance == 0.0;
+                        sorted.polar |= self.is_at_pole(id, magnitude, touches);
                     }
                     continue;
                 }
