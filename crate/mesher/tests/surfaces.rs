@@ -82,6 +82,28 @@ fn each_kernel_gives_proved_meshes() {
     }
 }
 
+/// Samples of mesh and surface alike stay within the share of the tolerance that leaves room for proofs. From mesh to surface alone that
+/// would not be so: the mesh may end before a limb does.
+#[test]
+fn the_surface_is_near_the_mesh_as_well() {
+    for seed in 1..7 {
+        let mut random = common::Random(seed);
+        let limb = |_| {
+            let base = random.vector();
+            let apex = base + random.vector();
+            let skeleton = Skeleton::Segment { base, apex };
+            Primitive::new(skeleton, &shaping(Kernel::Gauss, 0.08), None).unwrap()
+        };
+        let sum: Sum = (0..4).map(limb).collect();
+        let tolerance = 0.03;
+        let surface = mesh_with(&sum, &Options::new(tolerance)).unwrap();
+        let [_, back] = surface.measured.largest;
+        let (share, [_, count]) = (back / tolerance, surface.measured.samples);
+        println!("{seed}: {share:.3} tolerances at {count} places");
+        assert!(share <= 0.805 && count > 300, "{seed}: {share} {count}");
+    }
+}
+
 #[test]
 fn tunnels_cavities_and_components_are_kept() {
     let arc = |center: DVec3, u: DVec3| Skeleton::Arc {
