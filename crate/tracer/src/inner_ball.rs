@@ -80,7 +80,7 @@ mod tests {
     fn body(kernel: Kernel, carving: f64, numbers: &mut Numbers) -> Vec<Primitive> {
         let primitive = |i: u32| {
             let base = numbers.vector();
-            let skeleton = if i % 3 == 0 {
+            let skeleton = if i.is_multiple_of(3) {
                 let apex = base + numbers.vector() * 0.2;
                 Skeleton::Segment { base, apex }
             } else {
