@@ -94,6 +94,7 @@ struct Groups {
     strong: Hierarchy,
     /// A ball that holds these balls; `None` if there are none.
     surface: Option<(DVec3, f64)>,
+    /// A ball in which the field is above T; `None` if none is known.
     inside: Option<InnerBall>,
     clusters: Clusters,
     kinks: Kinks,
