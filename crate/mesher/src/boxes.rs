@@ -95,7 +95,15 @@ impl Boxes {
 
     /// Gives an item a box, in place of the one it had.
     pub fn set(&mut self, item: u32, bounds: Aabb) {
-        self.remove(item);
+        let known = self.leaves.get(item as usize).copied();
+        if let Some(leaf) = known.filter(|leaf| *leaf != NONE) {
+            // Edits are small: it stays where it is among the others.
+            let node = &mut self.nodes[leaf as usize];
+            node.bounds = bounds;
+            let parent = node.parent;
+            self.fit(parent);
+            return;
+        }
         let leaf = self.add(Node {
             bounds,
             parent: NONE,
@@ -147,8 +155,13 @@ impl Boxes {
         while node != NONE {
             let [a, b] = self.nodes[node as usize].children;
             let [a, b] = [a, b].map(|i| self.nodes[i as usize].bounds);
-            self.nodes[node as usize].bounds = a.union(&b);
-            node = self.nodes[node as usize].parent;
+            let bounds = a.union(&b);
+            let own = &mut self.nodes[node as usize];
+            if own.bounds == bounds {
+                return;
+            }
+            own.bounds = bounds;
+            node = own.parent;
         }
     }
 

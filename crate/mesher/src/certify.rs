@@ -1,11 +1,12 @@
-//! Whether triangles are near the surface: by samples, and by proofs.
+//! Whether triangles are near the surface: by samples, which may be of [polynomials](crate::patches), and by proofs, which are not.
 //!
 //! Let a triangle have the unit normal n, and let all points of it be outside the surface when they are moved by d·n, and inside when
 //! moved by −d·n. Then on each of these ways is a point of the surface: no point of the triangle is farther from it than d. That is proved for parts of the
-//! triangle in balls of radius ρ, by bounds C and D on the function's second and third derivative in them: F is within ½·C·ρ² of the linear
-//! function with its values at the corners (Waldron 1998), and within 3e·ρ of a polynomial of the second degree with e = D·ρ²/2, which is no larger or smaller
-//! than its Bézier coefficients: the values at corners, and values plus half the slope along edges. (Terms whose second derivative
-//! jumps add their curvature times ρ to e.)
+//! triangle in balls of radius ρ, by bounds C and D on the function's second and third derivative in them. F is within ½·C·ρ² of the linear
+//! function with its values at the corners (Waldron 1998). And it is within D·ρ³/6 of Taylor's polynomial of the second degree at the centre,
+//! and their gradients within D·ρ²/2. That polynomial is no larger or smaller than its Bézier coefficients: its values at corners, and values plus
+//! half the slope along edges, which F's own are as near to as that. (Terms whose second derivative jumps add their curvature times
+//! ρ²/2 and ρ.)
 
 use crate::space::{SLACK, Space};
 use field::{Ball, Jet, THRESHOLD, Variation};
@@ -121,7 +122,7 @@ pub fn estimate(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
                 } else {
                     -tolerance
                 };
-            let beyond = space.jet_at(vertex.position + way).value - THRESHOLD;
+            let beyond = space.near_jet_at(vertex.position + way).value - THRESHOLD;
             if (beyond > 0.0) == (vertex.value > 0.0) {
                 return None;
             }
@@ -136,7 +137,7 @@ pub fn estimate(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Opt
     let at = |[u, v, w]: [f64; 3]| {
         let [a, b, c] = corners.map(|corner| corner.position);
         let point = a * u + b * v + c * w;
-        Vertex::new(point, &space.jet_at(point))
+        Vertex::new(point, &space.near_jet_at(point))
     };
     let [a, b, c] = corners;
     let is_easy = is_even(corners, normal)
@@ -200,7 +201,8 @@ pub fn is_within(space: &Space<'_>, corners: [DVec3; 3], tolerance: f64) -> bool
     })
 }
 
-fn at(space: &Space<'_>, point: DVec3) -> Vertex {
+/// The function anywhere, as it is.
+pub fn at(space: &Space<'_>, point: DVec3) -> Vertex {
     Vertex::new(point, &space.jet_at(point))
 }
 
@@ -249,6 +251,10 @@ fn height(space: &Space<'_>, corners: &[Vertex; 3], sign: f64) -> Option<f64> {
     let bezier = edges.into_iter().fold(lowest, |least, (one, other)| {
         least.min(control(one, other)).min(control(other, one))
     });
+    let longest = edges
+        .into_iter()
+        .map(|(one, other)| one.position.distance(other.position));
+    let longest = longest.fold(0.0, f64::max);
     let ball = ball(&corners.map(|v| v.position));
     let radius = ball.radius;
     let Variation {
@@ -259,9 +265,12 @@ fn height(space: &Space<'_>, corners: &[Vertex; 3], sign: f64) -> Option<f64> {
         step,
         ..
     } = space.variation(space.part_for(ball), ball);
-    let rest = (0.5 * third * radius + rough).min(curvature) * radius + jump + SLACK + steep_error;
-    // Coefficients that are found from different corners differ by the rest times an edge.
-    let quadratic = bezier - 3.0 * rest * radius;
+    // How far the function and its gradient are from Taylor's polynomial of the second degree at the centre.
+    let off = ((third * radius / 3.0 + rough).min(curvature) * 0.5 * radius + jump) * radius;
+    let steep_off =
+        (0.5 * third * radius + rough).min(curvature) * radius + jump + SLACK + steep_error;
+    // Its values at corners are that far from the function's, and its coefficients at edges further by half of them times the slopes' error.
+    let quadratic = bezier - 2.0 * off - 0.5 * steep_off * longest;
     let linear = lowest - (0.5 * curvature * radius + 2.0 * jump) * radius;
     Some(quadratic.max(linear) - step - SLACK - error)
 }
@@ -306,7 +315,7 @@ pub fn root(space: &Space<'_>, [a, b]: [DVec3; 2], [at_a, at_b]: [f64; 2], margi
 /// The point of the surface that is reached from a position along gradients, by a few steps of Newton's; not farther than
 /// `reach`.
 pub fn project(space: &Space<'_>, position: DVec3, reach: f64, tolerance: f64) -> Option<Vertex> {
-    let mut vertex = Vertex::new(position, &space.jet_at(position));
+    let mut vertex = Vertex::new(position, &space.near_jet_at(position));
     for _ in 0..4 {
         let step = vertex.gradient * (-vertex.value / vertex.gradient.length_squared());
         let length = step.length();
@@ -319,7 +328,7 @@ pub fn project(space: &Space<'_>, position: DVec3, reach: f64, tolerance: f64) -
         if !is_near {
             return None;
         }
-        vertex = Vertex::new(next, &space.jet_at(next));
+        vertex = Vertex::new(next, &space.near_jet_at(next));
     }
     None
 }

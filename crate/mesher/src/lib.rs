@@ -32,6 +32,7 @@
 //! - `refine.rs` splits cells until each proves, by bounds on the function's derivatives, that the linear interpolant has
 //!   the topology of the surface; `thin.rs` splits those on that may hide a part which is thinner than they are; `space.rs` evaluates the function by the terms that matter in a place;
 //! - `march.rs` makes triangles of the interpolant's level set, and lids where a box cuts it off;
+//! - `patches.rs` fits polynomials to the function near the surface, which are evaluated much sooner than it;
 //! - `improve/` makes them fewer and better, as long as samples of `certify.rs` tell that each is within the tolerance and all vertices of the
 //!   fine mesh are that near to the new one; then `certify.rs` proves what can be proved of them;
 //! - `measure.rs` measures distances by samples;
@@ -64,6 +65,7 @@ mod model;
 mod options;
 mod paint;
 mod parallel;
+mod patches;
 mod refine;
 mod solids;
 mod space;

@@ -5,6 +5,8 @@ use field::{Ball, Implicit, Jet, Logarithm, Part, Slack, Variation};
 use glam::DVec3;
 
 use crate::forest::{Cell, Forest, NONE};
+use crate::options::{MeshError, Progress};
+use crate::patches::Patches;
 
 /// Bound on the sum of terms that are left out at a place, in units of the threshold.
 pub const SLACK: f64 = 1e-7;
@@ -38,6 +40,7 @@ pub struct Space<'a> {
     /// The largest errors of values and gradients in any part, beyond what is left out.
     worst: [f64; 2],
     evaluations: AtomicU64,
+    patches: Patches,
 }
 
 impl<'a> Space<'a> {
@@ -51,6 +54,7 @@ impl<'a> Space<'a> {
             far: BORNE * tolerance,
             worst: [0.0; 2],
             evaluations: AtomicU64::new(0),
+            patches: Patches::default(),
         }
     }
 
@@ -124,9 +128,27 @@ impl<'a> Space<'a> {
         self.parts.len() as u32 - 1
     }
 
+    /// Fits [polynomials](Patches) to the function near the surface, for a tolerance, when the cells are known.
+    ///
+    /// # Errors
+    /// If the caller cancels.
+    pub fn fit(
+        &mut self,
+        tolerance: f64,
+        threads: usize,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), MeshError> {
+        self.patches = Patches::fit(self, tolerance, threads, progress)?;
+        Ok(())
+    }
+
     /// The smallest part known that serves a ball.
     pub fn part_for(&self, ball: Ball) -> u32 {
-        let leaf = self.forest.leaf_at(ball.center);
+        self.part_from(self.forest.leaf_at(ball.center), ball)
+    }
+
+    /// The same, where the leaf at its centre is known.
+    fn part_from(&self, leaf: u32, ball: Ball) -> u32 {
         let mut part = self.forest.cells[leaf as usize].part;
         while let Some(Nested { part: own, parent }) = self.parts.get(part as usize) {
             if own.ball.center.distance(ball.center) + ball.radius <= own.ball.radius {
@@ -139,10 +161,21 @@ impl<'a> Space<'a> {
 
     /// Value and gradient anywhere.
     pub fn jet_at(&self, point: DVec3) -> Jet<f64> {
+        self.jet_in(self.forest.leaf_at(point), point)
+    }
+
+    fn jet_in(&self, leaf: u32, point: DVec3) -> Jet<f64> {
         let ball = Ball {
             center: point,
             radius: 0.0,
         };
-        self.jet(self.part_for(ball), point)
+        self.jet(self.part_from(leaf, ball), point)
+    }
+
+    /// The same, near the surface by polynomials, when these were fitted.
+    pub fn near_jet_at(&self, point: DVec3) -> Jet<f64> {
+        let leaf = self.forest.leaf_at(point);
+        let near = self.patches.jet(leaf, point);
+        near.unwrap_or_else(|| self.jet_in(leaf, point))
     }
 }

@@ -155,6 +155,7 @@ fn guarded(
     let cells = refine::crossing(forest).len();
     let raw_triangles = raw.triangles.len();
     let is_cut = raw.is_lid.contains(&true);
+    space.fit(tolerance, threads, &mut progress)?;
     let start = Start {
         space: &space,
         raw,

@@ -15,9 +15,10 @@ mod state;
 
 pub use state::{Improver, may_be_unproved};
 
+use crate::certify::at;
 use crate::options::{MeshError, Progress};
 use glam::DVec3;
-use mesh::TriangleMesh;
+use mesh::{TriangleMesh, VertexId};
 
 /// An improved mesh.
 pub struct Improved {
@@ -50,8 +51,9 @@ impl Improver<'_> {
         let is_lid = |f| self.is_fixed_face(f) && self.errors[f.index()] == 0.0;
         let is_lid = mesh.faces().map(is_lid).collect();
         let is_unproved = proved.iter().map(|is| !is).collect();
-        let normals = mesh.vertices().map(|v| self.vertices[v.index()].normal());
-        let normals: Vec<DVec3> = normals.collect();
+        // Those of polynomials are a few degrees off.
+        let normal = |v: VertexId| at(self.space, mesh.position(v)).normal();
+        let normals: Vec<DVec3> = mesh.vertices().map(normal).collect();
         let triangles = mesh.to_triangles();
         let mut mesh = triangles.map_err(|error| MeshError::Failed(error.to_string()))?;
         mesh.normals = Some(normals);

@@ -24,17 +24,23 @@ impl Improver<'_> {
         let mut chosen = Vec::new();
         let mut touched = Vec::new();
         for edit in edits {
-            touched.clear();
-            self.touched(edit, &mut touched);
-            // Two edits change a common face only where an end of one is beside an end of the other.
-            let ends = match edit {
-                Edit::Collapse(_) | Edit::Merge(_) => &touched[..2],
-                Edit::Flip(_) | Edit::Split(_) => &touched[..],
-                Edit::Move(_) => &touched[..1],
-            };
-            if self.is_refused(edit) || ends.iter().any(|v| is_taken[v.index()]) {
+            if self.is_refused(edit) {
                 continue;
             }
+            // Two edits change a common face only where an end of one is beside an end of the other.
+            let (mesh, is_taken_at) = (&self.mesh, |v: VertexId| is_taken[v.index()]);
+            let is_beside = match edit {
+                Edit::Collapse(h) | Edit::Merge(h) => {
+                    is_taken_at(mesh.origin(h)) || is_taken_at(mesh.target(h))
+                }
+                Edit::Flip(h) | Edit::Split(h) => self.diamond(h).into_iter().any(is_taken_at),
+                Edit::Move(v) => is_taken_at(v),
+            };
+            if is_beside {
+                continue;
+            }
+            touched.clear();
+            self.touched(edit, &mut touched);
             touched.iter().for_each(|v| is_taken[v.index()] = true);
             chosen.push(edit);
         }
