@@ -53,13 +53,17 @@ fn sum(terms: &[Tree]) -> Tree {
 /// # Errors
 /// Fidget's.
 pub fn mesh(tree: &Tree, bounds: &Aabb, edge: f64) -> Result<TriangleMesh, String> {
-    let depth = (bounds.size().max_element() / edge).log2().ceil().max(1.0);
-    let half = 0.5 * edge * depth.exp2();
+    let mut depth = 1;
+    let mut half = edge;
+    while 2.0 * half < bounds.size().max_element() {
+        depth += 1;
+        half *= 2.0;
+    }
     let middle = bounds.center();
     let shape = JitShape::from(tree.clone());
     let shape = shape.try_into().map_err(|_| "the tree has variables")?;
     let settings = Settings {
-        depth: depth as u8,
+        depth,
         world_to_model: Matrix4::new_translation(&middle.as_vec3().to_array().into())
             * Matrix4::new_scaling(half as f32),
         threads: None,
