@@ -428,4 +428,44 @@ mod tests {
         }
         assert!(proved > 100 && refuted > 100, "{proved} {refuted}");
     }
+
+    #[test]
+    fn function_is_nowhere_lower_in_a_triangle_than_told() {
+        let mut n = Numbers(8);
+        let (mut told, mut sharp) = (0, 0);
+        for trial in 0..150 {
+            let kernel = [Kernel::Gauss, Kernel::Cauchy, Kernel::Quartic][trial % 3];
+            let sum = sum(kernel, &mut n);
+            let domain = box_of(sum.support().unwrap());
+            let size = (domain.max - domain.min).max_element();
+            let space = Space::new(&sum, Forest::new(&domain, 0.01 * size, 0), 0.01);
+            for _ in 0..200 {
+                let start = 0.8 * n.vector();
+                let reach = 0.02 + 0.2 * n.unit();
+                let corners = [(); 3].map(|()| at(&space, start + n.vector() * reach));
+                let sign = if corners[0].value > 0.0 { 1.0 } else { -1.0 };
+                let Some(height) = height(&space, &corners, sign) else {
+                    continue;
+                };
+                let [a, b, c] = corners.map(|corner| corner.position);
+                let lowest = (0..100).map(|_| {
+                    let (u, v) = (n.unit(), n.unit());
+                    let [u, v] = if u + v > 1.0 {
+                        [1.0 - u, 1.0 - v]
+                    } else {
+                        [u, v]
+                    };
+                    sign * at(&space, a + (b - a) * u + (c - a) * v).value
+                });
+                let lowest = lowest.fold(f64::INFINITY, f64::min);
+                assert!(
+                    lowest >= height,
+                    "{kernel:?} {a} {b} {c}: {lowest} {height}"
+                );
+                told += 1;
+                sharp += usize::from(height > 0.5 * lowest);
+            }
+        }
+        assert!(told > 1000 && sharp > 300, "{told} {sharp}");
+    }
 }

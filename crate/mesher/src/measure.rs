@@ -122,8 +122,15 @@ pub fn distances(
         let toward = if at.value > 0.0 { -uphill } else { uphill };
         let first = (1.05 * at.value.abs() / at.gradient.length()).clamp(1e-9 * size, size);
         let ray = |direction: DVec3| along_ray(space, p, direction, first, most);
-        let found = ray(toward).or_else(|| ray(normal)).or_else(|| ray(-normal));
-        found.unwrap_or(most).min(most)
+        // Where the gradient jumps it may lead past a place that is near.
+        let mut least = most;
+        for direction in [toward, normal, -normal] {
+            least = least.min(ray(direction).unwrap_or(most));
+            if least <= tolerance {
+                break;
+            }
+        }
+        least
     };
     let sampled = |i: &u32, is_unproved: bool| {
         let [a, b, c] = mesh.corners(*i as usize);
