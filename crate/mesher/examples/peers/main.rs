@@ -4,7 +4,7 @@
 //! compared with at equal measured error, `level-set` (manifold-rust) or `fidget`, or `alone` for the time of the mesher only,
 //! which runs as wasm, too.
 //!
-//! The edge length of the others' cells falls from a coarse one until the measured error is that of our mesh.
+//! The edge length of the others' cells is the longest one found at which the measured error is that of our mesh.
 
 #[cfg(feature = "fidget")]
 mod fidget;
@@ -108,8 +108,11 @@ struct Made {
     edge: f64,
 }
 
-/// Makes meshes with ever shorter edges until the measured error is at most a tenth larger than a wanted one; `prepared` seconds are
-/// added to the time of the last.
+/// Halvings of the interval of edge lengths in which the error becomes small enough.
+const HALVINGS: usize = 3;
+
+/// Makes meshes with ever shorter edges until the measured error is at most a tenth larger than a wanted one, and a few with edges
+/// between the last two; `prepared` seconds are added to the time of the coarsest one that is good enough.
 fn at_equal_error(
     function: &dyn Implicit,
     hull: &Aabb,
@@ -117,26 +120,40 @@ fn at_equal_error(
     prepared: f64,
     make: impl Fn(f64) -> Result<TriangleMesh, String>,
 ) -> Result<Made, String> {
-    let mut edge = 0.1 * hull.size().max_element();
-    let mut rounds = 0;
-    loop {
+    let made = |edge: f64| -> Result<Made, String> {
         let start = Instant::now();
         let mesh = make(edge)?;
         let seconds = prepared + start.elapsed().as_secs_f64();
-        let error = two_way(function, &mesh);
-        let triangles = mesh.triangles.len();
-        if error <= 1.1 * wanted || triangles > 20_000_000 || rounds == 8 {
-            return Ok(Made {
-                triangles,
-                seconds,
-                error,
-                edge,
-            });
+        Ok(Made {
+            triangles: mesh.triangles.len(),
+            seconds,
+            error: two_way(function, &mesh),
+            edge,
+        })
+    };
+    let is_good = |made: &Made| made.error <= 1.1 * wanted;
+    let mut too_long = 0.1 * hull.size().max_element();
+    let mut best = made(too_long)?;
+    for _ in 0..8 {
+        if is_good(&best) || best.triangles > 20_000_000 {
+            break;
         }
+        too_long = best.edge;
         // The error falls with the square of the edge.
-        edge *= (wanted / error).sqrt().clamp(0.4, 0.95);
-        rounds += 1;
+        best = made(too_long * (wanted / best.error).sqrt().clamp(0.4, 0.95))?;
     }
+    for _ in 0..HALVINGS {
+        if best.error > 0.8 * wanted {
+            break;
+        }
+        let middle = made((too_long * best.edge).sqrt())?;
+        if is_good(&middle) {
+            best = middle;
+        } else {
+            too_long = middle.edge;
+        }
+    }
+    Ok(best)
 }
 
 fn load(path: &Path) -> Result<Scene, String> {

@@ -24,7 +24,7 @@ const ROUNDS: usize = 3;
 /// Measures.
 pub fn measure() -> Result<Piece> {
     let mut page = String::from(
-        "One thread, a tolerance of a thousandth of the box's diagonal. The others make meshes with ever shorter edges until their \
+        "One thread, a tolerance of a thousandth of the box's diagonal. The others' edges are the longest ones found at which their \
          measured error is ours. `LevelSet` of manifold-rust has the same field, evaluated by what matters in each cell of a grid; \
          fidget-mesh compiles the balls' quartic fields for the processor. Errors are the largest distances found, either way. Only ours \
          proves the topology.\n\n\
