@@ -1,8 +1,8 @@
 //! Speed and triangles of meshes: lines of JSON for `cargo xtask bench meshes`.
 //!
 //! `cargo run --release -p mesher --features fidget --example peers -- KIND FILE…`, where KIND is the program that the mesher is
-//! compared with at equal measured error, `level-set` (manifold-rust) or `fidget`, or `alone` for the time of the mesher only,
-//! which runs as wasm, too.
+//! compared with at equal measured error, `level-set` (manifold-rust) or `fidget` (with the quartic kernel), or `alone` for the time of
+//! the mesher only, which runs as wasm, too.
 //!
 //! The edge length of the others' cells is the longest one found at which the measured error is that of our mesh.
 
@@ -10,7 +10,7 @@
 mod fidget;
 mod level_set;
 
-use field::{Implicit, THRESHOLD};
+use field::{Implicit, Kernel, THRESHOLD};
 use glam::DVec3;
 use mesh::{Aabb, Bvh, TriangleMesh, closest_point};
 use mesher::{Options, Progress, SurfaceMesh, box_of, extent, polygonize};
@@ -30,7 +30,12 @@ fn main() -> Result<(), String> {
     let kind = arguments.next().unwrap_or_default();
     for path in arguments {
         let path = Path::new(&path);
-        let scene = load(path)?;
+        let mut scene = load(path)?;
+        if kind == "fidget" {
+            // A sum of polynomials is the easiest for it.
+            let all = scene.flesh.iter_mut();
+            all.for_each(|flesh| flesh.kernel = Some(Kernel::Quartic));
+        }
         let mut row = measure(&scene, &kind)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         row["scene"] = json!(name);
