@@ -313,9 +313,29 @@ pub fn root(space: &Space<'_>, [a, b]: [DVec3; 2], [at_a, at_b]: [f64; 2], margi
 }
 
 /// The point of the surface that is reached from a position along gradients, by a few steps of Newton's; not farther than
-/// `reach`.
+/// `reach`. Polynomials may stand for the function.
 pub fn project(space: &Space<'_>, position: DVec3, reach: f64, tolerance: f64) -> Option<Vertex> {
-    let mut vertex = Vertex::new(position, &space.near_jet_at(position));
+    let near = |point| Vertex::new(point, &space.near_jet_at(point));
+    steps(near, position, reach, tolerance)
+}
+
+/// The same by the function itself, for measurements.
+pub fn project_exactly(
+    space: &Space<'_>,
+    position: DVec3,
+    reach: f64,
+    tolerance: f64,
+) -> Option<Vertex> {
+    steps(|point| at(space, point), position, reach, tolerance)
+}
+
+fn steps(
+    vertex_at: impl Fn(DVec3) -> Vertex,
+    position: DVec3,
+    reach: f64,
+    tolerance: f64,
+) -> Option<Vertex> {
+    let mut vertex = vertex_at(position);
     for _ in 0..4 {
         let step = vertex.gradient * (-vertex.value / vertex.gradient.length_squared());
         let length = step.length();
@@ -328,7 +348,7 @@ pub fn project(space: &Space<'_>, position: DVec3, reach: f64, tolerance: f64) -
         if !is_near {
             return None;
         }
-        vertex = Vertex::new(next, &space.near_jet_at(next));
+        vertex = vertex_at(next);
     }
     None
 }

@@ -1,6 +1,6 @@
 //! Distances between a mesh and a surface by samples: they check what is proved, and tell of what is not.
 
-use crate::certify::{Vertex, project};
+use crate::certify::{Vertex, project_exactly};
 use crate::forest::Cell;
 use crate::improve::{Improved, may_be_unproved};
 use crate::march::Raw;
@@ -94,7 +94,7 @@ pub fn distances(
     let found = map_told(threads, &cells, progress, |node| {
         let cell = &space.forest.cells[*node as usize];
         let reach = space.forest.size(cell.level).length();
-        let found = project(space, scattered(space, cell, *node), reach, tolerance)?;
+        let found = project_exactly(space, scattered(space, cell, *node), reach, tolerance)?;
         space
             .forest
             .contains(found.position)

@@ -156,11 +156,7 @@ impl Patch {
         let center = space.forest.center(cell);
         let exact = |place: DVec3| (place, space.jet(cell.part, center + place * half));
         let samples = nodes().map(exact);
-        let mut data = [0.0; DATA];
-        for (four, (_, jet)) in data.chunks_exact_mut(4).zip(&samples) {
-            let slope = DVec3::from_array(jet.gradient) * half;
-            four.copy_from_slice(&[jet.value, slope.x, slope.y, slope.z]);
-        }
+        let data = values_and_slopes(samples.iter().map(|(_, jet)| *jet), half);
         let coefficients = FIT
             .each_ref()
             .map(|row| row.iter().zip(&data).map(|(a, b)| a * b).sum());
@@ -237,6 +233,16 @@ impl Patch {
     }
 }
 
+/// Values at the nodes, each with its slopes along the axes in halves of the box.
+fn values_and_slopes(jets: impl Iterator<Item = Jet<f64>>, half: DVec3) -> [f64; DATA] {
+    let mut data = [0.0; DATA];
+    for (four, jet) in data.chunks_exact_mut(4).zip(jets) {
+        let slope = DVec3::from_array(jet.gradient) * half;
+        four.copy_from_slice(&[jet.value, slope.x, slope.y, slope.z]);
+    }
+    data
+}
+
 /// The points where polynomials are fitted.
 fn nodes() -> [DVec3; NODES] {
     core::array::from_fn(|i| {
@@ -267,13 +273,10 @@ static FIT: LazyLock<[[f64; DATA]; TERMS]> = LazyLock::new(|| {
             coefficients: [0.0; TERMS],
         };
         patch.coefficients[i] = 1.0;
-        let mut data = [0.0; DATA];
-        for (four, place) in data.chunks_exact_mut(4).zip(nodes()) {
-            let Jet { value, gradient } = patch.jet(place);
-            let [x, y, z] = gradient;
-            four.copy_from_slice(&[value, x, y, z]);
-        }
-        data
+        values_and_slopes(
+            nodes().into_iter().map(|place| patch.jet(place)),
+            patch.half,
+        )
     };
     let mut right: [[f64; DATA]; TERMS] = core::array::from_fn(term);
     let product =
@@ -330,12 +333,8 @@ mod tests {
                 half: DVec3::ONE,
                 coefficients: core::array::from_fn(|_| random(&mut state)),
             };
-            let mut data = [0.0; DATA];
-            for (four, place) in data.chunks_exact_mut(4).zip(nodes()) {
-                let Jet { value, gradient } = patch.jet(place);
-                let [x, y, z] = gradient;
-                four.copy_from_slice(&[value, x, y, z]);
-            }
+            let jets = nodes().into_iter().map(|place| patch.jet(place));
+            let data = values_and_slopes(jets, patch.half);
             for (row, own) in FIT.iter().zip(patch.coefficients) {
                 let found: f64 = row.iter().zip(&data).map(|(a, b)| a * b).sum();
                 assert!((found - own).abs() < 1e-9, "{found} {own}");

@@ -175,7 +175,7 @@ fn load(path: &Path) -> Result<Scene, String> {
         text: text(path)?,
     }];
     for other in rats::reads(&files[0].text) {
-        // What is not beside it is in the library.
+        // Files that are not beside it are in the library.
         if let Ok(text) = text(&folder.join(&other)) {
             files.push(rats::File { name: other, text });
         }

@@ -12,11 +12,11 @@ const SCENES: [&str; 3] = ["seahorse", "coral", "flake-820"];
 const FASTER: f64 = 5.0;
 const FEWER: f64 = 1.0 / 3.0;
 
-/// What fidget has to mesh, with the quartic kernel, and how many times as fast ours is to be.
+/// Scene that fidget meshes, with the quartic kernel, and how many times as fast ours is to be.
 const FIDGET: &str = "flake-820";
 const FASTER_THAN_FIDGET: f64 = 3.0;
 
-/// What is meshed as wasm, the most time that this may take against the native one, and how often both are done.
+/// Scene that is meshed as wasm, the largest ratio of its time to the native one, and the number of runs of each.
 const WASM: &str = "seahorse";
 const SLOWER: f64 = 1.8;
 const ROUNDS: usize = 3;
@@ -119,7 +119,7 @@ fn file(scene: &str) -> String {
     format!("tests/bench/{scene}.rat")
 }
 
-/// What the example prints about some scenes.
+/// Lines that the example prints about some scenes.
 fn printed(kind: &str, scenes: &[&str], features: &[&str]) -> Result<String> {
     let files: Vec<String> = scenes.iter().map(|scene| file(scene)).collect();
     let mut options = vec!["run", "--release", "--quiet", "--package", "mesher"];
