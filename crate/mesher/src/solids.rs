@@ -10,6 +10,8 @@ use scene::Shape;
 
 /// Most segments of a circle.
 const MOST_SEGMENTS: usize = 2048;
+/// Least segments: files shade as one surface what meets at 30° or less.
+const LEAST_SEGMENTS: usize = 13;
 
 /// A hard shape as triangles.
 #[derive(Clone, Debug, Default)]
@@ -93,7 +95,7 @@ pub fn tessellate(shape: &Shape, radius: f64, tolerance: f64, limits: &Aabb) -> 
 /// Segments of a circle such that chords are within a tolerance.
 fn segments(radius: f64, tolerance: f64) -> usize {
     let half = libm::acos((1.0 - tolerance / radius).max(0.0));
-    ((PI / half).ceil() as usize).clamp(6, MOST_SEGMENTS)
+    ((PI / half).ceil() as usize).clamp(LEAST_SEGMENTS, MOST_SEGMENTS)
 }
 
 /// Points of a circle.
@@ -148,7 +150,7 @@ fn ball(center: DVec3, radius: f64, tolerance: f64) -> TriangleMesh {
     // The largest triangle's circle is 0.607·1.26 of the radius over the number of divisions.
     let sag = (tolerance / radius).min(1.0);
     let widest = (2.0 * sag - sag * sag).sqrt();
-    let n = ((0.77 / widest).ceil() as usize).clamp(1, 512);
+    let n = ((0.77 / widest).ceil() as usize).clamp(2, 512);
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let corners: Vec<DVec3> = (0..12)
         .map(|i| {

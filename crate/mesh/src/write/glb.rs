@@ -3,6 +3,7 @@
 use super::export::Export;
 use super::prepared::{Prepared, materials, put_floats};
 use super::rig::{Rig, Share};
+use super::shading::Shading;
 use crate::error::{Error, fail};
 use serde_json::{Value, json};
 
@@ -62,37 +63,44 @@ impl Builder {
         plain: &[usize],
         white: &[usize],
     ) -> Value {
-        let mut attributes = json!({ "POSITION": self.vectors(&part.positions, true) });
-        if let Some(normals) = &part.normals {
-            attributes["NORMAL"] = json!(self.vectors(normals, false));
-        }
+        let shading = Shading::new(part.mesh);
+        let of_origin = |list: &[[f32; 3]]| -> Vec<[f32; 3]> {
+            let origins = shading.origins.iter();
+            origins.map(|i| list[*i as usize]).collect()
+        };
+        let mut attributes = json!({
+            "POSITION": self.vectors(&of_origin(&part.positions), true),
+            "NORMAL": self.vectors(&shading.normals, false)
+        });
         if let Some(colors) = &part.mesh.colors {
-            let cut: Vec<[f32; 3]> = colors
+            let cut: Vec<[f32; 3]> = of_origin(colors)
                 .iter()
                 .map(|c| c.map(|x| if x > 0.0 { x.min(1.0) } else { 0.0 }))
                 .collect();
             attributes["COLOR_0"] = json!(self.vectors(&cut, false));
         }
         if let Some(shares) = shares {
+            let own = || shading.origins.iter().map(|i| shares[*i as usize]);
             let start = self.numbers.len();
-            for (joint, _) in shares.as_flattened() {
+            for (joint, _) in own().flatten() {
                 self.numbers.extend(joint.to_le_bytes());
             }
+            let count = shading.origins.len();
             let view = self.view(start, VERTICES);
             attributes["JOINTS_0"] = json!(self.accessor(json!({
-                "bufferView": view, "componentType": U16, "count": shares.len(), "type": "VEC4"
+                "bufferView": view, "componentType": U16, "count": count, "type": "VEC4"
             })));
             let start = self.numbers.len();
-            for (_, weight) in shares.as_flattened() {
+            for (_, weight) in own().flatten() {
                 self.numbers.extend(weight.to_le_bytes());
             }
             let view = self.view(start, VERTICES);
             attributes["WEIGHTS_0"] = json!(self.accessor(json!({
-                "bufferView": view, "componentType": F32, "count": shares.len(), "type": "VEC4"
+                "bufferView": view, "componentType": F32, "count": count, "type": "VEC4"
             })));
         }
         let start = self.numbers.len();
-        for i in part.mesh.triangles.as_flattened() {
+        for i in shading.triangles.as_flattened() {
             self.numbers.extend(i.to_le_bytes());
         }
         let view = self.view(start, INDICES);

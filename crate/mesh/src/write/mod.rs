@@ -7,6 +7,7 @@ mod obj;
 mod ply;
 mod prepared;
 mod rig;
+mod shading;
 mod stl;
 mod three_mf;
 

@@ -2,6 +2,7 @@
 
 use super::export::Export;
 use super::prepared::{Prepared, line_name, materials};
+use super::shading::Shading;
 use crate::color::{encode, phong_from_roughness};
 use crate::triangle_mesh::Material;
 use std::fmt::Write;
@@ -44,7 +45,8 @@ pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> (Vec<u8>, Option
                 None => line(&mut text, format_args!("v {x} {y} {z}")),
             }
         }
-        for [x, y, z] in part.normals.iter().flatten() {
+        let shading = Shading::new(part.mesh);
+        for [x, y, z] in &shading.normals {
             line(&mut text, format_args!("vn {x} {y} {z}"));
         }
         for segment in &part.segments {
@@ -60,18 +62,16 @@ pub(super) fn write(export: &Export, parts: &[Prepared<'_>]) -> (Vec<u8>, Option
                 None if !materials.is_empty() => line(&mut text, format_args!("usemtl default")),
                 None => {}
             }
-            for triangle in &part.mesh.triangles[segment.triangles.clone()] {
+            let places = &part.mesh.triangles[segment.triangles.clone()];
+            let normals = &shading.triangles[segment.triangles.clone()];
+            for (triangle, normals) in places.iter().zip(normals) {
                 let [a, b, c] = triangle.map(|i| i + first);
-                if part.normals.is_some() {
-                    let [n, o, p] = triangle.map(|i| i + first_normal);
-                    line(&mut text, format_args!("f {a}//{n} {b}//{o} {c}//{p}"));
-                } else {
-                    line(&mut text, format_args!("f {a} {b} {c}"));
-                }
+                let [n, o, p] = normals.map(|i| i + first_normal);
+                line(&mut text, format_args!("f {a}//{n} {b}//{o} {c}//{p}"));
             }
         }
         first += part.positions.len() as u32;
-        first_normal += part.normals.as_ref().map_or(0, Vec::len) as u32;
+        first_normal += shading.normals.len() as u32;
     }
     let library = (!materials.is_empty()).then(|| library(&materials, &names));
     (text.into_bytes(), library)
