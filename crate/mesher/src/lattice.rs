@@ -9,9 +9,9 @@ use crate::options::{MeshError, Progress};
 use crate::parallel::map_told;
 use crate::refine::NUDGE;
 use crate::space::Space;
-use field::THRESHOLD;
+use field::{Jet, THRESHOLD};
 use glam::DVec3;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Whole coordinates in one number.
 pub type Key = u64;
@@ -38,6 +38,8 @@ pub fn direction(side: usize) -> [i64; 3] {
 pub struct Lattice {
     keys: Vec<Key>,
     values: Vec<(f64, DVec3)>,
+    /// Values of the function, where those of the lattice were moved away from the threshold.
+    moved: BTreeMap<Key, f64>,
     /// Vertices whose sign was changed.
     forced: BTreeSet<Key>,
 }
@@ -90,6 +92,20 @@ impl Lattice {
         self.values[index as usize].1
     }
 
+    /// The function at a vertex, as it is; `None` if it was not evaluated there.
+    pub fn jet(&self, key: Key) -> Option<Jet<f64>> {
+        let index = self.find(key)?;
+        let value = match self.moved.get(&key) {
+            Some(value) => *value,
+            None if self.is_forced(index) => -self.value(index),
+            None => self.value(index),
+        };
+        Some(Jet {
+            value: value + THRESHOLD,
+            gradient: self.gradient(index).to_array(),
+        })
+    }
+
     /// Evaluates the function at all vertices of the tetrahedra of some cells where that was not done.
     ///
     /// # Errors
@@ -123,17 +139,25 @@ impl Lattice {
             let slope = gradient.length();
             let least = space.forest.size(cell.level).max_element();
             let least = slope * (NUDGE * tolerance).min(0.02 * least) + f64::MIN_POSITIVE;
-            let value = jet.value - THRESHOLD;
+            let exact = jet.value - THRESHOLD;
             // A value that is no number counts as outside.
-            let value = if value.abs() >= least {
-                value
-            } else if value > 0.0 {
+            let value = if exact.abs() >= least {
+                exact
+            } else if exact > 0.0 {
                 least
             } else {
                 -least
             };
-            (value, gradient)
+            (value, exact, gradient)
         })?;
+        for ((key, _), (value, exact, _)) in wanted.iter().zip(&values) {
+            if value != exact {
+                self.moved.insert(*key, *exact);
+            }
+        }
+        let values = values
+            .into_iter()
+            .map(|(value, _, gradient)| (value, gradient));
         let mut all: Vec<(Key, (f64, DVec3))> =
             self.keys.drain(..).zip(self.values.drain(..)).collect();
         all.extend(wanted.iter().map(|(key, _)| *key).zip(values));

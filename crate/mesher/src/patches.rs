@@ -1,5 +1,5 @@
 //! Polynomials of the fifth degree that stand for the function in boxes near the surface, where edits of the mesh look at it
-//! hundreds of times: each costs as much as some forty evaluations, and then a twentieth of one.
+//! hundreds of times: each costs at most as much as some forty evaluations, and then a twentieth of one.
 //!
 //! A box is a cell with at most two generations of cells below it that the surface may cross: these are as fine as the shape is there, so
 //! that nothing lies between samples. The polynomial is the one with the least squares of errors of values and gradients at 27
@@ -7,6 +7,7 @@
 //! where leaves fail, as at kinks, the function itself is evaluated. What is proved of a mesh is proved of the function.
 
 use crate::forest::{Forest, NONE, Side};
+use crate::lattice::{Lattice, pack};
 use crate::options::{MeshError, Progress};
 use crate::parallel::map_by;
 use crate::space::Space;
@@ -22,8 +23,6 @@ const TERMS: usize = (DEGREE + 1) * (DEGREE + 2) * (DEGREE + 3) / 6;
 const NODES: usize = 27;
 /// Values and slopes there.
 const DATA: usize = 4 * NODES;
-/// Place of the outer nodes along each axis, in halves of the box.
-const OUTER: f64 = 0.87;
 
 /// Generations of cells in a box.
 const GENERATIONS: u32 = 2;
@@ -68,12 +67,13 @@ impl Patches {
         is_in.then(|| patch.jet(place))
     }
 
-    /// Fits polynomials to a function, wherever the surface may be.
+    /// Fits polynomials to a function, wherever the surface may be, when the values at the vertices of the lattice are known.
     ///
     /// # Errors
     /// If the caller cancels.
     pub fn fit(
         space: &Space<'_>,
+        lattice: &Lattice,
         tolerance: f64,
         threads: usize,
         progress: &mut Progress<'_>,
@@ -104,7 +104,7 @@ impl Patches {
         open.sort_unstable();
         while !open.is_empty() {
             let fits = map_by(BATCH, threads, &open, progress, |i| {
-                Patch::fit(space, *i, tolerance)
+                Patch::fit(space, lattice, *i, tolerance)
             })?;
             let mut next = Vec::new();
             for (i, fit) in open.into_iter().zip(fits) {
@@ -150,11 +150,23 @@ fn heights(forest: &Forest) -> Vec<Option<u32>> {
 
 impl Patch {
     /// Fits a polynomial to the function in a cell; `None` if it is not near it.
-    fn fit(space: &Space<'_>, cell: u32, tolerance: f64) -> Option<Self> {
+    fn fit(space: &Space<'_>, lattice: &Lattice, cell: u32, tolerance: f64) -> Option<Self> {
         let cell = &space.forest.cells[cell as usize];
         let half = 0.5 * space.forest.size(cell.level);
         let center = space.forest.center(cell);
-        let exact = |place: DVec3| (place, space.jet(cell.part, center + place * half));
+        let middle = space.forest.center_key(cell);
+        let unit = f64::from(space.forest.span(cell.level) / 2);
+        let exact = |place: DVec3| {
+            // Most of these places are vertices of the lattice, where the function is known.
+            let offset = place * unit;
+            let known = (offset == offset.floor()).then(|| {
+                let key = [0, 1, 2].map(|i| (f64::from(middle[i]) + offset[i]) as u32);
+                lattice.jet(pack(key))
+            });
+            let jet = known.flatten();
+            let jet = jet.unwrap_or_else(|| space.jet(cell.part, center + place * half));
+            (place, jet)
+        };
         let samples = nodes().map(exact);
         let data = values_and_slopes(samples.iter().map(|(_, jet)| *jet), half);
         let coefficients = FIT
@@ -246,15 +258,15 @@ fn values_and_slopes(jets: impl Iterator<Item = Jet<f64>>, half: DVec3) -> [f64;
 /// The points where polynomials are fitted.
 fn nodes() -> [DVec3; NODES] {
     core::array::from_fn(|i| {
-        let at = |i: usize| OUTER * (i as f64 - 1.0);
+        let at = |i: usize| i as f64 - 1.0;
         DVec3::new(at(i % 3), at(i / 3 % 3), at(i / 9))
     })
 }
 
-/// Other points where they are tested: corners and middles of faces.
+/// Other points where they are tested: halfway from the middle to corners and to faces.
 fn others() -> [DVec3; 14] {
     core::array::from_fn(|i| {
-        let sign = |bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
+        let sign = |bit: usize| if i & bit == 0 { -0.5 } else { 0.5 };
         match i {
             0..8 => DVec3::new(sign(1), sign(2), sign(4)),
             _ => DVec3::from_array(core::array::from_fn(|axis| {
@@ -409,7 +421,8 @@ mod tests {
             let tolerances = [16.0 * tolerance, tolerance];
             let mut cells = Refinement::new(&mut space, tolerances, 1_000_000, 1);
             cells.settle(&mut progress).unwrap();
-            space.fit(tolerance, 1, &mut progress).unwrap();
+            let lattice = cells.lattice;
+            space.fit(&lattice, tolerance, 1, &mut progress).unwrap();
             let leaves = crate::refine::crossing(&space.forest);
             for leaf in leaves.into_iter().step_by(7) {
                 let cell = space.forest.cells[leaf as usize];

@@ -5,6 +5,7 @@ use field::{Ball, Implicit, Jet, Logarithm, Part, Slack, Variation};
 use glam::DVec3;
 
 use crate::forest::{Cell, Forest, NONE};
+use crate::lattice::Lattice;
 use crate::options::{MeshError, Progress};
 use crate::patches::Patches;
 
@@ -134,11 +135,12 @@ impl<'a> Space<'a> {
     /// If the caller cancels.
     pub fn fit(
         &mut self,
+        lattice: &Lattice,
         tolerance: f64,
         threads: usize,
         progress: &mut Progress<'_>,
     ) -> Result<(), MeshError> {
-        self.patches = Patches::fit(self, tolerance, threads, progress)?;
+        self.patches = Patches::fit(self, lattice, tolerance, threads, progress)?;
         Ok(())
     }
 

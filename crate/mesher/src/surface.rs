@@ -136,7 +136,6 @@ fn guarded(
     let mut progress = progress.part(0.0, 1.0).in_phase(Phase::Triangles);
     progress.at(0.4)?;
     let raw = march(&space, &lattice, threads, &mut progress)?;
-    drop(lattice);
     if raw.triangles.is_empty() {
         return Err(MeshError::Nothing);
     }
@@ -155,7 +154,8 @@ fn guarded(
     let cells = refine::crossing(forest).len();
     let raw_triangles = raw.triangles.len();
     let is_cut = raw.is_lid.contains(&true);
-    space.fit(tolerance, threads, &mut progress)?;
+    space.fit(&lattice, tolerance, threads, &mut progress)?;
+    drop(lattice);
     let start = Start {
         space: &space,
         raw,
