@@ -6,6 +6,7 @@ use crate::level::QuadricFunction;
 use crate::measure::Measured;
 use crate::options::{MeshError, Options, Phase, Progress};
 use crate::paint::{Paint, Parts};
+use crate::refine::EXCESS;
 use crate::solids::{Solid, tessellate};
 use crate::surface::{SurfaceMesh as Mesh, box_of, extent, polygonize};
 use crate::unite;
@@ -21,6 +22,8 @@ pub enum Tolerance {
     Absolute(f64),
     /// As a share of the diagonal of the model's box.
     Relative(f64),
+    /// As a share of the longest side of the model's box.
+    OfSide(f64),
 }
 
 impl Default for Tolerance {
@@ -28,6 +31,9 @@ impl Default for Tolerance {
         Self::Relative(1e-3)
     }
 }
+
+/// Size of a model as a part of the size of the box that was found for it, at least.
+const EXACT: f64 = 1.0 - 2.0 * EXCESS;
 
 /// Wishes for the mesh of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -293,8 +299,7 @@ impl<'a> Plan<'a> {
             domains.push(domain);
         }
         for element in &hard {
-            let bounds = bounds_of(&element.shape, scene.radius(element));
-            finite = finite.union(&bounds);
+            finite = finite.union(&extent_of(&element.shape, scene.radius(element)));
         }
         let is_infinite = |e: &&Element| matches!(e.shape, Shape::Plane { .. });
         let any_infinite =
@@ -324,7 +329,8 @@ impl<'a> Plan<'a> {
         };
         let tolerance = match wishes.tolerance {
             Tolerance::Absolute(tolerance) => tolerance,
-            Tolerance::Relative(share) => share * size.length(),
+            Tolerance::Relative(share) => EXACT * share * size.length(),
+            Tolerance::OfSide(share) => EXACT * share * size.max_element(),
         };
         let is_sound = tolerance > 0.0 && tolerance.is_finite();
         if !is_sound {
@@ -373,6 +379,26 @@ fn skeletons(scene: &Scene, surface: &Surface) -> Aabb {
         all = all.union(&bounds_of(&element.shape, scene.radius(element)));
     }
     all
+}
+
+/// A tight box of a hard shape; empty for planes.
+fn extent_of(shape: &Shape, radius: f64) -> Aabb {
+    let bounds = bounds_of(shape, radius);
+    let coarse = 0.25 * EXCESS * bounds.size().max_element();
+    if bounds.is_empty() || coarse <= 0.0 {
+        return bounds;
+    }
+    let solid = tessellate(shape, radius, coarse, &bounds);
+    let meshes = solid.shells.iter().chain(&solid.sheets);
+    let all = Aabb::of_points(meshes.flat_map(|mesh| mesh.positions.iter().copied()));
+    if all.is_empty() {
+        return bounds;
+    }
+    // Chords are within the surface.
+    Aabb {
+        min: (all.min - coarse).max(bounds.min),
+        max: (all.max + coarse).min(bounds.max),
+    }
 }
 
 /// A box around a shape; empty for planes.

@@ -131,7 +131,8 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     }
 }
 
-/// A box around the surface in a box, at most an eighth too large on each side; `None` if there is no surface.
+/// A box around the surface in a box; `None` if there is no surface. On each side it is larger by at most [`EXCESS`] of its longest
+/// side, but for surfaces that end at very many places there.
 ///
 /// # Errors
 /// If all of the box is inside, or if the caller cancels.
@@ -145,8 +146,9 @@ pub fn extent(
     let forest = Forest::new(domain, size.max_element() * 2e-5, 0);
     let mut space = Space::new(function, forest, EXTENT);
     let mut open: Vec<u32> = (0..space.forest.cells.len() as u32).collect();
+    let mut crossing: Vec<u32> = Vec::new();
     let mut is_inside = false;
-    while !open.is_empty() {
+    loop {
         progress.at(0.5)?;
         let cells: Vec<Cell> = open
             .iter()
@@ -156,47 +158,63 @@ pub fn extent(
         let looks = map_told(threads, &cells, progress, |cell| {
             look(&space, cell, [0.0; 2])
         })?;
-        let mut hull = Aabb::EMPTY;
-        let mut crossing = Vec::new();
-        for (node, Look { side, part, .. }) in open.iter().zip(looks) {
-            let cell = space.forest.cells[*node as usize];
+        for (node, Look { side, part, .. }) in open.drain(..).zip(looks) {
             is_inside |= side == Side::Inside;
             if side != Side::Crossing {
                 continue;
             }
             if let Some(part) = part {
-                let part = space.add(part, cell.part);
-                space.forest.cells[*node as usize].part = part;
+                let part = space.add(part, space.forest.cells[node as usize].part);
+                space.forest.cells[node as usize].part = part;
             }
-            let (center, half) = (
-                space.forest.center(&cell),
-                0.5 * space.forest.size(cell.level),
-            );
-            hull = hull.union(&Aabb::of_points([center - half, center + half]));
-            crossing.push(*node);
+            crossing.push(node);
         }
-        let Some(first) = crossing.first() else {
-            break;
+        if crossing.is_empty() {
+            let nothing = if is_inside {
+                Err(MeshError::AllInside)
+            } else {
+                Ok(None)
+            };
+            return nothing;
+        }
+        let bounds = |forest: &Forest, node: u32| {
+            let cell = &forest.cells[node as usize];
+            let (center, half) = (forest.center(cell), 0.5 * forest.size(cell.level));
+            Aabb::of_points([center - half, center + half])
         };
-        let level = space.forest.cells[*first as usize].level;
-        let size = space.forest.size(level).max_element();
-        let is_fine = size * 16.0 <= (hull.max - hull.min).max_element();
-        if is_fine || level == space.forest.usual || crossing.len() > MANY_CELLS {
+        let boxes = crossing.iter().map(|node| bounds(&space.forest, *node));
+        let hull = boxes.fold(Aabb::EMPTY, |all, one| all.union(&one));
+        let longest = hull.size().max_element();
+        if crossing.len() <= MANY_CELLS {
+            // All cells down to a sixteenth, so that no part is missed; then those that say where the box ends.
+            let is_coarse = |node: &u32| {
+                let cell = &space.forest.cells[*node as usize];
+                let size = space.forest.size(cell.level);
+                if cell.level >= space.forest.usual {
+                    return false;
+                }
+                let own = bounds(&space.forest, *node);
+                let is_last =
+                    own.min.cmple(hull.min + 0.25 * size) | own.max.cmpge(hull.max - 0.25 * size);
+                let is_wide = size.cmpgt(DVec3::splat(EXCESS * longest));
+                16.0 * size.max_element() > longest || (is_last & is_wide).any()
+            };
+            open = crossing.extract_if(.., |node| is_coarse(node)).collect();
+        }
+        if open.is_empty() {
             return Ok(Some(hull));
         }
-        open.clear();
-        for node in crossing {
+        let parents = core::mem::take(&mut open);
+        for node in parents {
             // Without balance: nothing is interpolated here.
             let first = space.forest.divide(node);
             open.extend(first..first + 8);
         }
     }
-    if is_inside {
-        Err(MeshError::AllInside)
-    } else {
-        Ok(None)
-    }
 }
+
+/// How much larger than the surface its box may be on each side, as a part of its longest side.
+pub const EXCESS: f64 = 1.0 / 128.0;
 
 /// Accuracy of the extent, as a part of it.
 const EXTENT: f64 = 1e-3;

@@ -401,3 +401,67 @@ fn each_phase_reports_often_and_can_be_cancelled() {
         assert_eq!(error, MeshError::Cancelled, "{phase:?}");
     }
 }
+
+/// What a person asks for as a share of the model's size is kept, and not much more than that is done.
+#[test]
+fn shares_are_of_the_size_that_the_mesh_has() {
+    use mesher::{Tolerance, Wishes, mesh_scene};
+    use scene::{Element, Flesh, Scene, Shape};
+    let sphere = |at: DVec3| Shape::Sphere {
+        center: at,
+        radius: 0.5,
+    };
+    let arc = Shape::Arc {
+        center: DVec3::ZERO,
+        u: DVec3::X,
+        v: DVec3::new(0.0, 0.6, 0.8),
+        sweep: 2.0,
+        angle: 1.1,
+        radius: 0.1,
+    };
+    let slanted = Shape::Cylinder {
+        base: DVec3::ZERO,
+        apex: DVec3::new(1.0, 2.0, 0.5),
+        radius: 0.3,
+    };
+    let shapes = [
+        vec![sphere(DVec3::ZERO)],
+        vec![arc],
+        vec![slanted.clone(), sphere(DVec3::X)],
+    ];
+    for (shapes, is_soft) in shapes
+        .iter()
+        .flat_map(|shapes| [(shapes, true), (shapes, false)])
+    {
+        let mut scene = Scene::default();
+        scene.flesh.push(Flesh {
+            blobbiness: -1.0,
+            radius: 0.3,
+            ..Flesh::default()
+        });
+        for shape in shapes {
+            scene.elements.push(Element {
+                flesh: is_soft.then_some(0),
+                ..Element::new(shape.clone())
+            });
+        }
+        for tolerance in [Tolerance::Relative(5e-3), Tolerance::OfSide(5e-3)] {
+            let wishes = Wishes {
+                tolerance,
+                ..Wishes::default()
+            };
+            let mut report = |_| ControlFlow::Continue(());
+            let model = mesh_scene(&scene, &wishes, &mut Progress::new(&mut report)).unwrap();
+            let boxes = model.parts.iter().map(|part| part.mesh.bounds());
+            let size = boxes.reduce(|a, b| a.union(&b)).unwrap().size();
+            let (of, share) = match tolerance {
+                Tolerance::Relative(share) => (size.length(), share),
+                Tolerance::OfSide(share) => (size.max_element(), share),
+                Tolerance::Absolute(_) => unreachable!(),
+            };
+            let ratio = model.tolerance / of / share;
+            println!("{shapes:?} {is_soft} {tolerance:?}: {ratio:.4}");
+            assert!((0.93..=1.0).contains(&ratio), "{tolerance:?}: {ratio}");
+        }
+    }
+}

@@ -374,7 +374,7 @@ impl MeshExport {
         purpose: Purpose,
     ) {
         let wishes = Wishes {
-            tolerance: Tolerance::Relative(order.tolerance),
+            tolerance: Tolerance::OfSide(order.tolerance),
             union: order.union,
             ..Wishes::default()
         };
@@ -787,6 +787,11 @@ mod tests {
         // A coarser one has something to show already.
         export.order.tolerance = 4e-3;
         assert_eq!(follow(&mut export, &ball), 2);
+        let State::Done(facts, _) = export.state(&ball, Film { count: 5, rate: 12 }) else {
+            panic!("no mesh");
+        };
+        let proved = facts.error * export.growth(facts) / export.order.size;
+        assert!((3.6e-3..=4e-3).contains(&proved), "{proved}");
         // Another model; joints need no new triangles either.
         export.order.format = Format::Glb;
         let glb = |export: &MeshExport| export.files()[0].bytes.clone();
