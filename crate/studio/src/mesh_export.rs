@@ -33,7 +33,7 @@ const SLICE: f64 = 0.008;
 pub struct Order {
     /// Format of the file.
     pub format: Format,
-    /// Largest distance between mesh and surface, in lengths of the model.
+    /// Largest distance between mesh and surface, as a part of the longest side.
     pub tolerance: f64,
     /// Length of the model's longest side, millimetres.
     pub size: f64,
@@ -47,7 +47,7 @@ impl Default for Order {
     fn default() -> Self {
         Self {
             format: Format::Stl,
-            tolerance: 1e-3,
+            tolerance: 1.5e-3,
             size: 100.0,
             union: false,
             rig: false,

@@ -12,7 +12,7 @@ use mesh::Format;
 use tools::{MeshFacts, Written};
 use viewport::{Frame, Look, View};
 
-/// Finest and coarsest tolerance that the dialog offers, in lengths of the model.
+/// Finest and coarsest tolerance that the dialog offers, as parts of the longest side.
 const TOLERANCES: [f64; 2] = [1e-4, 2e-2];
 /// Lengths of the longest side that can be asked for, millimetres.
 const SIZES: [f64; 2] = [1.0, 5000.0];

@@ -221,7 +221,7 @@ impl App {
         self.dialog = None;
         let order = Order {
             format: mesh::Format::Ply,
-            tolerance: 8e-3,
+            tolerance: 1.2e-2,
             // As large as the shapes that one may begin with.
             size: 2.0,
             union: true,
