@@ -319,7 +319,7 @@ pub fn project(space: &Space<'_>, position: DVec3, reach: f64, tolerance: f64) -
     steps(near, position, reach, tolerance)
 }
 
-/// The same by the function itself, for measurements.
+/// [`project`] with values of the function itself, never of polynomials: for measurements.
 pub fn project_exactly(
     space: &Space<'_>,
     position: DVec3,
@@ -329,6 +329,7 @@ pub fn project_exactly(
     steps(|point| at(space, point), position, reach, tolerance)
 }
 
+/// Newton's steps along gradients from a position to the surface; `None` if they lead farther away than `reach`.
 fn steps(
     vertex_at: impl Fn(DVec3) -> Vertex,
     position: DVec3,

@@ -38,7 +38,7 @@ pub fn direction(side: usize) -> [i64; 3] {
 pub struct Lattice {
     keys: Vec<Key>,
     values: Vec<(f64, DVec3)>,
-    /// Values of the function, where those of the lattice were moved away from the threshold.
+    /// Values of the function at vertices whose value in the lattice was moved away from the threshold.
     moved: BTreeMap<Key, f64>,
     /// Vertices whose sign was changed.
     forced: BTreeSet<Key>,
@@ -92,7 +92,8 @@ impl Lattice {
         self.values[index as usize].1
     }
 
-    /// The function at a vertex, as it is; `None` if it was not evaluated there.
+    /// Value and gradient of the function at a vertex, without the changes that keep values off the threshold; `None` if it was not
+    /// evaluated there.
     pub fn jet(&self, key: Key) -> Option<Jet<f64>> {
         let index = self.find(key)?;
         let value = match self.moved.get(&key) {

@@ -32,8 +32,8 @@ impl Default for Tolerance {
     }
 }
 
-/// Size of a model as a part of the size of the box that was found for it, at least.
-const EXACT: f64 = 1.0 - 2.0 * EXCESS;
+/// Lower bound of a model's size, as a part of the size of the box found for it, which is a little too large.
+const SMALLEST: f64 = 1.0 - 2.0 * EXCESS;
 
 /// Wishes for the mesh of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -329,8 +329,8 @@ impl<'a> Plan<'a> {
         };
         let tolerance = match wishes.tolerance {
             Tolerance::Absolute(tolerance) => tolerance,
-            Tolerance::Relative(share) => EXACT * share * size.length(),
-            Tolerance::OfSide(share) => EXACT * share * size.max_element(),
+            Tolerance::Relative(share) => SMALLEST * share * size.length(),
+            Tolerance::OfSide(share) => SMALLEST * share * size.max_element(),
         };
         let is_sound = tolerance > 0.0 && tolerance.is_finite();
         if !is_sound {
@@ -394,7 +394,7 @@ fn extent_of(shape: &Shape, radius: f64) -> Aabb {
     if all.is_empty() {
         return bounds;
     }
-    // Chords are within the surface.
+    // Triangles of a tessellation may lie inside the true shape by the tolerance.
     Aabb {
         min: (all.min - coarse).max(bounds.min),
         max: (all.max + coarse).min(bounds.max),

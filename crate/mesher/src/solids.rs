@@ -10,7 +10,7 @@ use scene::Shape;
 
 /// Most segments of a circle.
 const MOST_SEGMENTS: usize = 2048;
-/// Least segments: files shade as one surface what meets at 30° or less.
+/// Fewest segments of a circle. Neighbouring sides then differ by less than 30°, so that files shade them smoothly.
 const LEAST_SEGMENTS: usize = 13;
 
 /// A hard shape as triangles.
