@@ -12,7 +12,7 @@ pub const SAME: &str = "same";
 pub struct Portable {
     /// The program `sinew`.
     pub program: PathBuf,
-    /// The test `crate/worker/tests/same.rs`.
+    /// The test `crate/worker/tests/it/same.rs`.
     pub same: PathBuf,
 }
 

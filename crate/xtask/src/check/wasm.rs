@@ -226,7 +226,7 @@ fn same(wasm: &[String]) -> Result<usize> {
     Ok(count)
 }
 
-/// The lines `picture …` of `crate/worker/tests/same.rs`. What is run in node is written with spaces before it.
+/// The lines `picture …` of `crate/worker/tests/it/same.rs`. What is run in node is written with spaces before it.
 fn pictures(output: &str) -> Vec<String> {
     output
         .lines()
