@@ -180,11 +180,18 @@ impl Case {
     }
 }
 
-/// Returns SplitMix64's output of a state: neighbouring numbers give unrelated ones.
-fn mixed(state: u64) -> u64 {
-    let z = state.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+/// The step of SplitMix64's state.
+const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// Returns an unrelated number for each number.
+fn mixed(number: u64) -> u64 {
+    scrambled(number.wrapping_add(1).wrapping_mul(STEP))
+}
+
+/// Returns SplitMix64's output of a state.
+fn scrambled(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
 }
 

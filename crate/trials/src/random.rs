@@ -1,6 +1,6 @@
 //! Random numbers and vectors.
 
-use crate::{mixed, seed};
+use crate::{STEP, mixed, scrambled, seed};
 use core::f64::consts::PI;
 use glam::{DQuat, DVec3};
 
@@ -19,9 +19,8 @@ impl Random {
 
     /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
-        let bits = mixed(self.0);
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        bits
+        self.0 = self.0.wrapping_add(STEP);
+        scrambled(self.0)
     }
 
     /// Returns a number in [0, 1).
