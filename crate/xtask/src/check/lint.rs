@@ -1,6 +1,7 @@
 //! Formatting and lints, for this machine and for wasm.
 
-use super::{Chosen, Watch};
+use super::Chosen;
+use super::files::Watch;
 use crate::packages::MODULES;
 use crate::shell::{cargo, run};
 use crate::tools;
@@ -12,7 +13,7 @@ const DENY: [&str; 3] = ["--", "-D", "warnings"];
 pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
     format()?;
     watch.step("native", || clippy(&chosen.packages()))?;
-    tools::wasm_target()?;
+    tools::target(tools::WASM)?;
     watch.step("wasm", || {
         MODULES
             .iter()
