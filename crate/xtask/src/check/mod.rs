@@ -95,11 +95,10 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
 fn all() -> Vec<Done> {
     let mut watch = Watch::default();
     let (mut done, built) = std::thread::scope(|scope| {
-        let page =
-            scope.spawn(|| in_lane("page", true, || e2e::build(&mut watch, e2e::Of::Release)));
+        let page = scope.spawn(|| in_lane("page", || e2e::build(&mut watch, e2e::Of::Release)));
         let code = scope.spawn(|| {
             let parts = [Part::Lint, Part::Native, Part::Wasm];
-            in_lane("code", true, || parts.map(|part| run(part, &Chosen::All)))
+            in_lane("code", || parts.map(|part| run(part, &Chosen::All)))
         });
         let done = code
             .join()
