@@ -4,6 +4,7 @@ use anyhow::{Context, Result, bail};
 use std::cell::Cell;
 use std::ffi::{OsStr, OsString};
 use std::io::{BufRead, BufReader, Read};
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::Mutex;
@@ -137,41 +138,39 @@ pub fn run_and_read(command: &mut Command) -> Result<String> {
 pub fn run_apart(command: &mut Command) -> Result<String> {
     let begun = Instant::now();
     let done = command.stdin(Stdio::null()).output();
-    let (status, [output, errors]) = match done {
-        Ok(done) => (Ok(done.status), [done.stdout, done.stderr]),
-        Err(error) => (Err(error), [Vec::new(), Vec::new()]),
-    };
+    let output = done.as_ref().map_or(Vec::new(), |done| done.stdout.clone());
+    let errors = done.as_ref().map_or(Vec::new(), |done| done.stderr.clone());
     let [output, errors] = [output, errors].map(|text| String::from_utf8_lossy(&text).into_owned());
     say(command);
     tell(&format!(
         "{output}{errors}({} s)",
         begun.elapsed().as_secs()
     ));
-    succeeded(command, status)?;
+    succeeded(command, done.map(|done| done.status))?;
     Ok(output)
 }
 
 /// Does several things, as many at a time as there are cores, in their order, and gives what comes of them in that order.
 pub fn at_once<T: Send>(work: Vec<impl FnOnce() -> T + Send>) -> Vec<T> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let results: Mutex<Vec<Option<T>>> = Mutex::new(work.iter().map(|_| None).collect());
     let (next, lane) = (Mutex::new(work.into_iter().enumerate()), LANE.get());
     let take = || next.lock().ok()?.next();
     let some = || {
-        while let Some((i, work)) = take() {
-            let result = in_lane(lane, work);
-            if let Ok(mut results) = results.lock() {
-                results[i] = Some(result);
-            }
-        }
+        in_lane(lane, || {
+            std::iter::from_fn(take)
+                .map(|(i, work)| (i, work()))
+                .collect()
+        })
     };
-    std::thread::scope(|scope| {
-        for _ in 0..cores {
-            scope.spawn(some);
-        }
+    let mut done: Vec<(usize, T)> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(some)).collect();
+        let done = threads.into_iter().map(|thread| thread.join());
+        let done =
+            done.map(|done: Result<Vec<_>, _>| done.unwrap_or_else(|panic| resume_unwind(panic)));
+        done.flatten().collect()
     });
-    let results = results.into_inner().unwrap_or_else(|e| e.into_inner());
-    results.into_iter().flatten().collect()
+    done.sort_by_key(|(i, _)| *i);
+    done.into_iter().map(|(_, result)| result).collect()
 }
 
 fn succeeded(command: &Command, status: std::io::Result<ExitStatus>) -> Result<()> {
@@ -191,10 +190,10 @@ fn pass_on(command: &mut Command, shown: bool) -> Result<String> {
     if !lane.is_empty() {
         command.stderr(Stdio::piped());
     }
-    let program = command.get_program().to_string_lossy().into_owned();
-    let mut child = command
-        .spawn()
-        .with_context(|| format!("{program} could not be run"))?;
+    let mut child = match command.spawn() {
+        Ok(child) => child,
+        Err(error) => return succeeded(command, Err(error)).map(|()| String::new()),
+    };
     let errors = child.stderr.take();
     let errors = std::thread::spawn(move || in_lane(lane, || lines(errors, true)));
     let output = lines(child.stdout.take(), shown);
