@@ -1,6 +1,6 @@
 //! Installing what is missing.
 
-use crate::shell::{artifacts, cargo, command, executable, find, read, root, run, tell};
+use crate::shell::{command, find, read, root, run, tell, words};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,12 +10,9 @@ pub const WASM: &str = "wasm32-unknown-unknown";
 
 /// Makes sure that Rust can compile for a target.
 pub fn target(name: &str) -> Result<()> {
-    let installed = read(&mut command(
-        "rustc",
-        &["--print", "target-libdir", "--target", name],
-    ))
-    .is_some_and(|folder| Path::new(&folder).is_dir());
-    if installed {
+    let library = ["--print", "target-libdir", "--target", name];
+    let library = read(&mut command("rustc", &library));
+    if library.is_some_and(|folder| Path::new(&folder).is_dir()) {
         return Ok(());
     }
     run(&mut command("rustup", &["target", "add", name])).with_context(|| {
@@ -86,16 +83,16 @@ pub fn wasm_opt() -> Option<PathBuf> {
 /// If `apt-get` fails, or this user may not install packages; the message says what to install.
 fn apt_install(packages: &[&str]) -> Result<()> {
     let root_user = read(&mut command("id", &["-u"])).is_some_and(|id| id == "0");
-    let sudo: &[&str] = if root_user { &[] } else { &["sudo", "-n"] };
-    let apt = |arguments: &[&str]| {
-        let lock: &[&str] = &["apt-get", "-o", "DPkg::Lock::Timeout=500"];
-        let words = [sudo, lock, arguments].concat();
+    let sudo = if root_user { "" } else { "sudo -n" };
+    let apt = |task: &str| {
+        let line = format!("{sudo} apt-get -o DPkg::Lock::Timeout=500 {task}");
+        let words = words(&line);
         run(command(words[0], &words[1..]).env("DEBIAN_FRONTEND", "noninteractive"))
     };
-    let install = ["install", "-y", "--no-install-recommends"];
-    apt(&["update"])
-        .and_then(|()| apt(&[&install, packages].concat()))
-        .with_context(|| format!("Install it: apt-get install {}", packages.join(" ")))
+    let packages = packages.join(" ");
+    apt("update")
+        .and_then(|()| apt(&format!("install -y --no-install-recommends {packages}")))
+        .with_context(|| format!("Install it: apt-get install {packages}"))
 }
 
 /// A Firefox that tests can drive, installed with apt-get on Debian.
@@ -120,18 +117,10 @@ pub fn chromium() -> Result<PathBuf> {
     if let Some(chosen) = std::env::var_os("CHROMIUM") {
         return Ok(chosen.into());
     }
-    let present = || {
-        [
-            "chromium",
-            "chromium-browser",
-            "google-chrome-stable",
-            "google-chrome",
-        ]
-        .into_iter()
-        .find_map(find)
-        // Ubuntu's /usr/bin/chromium-browser only says that there is a snap.
-        .filter(|path| read(&mut command(path, &["--version"])).is_some())
-    };
+    let names = words("chromium chromium-browser google-chrome-stable google-chrome");
+    // Ubuntu's /usr/bin/chromium-browser only says that there is a snap.
+    let runs = |path: &PathBuf| read(&mut command(path, &["--version"])).is_some();
+    let present = || names.iter().copied().find_map(find).filter(runs);
     if let Some(path) = present() {
         return Ok(path);
     }
@@ -145,14 +134,13 @@ pub fn chromium() -> Result<PathBuf> {
     if is("ubuntu") {
         // Ubuntu's own package is a snap, which does not run everywhere.
         let cli = node_packages()?.join("playwright-core/cli.js");
-        let cli = cli.to_string_lossy();
-        let with_libraries = run(&mut command(
-            "node",
-            &[&cli, "install", "--with-deps", "chromium"],
-        ));
-        with_libraries
-            .or_else(|_| run(&mut command("node", &[&cli, "install", "chromium"])))
-            .context("The browser is missing. Install Chromium or Google Chrome, or set CHROMIUM to its path")?;
+        let install = |options: &str| {
+            let line = format!("install {options} chromium");
+            run(command("node", &[&cli.to_string_lossy()]).args(words(&line)))
+        };
+        install("--with-deps").or_else(|_| install("")).context(
+            "The browser is missing. Install Chromium or Google Chrome, or set CHROMIUM to its path",
+        )?;
         let script = "console.log(require('playwright-core').chromium.executablePath())";
         return read(command("node", &["-e", script]).current_dir(root().join("tests")))
             .map(PathBuf::from)

@@ -57,7 +57,7 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
             let mut done = all(MANY);
             done.push(run(Part::Firefox, &Chosen::All));
             done.push(attempt(Part::All, Watch::default(), |_| {
-                crate::fuzz::guided("60")?;
+                crate::fuzz::guided(60)?;
                 Ok(String::from("the fuzzer found nothing"))
             }));
             done
@@ -93,11 +93,10 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
 fn all(times: &'static str) -> Vec<Done> {
     let mut watch = Watch::default();
     let (mut done, built) = std::thread::scope(|scope| {
-        let page =
-            scope.spawn(|| in_lane("page", true, || e2e::build(&mut watch, e2e::Of::Release)));
+        let page = scope.spawn(|| in_lane("page", || e2e::build(&mut watch, e2e::Of::Release)));
         let code = scope.spawn(|| {
             let parts = [Part::Lint, Part::Native, Part::Wasm];
-            in_lane("code", true, || {
+            in_lane("code", || {
                 parts.map(|part| run_times(part, &Chosen::All, times))
             })
         });
