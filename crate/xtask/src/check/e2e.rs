@@ -14,15 +14,6 @@ pub struct Built {
     program: PathBuf,
 }
 
-/// Which page and program are built.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Of {
-    /// Those that are shipped, whose sizes are held to limits.
-    Release,
-    /// Those that are built soonest.
-    Development,
-}
-
 impl Built {
     /// Returns `node --test` on a file in `tests/`, told of the page and the program: those of its tests
     /// whose names have a pattern.
@@ -44,7 +35,7 @@ impl Built {
 
 /// Runs the tests in Firefox.
 pub fn firefox(watch: &mut Watch) -> Result<String> {
-    let built = build(watch, Of::Development)?;
+    let built = build(watch, false)?;
     let firefox = tools::firefox()?;
     let mut command = built.tests(None, "firefox.mjs")?;
     command.env("FIREFOX", firefox);
@@ -62,7 +53,7 @@ pub fn check(watch: &mut Watch, chosen: &Chosen, built: Built) -> Result<String>
         .collect();
     scripts.sort();
     let mut pattern = None;
-    if let Some(filter) = chosen.test() {
+    if let Some(filter) = chosen.test.as_deref() {
         if scripts.iter().any(|name| name.contains(filter)) {
             scripts.retain(|name| name.contains(filter));
         } else {
@@ -89,9 +80,10 @@ pub fn check(watch: &mut Watch, chosen: &Chosen, built: Built) -> Result<String>
     ))
 }
 
-/// Builds the page and the program, and installs the packages that drive a browser.
-pub fn build(watch: &mut Watch, of: Of) -> Result<Built> {
-    let (page, program) = if of == Of::Release {
+/// Builds the page and the program, and installs the packages that drive a browser: of a `release`
+/// those that are shipped, else those that are built soonest.
+pub fn build(watch: &mut Watch, release: bool) -> Result<Built> {
+    let (page, program) = if release {
         let page = watch.step("page", dist::dist)?;
         // The program for any processor of this kind: the page's pictures are compared with its own.
         let program = watch.step("program", || program(cfg!(target_arch = "x86_64")))?;

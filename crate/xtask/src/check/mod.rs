@@ -49,13 +49,11 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
     let begun = Instant::now();
     let done = match part {
         Some(Part::Quick) => vec![run(Part::Quick, &Chosen::changed(filter)?)],
-        // Crates are not to be seen there.
-        Some(Part::E2e) => vec![run(Part::E2e, &filter.map_or(Chosen::All, Chosen::Test))],
-        Some(Part::Firefox) => vec![run(Part::Firefox, &Chosen::All)],
+        Some(Part::E2e) => vec![run(Part::E2e, &Chosen::tests(filter))],
         Some(Part::All) => {
             tell("Ten times as many random inputs, Firefox and the fuzzer: this takes hours.");
             let mut done = all(MANY);
-            done.push(run(Part::Firefox, &Chosen::All));
+            done.push(run(Part::Firefox, &Chosen::default()));
             done.push(attempt(Part::All, Watch::default(), |_| {
                 crate::fuzz::guided(60)?;
                 Ok(String::from("the fuzzer found nothing"))
@@ -93,11 +91,11 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
 fn all(times: &'static str) -> Vec<Done> {
     let mut watch = Watch::default();
     let (mut done, built) = std::thread::scope(|scope| {
-        let page = scope.spawn(|| in_lane("page", || e2e::build(&mut watch, e2e::Of::Release)));
+        let page = scope.spawn(|| in_lane("page", || e2e::build(&mut watch, true)));
         let code = scope.spawn(|| {
             let parts = [Part::Lint, Part::Native, Part::Wasm];
             in_lane("code", || {
-                parts.map(|part| run_times(part, &Chosen::All, times))
+                parts.map(|part| run_times(part, &Chosen::default(), times))
             })
         });
         let done = code
@@ -109,7 +107,7 @@ fn all(times: &'static str) -> Vec<Done> {
         |_| panicked(Part::E2e),
         |built| {
             attempt(Part::E2e, watch, |watch| {
-                e2e::check(watch, &Chosen::All, built?)
+                e2e::check(watch, &Chosen::default(), built?)
             })
         },
     ));
@@ -146,12 +144,7 @@ fn run_times(part: Part, chosen: &Chosen, times: &str) -> Done {
         Part::Native => native::check(watch, chosen, times),
         Part::Wasm => wasm::check(watch, chosen),
         Part::E2e => {
-            let of = if *chosen == Chosen::All {
-                e2e::Of::Release
-            } else {
-                e2e::Of::Development
-            };
-            let built = e2e::build(watch, of)?;
+            let built = e2e::build(watch, chosen.is_all())?;
             e2e::check(watch, chosen, built)
         }
         Part::Firefox => e2e::firefox(watch),

@@ -11,13 +11,13 @@ pub fn check(watch: &mut Watch, chosen: &Chosen, times: &str) -> Result<String> 
     let packages = chosen.packages();
     let programs = watch.step("build", || programs::compile(&packages))?;
     let mut files = Vec::new();
-    if chosen.test().is_none() {
+    if chosen.test.is_none() {
         let mut command = cargo(&["test", "--doc"]);
         command.args(&packages);
         let name = String::from("examples of documentation");
         files.push(File { name, command });
     }
-    files.extend(programs::files(&programs, chosen.test(), times)?);
+    files.extend(programs::files(&programs, chosen.test.as_deref(), times)?);
     let count = watch.run(files)?;
     if count.passed == 0 {
         bail!("no test was run");

@@ -9,23 +9,17 @@ use anyhow::{Result, bail};
 
 /// Runs this part, with `times` as many random inputs as the tests name.
 pub fn check(watch: &mut Watch, chosen: &Chosen, times: &str) -> Result<String> {
-    // Tests of a name are looked for in the packages that are quickly built.
-    let everywhere = chosen.test().is_some();
-    let mut packages = if everywhere {
-        Vec::new()
-    } else {
-        chosen.packages()
-    };
+    let mut packages = chosen.packages();
     format()?;
     watch.step("clippy", || clippy(&packages))?;
     // The pins of pictures.
-    let changed = !everywhere && PICTURES.iter().any(|package| chosen.has(package));
+    let changed = chosen.test.is_none() && PICTURES.iter().any(|package| chosen.has(package));
     if changed && !chosen.has("worker") {
         packages.extend(["--package", "worker"]);
     }
     packages.push("--tests");
     let programs = watch.step("build", || programs::compile(&packages))?;
-    let count = watch.run(programs::files(&programs, chosen.test(), times)?)?;
+    let count = watch.run(programs::files(&programs, chosen.test.as_deref(), times)?)?;
     if count.passed == 0 {
         bail!("no test was run");
     }
