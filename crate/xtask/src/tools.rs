@@ -39,12 +39,15 @@ pub fn in_node(wasm: &Path) -> Command {
     )
 }
 
-/// Makes sure that there is node.
+/// Makes sure that there is node, installed with apt-get on Debian.
 pub fn node() -> Result<()> {
-    if find("node").is_none() || find("npm").is_none() {
-        bail!("Node.js is missing. Install Node.js 20 or newer with npm (https://nodejs.org).");
+    const MISSING: &str =
+        "Node.js is missing. Install Node.js 20 or newer with npm (https://nodejs.org)";
+    let present = || find("node").is_some() && find("npm").is_some();
+    if !present() && find("apt-get").is_some() {
+        apt_install(&["nodejs", "npm"]).context(MISSING)?;
     }
-    Ok(())
+    present().then_some(()).context(MISSING)
 }
 
 /// The node packages of tests/package.json (browser driver, wasm optimiser). Gives their folder.
