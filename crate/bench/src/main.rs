@@ -29,7 +29,7 @@ use report::Report;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Command, ExitCode};
 use xtask::shell::{command, find, read, root};
 
 /// A part of the measurements: its name, its text with marks, and what measures it.
@@ -70,10 +70,14 @@ struct Kept {
     with: String,
 }
 
+fn main() -> ExitCode {
+    let named: Vec<String> = std::env::args().skip(1).collect();
+    xtask::end(bench(&named))
+}
+
 /// Measures everything, or the parts that are named, and writes the file: of parts not measured now
 /// what was measured last.
-fn main() -> Result<()> {
-    let named: Vec<String> = std::env::args().skip(1).collect();
+fn bench(named: &[String]) -> Result<()> {
     let names = PARTS.map(|(name, ..)| name);
     if find("node").is_none() {
         bail!("Node.js is missing. Install Node.js 20 or newer (https://nodejs.org).");
