@@ -76,22 +76,20 @@ pub struct Chart(Vec<Vec<String>>);
 impl Chart {
     /// Measures on this machine.
     pub fn native() -> Result<Self> {
-        Self::new("", &[])
+        Self::new("")
     }
 
     /// Measures as wasm, in node.
     fn wasm() -> Result<Self> {
-        tools::wasm_target()?;
-        let runner = tools::wasm_test_runner()?;
-        let runner = ("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER", &*runner);
-        Self::new(&format!("--target {}", tools::WASM), &[runner])
+        tools::target(tools::WASI)?;
+        Self::new(&format!("--target {}", tools::WASI))
     }
 
-    fn new(options: &str, settings: &[(&str, &std::path::Path)]) -> Result<Self> {
+    fn new(options: &str) -> Result<Self> {
         let line = format!(
-            "test --release {options} --package field --test chart_figures -- --include-ignored --nocapture"
+            "test --release {options} --package field --test it chart_figures:: -- --include-ignored --nocapture"
         );
-        let output = run_and_read(cargo(&words(&line)).envs(settings.iter().copied()))?;
+        let output = run_and_read(&mut cargo(&words(&line)))?;
         let lines = output
             .lines()
             .map(|line| words(line).into_iter().map(str::to_owned));

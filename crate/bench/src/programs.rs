@@ -3,7 +3,8 @@
 use crate::report::Short;
 use anyhow::{Context, Result};
 use serde_json::Value;
-use xtask::shell::{cargo, command, find, root, run, run_and_read, target, words};
+use xtask::shell::{cargo, run, run_and_read, target, words};
+use xtask::tools;
 
 /// Runs an example, whose package may be followed by options of cargo, and returns what it writes.
 pub fn example(package: &str, name: &str, arguments: &[&str]) -> Result<String> {
@@ -13,18 +14,16 @@ pub fn example(package: &str, name: &str, arguments: &[&str]) -> Result<String> 
 
 /// Runs an example as wasm in node, and returns what it writes.
 pub fn example_as_wasm(package: &str, name: &str, arguments: &[&str]) -> Result<String> {
-    const TARGET: &str = "wasm32-wasip1";
-    if find("rustup").is_some() {
-        run(&mut command("rustup", &["target", "add", TARGET]))?;
-    }
-    let what = format!("--package {package} --example {name} --target {TARGET}");
+    tools::target(tools::WASI)?;
+    let what = format!(
+        "--package {package} --example {name} --target {}",
+        tools::WASI
+    );
     run(&mut cargo(&words(&format!(
         "build --release --quiet {what}"
     ))))?;
-    let wasm = target().join(format!("{TARGET}/release/examples/{name}.wasm"));
-    let mut node = command("node", &["--no-warnings"]);
-    node.arg(root().join("tests/bench/wasi.mjs")).arg(wasm);
-    run_and_read(node.args(arguments))
+    let wasm = target().join(format!("{}/release/examples/{name}.wasm", tools::WASI));
+    run_and_read(tools::in_node(&wasm).args(arguments))
 }
 
 /// What a program writes about one thing, by name.

@@ -1,4 +1,4 @@
-//! The worker's engine as wasm in node against the same natively on one thread: `crate/worker/tests/speed.rs`.
+//! The worker's engine as wasm in node against the same natively on one thread: `crate/worker/tests/it/speed.rs`.
 
 use crate::report::{Report, Short};
 use crate::series::Runs;
@@ -12,10 +12,9 @@ const ROUNDS: usize = 5;
 
 /// Measures all scenes.
 pub fn measure() -> Result<Report> {
-    tools::wasm_target()?;
-    let runner = tools::wasm_test_runner()?;
+    tools::target(tools::WASI)?;
     let native = built("--profile release")?;
-    let mut wasm = built(&format!("--profile worker --target {}", tools::WASM))?;
+    let mut wasm = built(&format!("--profile worker --target {}", tools::WASI))?;
     // As the page's worker is.
     if let Some(wasm_opt) = tools::wasm_opt() {
         let folder = target().join("bench");
@@ -26,9 +25,14 @@ pub fn measure() -> Result<Report> {
     }
     let mut scenes: Vec<(String, [Runs; 2])> = Vec::new();
     for _ in 0..ROUNDS {
-        let programs = [command(&native, &[]), tools::in_node(&runner, &wasm)];
+        let programs = [command(&native, &[]), tools::in_node(&wasm)];
         for (which, mut program) in programs.into_iter().enumerate() {
-            program.args(["--include-ignored", "--nocapture"]);
+            program.args([
+                "--exact",
+                "speed::speed",
+                "--include-ignored",
+                "--nocapture",
+            ]);
             let output = run_and_read(program.current_dir(root().join("crate/worker")))?;
             for (scene, seconds) in output.lines().filter_map(figure) {
                 let known = scenes.iter().position(|(name, _)| *name == scene);
@@ -55,9 +59,9 @@ pub fn measure() -> Result<Report> {
 /// Compiles the measurement.
 fn built(options: &str) -> Result<PathBuf> {
     let line = format!(
-        "test --no-run --package worker --test speed --message-format json-render-diagnostics {options}"
+        "test --no-run --package worker --test it --message-format json-render-diagnostics {options}"
     );
-    executable(&artifacts(&mut cargo(&words(&line)))?, "speed")
+    executable(&artifacts(&mut cargo(&words(&line)))?, "it")
 }
 
 /// A line `speed SCENE SECONDS`.

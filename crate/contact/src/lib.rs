@@ -22,7 +22,7 @@
 //! ```
 //!
 //! The volume that is left to a ball of radius 1 and blobbiness −1.5 beside another one at a distance of 1.5, as part of a ball's
-//! alone (`tests/volume.rs`, by Monte Carlo):
+//! alone (`tests/it/volume.rs`, by Monte Carlo):
 //!
 //! | kernel | only cut off | fast 0.2 | height 0.2 0.65 0.25 | ripple 0.2 0.25 2 |
 //! |---|---|---|---|---|

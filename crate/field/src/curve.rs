@@ -20,7 +20,7 @@
 //! The gradient `2∫ αωG′|q′|·(p−q) dt` comes from the same nodes: with `q − p = Σ eₖsᵏ` it is
 //! `−2Σ eₖ ∫αωG′|q′|sᵏ`. Ends of the support do not move it, since kernels are continuous.
 //!
-//! Accuracy (tests/chart.rs and tests/taper.rs): double precision 10⁻⁹ of the value, single 10⁻⁵. Within
+//! Accuracy (tests/it/chart.rs and tests/it/taper.rs): double precision 10⁻⁹ of the value, single 10⁻⁵. Within
 //! 10⁻³ widths of a bone whose kernel has a pole single precision is right to 3·10⁻⁴ (cubed: 10⁻³),
 //! since there it counts that the ends of spans are rounded: by 10⁻⁸, where the squared kernel is 10¹⁰ high and the
 //! cubed one 10¹⁵.

@@ -2,7 +2,7 @@
 //! `cargo run -p preview --example picture -- www/examples/seahorse.rat draft.png 640 480`
 
 // The tests' way to a device without a window.
-#[path = "../tests/common/gpu.rs"]
+#[path = "../tests/it/common/gpu.rs"]
 #[allow(dead_code, reason = "one sample a pixel is for tests")]
 mod gpu;
 

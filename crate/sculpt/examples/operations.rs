@@ -1,7 +1,7 @@
 //! A million random strokes, in blocks: each is checked, taken back and replayed. `operations [BLOCKS [FIRST]]`: blocks of
 //! 1000 strokes, 1000 unless told.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common/mod.rs"]
 mod common;
 
 fn main() {

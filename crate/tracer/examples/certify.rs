@@ -5,9 +5,9 @@
 //! Scenes have the seeds from FIRST (or 0) on. With a kernel, a kind and a seed only that scene is looked at. Faults go to standard error. With
 //! `--exact` before them the crossings that picking uses are judged instead of those of pictures. `--endless` takes kernels that never end
 //! alone, and `--clouds` of them scenes of very many points, which have a hierarchy of far fields.
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common/mod.rs"]
 mod common;
-#[path = "../tests/common/trials.rs"]
+#[path = "../tests/it/random.rs"]
 mod trials;
 
 use field::Kernel;

@@ -55,7 +55,7 @@
 //! Other root finders, for comparison, are in `digger`; `map` shows the cost of each pixel.
 //!
 //! Pictures are checked against [`mod@reference`], which finds the surface by bisection with bounds of its own
-//! (`tests/certified.rs`, `examples/certify.rs`); `cast` traces single rays as in pictures.
+//! (`tests/it/certified.rs`, `examples/certify.rs`); `cast` traces single rays as in pictures.
 //!
 //! # Limits
 //!

@@ -1,5 +1,6 @@
 //! Pictures against themselves at a far higher precision, with nothing cut off.
-#[path = "../tests/common/mod.rs"]
+#[allow(dead_code, reason = "the tests in `tests/` use the rest")]
+#[path = "../tests/it/common/mod.rs"]
 pub mod common;
 
 use crate::picture::Picture;

@@ -1,23 +1,29 @@
-//! Tests of properties on random inputs.
+//! Random inputs for tests: how many, and which.
 //!
-//! [`trials`] runs a property on many inputs, short ones first. They are the same on every machine and in every run, so that
-//! a test that has passed passes again. `SINEW_SEED` (a whole number) asks for other inputs, `SINEW_TRIALS` for so many times as
-//! many; `cargo xtask fuzz` sets both. A failure tells its seed, and `SINEW_CASE` runs that input alone.
+//! Every test that draws its inputs asks [`count`] how many, and takes them from [`Random`] or, where
+//! bytes are to be anything at all, from [`trials`]. They are the same on every machine and in every
+//! run, so that a test that has passed passes again (a library that spends a budget of time, as
+//! `arbtest` does, cannot promise that). `SINEW_TRIALS`, a number, asks for so many times as many:
+//! `cargo xtask test quick` sets 0.1, `cargo xtask test all` sets 10. `SINEW_SEED`, a whole number,
+//! asks for other inputs.
+//!
+//! ```
+//! use trials::{Random, count};
+//!
+//! let mut random = Random::new(7);
+//! for _ in 0..count(200) {
+//!     let x = random.range(-3.0, 3.0);
+//!     assert!((x * x).sqrt() == x.abs());
+//! }
+//! ```
 //!
 //! [`WorkClock`] is for tests that something does not take long.
-//!
-//! ```
-//! use trials::trials;
-//!
-//! trials(|u| {
-//!     let number: u32 = u.arbitrary()?;
-//!     assert_eq!(number.to_string().parse(), Ok(number));
-//!     Ok(())
-//! })
-//! .cases(100);
-//! ```
+
+mod random;
 
 pub use arbitrary;
+pub use random::Random;
+
 use arbitrary::{Result, Unstructured};
 use std::time::Duration;
 
@@ -33,7 +39,20 @@ pub struct Trials<P: FnMut(&mut Unstructured<'_>) -> Result<()>> {
     cases: u32,
 }
 
-/// Tests a property: it panics where it does not hold, and gives an error where an input is too short for it.
+/// Tests a property on many inputs of bytes, short ones first: it panics where it does not hold, and
+/// gives an error where an input is too short for it. A failure tells its input, and `SINEW_CASE`
+/// runs that input alone.
+///
+/// ```
+/// use trials::trials;
+///
+/// trials(|u| {
+///     let number: u32 = u.arbitrary()?;
+///     assert_eq!(number.to_string().parse(), Ok(number));
+///     Ok(())
+/// })
+/// .cases(100);
+/// ```
 ///
 /// # Panics
 /// When the returned value is dropped, if the property panics, or if all inputs are too short.
@@ -70,8 +89,8 @@ impl<P: FnMut(&mut Unstructured<'_>) -> Result<()>> Drop for Trials<P> {
             }
             return;
         }
-        let (seed, times) = (setting("SINEW_SEED", 0), setting("SINEW_TRIALS", 1));
-        let cases = u64::from(self.cases).saturating_mul(times);
+        let seed = seed();
+        let cases = count(self.cases as usize) as u64;
         let mut held = 0;
         for index in 0..cases {
             held += u64::from(self.case(Case::of(seed, index, cases)).is_ok());
@@ -104,8 +123,25 @@ fn worked() -> Option<Duration> {
     Some(Duration::from_nanos(nanoseconds))
 }
 
-/// A whole number from the environment.
-fn setting(name: &str, otherwise: u64) -> u64 {
+/// Returns how many random inputs a test takes: a basic number times `SINEW_TRIALS`, at least one.
+///
+/// A test that also counts how often something happened scales that count alike.
+pub fn count(basic: usize) -> usize {
+    scaled(basic, setting("SINEW_TRIALS", 1.0))
+}
+
+fn scaled(basic: usize, times: f64) -> usize {
+    // Rounded down, as a test of few slow inputs gets no quicker otherwise.
+    ((basic as f64 * times) as usize).max(1)
+}
+
+/// The number that all random inputs depend on.
+fn seed() -> u64 {
+    setting("SINEW_SEED", 0)
+}
+
+/// A number from the environment.
+fn setting<T: std::str::FromStr>(name: &str, otherwise: T) -> T {
     let set = std::env::var(name).ok();
     set.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
@@ -144,11 +180,18 @@ impl Case {
     }
 }
 
-/// SplitMix64's output function of a state: neighbouring numbers give unrelated ones.
-fn mixed(state: u64) -> u64 {
-    let z = state.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+/// The step of SplitMix64's state.
+const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// Returns an unrelated number for each number.
+fn mixed(number: u64) -> u64 {
+    scrambled(number.wrapping_add(1).wrapping_mul(STEP))
+}
+
+/// Returns SplitMix64's output of a state.
+fn scrambled(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
 }
 
@@ -190,6 +233,15 @@ mod tests {
         numbers.dedup();
         assert_eq!(numbers.len(), 50);
         assert_ne!(Case::of(1, 0, 50).seed, Case::of(0, 0, 50).seed);
+    }
+
+    #[test]
+    fn counts_are_scaled_and_never_nothing() {
+        assert_eq!(
+            [0.1, 1.0, 10.0].map(|times| scaled(250, times)),
+            [25, 250, 2500]
+        );
+        assert_eq!([0.1, 1.0, 0.0].map(|times| scaled(4, times)), [1, 4, 1]);
     }
 
     #[test]

@@ -51,7 +51,7 @@ fn tests(time: Duration) -> Result<()> {
 }
 
 /// The targets of cargo-fuzz, which watches what the code does, and needs a nightly compiler.
-fn guided(seconds: u64) -> Result<()> {
+pub fn guided(seconds: u64) -> Result<()> {
     if read(&mut cargo(&["fuzz", "--version"])).is_none() {
         run(&mut cargo(&["install", "cargo-fuzz"]))
             .context("cargo-fuzz is missing. Install it: cargo install cargo-fuzz")?;

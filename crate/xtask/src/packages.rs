@@ -43,14 +43,8 @@ pub const MODULES: [Module; 3] = [
     },
 ];
 
-/// The packages with tests that run as wasm, too, as their results must be the same in the page as on this machine.
-pub const TESTED_AS_WASM: [&str; 7] = [
-    "field", "motion", "rats", "sculpt", "texture", "tracer", "worker",
-];
-
-/// The packages of which the tests that run as wasm are run in a browser, too, where they are asked for by name. Of all tests only those of the
-/// first are: they take seconds, those of the formulas minutes.
-pub const TESTED_IN_BROWSER: [&str; 3] = ["rats", "field", "tracer"];
+/// The packages with tests that also run as wasm, as their results must be the same in the page.
+pub const TESTED_AS_WASM: [&str; 6] = ["field", "motion", "rats", "sculpt", "texture", "worker"];
 
 /// The packages that pictures depend on: a change in one of them may change the pins.
 pub const PICTURES: [&str; 14] = [

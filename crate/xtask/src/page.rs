@@ -21,7 +21,7 @@ pub enum Build {
 
 /// Builds the page into a folder, which is emptied first.
 pub fn build(build: Build, folder: &Path) -> Result<()> {
-    tools::wasm_target()?;
+    tools::target(tools::WASM)?;
     let made = target().join("modules");
     tell("Building the page: some minutes the first time, then as long as what has changed takes.");
     // For a release each has a folder of its own to build in, and is optimised by one core; else they share what is compiled.
@@ -78,10 +78,6 @@ pub fn optimise(wasm_opt: &Path, level: &str, from: &Path, to: &Path) -> Result<
     run(&mut command("node", &[&wasm_opt, &from, level, "-o", &to]))
 }
 
-/// Settings for cargo of everything that is compiled to wasm for development: what tells lines of code would take as long to
-/// write, and to read for wasm-bindgen, as all else.
-pub const NO_LINES: (&str, &str) = ("CARGO_PROFILE_DEV_DEBUG", "false");
-
 /// Compiles a package to wasm and gives the file.
 fn compile(module: &Module, profile: &str) -> Result<PathBuf> {
     // Only a cdylib: with an rlib beside it, link-time optimisation is silently left out.
@@ -96,7 +92,7 @@ fn compile(module: &Module, profile: &str) -> Result<PathBuf> {
     ]);
     command.args(["--target", tools::WASM, "--profile", profile]);
     command.args(["--package", package, "--features", features]);
-    artifacts(command.env(NO_LINES.0, NO_LINES.1))?
+    artifacts(&mut command)?
         .iter()
         .filter(|made| made["target"]["name"] == *package)
         .filter_map(|made| Some(PathBuf::from(made["filenames"][0].as_str()?)))

@@ -8,7 +8,6 @@ use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::Mutex;
-use std::time::Instant;
 
 /// The root of the repository.
 pub fn root() -> PathBuf {
@@ -102,7 +101,7 @@ pub fn tell(line: &str) {
 }
 
 /// Says what is run.
-fn say(command: &Command) {
+pub fn say(command: &Command) {
     let words = [command.get_program()]
         .into_iter()
         .chain(command.get_args());
@@ -131,23 +130,6 @@ pub fn run(command: &mut Command) -> Result<()> {
 /// Runs a command, passes on what it writes, line by line as it comes, and gives its standard output.
 pub fn run_and_read(command: &mut Command) -> Result<String> {
     pass_on(command, true)
-}
-
-/// Runs a command, writes what it has written when it has ended, in one piece, as others run at the same time, and gives its
-/// standard output.
-pub fn run_apart(command: &mut Command) -> Result<String> {
-    let begun = Instant::now();
-    let done = command.stdin(Stdio::null()).output();
-    let output = done.as_ref().map_or(Vec::new(), |done| done.stdout.clone());
-    let errors = done.as_ref().map_or(Vec::new(), |done| done.stderr.clone());
-    let [output, errors] = [output, errors].map(|text| String::from_utf8_lossy(&text).into_owned());
-    say(command);
-    tell(&format!(
-        "{output}{errors}({} s)",
-        begun.elapsed().as_secs()
-    ));
-    succeeded(command, done.map(|done| done.status))?;
-    Ok(output)
 }
 
 /// Does several things, as many at a time as there are cores, in their order, and gives what comes of them in that order.

@@ -1,6 +1,6 @@
 //! Installing what is missing.
 
-use crate::shell::{artifacts, cargo, command, executable, find, read, root, run, tell, words};
+use crate::shell::{command, find, read, root, run, tell, words};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,40 +8,48 @@ use std::process::Command;
 /// The target of everything that runs in the page.
 pub const WASM: &str = "wasm32-unknown-unknown";
 
-/// Makes sure that Rust can compile for [`WASM`].
-pub fn wasm_target() -> Result<()> {
-    let library = ["--print", "target-libdir", "--target", WASM];
+/// Makes sure that Rust can compile for a target.
+pub fn target(name: &str) -> Result<()> {
+    let library = ["--print", "target-libdir", "--target", name];
     let library = read(&mut command("rustc", &library));
     if library.is_some_and(|folder| Path::new(&folder).is_dir()) {
         return Ok(());
     }
-    run(&mut command("rustup", &["target", "add", WASM])).context(
-        "The wasm32-unknown-unknown target of Rust is missing. Install rustup (https://rustup.rs), \
-         then run: rustup target add wasm32-unknown-unknown",
+    run(&mut command("rustup", &["target", "add", name])).with_context(|| {
+        format!(
+            "The {name} target of Rust is missing. Install rustup (https://rustup.rs), then run: \
+             rustup target add {name}"
+        )
+    })
+}
+
+/// The target of tests as wasm: what runs in the page, with a way to write lines.
+pub const WASI: &str = "wasm32-wasip1";
+
+/// Returns a command that runs a program for [`WASI`] in node.
+pub fn in_node(wasm: &Path) -> Command {
+    let host = root().join("tests/wasi.mjs");
+    command(
+        "node",
+        &[
+            "--no-warnings",
+            &host.to_string_lossy(),
+            &wasm.to_string_lossy(),
+        ],
     )
 }
 
-/// The runner of wasm tests, of the version of wasm-bindgen that the tests are compiled with.
-pub fn wasm_test_runner() -> Result<PathBuf> {
-    let build = words("build --package runner --message-format json-render-diagnostics");
-    executable(&artifacts(&mut cargo(&build))?, "wasm-bindgen-test-runner")
-}
-
-/// Environment variable that makes the test runner use a browser's worker; `.cargo/config.toml` sets it for `wasm-pack test`.
-pub const IN_WORKER: &str = "WASM_BINDGEN_USE_DEDICATED_WORKER";
-
-/// A command that runs tests as wasm in node.
-pub fn in_node(runner: &Path, wasm: &Path) -> Command {
-    let mut command = command(runner, &[&wasm.to_string_lossy()]);
-    command.env_remove(IN_WORKER);
-    command
+/// Makes sure that there is node.
+pub fn node() -> Result<()> {
+    if find("node").is_none() || find("npm").is_none() {
+        bail!("Node.js is missing. Install Node.js 20 or newer with npm (https://nodejs.org).");
+    }
+    Ok(())
 }
 
 /// The node packages of tests/package.json (browser driver, wasm optimiser). Gives their folder.
 pub fn node_packages() -> Result<PathBuf> {
-    if find("node").is_none() || find("npm").is_none() {
-        bail!("Node.js is missing. Install Node.js 20 or newer with npm (https://nodejs.org).");
-    }
+    node()?;
     let tests = root().join("tests");
     let modules = tests.join("node_modules");
     // npm keeps a copy of the lock file of what it has installed.
@@ -119,9 +127,8 @@ pub fn chromium() -> Result<PathBuf> {
     let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
     let is = |name: &str| release.lines().any(|line| line == format!("ID={name}"));
     if is("debian") {
-        // The second package is how tests as wasm drive the browser, the third draws without a graphics card.
-        apt_install(&["chromium", "chromium-driver", "mesa-vulkan-drivers"])
-            .context("The browser is missing")?;
+        // The second package draws without a graphics card.
+        apt_install(&["chromium", "mesa-vulkan-drivers"]).context("The browser is missing")?;
         return present().context("apt-get installed no chromium that runs");
     }
     if is("ubuntu") {

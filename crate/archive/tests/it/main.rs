@@ -1,0 +1,3 @@
+//! The tests of `archive`, as one program: a module for each subject.
+
+mod archives;

@@ -1,0 +1,15 @@
+//! The tests of `assist`, as one program: a module for each subject.
+
+mod complete;
+mod fold;
+mod format;
+mod handles;
+mod highlight;
+mod hover;
+mod manual;
+mod names;
+mod nearly_right;
+mod reference;
+mod signature;
+mod speed;
+mod texts;

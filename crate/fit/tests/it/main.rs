@@ -1,0 +1,3 @@
+//! The tests of `fit`, as one program: a module for each subject.
+
+mod sibson;

@@ -1,0 +1,3 @@
+//! The tests of `picture`, as one program: a module for each subject.
+
+mod files;

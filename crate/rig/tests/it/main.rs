@@ -1,0 +1,3 @@
+//! The tests of `rig`, as one program: a module for each subject.
+
+mod rigs;

@@ -1,0 +1,4 @@
+//! The tests of `sketch`, as one program: a module for each subject.
+
+mod cuts;
+mod texts;

@@ -1,0 +1,121 @@
+//! Examples of the gallery whose skeletons fold and touch: what pictures show of them, against the reference.
+//!
+//! With SINEW_RAYS as many rays of each, and with SINEW_SCENE only those of one; the counts are printed with `--nocapture`.
+#![cfg(not(target_arch = "wasm32"))]
+
+use crate::common::Numbers;
+use crate::judged::{Range, Row, asked, is_outside, packet, reference};
+use glam::DVec3;
+use rats::Project;
+use scene::Scene;
+use tracer::Picture;
+
+/// Side of the pictures, pixels.
+const SIDE: u32 = 256;
+
+macro_rules! example {
+    ($name:literal, $frame:literal) => {
+        (
+            $name,
+            include_str!(concat!("../../../../www/examples/", $name, ".rat")),
+            $frame,
+        )
+    };
+}
+
+/// Names, texts and frames.
+const EXAMPLES: [(&str, &str, u32); 8] = [
+    example!("grasp", 0),
+    example!("squeeze", 0),
+    example!("touching", 0),
+    example!("folds", 0),
+    example!("octopus", 0),
+    example!("coils", 0),
+    example!("falling", 0),
+    example!("falling", 40),
+];
+
+/// The soft bodies of an example.
+fn compiled(name: &str, text: &str, frame: u32) -> Scene {
+    let compiled = rats::compile_at(&Project::single(text), &[], f64::from(frame));
+    let mut errors = compiled.diagnostics.iter();
+    let error = errors.find(|d| d.severity == rats::Severity::Error);
+    assert_eq!(error, None, "{name}");
+    let mut scene = compiled.scene;
+    let soft: Vec<bool> = scene.elements.iter().map(|e| scene.is_soft(e)).collect();
+    let mut soft = soft.into_iter();
+    scene.elements.retain(|_| soft.next() == Some(true));
+    scene
+}
+
+/// The box around all that the camera sees.
+fn range(scene: &Scene, picture: &Picture) -> Range {
+    let rays: Vec<(DVec3, DVec3)> = (0..SIDE * SIDE / 16)
+        .map(|i| pixel(scene, f64::from(i % 64) / 64.0, f64::from(i / 64) / 64.0))
+        .collect();
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for hit in picture.cast(&rays).into_iter().flatten() {
+        (low, high) = (low.min(hit.position), high.max(hit.position));
+    }
+    let half = 0.5 * (high - low);
+    assert!(half.is_finite(), "the camera sees nothing");
+    Range {
+        center: 0.5 * (low + high),
+        half,
+        far: 2.0 * half.length(),
+    }
+}
+
+/// The ray of a place in the picture.
+fn pixel(scene: &Scene, x: f64, y: f64) -> (DVec3, DVec3) {
+    let projection = scene.camera.projection(SIDE, SIDE);
+    (projection.eye, projection.direction(x, y))
+}
+
+/// Half of the packets from the camera, the others from around.
+fn judge(name: &str, text: &str, frame: u32, rays: usize) -> Row {
+    let scene = compiled(name, text, frame);
+    let picture = Picture::new(&scene, [SIDE; 2]);
+    let mut reference = reference(&scene);
+    let range = range(&scene, &picture);
+    let eye = scene.camera.eye;
+    assert!(is_outside(&mut reference, eye), "{name}");
+    let far = eye.distance(range.center) + range.half.length();
+    let mut numbers = Numbers(41 + u64::from(frame));
+    let mut row = Row::default();
+    while row.rays < rays {
+        let (packet, limit) = if numbers.unit() < 0.5 {
+            let (x, y) = (numbers.unit(), numbers.unit());
+            let spread = libm::pow(10.0, numbers.between(-3.0, -1.0));
+            let about = |numbers: &mut Numbers, x: f64| x + spread * numbers.between(-1.0, 1.0);
+            let rays = (0..8).map(|_| {
+                let (x, y) = (about(&mut numbers, x), about(&mut numbers, y));
+                pixel(&scene, x, y)
+            });
+            (rays.collect(), far)
+        } else {
+            let packet = packet(&mut numbers, &range, &picture, &mut reference);
+            (packet, 2.0 * range.far)
+        };
+        row.judge(name, (&picture, &mut reference), &packet, limit, |_, _| {});
+    }
+    println!("{name} frame {frame}: {row:?}");
+    row
+}
+
+#[test]
+fn examples_show_what_is_there() {
+    let only = std::env::var("SINEW_SCENE").ok();
+    for (name, text, frame) in EXAMPLES {
+        if only.as_ref().is_some_and(|only| only != name) {
+            continue;
+        }
+        let row = judge(name, text, frame, asked(160));
+        assert!(row.missed == 0 && row.invented == 0, "{name} {row:?}");
+        // Grazing rays may be left undecided.
+        assert!(
+            10 * row.hits > row.rays && 50 * row.uncertain <= row.rays,
+            "{name} {row:?}"
+        );
+    }
+}

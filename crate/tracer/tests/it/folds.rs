@@ -1,0 +1,133 @@
+//! Local convolution and folds in contact, as pictures show them, against a search along the ray.
+#![cfg(not(target_arch = "wasm32"))]
+
+use crate::common::{Numbers, empty};
+use contact::Bulge;
+use field::{Implicit, Kernel, THRESHOLD};
+use glam::{DAffine3, DVec3};
+use scene::{Contact, Curves, Element, Flesh, Form, Function, Scene, Shape};
+use skeleton::{Node, Scheme, Skeleton};
+use std::sync::Arc;
+use tracer::Picture;
+
+/// Worms that fold and cross themselves, with or without contact of the folds.
+fn worm(seed: u64, touching: bool) -> Scene {
+    let mut numbers = Numbers(seed * 2 + 11);
+    numbers.unit();
+    let mut scene = empty();
+    scene.flesh = vec![Flesh {
+        radius: 0.22,
+        kernel: [None, Some(Kernel::Cauchy)][seed as usize % 2],
+        blobbiness: -2.0,
+        ..Flesh::default()
+    }];
+    let mut nodes = Vec::new();
+    for i in 0..7 {
+        // To and fro.
+        let x = [-0.7, 0.7][i % 2];
+        let position = DVec3::new(x, 0.34 * (i as f64 - 3.0), 0.0) + 0.12 * numbers.vector();
+        let radius = numbers.between(0.16, 0.24);
+        nodes.push(Node { position, radius });
+    }
+    nodes.push(Node {
+        position: numbers.vector(),
+        radius: 0.2,
+    });
+    let curves = vec![(0..7).collect(), vec![3, 7]];
+    let skeleton = Skeleton { nodes, curves };
+    let curves = Curves::new(skeleton, Scheme::Cubic, 2)
+        .expect("it has curves")
+        .within(0.9);
+    scene.elements = vec![Element {
+        flesh: Some(0),
+        kernel: Kernel::Cubed,
+        ..Element::new(Shape::Function(Box::new(Function {
+            form: Form::Skeleton(Arc::new(curves)),
+            to_world: DAffine3::IDENTITY,
+        })))
+    }];
+    if touching {
+        scene.contacts.push(Contact {
+            bodies: [0, 0],
+            bulge: Bulge::Fast { c: 0.4 },
+        });
+    }
+    scene
+}
+
+/// The first crossing of a ray, by small steps; with the least distance to the threshold before it.
+fn march(function: &dyn Implicit, (origin, direction): (DVec3, DVec3)) -> (Option<f64>, f64) {
+    const STEP: f64 = 4e-3;
+    let value = |t: f64| function.jet(origin + direction * t).value - THRESHOLD;
+    let (mut t, mut nearest) = (2.0, f64::INFINITY);
+    while t < 7.0 {
+        let next = t + STEP;
+        let here = value(next);
+        if here >= 0.0 {
+            let (mut low, mut high) = (t, next);
+            for _ in 0..50 {
+                let middle = 0.5 * (low + high);
+                if value(middle) >= 0.0 {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            return (Some(high), nearest);
+        }
+        nearest = nearest.min(-here);
+        // Far outside steps may be longer: no field is steeper than that.
+        t = if here < -0.7 { next + 6.0 * STEP } else { next };
+    }
+    (None, nearest)
+}
+
+/// With SINEW_RAYS as many rays.
+#[test]
+fn folds_are_seen_where_they_are() {
+    let rays: usize = (std::env::var("SINEW_RAYS").ok())
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(360);
+    const SCENES: usize = 6;
+    let (mut hits, mut grazing, mut worst) = (0, 0, 0.0f64);
+    for seed in 0..SCENES {
+        let scene = worm(seed as u64, seed % 3 > 0);
+        let picture = Picture::new(&scene, [256; 2]);
+        let surfaces = scene.surfaces();
+        assert_eq!(surfaces.len(), 1);
+        let function = surfaces[0].function();
+        let mut numbers = Numbers(seed as u64 * 7 + 3);
+        for _ in 0..rays.div_ceil(8 * SCENES) {
+            let eye = numbers.vector().normalize() * 4.5;
+            let to = numbers.vector() * 0.8;
+            let packet: Vec<(DVec3, DVec3)> = (0..8)
+                .map(|_| (eye, (to + 0.05 * numbers.vector() - eye).normalize()))
+                .collect();
+            for (ray, hit) in packet.iter().zip(picture.cast(&packet)) {
+                let (want, nearest) = march(function, *ray);
+                match (hit, want) {
+                    (Some(hit), Some(t)) if (hit.t - t).abs() < 1e-5 => {
+                        hits += 1;
+                        worst = worst.max((hit.t - t).abs());
+                    }
+                    (None, None) => {}
+                    // Between two steps the ray may have dipped into the surface.
+                    (Some(hit), want) if nearest < 0.02 => {
+                        let value = function.jet(hit.position).value - THRESHOLD;
+                        assert!(
+                            value.abs() < 1e-6 && want.is_none_or(|t| hit.t < t),
+                            "{ray:?} {value}"
+                        );
+                        grazing += 1;
+                    }
+                    (hit, want) => panic!(
+                        "{seed} {ray:?}: {:?} in place of {want:?}",
+                        hit.map(|h| h.t)
+                    ),
+                }
+            }
+        }
+    }
+    println!("{hits} hits, {grazing} grazing, off by {worst:.1e}");
+    assert!(hits * 4 > rays && grazing * 20 < hits, "{hits} {grazing}");
+}

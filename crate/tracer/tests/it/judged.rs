@@ -1,0 +1,189 @@
+//! Scenes of bodies, skeletons and contacts as the reference knows them, and verdicts on rays through them.
+use crate::common::Numbers;
+use contact::Bulge;
+use glam::DVec3;
+use scene::{Scene, Shape, Surface};
+use std::sync::Arc;
+use tracer::Picture;
+use tracer::reference::{Deformation, Fault, Near, Reference, Substance, TouchingBody};
+
+/// The bulges written out once more.
+pub fn deformation(bulge: Bulge) -> Deformation {
+    let fall = |f: f64, m: f64, h: f64| {
+        let w = 1.0 - m;
+        let x = (f - m) / w;
+        h + ((w - 3.0 * h) + (2.0 * h - w) * x) * x * x
+    };
+    let formula: Arc<dyn Fn(f64) -> f64 + Send + Sync> = match bulge {
+        Bulge::Fast { c } => Arc::new(move |f| {
+            let x = (f - c) / (1.0 - c);
+            (1.0 - c) * x * x * (1.0 - x)
+        }),
+        Bulge::Height { c, m, h } => Arc::new(move |f| {
+            let x = (f - c) / (m - c);
+            if f < m {
+                (3.0 - 2.0 * x) * x * x * h
+            } else {
+                fall(f, m, h)
+            }
+        }),
+        Bulge::Ripple { c, h, n } => Arc::new(move |f| {
+            let turns = f64::from(2 * n + 1);
+            let m = c + (1.0 - c) * (1.0 - 1.0 / f64::from(4 * n + 3));
+            let x = (f - c) / (m - c);
+            let wave = (libm::cos((turns * x + 1.0) * core::f64::consts::PI) + 1.0) / 2.0;
+            if f < m {
+                (3.0 - 2.0 * x) * x * x * h * wave
+            } else {
+                fall(f, m, h)
+            }
+        }),
+    };
+    Deformation::new(bulge.start(), formula)
+}
+
+/// The scene as the reference knows it: bodies of primitives, and bodies of one skeleton that is convolved locally.
+pub fn reference(scene: &Scene) -> Reference {
+    let partners = scene.partners();
+    let surfaces = scene.surfaces_apart();
+    let place = |body: u32| surfaces.iter().position(|surface| surface.body() == body);
+    let mut bodies = Vec::new();
+    for surface in &surfaces {
+        let body = surface.body();
+        let substance = match surface {
+            Surface::Sum(soft) => Substance::Sum(soft.sum.primitives.clone()),
+            Surface::Composed(composed) => {
+                let [number] = composed.element[..] else {
+                    panic!("body {body} is more than a skeleton");
+                };
+                let element = &scene.elements[number as usize];
+                let Shape::Function(function) = &element.shape else {
+                    panic!("body {body} is no skeleton");
+                };
+                let limbs = scene.limbs(element, function).expect("it is a skeleton");
+                Substance::Skeleton {
+                    points: limbs.points,
+                    limbs: limbs.limbs,
+                    reach: limbs.reach,
+                    fold: scene.fold(body).map(deformation),
+                }
+            }
+        };
+        let others = partners.get(&body).into_iter().flatten();
+        bodies.push(TouchingBody {
+            substance,
+            partners: others
+                .filter_map(|(j, by)| Some((place(*j)?, deformation(*by))))
+                .collect(),
+        });
+    }
+    let mut reference = Reference::touching(bodies).expect("the numbers are usable");
+    reference.patience = 6000;
+    reference
+}
+
+/// Where rays are sent.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    pub center: DVec3,
+    /// Half the edges of a box around what is to be met.
+    pub half: DVec3,
+    /// Distance of eyes from the centre.
+    pub far: f64,
+}
+
+/// A packet of rays from outside.
+pub fn packet(
+    numbers: &mut Numbers,
+    range: &Range,
+    picture: &Picture,
+    reference: &mut Reference,
+) -> Vec<(DVec3, DVec3)> {
+    let Range { center, half, far } = *range;
+    let eye = center + numbers.vector().normalize() * far;
+    let aim = center + half * numbers.vector();
+    let mut rays: Vec<(DVec3, DVec3)> = match (3.0 * numbers.unit()) as u32 {
+        // Like neighbouring pixels.
+        0 => {
+            let spread = libm::pow(10.0, numbers.between(-3.0, -1.0)) * half.max_element();
+            let to = |numbers: &mut Numbers| aim + spread * numbers.vector() - eye;
+            (0..8).map(|_| (eye, to(numbers).normalize())).collect()
+        }
+        // Tangents, a little inside or outside.
+        1 => {
+            let ray = (eye, (aim - eye).normalize());
+            let met = picture.cast(&[ray])[0];
+            let Some(hit) = met else { return Vec::new() };
+            let along = hit.normal.cross(numbers.vector()).normalize_or(DVec3::X);
+            (0..8)
+                .map(|i| {
+                    let off = libm::pow(10.0, numbers.between(-6.0, -1.5));
+                    let off = if i % 4 == 3 { off } else { -off };
+                    let off = off * half.max_element();
+                    let back = 5.0 / 9.0 * far;
+                    (hit.position + hit.normal * off - along * back, along)
+                })
+                .collect()
+        }
+        // Nothing to do with one another.
+        _ => (0..8)
+            .map(|_| {
+                let from = center + numbers.vector().normalize() * (2.0 / 3.0 * far);
+                let to = center + 0.8 * half.max_element() * numbers.vector();
+                (from, (to - from).normalize())
+            })
+            .collect(),
+    };
+    rays.retain(|(origin, _)| is_outside(reference, *origin));
+    rays
+}
+
+/// Whether a point is outside of all bodies, and not just so.
+pub fn is_outside(reference: &mut Reference, point: DVec3) -> bool {
+    reference.excess(point).0 < 0.0 && reference.surface_near(point, 1e-4) == Near::Beyond
+}
+
+/// Counts of rays and verdicts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Row {
+    pub rays: usize,
+    pub hits: usize,
+    pub missed: usize,
+    pub grazed: usize,
+    pub invented: usize,
+    pub uncertain: usize,
+}
+
+impl Row {
+    /// Judges what a picture shows of some rays; `spoil` may change that. Faults are printed.
+    pub fn judge(
+        &mut self,
+        name: &str,
+        (picture, reference): (&Picture, &mut Reference),
+        rays: &[(DVec3, DVec3)],
+        limit: f64,
+        spoil: impl Fn(&mut Option<f64>, usize),
+    ) {
+        for (number, (ray, hit)) in rays.iter().zip(picture.cast(rays)).enumerate() {
+            let mut t = hit.map(|hit| hit.t).filter(|t| *t < limit);
+            spoil(&mut t, number);
+            let verdict = reference.judge(ray.0, ray.1, t, limit, |t| picture.tolerance(t));
+            self.rays += 1;
+            self.hits += usize::from(t.is_some());
+            self.uncertain += usize::from(!verdict.certain);
+            match verdict.fault {
+                None => continue,
+                Some(Fault::Missed { grazing: true, .. }) => self.grazed += 1,
+                Some(Fault::Missed { .. }) => self.missed += 1,
+                Some(Fault::Invented(_)) => self.invented += 1,
+            }
+            println!("{name} {ray:?} hit {t:?}: {:?}", verdict.fault);
+        }
+    }
+}
+
+/// The number of rays that SINEW_RAYS asks for, or this one.
+pub fn asked(usual: usize) -> usize {
+    let asked = std::env::var("SINEW_RAYS").ok();
+    asked.and_then(|n| n.parse().ok()).unwrap_or(usual)
+}

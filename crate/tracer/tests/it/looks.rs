@@ -1,0 +1,123 @@
+//! Scenes and pictures for the tests of shading.
+
+use glam::DVec3;
+use scene::{Background, Camera, Element, Finish, Flesh, Scene, Shape};
+use texture::{Method, Target, Texture, Wave};
+use tracer::{Pass, Picture, Stats, Tile};
+
+/// A black scene without lights, seen from z = 6.
+pub fn dark() -> Scene {
+    Scene {
+        background: Background::Colour([0.0; 3]),
+        camera: Camera {
+            eye: DVec3::new(0.0, 0.0, 6.0),
+            fov: 30.0,
+            ..Camera::default()
+        },
+        flesh: vec![Flesh {
+            blobbiness: -2.0,
+            ..Flesh::default()
+        }],
+        ..Scene::default()
+    }
+}
+
+/// A finish that does nothing.
+pub fn black() -> Finish {
+    Finish {
+        diffuse: [0.0; 3],
+        ambient: [0.0; 3],
+        ..Finish::default()
+    }
+}
+
+/// A finish that lets everything pass.
+pub fn glass(index: f32) -> Finish {
+    Finish {
+        transparent: [1.0; 3],
+        index,
+        ..black()
+    }
+}
+
+/// Adds an element with a finish.
+pub fn add(scene: &mut Scene, shape: Shape, finish: Finish) {
+    scene.finishes.push(finish);
+    scene.elements.push(Element {
+        finish: scene.finishes.len() as u32 - 1,
+        ..Element::new(shape)
+    });
+}
+
+/// The same, soft.
+pub fn add_soft(scene: &mut Scene, shape: Shape, finish: Finish) {
+    add(scene, shape, finish);
+    if let Some(last) = scene.elements.last_mut() {
+        last.flesh = Some(0);
+    }
+}
+
+pub fn ball(center: DVec3, radius: f64) -> Shape {
+    Shape::Sphere { center, radius }
+}
+
+/// A glowing plane across z whose brightness tells x: the fraction of `scale·x`.
+pub fn ruler(scene: &mut Scene, z: f64, scale: f64) {
+    let finish = Finish {
+        ambient: [1.0; 3],
+        diffuse: [0.0; 3],
+        layers: vec![Texture {
+            scale: DVec3::splat(scale),
+            ..Texture::new(Target::Ambient, Method::Waves([Wave::Saw, Wave::One]))
+        }],
+        ..Finish::default()
+    };
+    let plane = Shape::Plane {
+        point: DVec3::Z * z,
+        normal: DVec3::Z,
+        radius: 0.0,
+    };
+    add(scene, plane, finish);
+}
+
+/// Red, green and blue of each pixel, rows from the top, one ray each.
+pub fn draw(scene: &Scene, size: [u32; 2]) -> Vec<[u8; 3]> {
+    draw_pass(scene, size, Pass::Full)
+}
+
+pub fn draw_pass(scene: &Scene, size: [u32; 2], pass: Pass) -> Vec<[u8; 3]> {
+    let tile = Tile {
+        x: 0,
+        y: 0,
+        width: size[0],
+        height: size[1],
+    };
+    let picture = Picture::new(scene, size);
+    let rgba = picture
+        .trace(tile, pass, &|| false, &mut Stats::default())
+        .expect("nobody stops");
+    rgba.chunks_exact(4).map(|p| [p[0], p[1], p[2]]).collect()
+}
+
+/// The ray through the middle of each pixel.
+pub fn rays(scene: &Scene, size: [u32; 2]) -> Vec<(DVec3, DVec3)> {
+    let projection = scene.camera.projection(size[0], size[1]);
+    let [width, height] = size.map(f64::from);
+    let ray = |i: u32| {
+        let (x, y) = (f64::from(i % size[0]), f64::from(i / size[0]));
+        let direction = projection.direction((x + 0.5) / width, (y + 0.5) / height);
+        (scene.camera.eye, direction)
+    };
+    (0..size[0] * size[1]).map(ray).collect()
+}
+
+/// The largest difference of two pixels' channels.
+pub fn apart(a: [u8; 3], b: [u8; 3]) -> u8 {
+    (0..3).map(|i| a[i].abs_diff(b[i])).fold(0, u8::max)
+}
+
+/// A byte's distance from a value in 0 … 255 where both ends are one.
+pub fn around(byte: u8, value: f64) -> f64 {
+    let apart = (f64::from(byte) - value).rem_euclid(255.0);
+    apart.min(255.0 - apart)
+}

@@ -1,0 +1,3 @@
+//! The tests of `video`, as one program: a module for each subject.
+
+mod files;

@@ -1,0 +1,145 @@
+//! The scenes of `www/examples/` and `tests/bench/`, compiled, and traced as a worker traces them.
+
+use rats::{Asset, File, Project};
+use scene::Scene;
+use tracer::{Pass, Stats, Tile};
+use worker::{Answer, Engine, Kind, Order, Request, Step};
+
+/// Side of the tiles that the page asks for, pixels.
+pub const TILE: u32 = 64;
+
+const FLAKE: &str = include_str!("../../../../../tests/bench/flake.rat");
+
+macro_rules! examples {
+    ($($name:literal)*) => {
+        [$((
+            $name,
+            include_str!(concat!("../../../../../www/examples/", $name, ".rat")),
+        )),*]
+    };
+}
+
+/// Names and texts of the examples.
+pub const EXAMPLES: [(&str, &str); 49] = examples![
+    "agate-shell" "blends" "coating" "coils" "coral-crab" "coral-tree" "cowrie" "drops" "falling" "fawn" "fireflies" "flakes" "floppy-ears"
+    "fog-stones" "folds" "generators" "glass-drops" "grasp" "hermite-crab" "icicle" "jelly" "octopus" "pebbles" "planets" "sea-urchin"
+    "seahorse" "seaweed" "shell-1" "shell-2" "shell-3" "snail" "sphereflake" "spinal-starecase" "squeeze" "starfish"
+    "starfish-a" "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "stem-flakes" "still-life" "tide"
+    "time-map" "touching" "tshape" "urchin-patterns" "wrinkles"
+];
+
+/// Names and texts of the examples that read meshes and strokes of their own.
+pub const EXAMPLES_WITH_FILES: [(&str, &str); 8] = examples![
+    "diamond" "dog" "elder" "fish" "heads" "queen" "slug" "triceratops"
+];
+
+macro_rules! files {
+    ($include:ident, $($name:literal)*) => {
+        [$((
+            $name,
+            $include!(concat!("../../../../../www/examples/", $name)),
+        )),*]
+    };
+}
+
+const STROKES: [(&str, &str); 4] =
+    files![include_str, "dog.strokes" "fish.strokes" "slug.strokes" "triceratops.strokes"];
+const MESHES: [(&str, &str); 3] = files![include_str, "elder.obj" "head.obj" "queen.obj"];
+
+macro_rules! bench {
+    ($name:literal) => {
+        (
+            $name,
+            include_str!(concat!("../../../../../tests/bench/", $name, ".rat")),
+        )
+    };
+}
+
+/// Names and texts of the scenes that are measured.
+pub const BENCH: [(&str, &str); 10] = [
+    bench!("flake-1"),
+    bench!("flake-10"),
+    bench!("flake-91"),
+    bench!("flake-820"),
+    bench!("flake-7381"),
+    bench!("flake-820-cauchy"),
+    bench!("flake-7381-cauchy"),
+    bench!("coral"),
+    bench!("seahorse"),
+    bench!("tee"),
+];
+
+/// Compiles a text; it may read `flake.rat`, and the meshes and strokes of the examples.
+pub fn compile(text: &str) -> Scene {
+    let file = |name: &str, text: &str| File {
+        name: name.into(),
+        text: text.into(),
+    };
+    let read = [("main.rat", text), ("flake.rat", FLAKE)];
+    let files = read.into_iter().chain(STROKES);
+    let project = Project {
+        files: files.map(|(name, text)| file(name, text)).collect(),
+    };
+    let asset = |(name, text): (&str, &str)| Asset {
+        name: name.into(),
+        bytes: text.as_bytes().into(),
+    };
+    let compiled = rats::compile_at(&project, &MESHES.map(asset), 0.0);
+    let mut errors = compiled.diagnostics.iter();
+    assert_eq!(errors.find(|d| d.severity == rats::Severity::Error), None);
+    compiled.scene
+}
+
+/// FNV-1a.
+pub fn hash(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xCBF2_9CE4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3)
+    })
+}
+
+/// RGBA bytes and counts of the work of each tile, as a worker traces them, in the given order.
+pub fn traced(
+    scene: &Scene,
+    size: [u32; 2],
+    orders: impl Iterator<Item = (Pass, Tile)>,
+) -> Vec<(Tile, Vec<u8>, Stats)> {
+    let mut engine = Engine::default();
+    engine.accept(Request::Begin {
+        generation: 1,
+        scene: Box::new(scene.clone()),
+        size,
+        kind: Kind::Colours,
+        shared: false,
+    });
+    let order = |(pass, tile)| Order {
+        generation: 1,
+        tile,
+        pass,
+    };
+    engine.accept(Request::Trace(orders.map(order).collect()));
+    let mut done = Vec::new();
+    loop {
+        match engine.step(&|| false, &|| 0.0) {
+            Step::Idle => return done,
+            Step::Answer(Answer::Traced {
+                order,
+                pixels,
+                stats,
+                ..
+            }) => done.push((order.tile, pixels, stats)),
+            _ => {}
+        }
+    }
+}
+
+/// Prints a line, natively and as wasm.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn say(line: &str) {
+    println!("{line}");
+}
+
+/// Prints a line, natively and as wasm.
+#[cfg(target_arch = "wasm32")]
+pub fn say(line: &str) {
+    wasm_bindgen_test::console_log!("{line}");
+}

@@ -1,0 +1,188 @@
+//! Whole pictures are the ones that `tests/pins.txt` keeps the hashes of: natively as the program traces them,
+//! as wasm as a worker does. A change of the pictures that is meant is written there by `cargo xtask pins`, which shows
+//! the old and the new ones.
+//!
+//! With `SINEW_PICTURES` set to a folder, the native test compares nothing: it writes each picture there as
+//! `NAME-PASS.ppm` and prints its pin. The command runs it so.
+
+use crate::common::{BENCH, EXAMPLES, EXAMPLES_WITH_FILES, compile, hash, say};
+use scene::Scene;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::PathBuf;
+use tracer::{Pass, Tile};
+
+const PINS: &str = include_str!("../../../../tests/pins.txt");
+/// Width and height of the pictures, pixels.
+const SIZE: u32 = 256;
+/// Scenes that take too long, and the sides of the squares in the middle of their pictures that are traced instead, pixels.
+const PARTS: [(&str, u32); 7] = [
+    ("generators", 128),
+    ("flake-7381-cauchy", 16),
+    ("coils", 24),
+    ("folds", 64),
+    ("grasp", 128),
+    ("elder", 8),
+    ("queen", 16),
+];
+/// At most n×n rays a pixel, so that the smooth pass has something to do in every scene.
+const SAMPLES: u32 = 2;
+const PASSES: [Pass; 2] = [Pass::Full, Pass::Smooth];
+
+/// The square in the middle of a picture.
+fn middle(side: u32) -> Tile {
+    let first = (SIZE - side) / 2;
+    let (x, y) = (first, first);
+    let (width, height) = (side, side);
+    Tile {
+        x,
+        y,
+        width,
+        height,
+    }
+}
+
+/// RGBA bytes of a part of the picture, one for each of [`PASSES`].
+#[cfg(not(target_arch = "wasm32"))]
+fn pictures(scene: &Scene, part: Tile) -> [Vec<u8>; 2] {
+    let picture = tracer::Picture::new(scene, [SIZE; 2]);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    PASSES.map(|pass| {
+        if part.width == SIZE {
+            return tracer::render_picture(&picture, threads, pass, &|_| {}).0;
+        }
+        let traced = picture.trace(part, pass, &|| false, &mut tracer::Stats::default());
+        traced.expect("nobody stops it")
+    })
+}
+
+/// RGBA bytes of a part of the picture, one for each of [`PASSES`].
+#[cfg(target_arch = "wasm32")]
+fn pictures(scene: &Scene, part: Tile) -> [Vec<u8>; 2] {
+    let tiles = if part.width == SIZE {
+        tracer::tiles(SIZE, SIZE, crate::common::TILE)
+    } else {
+        vec![part]
+    };
+    let orders = PASSES
+        .iter()
+        .flat_map(|&pass| tiles.iter().map(move |&tile| (pass, tile)));
+    let done = crate::common::traced(scene, [SIZE; 2], orders);
+    assert_eq!(done.len(), 2 * tiles.len());
+    [0, 1].map(|pass| {
+        let mut picture = vec![0; 4 * (part.width * part.height) as usize];
+        for (tile, pixels, _) in &done[pass * tiles.len()..][..tiles.len()] {
+            let rows = pixels.chunks_exact(4 * tile.width as usize);
+            for (y, row) in (tile.y - part.y..).zip(rows) {
+                let at = 4 * (y * part.width + tile.x - part.x) as usize;
+                picture[at..at + row.len()].copy_from_slice(row);
+            }
+        }
+        picture
+    })
+}
+
+/// The pins of a text, `NAME PASS SIDE HASH` a line, by `NAME PASS`. Lines that begin with `#` are comments.
+fn pins(text: &str) -> BTreeMap<String, String> {
+    text.lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| {
+            let (picture, pin) = line
+                .match_indices(' ')
+                .nth(1)
+                .map(|(at, _)| line.split_at(at))
+                .expect("a pin is NAME PASS SIDE HASH");
+            (picture.to_owned(), pin.trim().to_owned())
+        })
+        .collect()
+}
+
+/// The folder that pictures are written to in place of a comparison; none as wasm.
+fn folder() -> Option<PathBuf> {
+    std::env::var_os("SINEW_PICTURES").map(PathBuf::from)
+}
+
+/// A file of an opaque square picture.
+fn ppm(size: u32, rgba: &[u8]) -> Vec<u8> {
+    let mut file = format!("P6 {size} {size} 255\n").into_bytes();
+    for pixel in rgba.chunks_exact(4) {
+        assert_eq!(pixel[3], 255);
+        file.extend(&pixel[..3]);
+    }
+    file
+}
+
+/// A sentence for each picture that is not as pinned.
+fn changes(pinned: &BTreeMap<String, String>, drawn: &BTreeMap<String, String>) -> String {
+    let mut said = String::new();
+    for (picture, pin) in drawn {
+        match pinned.get(picture) {
+            None => writeln!(said, "The picture {picture} has no pin.").expect("text"),
+            Some(old) if old != pin => writeln!(
+                said,
+                "The picture {picture} has changed: it was {old}, it is {pin}."
+            )
+            .expect("text"),
+            Some(_) => {}
+        }
+    }
+    for picture in pinned.keys().filter(|name| !drawn.contains_key(*name)) {
+        writeln!(said, "There is no picture {picture}, but a pin of it.").expect("text");
+    }
+    said
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn pictures_are_as_pinned() {
+    let folder = folder();
+    let mut drawn = BTreeMap::new();
+    for (place, scenes) in [
+        ("example", &EXAMPLES[..]),
+        ("example", &EXAMPLES_WITH_FILES[..]),
+        ("bench", &BENCH[..]),
+    ] {
+        for (name, text) in scenes {
+            let mut scene = compile(text);
+            scene.settings.samples = SAMPLES;
+            let part = PARTS.iter().find(|(slow, _)| slow == name);
+            let size = part.map_or(SIZE, |(_, side)| *side);
+            for (pass, pixels) in PASSES.iter().zip(pictures(&scene, middle(size))) {
+                let picture = format!("{place}/{name} {pass:?}");
+                let pin = format!("{size} {:016x}", hash(&pixels));
+                if let Some(folder) = &folder {
+                    say(&format!("pin {picture} {pin}"));
+                    let file = folder.join(format!("{place}-{name}-{pass:?}.ppm"));
+                    std::fs::write(file, ppm(size, &pixels)).expect("the folder takes pictures");
+                }
+                drawn.insert(picture, pin);
+            }
+        }
+    }
+    assert_eq!(
+        drawn.len(),
+        2 * (EXAMPLES.len() + EXAMPLES_WITH_FILES.len() + BENCH.len())
+    );
+    if folder.is_some() {
+        return;
+    }
+    let said = changes(&pins(PINS), &drawn);
+    assert!(
+        said.is_empty(),
+        "\n{said}If that is meant, look at the old and new pictures and renew tests/pins.txt: cargo xtask pins\n"
+    );
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn changed_missing_and_left_over_pictures_are_told() {
+    let old = pins("# comment\na Full 8 01\nb Full 8 02\nc Full 8 03\n");
+    let new = pins("a Full 8 01\nb Full 8 12\nd Full 8 04\n");
+    assert_eq!(changes(&old, &old), "");
+    assert_eq!(
+        changes(&old, &new),
+        "The picture b Full has changed: it was 8 02, it is 8 12.\n\
+         The picture d Full has no pin.\n\
+         There is no picture c Full, but a pin of it.\n"
+    );
+}

@@ -1,0 +1,105 @@
+//! Time of the worker's engine for the scenes of `tests/bench/`, natively and as wasm. A measurement:
+//! `cargo xtask bench wasm` runs it. That it ends with a picture is a test.
+
+use crate::common::{BENCH, compile, say};
+use scene::Scene;
+use tracer::{Pass, tiles};
+use worker::{Answer, Engine, Kind, Order, Request, Step};
+
+/// Side of the tiles that the page asks for.
+const TILE: u32 = 64;
+/// Pictures of each scene, of which the quickest counts: so many at least …
+const PICTURES: usize = 3;
+/// … and as many as are begun in so many seconds, as quick ones are easily disturbed, and wasm is first compiled in haste.
+const SECONDS: f64 = 0.6;
+/// Enough, also where clocks are coarse.
+const MOST: usize = 1000;
+
+/// Scenes that tell something about speed and do not take long.
+fn scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let others = ["flake-1", "flake-91", "flake-7381-cauchy"];
+    BENCH
+        .into_iter()
+        .filter(move |(name, _)| !others.contains(name))
+}
+
+/// Traces a picture as the page has it traced, and gives the seconds that it took and how many
+/// pixels are not of the background.
+fn picture(scene: &Scene, size: [u32; 2]) -> (f64, usize) {
+    let mut engine = Engine::default();
+    let start = now();
+    engine.accept(Request::Begin {
+        generation: 1,
+        scene: Box::new(scene.clone()),
+        size,
+        kind: Kind::Colours,
+        shared: false,
+    });
+    let order = |tile| Order {
+        generation: 1,
+        tile,
+        pass: Pass::Full,
+    };
+    let orders = tiles(size[0], size[1], TILE).into_iter().map(order);
+    engine.accept(Request::Trace(orders.collect()));
+    let mut drawn = 0;
+    loop {
+        match engine.step(&|| false, &|| 0.0) {
+            Step::Idle => break,
+            Step::Answer(Answer::Traced { pixels, .. }) => {
+                // The background is the darkest there is.
+                drawn += pixels.chunks_exact(4).filter(|p| p[0] > 40).count();
+            }
+            _ => {}
+        }
+    }
+    (now() - start, drawn)
+}
+
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+fn every_scene_shows_something() {
+    for (name, text) in scenes() {
+        let (_, drawn) = picture(&compile(text), [32, 32]);
+        assert!((20..1000).contains(&drawn), "{name}: {drawn} pixels");
+    }
+}
+
+/// Lines `speed SCENE SECONDS`.
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[ignore = "a measurement, for optimised builds"]
+fn speed() {
+    for (name, text) in scenes() {
+        let scene = compile(text);
+        let (mut best, mut all, mut count) = (f64::INFINITY, 0.0, 0);
+        while count < PICTURES || (all < SECONDS && count < MOST) {
+            let (seconds, _) = picture(&scene, scene.settings.frame);
+            best = best.min(seconds);
+            all += seconds;
+            count += 1;
+        }
+        say(&format!("speed {name} {best:.5}"));
+    }
+}
+
+/// Seconds.
+#[cfg(not(target_arch = "wasm32"))]
+fn now() -> f64 {
+    use std::sync::LazyLock;
+    use std::time::Instant;
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    START.elapsed().as_secs_f64()
+}
+
+/// Seconds.
+#[cfg(target_arch = "wasm32")]
+fn now() -> f64 {
+    use wasm_bindgen::prelude::*;
+    #[wasm_bindgen]
+    extern "C" {
+        #[wasm_bindgen(js_namespace = performance)]
+        fn now() -> f64;
+    }
+    now() / 1000.0
+}
