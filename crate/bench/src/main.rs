@@ -1,8 +1,8 @@
 //! `cargo xtask bench`: measures, and writes BENCHMARKS.md. Nothing in that file is written by hand.
 //!
-//! Each module measures one thing and gives a piece of the page, and rows of the table of goals at its top. What cannot be
-//! measured here, as a program is missing, says so in its place. Each part is kept in `tests/bench/measured/`, so that parts
-//! can be measured one by one.
+//! Each module measures one thing; the words and the heads of its tables stand in `page/`, with marks
+//! `{…}` for what is measured. What cannot be measured here, as a program is missing, says so in its
+//! place. Each part is kept in `tests/bench/measured/`, so that parts can be measured one by one.
 
 mod browser;
 mod certify;
@@ -32,41 +32,32 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 use xtask::shell::{command, find, read, root};
 
-/// A part of the measurements: its name, its title, its text with marks, and what measures it.
-type Part = (
-    &'static str,
-    &'static str,
-    &'static str,
-    fn() -> Result<Report>,
-);
+/// A part of the measurements: its name, its text with marks, and what measures it.
+type Part = (&'static str, &'static str, fn() -> Result<Report>);
 
-macro_rules! parts {
-    ($($name:ident: $title:literal,)*) => {
-        [$((
-            stringify!($name),
-            $title,
-            include_str!(concat!("../page/", stringify!($name), ".md")),
-            $name::measure,
-        ),)*]
-    };
+macro_rules! part {
+    ($name:ident) => {{
+        let text = include_str!(concat!("../page/", stringify!($name), ".md"));
+        (stringify!($name), text, $name::measure)
+    }};
 }
 
-const PARTS: [Part; 14] = parts! {
-    speed: "The tracer, one thread",
-    models: "Soft and hard models",
-    mirrors: "Mirrors and glass",
-    fused: "With fused multiply-adds",
-    wasm: "The tracer as wasm",
-    browser: "The page in a browser",
-    certify: "Certified",
-    profile: "Where the time goes",
-    growth: "Fields without end",
-    memory: "Memory",
-    fields: "Fields",
-    fit: "Fitted meshes",
-    meshes: "Meshes",
-    sculpt: "Sculpting",
-};
+const PARTS: [Part; 14] = [
+    part!(speed),
+    part!(models),
+    part!(mirrors),
+    part!(fused),
+    part!(wasm),
+    part!(browser),
+    part!(certify),
+    part!(profile),
+    part!(growth),
+    part!(memory),
+    part!(fields),
+    part!(fit),
+    part!(meshes),
+    part!(sculpt),
+];
 
 /// Head of the page.
 const HEAD: &str = include_str!("../page/head.md");
@@ -81,37 +72,31 @@ struct Kept {
 
 fn main() -> ExitCode {
     let named: Vec<String> = std::env::args().skip(1).collect();
-    if let Err(error) = bench(&named) {
-        eprintln!("\nbench: {error:#}");
-        return ExitCode::FAILURE;
-    }
-    ExitCode::SUCCESS
+    xtask::end(bench(&named))
 }
 
-/// Measures everything, or the named parts, and writes the file: of parts not measured now what was measured last.
+/// Measures everything, or the parts that are named, and writes the file: of parts not measured now
+/// what was measured last.
 fn bench(named: &[String]) -> Result<()> {
+    let names = PARTS.map(|(name, ..)| name);
     if find("node").is_none() {
         bail!("Node.js is missing. Install Node.js 20 or newer (https://nodejs.org).");
     }
-    let names = PARTS.map(|(name, ..)| name);
-    if let Some(unknown) = named.iter().find(|name| !names.contains(&name.as_str())) {
+    if let Some(unknown) = named.iter().find(|named| !names.contains(&named.as_str())) {
         bail!(
             "There is no part {unknown}. The parts: {}.",
             names.join(", ")
         );
     }
-    for (name, title, text, measure) in PARTS {
-        if !named.is_empty() && !named.iter().any(|named| named == name) {
-            continue;
-        }
-        match measure() {
-            Ok(report) => keep(name, text, report)?,
-            // Earlier measurements stay.
-            Err(error) => eprintln!("{title}: {error:#}"),
-        }
-    }
     let (mut goals, mut pieces) = (Vec::new(), String::new());
-    for (name, title, ..) in PARTS {
+    for (name, text, measure) in PARTS {
+        let wanted = named.is_empty() || named.iter().any(|named| named == name);
+        if wanted && let Err(error) = measure().and_then(|report| keep(name, text, report)) {
+            // Earlier measurements stay.
+            eprintln!("{name}: {error:#}");
+        }
+        let title = text.trim_start_matches("## ").split([':', '\n']).next();
+        let title = title.unwrap_or(name);
         let kept = fs::read_to_string(path(name)).ok();
         let kept: Option<Kept> = kept.and_then(|kept| serde_json::from_str(&kept).ok());
         if let Some(Kept { rows, text, with }) = kept {
@@ -122,9 +107,8 @@ fn bench(named: &[String]) -> Result<()> {
         }
     }
     let page = format!("{HEAD}{}\n{}\n", goals.concat(), pieces.trim_end());
-    let path = root().join("BENCHMARKS.md");
-    fs::write(&path, page).context("BENCHMARKS.md cannot be written")?;
-    println!("wrote {}", path.display());
+    fs::write(root().join("BENCHMARKS.md"), page).context("BENCHMARKS.md cannot be written")?;
+    println!("wrote BENCHMARKS.md");
     Ok(())
 }
 
@@ -137,11 +121,8 @@ fn path(name: &str) -> PathBuf {
 fn keep(name: &str, text: &str, report: Report) -> Result<()> {
     let text = report.fill(text)?;
     let commit = read(&mut command("git", &["rev-parse", "--short", "HEAD"]));
-    let with = format!(
-        "{}; commit {}",
-        versions(),
-        commit.unwrap_or("unknown".into())
-    );
+    let commit = commit.unwrap_or("unknown".into());
+    let with = format!("{}; commit {commit}", versions());
     let rows = report.goals.into_iter().map(|row| row + "\n").collect();
     let kept = serde_json::to_string_pretty(&Kept { rows, text, with })?;
     fs::create_dir_all(path("").with_file_name(""))?;

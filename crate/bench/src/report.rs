@@ -55,14 +55,11 @@ impl Report {
         let (_, bound) = goal.rsplit_once("| ").context("a goal has columns")?;
         let number = bound.trim_start_matches(['≥', '≤', ' ']);
         let unit = number.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
-        let most: f64 = number.trim_end_matches(unit).parse()?;
+        let wanted: f64 = number.trim_end_matches(unit).parse()?;
+        let least = bound.starts_with('≥');
+        let met = |it: f64| if least { it >= wanted } else { it <= wanted };
         let outcome = match measured {
-            Ok(Short(it)) if bound.starts_with('≥') && it >= most => {
-                format!("{}{unit} | met", Short(it))
-            }
-            Ok(Short(it)) if bound.starts_with('≤') && it <= most => {
-                format!("{}{unit} | met", Short(it))
-            }
+            Ok(it) if met(it.0) => format!("{it}{unit} | met"),
             Ok(it) => format!("{it}{unit} | **not met**"),
             Err(reason) => format!("– | {reason:#}"),
         };

@@ -156,21 +156,14 @@ fn against_povray(
     let slow = programs[1].is_some().then_some(slow);
     let quicker = |us: &Runs| installed.then(|| Short(them.over(us).0 * our_rays / pov_rays));
     let ratio = quicker(&us);
-    let seconds = format!(
-        "{us} | {} | {}",
-        or_dash(slow.as_ref()),
-        or_dash(installed.then_some(&them))
-    );
-    let rays = format!("{our_rays:.0} | {}", or_dash(installed.then_some(pov_rays)));
-    let ratios = format!(
-        "{} | {}",
-        or_dash(ratio),
-        or_dash(slow.as_ref().and_then(quicker))
-    );
+    let portable = or_dash(slow.as_ref().and_then(quicker));
+    let (pov_rays, them_shown) = (installed.then_some(pov_rays), installed.then_some(&them));
+    let seconds = format!("{us} | {} | {}", or_dash(slow), or_dash(them_shown));
+    let rays = format!("{our_rays} | {}", or_dash(pov_rays));
+    let ratios = format!("{} | {portable}", or_dash(ratio));
     let wanted = or_dash(goal.map(|goal| format!("≥ {goal}")));
-    let mark = if smooth { "smooth" } else { "plain" };
     let row = format!("{title} | POV-Ray {peer} | {seconds} | {rays} | {ratios} | {wanted}");
-    report.row(mark, row);
+    report.row(if smooth { "smooth" } else { "plain" }, row);
     if let Some(goal) = goal {
         let what = if smooth { ", anti-aliased" } else { "" };
         let goal = format!("{title}{what} | POV-Ray {peer} | ≥ {goal}×");

@@ -1,14 +1,14 @@
 //! The thumbnails of the gallery, and the pictures of the reference.
 
-use crate::pictures::{draw as draw_one, program};
+use crate::pictures::{self, fitted, program};
 use crate::shell::{cargo, files, root, run, words};
 use anyhow::{Result, bail};
 use std::fs;
 
 /// The pixels that a thumbnail fits into: those of the gallery's cards, 4:3.
 const THUMBNAIL: [f64; 2] = [272.0, 204.0];
-/// The pixels that a picture in the reference fits into.
-const REFERENCE: [f64; 2] = [240.0, 180.0];
+/// The size of a picture in the reference.
+const REFERENCE: [u32; 2] = [240, 180];
 
 /// Draws the thumbnails of all datasets, or of those named without their extension.
 pub fn draw(names: &[String]) -> Result<()> {
@@ -25,13 +25,8 @@ pub fn draw(names: &[String]) -> Result<()> {
     });
     let sinew = program()?;
     for dataset in datasets {
-        draw_one(
-            &sinew,
-            &dataset,
-            &dataset.with_extension("png"),
-            THUMBNAIL,
-            "4",
-        )?;
+        let size = fitted(&sinew, &dataset, THUMBNAIL)?;
+        pictures::draw(&sinew, &dataset, &dataset.with_extension("png"), size, "4")?;
     }
     Ok(())
 }
@@ -47,7 +42,7 @@ pub fn reference() -> Result<()> {
     let texts = words("run --package assist --example reference_texts --");
     run(cargo(&texts).arg(&folder))?;
     for text in files(&folder, "rat")? {
-        draw_one(&sinew, &text, &text.with_extension("png"), REFERENCE, "3")?;
+        pictures::draw(&sinew, &text, &text.with_extension("png"), REFERENCE, "3")?;
     }
     let page = words("test --package assist --test reference");
     run(cargo(&page).env("UPDATE_EXPECT", "1"))

@@ -1,7 +1,7 @@
 //! `cargo xtask figures`: the page `www/figures.html`, which shows the figures of Sherstyuk's thesis as this renderer draws them, each
 //! with a link that opens its dataset.
 
-use crate::pictures::{draw, program, read_picture};
+use crate::pictures::{draw, fitted, program, read_picture};
 use crate::shell::{command, files, read, root, target};
 use anyhow::{Context, Result};
 use std::fs;
@@ -77,7 +77,7 @@ fn part(sinew: &Path, name: &str, label: &str) -> Result<String> {
     let picture = root().join(format!("www/figures/{name}.png"));
     let time = |path: &Path| path.metadata().and_then(|data| data.modified());
     if !picture.exists() || time(&picture)? <= time(&dataset)? {
-        draw(sinew, &text, &picture, BOX, "4")?;
+        draw(sinew, &text, &picture, fitted(sinew, &text, BOX)?, "4")?;
     }
     let (info, _) = read_picture(&picture)?;
     let (width, height) = (info.width, info.height);

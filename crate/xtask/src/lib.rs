@@ -14,3 +14,12 @@ pub mod pins;
 pub mod serve;
 pub mod shell;
 pub mod tools;
+
+/// Says why a command failed, if it did.
+pub fn end(done: anyhow::Result<()>) -> std::process::ExitCode {
+    let Err(error) = done else {
+        return std::process::ExitCode::SUCCESS;
+    };
+    eprintln!("\nxtask: {error:#}");
+    std::process::ExitCode::FAILURE
+}

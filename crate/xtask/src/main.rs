@@ -58,13 +58,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    match run(Arguments::parse().command) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("\nxtask: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    xtask::end(run(Arguments::parse().command))
 }
 
 fn run(command: Command) -> Result<()> {

@@ -13,9 +13,9 @@ use wasm_bindgen_cli_support::Bindgen;
 /// How a page is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Build {
-    /// Its workers as for a release, as a visitor waits for pictures; the page itself soon, without optimisation of the whole.
+    /// Soon, and as quick as a release where a visitor waits: for pictures and meshes.
     Development,
-    /// Small and fast.
+    /// Small and fast, each module optimised as a whole.
     Release,
 }
 
@@ -24,8 +24,7 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
     tools::target(tools::WASM)?;
     let made = target().join("modules");
     tell("Building the page: some minutes the first time, then as long as what has changed takes.");
-    // Each profile has a folder of its own to build in, so that none waits for another; whole modules are optimised by one core
-    // each.
+    // For a release each has a folder of its own to build in, and is optimised by one core; else they share what is compiled.
     let work = MODULES.map(|module| {
         let made = &made;
         move || in_lane(module.name, || make(&module, build, made))
@@ -43,7 +42,7 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
 fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
     let begun = Instant::now();
     let profile = match build {
-        Build::Development => module.soon,
+        Build::Development => "serve",
         Build::Release => module.profile,
     };
     let wasm = compile(module, profile)?;
@@ -59,7 +58,7 @@ fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
         .with_context(|| format!("wasm-bindgen could not read {}", wasm.display()))?;
     // It may have to be installed first.
     static WASM_OPT: LazyLock<Option<PathBuf>> = LazyLock::new(tools::wasm_opt);
-    if profile == module.profile
+    if (build == Build::Release || module.package != "studio")
         && let Some(wasm_opt) = &*WASM_OPT
     {
         let file = folder.join(format!("{}_bg.wasm", module.name));

@@ -23,14 +23,16 @@ pub fn program() -> Result<PathBuf> {
     std::env::var_os("SINEW").map_or_else(|| sinew(None), |path| Ok(path.into()))
 }
 
-/// Draws a dataset to a PNG file with a palette, as large as fits into a box of pixels, with n×n rays a pixel.
-pub fn draw(
-    sinew: &Path,
-    dataset: &Path,
-    picture: &Path,
-    within: [f64; 2],
-    rays: &str,
-) -> Result<()> {
+/// Draws a dataset to a PNG file with a palette, with n×n rays a pixel.
+pub fn draw(program: &Path, text: &Path, picture: &Path, size: [u32; 2], n: &str) -> Result<()> {
+    let [width, height] = size.map(|side| side.to_string());
+    let mut render = command(program, &["render", "-s", n, "-r", &width, &height]);
+    run(render.arg(text).arg("-o").arg(picture))?;
+    reduce(picture).with_context(|| picture.display().to_string())
+}
+
+/// The size of a dataset's picture that fits into a box of pixels.
+pub fn fitted(sinew: &Path, dataset: &Path, within: [f64; 2]) -> Result<[u32; 2]> {
     let path = dataset.to_string_lossy();
     let scene = read(&mut command(sinew, &["scene", &path]))
         .with_context(|| format!("{path} has errors; see: sinew check {path}"))?;
@@ -40,11 +42,7 @@ pub fn draw(
         bail!("sinew scene {path} tells no frame size");
     };
     let scale = (within[0] / width).min(within[1] / height);
-    let [width, height] = [width, height].map(|side| (scale * side).round().max(1.0).to_string());
-    let to = picture.to_string_lossy();
-    let size = ["-r", &width, &height, "-s", rays];
-    run(command(sinew, &["render", &path, "-o", &to]).args(size))?;
-    reduce(picture).with_context(|| picture.display().to_string())
+    Ok([width, height].map(|side| (scale * side).round().max(1.0) as u32))
 }
 
 /// A picture's size and kind, and its bytes.
