@@ -9,7 +9,10 @@ use anyhow::{Result, bail};
 /// Runs this part, with `times` as many random inputs as the tests name.
 pub fn check(watch: &mut Watch, chosen: &Chosen, times: &str) -> Result<String> {
     let packages = chosen.packages();
-    let programs = watch.step("build", || programs::compile(&packages))?;
+    // Examples are for `clippy` to check; they are not run.
+    let programs = watch.step("build", || {
+        programs::compile(&[&packages, &["--tests"][..]].concat())
+    })?;
     let mut files = Vec::new();
     if chosen.test.is_none() {
         let mut command = cargo(&["test", "--doc"]);
