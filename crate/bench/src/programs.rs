@@ -14,15 +14,12 @@ pub fn example(package: &str, name: &str, arguments: &[&str]) -> Result<String> 
 
 /// Runs an example as wasm in node, and returns what it writes.
 pub fn example_as_wasm(package: &str, name: &str, arguments: &[&str]) -> Result<String> {
-    tools::target(tools::WASI)?;
-    let what = format!(
-        "--package {package} --example {name} --target {}",
-        tools::WASI
-    );
-    run(&mut cargo(&words(&format!(
-        "build --release --quiet {what}"
-    ))))?;
-    let wasm = target().join(format!("{}/release/examples/{name}.wasm", tools::WASI));
+    let kind = tools::WASI;
+    tools::target(kind)?;
+    let line =
+        format!("build --release --quiet --package {package} --example {name} --target {kind}");
+    run(&mut cargo(&words(&line)))?;
+    let wasm = target().join(format!("{kind}/release/examples/{name}.wasm"));
     run_and_read(tools::in_node(&wasm).args(arguments))
 }
 

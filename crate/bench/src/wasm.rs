@@ -2,9 +2,9 @@
 
 use crate::report::{Report, Short};
 use crate::series::Runs;
-use anyhow::Result;
+use anyhow::{Context, Result};
 use std::path::PathBuf;
-use xtask::shell::{artifacts, cargo, command, executable, root, run_and_read, target, words};
+use xtask::shell::{artifacts, cargo, command, executable, root, run_and_read, words};
 use xtask::{page, tools};
 
 /// Rounds of both in turn; each takes the quickest of several pictures.
@@ -14,33 +14,26 @@ const ROUNDS: usize = 5;
 pub fn measure() -> Result<Report> {
     tools::target(tools::WASI)?;
     let native = built("--profile release")?;
-    let mut wasm = built(&format!("--profile worker --target {}", tools::WASI))?;
+    let slow = built(&format!("--profile worker --target {}", tools::WASI))?;
     // As the page's worker is.
-    if let Some(wasm_opt) = tools::wasm_opt() {
-        let folder = target().join("bench");
-        std::fs::create_dir_all(&folder)?;
-        let quicker = folder.join("speed.wasm");
-        page::optimise(&wasm_opt, page::LEVEL, &wasm, &quicker)?;
-        wasm = quicker;
-    }
+    let wasm = slow.with_file_name("speed.wasm");
+    page::optimise(
+        &tools::wasm_opt().context("wasm-opt is missing")?,
+        &slow,
+        &wasm,
+    )?;
     let mut scenes: Vec<(String, [Runs; 2])> = Vec::new();
     for _ in 0..ROUNDS {
         let programs = [command(&native, &[]), tools::in_node(&wasm)];
         for (which, mut program) in programs.into_iter().enumerate() {
-            program.args([
-                "--exact",
-                "speed::speed",
-                "--include-ignored",
-                "--nocapture",
-            ]);
+            program.args(words("--exact speed::speed --include-ignored --nocapture"));
             let output = run_and_read(program.current_dir(root().join("crate/worker")))?;
-            for (scene, seconds) in output.lines().filter_map(figure) {
-                let known = scenes.iter().position(|(name, _)| *name == scene);
-                let at = known.unwrap_or(scenes.len());
-                if known.is_none() {
+            // They come in the same order each time.
+            for (i, (scene, seconds)) in output.lines().filter_map(figure).enumerate() {
+                if i == scenes.len() {
                     scenes.push((scene, Default::default()));
                 }
-                scenes[at].1[which].add(seconds);
+                scenes[i].1[which].add(seconds);
             }
         }
     }

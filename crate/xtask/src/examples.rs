@@ -44,6 +44,6 @@ pub fn reference() -> Result<()> {
     for text in files(&folder, "rat")? {
         pictures::draw(&sinew, &text, &text.with_extension("png"), REFERENCE, "3")?;
     }
-    let page = words("test --package assist --test reference");
+    let page = words("test --package assist --test it reference::");
     run(cargo(&page).env("UPDATE_EXPECT", "1"))
 }

@@ -62,7 +62,7 @@ fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
         && let Some(wasm_opt) = &*WASM_OPT
     {
         let file = folder.join(format!("{}_bg.wasm", module.name));
-        optimise(wasm_opt, LEVEL, &file, &file)?;
+        optimise(wasm_opt, &file, &file)?;
     }
     tell(&format!("built ({} s)", begun.elapsed().as_secs()));
     Ok(())
@@ -70,12 +70,12 @@ fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
 
 /// How hard wasm-opt tries. Harder is slower for what a worker runs: with -O3 flakes take a tenth longer, as numbers
 /// side by side are moved about more. The app is no smaller after brotli with -Oz.
-pub const LEVEL: &str = "-O1";
+const LEVEL: &str = "-O1";
 
 /// Has wasm-opt make a wasm of another.
-pub fn optimise(wasm_opt: &Path, level: &str, from: &Path, to: &Path) -> Result<()> {
+pub fn optimise(wasm_opt: &Path, from: &Path, to: &Path) -> Result<()> {
     let [wasm_opt, from, to] = [wasm_opt, from, to].map(Path::to_string_lossy);
-    run(&mut command("node", &[&wasm_opt, &from, level, "-o", &to]))
+    run(&mut command("node", &[&wasm_opt, &from, LEVEL, "-o", &to]))
 }
 
 /// Compiles a package to wasm and gives the file.

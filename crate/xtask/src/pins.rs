@@ -2,7 +2,7 @@
 //! commit that renewed them last.
 //!
 //! The repository keeps no pictures: the old ones are drawn by that commit, checked out in a folder of its own.
-//! New and old ones come from the same test, `crate/worker/tests/pins.rs`.
+//! New and old ones come from the same test, `crate/worker/tests/it/pins.rs`.
 
 use crate::pictures::{difference, write_picture};
 use crate::shell::{cargo, command, read, root, run, run_and_read, target, words};
@@ -15,7 +15,7 @@ const FILE: &str = "tests/pins.txt";
 const HEAD: &str = "\
 # Hashes of traced pictures of 256x256 pixels, at most 2x2 rays a pixel: NAME PASS SIDE HASH. Where SIDE is less than 256, only
 # a square of SIDExSIDE pixels in the middle of the picture is traced, as the rest would take minutes.
-# crate/worker/tests/pins.rs compares them, natively and as wasm. Written by: cargo xtask pins
+# crate/worker/tests/it/pins.rs compares them, natively and as wasm. Written by: cargo xtask pins
 ";
 
 /// Hashes (`SIDE HASH`) by picture (`NAME PASS`).
@@ -45,14 +45,11 @@ pub fn renew() -> Result<()> {
     }
     let checkout = folder.join("checkout");
     let path = checkout.to_string_lossy();
-    let worktree = |line: &str, more: &[&str]| {
-        let words = [words("worktree"), words(line), more.to_vec()].concat();
-        run(&mut command("git", &words))
-    };
-    worktree("prune", &[])?;
-    worktree("add --detach", &[&path, &commit])?;
+    let worktree = |words: &[&str]| run(&mut command("git", &[&["worktree"], words].concat()));
+    worktree(&["prune"])?;
+    worktree(&["add", "--detach", &path, &commit])?;
     let drawn = draw(&checkout, &folder.join("old"));
-    worktree("remove --force", &[&path])?;
+    worktree(&["remove", "--force", &path])?;
     drawn?;
     println!("\nChanged since {commit}:");
     for name in changed {
@@ -81,7 +78,7 @@ fn pins(text: &str) -> Pins {
 /// Draws all pictures of a checkout into a folder and gives their pins, a line each.
 fn draw(checkout: &Path, folder: &Path) -> Result<String> {
     fs::create_dir_all(folder)?;
-    let test = "test --package worker --test pins -- --nocapture pictures_are_as_pinned";
+    let test = "test --package worker --tests -- --nocapture pictures_are_as_pinned";
     // Other packages are found built in the same target folder.
     let output = run_and_read(
         cargo(&words(test))

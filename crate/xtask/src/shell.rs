@@ -67,10 +67,8 @@ pub fn command(program: impl AsRef<OsStr>, arguments: &[&str]) -> Command {
 
 /// The cargo that runs this program.
 pub fn cargo(arguments: &[&str]) -> Command {
-    command(
-        std::env::var_os("CARGO").unwrap_or("cargo".into()),
-        arguments,
-    )
+    let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
+    command(cargo, arguments)
 }
 
 /// The words of a line, as arguments of a command.
@@ -102,19 +100,11 @@ pub fn tell(line: &str) {
 
 /// Says what is run.
 pub fn say(command: &Command) {
-    let words = [command.get_program()]
-        .into_iter()
-        .chain(command.get_args());
-    let words = words.enumerate().map(|(i, word)| {
-        let word = Path::new(word);
-        let program = word.file_name().filter(|_| i == 0);
-        let short = word.strip_prefix(root()).unwrap_or(word);
-        program
-            .unwrap_or(short.as_os_str())
-            .to_string_lossy()
-            .into_owned()
-    });
-    tell(&format!("$ {}", words.collect::<Vec<_>>().join(" ")));
+    let program = Path::new(command.get_program()).file_name();
+    let words = program.into_iter().chain(command.get_args());
+    let words: Vec<_> = words.map(OsStr::to_string_lossy).collect();
+    let root = format!("{}/", root().display());
+    tell(&format!("$ {}", words.join(" ").replace(&root, "")));
 }
 
 /// Runs a command and fails if it fails.
@@ -138,18 +128,14 @@ pub fn at_once<T: Send>(work: Vec<impl FnOnce() -> T + Send>) -> Vec<T> {
     let (next, lane) = (Mutex::new(work.into_iter().enumerate()), LANE.get());
     let take = || next.lock().ok()?.next();
     let some = || {
-        in_lane(lane, || {
-            std::iter::from_fn(take)
-                .map(|(i, work)| (i, work()))
-                .collect()
-        })
+        let done = std::iter::from_fn(take).map(|(i, work)| (i, work()));
+        in_lane(lane, || done.collect::<Vec<_>>())
     };
     let mut done: Vec<(usize, T)> = std::thread::scope(|scope| {
         let threads: Vec<_> = (0..cores).map(|_| scope.spawn(some)).collect();
         let done = threads.into_iter().map(|thread| thread.join());
-        let done =
-            done.map(|done: Result<Vec<_>, _>| done.unwrap_or_else(|panic| resume_unwind(panic)));
-        done.flatten().collect()
+        done.flat_map(|done| done.unwrap_or_else(|panic| resume_unwind(panic)))
+            .collect()
     });
     done.sort_by_key(|(i, _)| *i);
     done.into_iter().map(|(_, result)| result).collect()
@@ -188,10 +174,8 @@ fn pass_on(command: &mut Command, shown: bool) -> Result<String> {
 /// Reads what a program writes to the end, and tells each line as it comes if it is to be shown.
 fn lines(from: Option<impl Read>, shown: bool) -> String {
     let mut all = String::new();
-    for line in from
-        .into_iter()
-        .flat_map(|from| BufReader::new(from).split(b'\n'))
-    {
+    let from = from.into_iter().map(BufReader::new);
+    for line in from.flat_map(|from| from.split(b'\n')) {
         let line = line.unwrap_or_default();
         let line = String::from_utf8_lossy(&line);
         if shown {
