@@ -66,8 +66,8 @@ pub fn check(watch: &mut Watch, chosen: &Chosen, built: Built) -> Result<String>
             pattern = Some(filter);
         }
     }
-    // One after the other: each has the machine to itself.
-    let mut options = vec!["--test-concurrency=1"];
+    // Two side by side: a browser waits more than it works.
+    let mut options = vec!["--test-concurrency=2"];
     if let Some(pattern) = pattern {
         options.extend(["--test-name-pattern", pattern]);
     }
