@@ -2,7 +2,8 @@
 
 use crate::Random;
 use core::f64::consts::{PI, TAU};
-use field::{BlobScale, Kernel, Shaping, Skeleton};
+use field::local::Limb;
+use field::{BlobScale, Kernel, Local, Primitive, Shaping, Skeleton};
 use glam::DVec3;
 
 /// A kind of skeleton.
@@ -199,4 +200,41 @@ pub fn shaping(radius: f64, blobbiness: f64) -> Shaping {
         influence: 1e-3,
         taper: None,
     }
+}
+
+/// Returns a hairpin of two legs, nearer to each other than two radii of 0.4 if `apart` < 0.8.
+///
+/// # Panics
+/// If `apart` is no number.
+pub fn hairpin(kernel: Kernel, apart: f64) -> Local {
+    let mut points = Vec::new();
+    for i in 0..=8 {
+        points.push(DVec3::new(-2.0 + 0.25 * f64::from(i), -0.5 * apart, 0.0));
+    }
+    for i in 1..8 {
+        let angle = PI * (f64::from(i) / 8.0 - 0.5);
+        points.push(DVec3::new(
+            0.9 * libm::cos(angle),
+            0.5 * apart * libm::sin(angle),
+            0.0,
+        ));
+    }
+    for i in 0..=8 {
+        points.push(DVec3::new(-0.25 * f64::from(i), 0.5 * apart, 0.0));
+    }
+    let shaping = Shaping {
+        kernel,
+        ..shaping(0.4, -2.0)
+    };
+    let count = points.len() as u32 - 1;
+    let limbs = (0..count).map(|i| {
+        let [base, apex] = [i, i + 1].map(|k| points[k as usize]);
+        let piece = Primitive::new(Skeleton::Segment { base, apex }, &shaping, None);
+        Limb {
+            ends: [i, i + 1],
+            next: [i.checked_sub(1), (i + 1 < count).then_some(i + 1)],
+            pieces: vec![(piece.expect("it is a segment"), base.distance(apex))],
+        }
+    });
+    Local::new(&points, &limbs.collect::<Vec<_>>(), 1.2).expect("it is short")
 }
