@@ -17,9 +17,14 @@
 //! }
 //! ```
 //!
+//! Outputs whose bits must not change are hashed and compared with kept hashes: [`bits`].
+//!
 //! [`WorkClock`] is for tests that something does not take long.
 
+pub mod bits;
 mod random;
+#[cfg(feature = "field")]
+pub mod skeletons;
 
 pub use arbitrary;
 pub use random::Random;

@@ -17,6 +17,12 @@ impl Random {
         }
     }
 
+    /// Returns a generator for a seed whose numbers never change, for outputs that are compared
+    /// with kept ones.
+    pub fn fixed(seed: u64) -> Self {
+        Self(seed)
+    }
+
     /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(STEP);
