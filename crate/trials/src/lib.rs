@@ -17,8 +17,9 @@
 //! }
 //! ```
 //!
-//! [`WorkClock`] is for tests that something does not take long.
+//! [`bits`] compares what must be the same on every platform. [`WorkClock`] is for tests that something does not take long.
 
+pub mod bits;
 mod random;
 
 pub use arbitrary;
