@@ -1,13 +1,8 @@
 //! Datasets that are nearly right.
 #![no_main]
 
-#[allow(dead_code)]
-#[path = "../../crate/assist/examples/fuzz/check.rs"]
-mod check;
-#[path = "../../crate/assist/examples/fuzz/generate.rs"]
-mod generate;
-
 use arbitrary::Unstructured;
+use fuzzer::{check, generate};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,10 +1,7 @@
 //! Links, and what links carry.
 #![no_main]
 
-#[allow(dead_code)]
-#[path = "../../crate/assist/examples/fuzz/check.rs"]
-mod check;
-
+use fuzzer::check;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -198,8 +198,8 @@ mod tests {
 
     #[test]
     fn web_of_a_ball_is_a_surface_and_of_anything_has_every_point() {
-        let mut numbers = crate::Numbers::new(5);
-        let ball: Vec<DVec3> = (0..80).map(|_| numbers.direction()).collect();
+        let mut random = trials::Random::new(5);
+        let ball: Vec<DVec3> = (0..80).map(|_| random.direction()).collect();
         let web = super::web(&ball);
         // A closed surface of 80 vertices has 156 triangles; a few are not Gabriel's.
         assert!((80..180).contains(&web.len()), "{}", web.len());

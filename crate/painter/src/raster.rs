@@ -330,6 +330,7 @@ mod tests {
         ColorImage, TextureId, TextureOptions, TexturesDelta,
         epaint::{ImageDelta, textures::TextureFilter},
     };
+    use trials::{Random, count};
 
     use super::*;
     use crate::texture::Textures;
@@ -365,15 +366,10 @@ mod tests {
         Corner::new([x, y], [0.0; 2], tint).unwrap()
     }
 
-    /// A row of numbers below `end` that look random.
+    /// Returns a source of random numbers below `end`, multiples of `end / 2²⁴`.
     fn numbers(seed: u64, end: f32) -> impl FnMut() -> f32 {
-        let mut state = seed;
-        move || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 40) as f32 / (1 << 24) as f32 * end
-        }
+        let mut random = Random::new(seed);
+        move || (random.bits() >> 40) as f32 / (1 << 24) as f32 * end
     }
 
     #[test]
@@ -399,7 +395,7 @@ mod tests {
     fn triangles_that_share_edges_cover_each_pixel_once() {
         with_white(|white| {
             let mut number = numbers(7, 40.0);
-            for _ in 0..200 {
+            for _ in 0..count(200) {
                 let mut sheet = sheet(40, 40);
                 // A fan round an inner point, both ways round, covers the whole sheet.
                 let hub = corner(number(), number(), ONCE);
@@ -432,7 +428,7 @@ mod tests {
     fn drawing_in_parts_is_drawing_the_whole() {
         with_white(|white| {
             let mut number = numbers(3, 60.0);
-            for _ in 0..100 {
+            for _ in 0..count(100) {
                 let triangle = [(); 3].map(|()| {
                     let tint = Color32::from_rgba_premultiplied(number() as u8, 20, 0, 100);
                     corner(number() - 10.0, number() - 10.0, tint)
@@ -568,7 +564,7 @@ mod tests {
     #[test]
     fn a_box_is_drawn_as_its_two_triangles_are() {
         let mut number = numbers(11, 1.0);
-        for round in 0..60 {
+        for round in 0..count(60) {
             let image = ColorImage::new(
                 [16, 8],
                 (0..128)

@@ -255,6 +255,7 @@ impl Textures {
 mod tests {
     use super::*;
     use egui::ColorImage;
+    use trials::{Random, count};
 
     fn grey(size: [usize; 2], value: impl Fn(usize, usize) -> u8) -> ColorImage {
         ColorImage::new(
@@ -297,14 +298,9 @@ mod tests {
 
     #[test]
     fn channels_are_blended_each_by_itself() {
-        let mut state = 1u64;
-        let mut byte = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 56) as u8
-        };
-        for round in 0..2000 {
+        let mut random = Random::new(1);
+        let mut byte = || random.below(256) as u8;
+        for round in 0..20 + count(2000) {
             let texels: [[u8; 4]; 4] = std::array::from_fn(|_| {
                 std::array::from_fn(|_| if round < 20 { 255 } else { byte() })
             });

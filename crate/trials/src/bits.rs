@@ -13,6 +13,13 @@ impl Default for Hash {
 }
 
 impl Hash {
+    /// Returns the hash of bytes.
+    pub fn of(bytes: &[u8]) -> Self {
+        let mut hash = Self::default();
+        hash.bytes(bytes);
+        hash
+    }
+
     /// Adds bytes.
     pub fn bytes(&mut self, bytes: &[u8]) {
         for byte in bytes {
@@ -78,9 +85,7 @@ mod tests {
     #[test]
     fn hashes_tell_numbers_apart() {
         // FNV-1a's published value.
-        let mut foobar = Hash::default();
-        foobar.bytes(b"foobar");
-        assert_eq!(foobar, Hash(0x8594_4171_F739_67E8));
+        assert_eq!(Hash::of(b"foobar"), Hash(0x8594_4171_F739_67E8));
         assert_ne!(hash(1.0), hash(1.0_f64.next_up()));
         assert_ne!(hash(0.0), hash(-0.0));
         assert_eq!(hash(f64::NAN), hash(-f64::NAN));

@@ -13,7 +13,7 @@ pub fn fuzz(minutes: u64) -> Result<()> {
     let seconds = 60 * minutes;
     tests(Duration::from_secs(seconds))?;
     let line = format!(
-        "run --profile fuzz --package assist --example fuzz -- {seconds} {}",
+        "run --profile fuzz --package fuzzer -- {seconds} {}",
         fresh()
     );
     run(&mut cargo(&words(&line)))?;

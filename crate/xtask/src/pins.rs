@@ -78,7 +78,8 @@ fn pins(text: &str) -> Pins {
 /// Draws all pictures of a checkout into a folder and gives their pins, a line each.
 fn draw(checkout: &Path, folder: &Path) -> Result<String> {
     fs::create_dir_all(folder)?;
-    let test = "test --package worker --tests -- --nocapture pictures_are_as_pinned";
+    let test =
+        "test --package worker --tests -- --nocapture --test-threads=1 pictures_are_as_pinned";
     // Other packages are found built in the same target folder.
     let output = run_and_read(
         cargo(&words(test))
@@ -86,8 +87,9 @@ fn draw(checkout: &Path, folder: &Path) -> Result<String> {
             .env("CARGO_TARGET_DIR", target())
             .env("SINEW_PICTURES", folder),
     )?;
-    let lines = output.lines().filter_map(|line| line.strip_prefix("pin "));
-    let lines: String = lines.flat_map(|line| [line, "\n"]).collect();
+    // The first of a test stands behind the test's name.
+    let lines = output.lines().filter_map(|line| line.split_once("pin "));
+    let lines: String = lines.flat_map(|(_, pin)| [pin, "\n"]).collect();
     if lines.is_empty() {
         bail!("the test of the pins has drawn nothing");
     }

@@ -342,8 +342,7 @@ fn renaming_keeps_the_meaning_of_any_names() {
         compared.set(compared.get() + usize::from(any_rename(&project)));
         Ok(())
     })
-    .cases(1_000);
-    // How many there are in the time depends on who else uses the processor.
+    .cases(300);
     assert!(compared.get() >= 1, "no text without errors");
 }
 

@@ -2,25 +2,15 @@
 //! `cargo test --release -p assist --test it speed:: -- --ignored --nocapture`.
 
 use crate::texts::{file, one_file};
-
 use rats::limits::MAX_TEXT;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use trials::WorkClock;
 
-/// The time that this thread has worked, where the system tells; a busy machine does not count.
-fn worked() -> Option<Duration> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds = text.split_whitespace().next()?.parse().ok()?;
-    Some(Duration::from_nanos(nanoseconds))
-}
-
-/// How long something takes.
+/// Returns how long something takes.
 fn timed(run: &mut dyn FnMut()) -> Duration {
-    let (clock, before) = (Instant::now(), worked());
+    let clock = WorkClock::start();
     run();
-    match (before, worked()) {
-        (Some(before), Some(after)) => after - before,
-        _ => clock.elapsed(),
-    }
+    clock.elapsed()
 }
 
 /// A text of about `length` bytes, of all kinds of commands.

@@ -14,8 +14,7 @@ use trials::bits::Hash;
 use trials::skeletons::{ALL_KINDS, Kind, hairpin};
 use wide::f32x8;
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn bits_are_the_same_on_every_platform() {
     let found = Found::default();
     for kernel in Kernel::ALL {

@@ -5,13 +5,14 @@ use core::hint::black_box;
 use field::real::Scalar;
 use field::{Evaluate, Kernel, Primitive, Shaping, Skeleton};
 use glam::DVec3;
+use std::time::Instant;
 use trials::skeletons::{ALL_KINDS, Kind, shaping};
 use wide::f32x8;
 
 /// The errors, which are the same as wasm.
 #[cfg(not(target_arch = "wasm32"))]
 mod errors {
-    use super::{name, say};
+    use super::name;
     use crate::common::{jet, primitive, single};
     use field::{Kernel, Shaping, Skeleton};
     use trials::skeletons::{ALL_KINDS, Kind, shaping};
@@ -74,11 +75,7 @@ mod errors {
         for kernel in Kernel::ALL {
             for kind in ALL_KINDS {
                 let worst = worst_error(kernel, kind);
-                say(&format!(
-                    "error {} {} {worst:.1e}",
-                    kernel.name(),
-                    name(kind)
-                ));
+                println!("error {} {} {worst:.1e}", kernel.name(), name(kind));
                 assert!(
                     worst <= bound(kernel, kind),
                     "{kernel:?} {kind:?}: {worst:e}"
@@ -93,9 +90,7 @@ fn name(kind: Kind) -> String {
 }
 
 /// Lines `speed KERNEL KIND f32x8 f32 f64`, million values with gradients a second.
-// This attribute is first, as it looks only at those after it (`ignore`).
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 #[ignore = "a measurement, for optimised builds"]
 fn speed() {
     for kernel in Kernel::ALL {
@@ -111,11 +106,7 @@ fn speed() {
                 rate::<f64>(&primitive),
             ];
             let [a, b, c] = rates.map(|rate| format!("{rate:.2}"));
-            say(&format!(
-                "speed {} {} {a} {b} {c}",
-                kernel.name(),
-                name(kind)
-            ));
+            println!("speed {} {} {a} {b} {c}", kernel.name(), name(kind));
         }
     }
 }
@@ -168,7 +159,7 @@ where
     // Runs of at least five milliseconds, which the clock of a browser can tell; the best of them.
     let mut good = 0;
     while good < 5 {
-        let start = now();
+        let start = Instant::now();
         let mut sums = [R::splat(0.0); 2];
         for i in 0..count {
             let t = R::from_lanes(|lane| 2.0 * ((i * 37 + lane * 5) % 512) as f64 / 512.0);
@@ -177,7 +168,7 @@ where
             sums[1] = sums[1] + slope;
         }
         black_box(sums.map(|sum| sum.lane(0)));
-        let seconds = now() - start;
+        let seconds = start.elapsed().as_secs_f64();
         if seconds < 5e-3 {
             count *= 2;
             continue;
@@ -186,29 +177,4 @@ where
         best = best.min(seconds / (count * R::LANES) as f64);
     }
     1e-6 / best
-}
-
-/// Seconds.
-#[cfg(not(target_arch = "wasm32"))]
-fn now() -> f64 {
-    use std::sync::LazyLock;
-    use std::time::Instant;
-    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    START.elapsed().as_secs_f64()
-}
-
-/// Seconds.
-#[cfg(target_arch = "wasm32")]
-fn now() -> f64 {
-    js_sys::Date::now() / 1000.0
-}
-
-#[cfg(not(target_arch = "wasm32"))]
-fn say(line: &str) {
-    println!("{line}");
-}
-
-#[cfg(target_arch = "wasm32")]
-fn say(line: &str) {
-    wasm_bindgen_test::console_log!("{line}");
 }

@@ -3,50 +3,22 @@
 use fit::{Deformation, MAX_CONTROLS, Sibson};
 use glam::DVec3;
 use mesh::Aabb;
-
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() * count as f64) as usize
-    }
-
-    fn point(&mut self) -> DVec3 {
-        DVec3::from_array(core::array::from_fn(|_| 2.0 * self.next() - 1.0))
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        loop {
-            let p = self.point();
-            if p.length_squared() <= 1.0 && p.length_squared() > 1e-9 {
-                return p.normalize();
-            }
-        }
-    }
-}
+use trials::{Random, count};
 
 /// Controls of one of several kinds.
-fn controls(kind: usize, numbers: &mut Numbers) -> Vec<DVec3> {
-    let count = 1 + numbers.below(40);
-    let mut some = |mut make: Box<dyn FnMut(&mut Numbers) -> DVec3>| -> Vec<DVec3> {
-        (0..count).map(|_| make(numbers)).collect()
+fn controls(kind: usize, random: &mut Random) -> Vec<DVec3> {
+    let many = 1 + random.below(40);
+    let mut some = |mut make: Box<dyn FnMut(&mut Random) -> DVec3>| -> Vec<DVec3> {
+        (0..many).map(|_| make(random)).collect()
     };
     let mut made = match kind {
-        0 => some(Box::new(Numbers::point)),
+        0 => some(Box::new(|n| n.vector(1.0))),
         // Cospherical.
         1 => some(Box::new(|n| n.direction() * 0.8)),
         // Coplanar.
-        2 => some(Box::new(|n| n.point() * DVec3::new(1.0, 1.0, 0.0))),
+        2 => some(Box::new(|n| n.vector(1.0) * DVec3::new(1.0, 1.0, 0.0))),
         // Collinear.
-        3 => some(Box::new(|n| n.point() * DVec3::X)),
+        3 => some(Box::new(|n| n.vector(1.0) * DVec3::X)),
         // A lattice, cospherical in eights.
         4 => {
             let lattice = (0..27).map(|i| {
@@ -66,11 +38,11 @@ fn controls(kind: usize, numbers: &mut Numbers) -> Vec<DVec3> {
             .map(|p| p * 0.9)
             .collect(),
         // Close together, far from all else.
-        6 => some(Box::new(|n| DVec3::splat(0.3) + n.point() * 1e-5)),
+        6 => some(Box::new(|n| DVec3::splat(0.3) + n.vector(1.0) * 1e-5)),
         // Outside the box, some of them beyond the far corners.
-        7 => some(Box::new(|n| n.point() * 8.0)),
+        7 => some(Box::new(|n| n.vector(1.0) * 8.0)),
         // Nearly coplanar.
-        _ => some(Box::new(|n| n.point() * DVec3::new(1.0, 1.0, 1e-11))),
+        _ => some(Box::new(|n| n.vector(1.0) * DVec3::new(1.0, 1.0, 1e-11))),
     };
     let mut apart: Vec<DVec3> = Vec::new();
     for p in made.drain(..) {
@@ -82,16 +54,16 @@ fn controls(kind: usize, numbers: &mut Numbers) -> Vec<DVec3> {
 }
 
 /// A point in general or in special position.
-fn point(kind: usize, controls: &[DVec3], numbers: &mut Numbers) -> DVec3 {
-    let mut some = || controls[numbers.below(controls.len())];
+fn point(kind: usize, controls: &[DVec3], random: &mut Random) -> DVec3 {
+    let mut some = || controls[random.below(controls.len())];
     let (a, b, c) = (some(), some(), some());
     let at = match kind {
-        0 | 1 => numbers.point(),
+        0 | 1 => random.vector(1.0),
         2 => a,
         3 => 0.5 * (a + b),
         4 => (a + b + c) / 3.0,
         // Nearer and nearer to a control.
-        5 => a + numbers.direction() * libm::exp(-30.0 * numbers.next()),
+        5 => a + random.direction() * libm::exp(-30.0 * random.unit()),
         _ => DVec3::ZERO,
     };
     at.clamp(-DVec3::ONE, DVec3::ONE)
@@ -102,18 +74,15 @@ const BOX: Aabb = Aabb {
     max: DVec3::ONE,
 };
 
-/// Random configurations: 1,000, or as many as SINEW_SIBSON says.
 #[test]
 fn weights_sum_to_one_and_give_the_point_back() {
-    let asked = std::env::var("SINEW_SIBSON").ok();
-    let count = asked.and_then(|n| n.parse().ok()).unwrap_or(1000);
-    let mut numbers = Numbers(1);
+    let mut random = Random::new(1);
     let mut worst: f64 = 0.0;
-    for i in 0..count {
-        let controls = controls(i % 9, &mut numbers);
+    for i in 0..count(1000) {
+        let controls = controls(i % 9, &mut random);
         let sibson = Sibson::new(&controls, &BOX).expect("controls that are apart");
         for kind in 0..7 {
-            let point = point(kind, &controls, &mut numbers);
+            let point = point(kind, &controls, &mut random);
             let row = sibson.coordinates(point).expect("a point of the box");
             let sum: f64 = row.iter().map(|(_, weight)| weight).sum();
             let sites = sibson.sites();
@@ -130,24 +99,24 @@ fn weights_sum_to_one_and_give_the_point_back() {
 
 #[test]
 fn weights_are_the_stolen_volumes() {
-    let mut numbers = Numbers(2);
-    for i in 0..18 {
-        let controls = controls(i % 6, &mut numbers);
+    let mut random = Random::new(2);
+    for i in 0..count(18) {
+        let controls = controls(i % 6, &mut random);
         let sibson = Sibson::new(&controls, &BOX).expect("controls that are apart");
-        let point = point(i % 2, &controls, &mut numbers) * 0.7;
+        let point = point(i % 2, &controls, &mut random) * 0.7;
         let row = sibson.coordinates(point).expect("a point of the box");
         // Samples of the cell: a direction, and a distance up to the cell's wall; each stands for a volume.
         let sites = sibson.sites();
         let mut samples = Vec::new();
         for _ in 0..40_000 {
-            let direction = numbers.direction();
+            let direction = random.direction();
             let wall = sites
                 .iter()
                 .map(|site| *site - point)
                 .filter(|way| way.dot(direction) > 0.0);
             let wall = wall.map(|way| 0.5 * way.length_squared() / way.dot(direction));
             let wall = wall.fold(f64::INFINITY, f64::min);
-            let sample = point + direction * wall * libm::cbrt(numbers.next());
+            let sample = point + direction * wall * libm::cbrt(random.unit());
             let nearest = (0..sites.len())
                 .min_by(|a, b| {
                     let [a, b] = [a, b].map(|k| sites[*k].distance_squared(sample));
@@ -174,8 +143,8 @@ fn weights_are_the_stolen_volumes() {
 
 #[test]
 fn coordinates_are_continuous_and_local() {
-    let mut numbers = Numbers(3);
-    let controls: Vec<DVec3> = (0..400).map(|_| numbers.point()).collect();
+    let mut random = Random::new(3);
+    let controls: Vec<DVec3> = (0..400).map(|_| random.vector(1.0)).collect();
     let sibson = Sibson::new(&controls, &BOX).expect("controls that are apart");
     let dense = |point: DVec3| {
         let mut all = vec![0.0; sibson.sites().len()];
@@ -184,10 +153,10 @@ fn coordinates_are_continuous_and_local() {
         }
         all
     };
-    for _ in 0..200 {
-        let point = numbers.point() * 0.5;
+    for _ in 0..count(200) {
+        let point = random.vector(1.0) * 0.5;
         let one = dense(point);
-        let other = dense(point + numbers.direction() * 1e-7);
+        let other = dense(point + random.direction() * 1e-7);
         let change = one
             .iter()
             .zip(&other)
@@ -203,13 +172,13 @@ fn coordinates_are_continuous_and_local() {
 #[test]
 fn deformation_reproduces_affine_moves_in_the_hull() {
     // Inside a dense cage whose corners are all controls a linear field of moves moves vertices linearly.
-    let mut numbers = Numbers(4);
+    let mut random = Random::new(4);
     let mut controls: Vec<DVec3> = (0..8)
         .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
         .map(|p| 12.0 * (p - DVec3::splat(0.5)))
         .collect();
-    controls.extend((0..200).map(|_| numbers.point() * 2.5));
-    let vertices: Vec<DVec3> = (0..200).map(|_| numbers.point() * 0.5).collect();
+    controls.extend((0..200).map(|_| random.vector(1.0) * 2.5));
+    let vertices: Vec<DVec3> = (0..200).map(|_| random.vector(1.0) * 0.5).collect();
     let deformation = Deformation::new(&vertices, &controls).expect("controls that are apart");
     let turn = |p: DVec3| DVec3::new(0.2 * p.y + 0.1, -0.3 * p.x + p.z, p.z * 0.5);
     let moves: Vec<DVec3> = controls.iter().map(|c| turn(*c)).collect();

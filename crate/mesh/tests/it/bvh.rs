@@ -1,17 +1,17 @@
 //! The hierarchy against looking at every box.
 
-use crate::solids::Random;
 use core::ops::ControlFlow;
 use glam::DVec3;
 use mesh::{Aabb, Bvh, Ray};
+use trials::{Random, count};
 
 /// Boxes of several kinds: scattered, flat, equal, in a row of very different sizes.
 fn scenes(random: &mut Random) -> Vec<Vec<Aabb>> {
-    let mut around = |count: usize, size: f64| -> Vec<Aabb> {
-        (0..count)
+    let mut around = |many: usize, size: f64| -> Vec<Aabb> {
+        (0..many)
             .map(|_| {
-                let p = random.point();
-                Aabb::of_points([p, p + random.point() * size])
+                let p = random.vector(1.0);
+                Aabb::of_points([p, p + random.vector(1.0) * size])
             })
             .collect()
     };
@@ -63,13 +63,13 @@ fn overlapping(boxes: &[Aabb], query: &Aabb) -> Vec<u32> {
 
 #[test]
 fn boxes_that_overlap_are_found() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for boxes in scenes(&mut random) {
         let bvh = Bvh::new(&boxes);
         assert_eq!(bvh.len(), boxes.len());
-        for _ in 0..100 {
-            let p = random.point();
-            let query = Aabb::of_points([p, p + random.point() * random.unit()]);
+        for _ in 0..count(100) {
+            let p = random.vector(1.0);
+            let query = Aabb::of_points([p, p + random.vector(1.0) * random.unit()]);
             let mut found: Vec<u32> = bvh.overlapping(&query).collect();
             found.sort_unstable();
             assert_eq!(found, overlapping(&boxes, &query));
@@ -79,7 +79,7 @@ fn boxes_that_overlap_are_found() {
 
 #[test]
 fn pairs_are_found_once() {
-    for boxes in scenes(&mut Random(2)) {
+    for boxes in scenes(&mut Random::new(2)) {
         let mut found = Vec::new();
         Bvh::new(&boxes).pairs(|i, j| {
             found.push((i, j));
@@ -94,27 +94,27 @@ fn pairs_are_found_once() {
             }
         }
         assert_eq!(found, expected);
-        let mut count = 0;
+        let mut seen = 0;
         Bvh::new(&boxes).pairs(|_, _| {
-            count += 1;
-            if count == 3 {
+            seen += 1;
+            if seen == 3 {
                 ControlFlow::Break(())
             } else {
                 ControlFlow::Continue(())
             }
         });
-        assert_eq!(count, expected.len().min(3));
+        assert_eq!(seen, expected.len().min(3));
     }
 }
 
 #[test]
 fn rays_miss_no_box_and_come_front_to_back() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for boxes in scenes(&mut random) {
         let bvh = Bvh::new(&boxes);
-        for k in 0..100 {
+        for k in 0..count(100) {
             // Some start on corners, some go along axes.
-            let (mut origin, mut direction) = (random.point() * 1.5, random.point());
+            let (mut origin, mut direction) = (random.vector(1.0) * 1.5, random.vector(1.0));
             if k % 3 == 0 && !boxes.is_empty() {
                 origin = boxes[random.below(boxes.len())].min;
                 if !origin.is_finite() {
@@ -163,12 +163,12 @@ fn rays_miss_no_box_and_come_front_to_back() {
 
 #[test]
 fn the_nearest_is_the_nearest() {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     for boxes in scenes(&mut random) {
         let bvh = Bvh::new(&boxes);
-        for _ in 0..100 {
-            let p = random.point() * 3.0;
-            let limit = if random.below(2) == 0 {
+        for _ in 0..count(100) {
+            let p = random.vector(1.0) * 3.0;
+            let limit = if random.chance(0.5) {
                 f64::INFINITY
             } else {
                 random.unit()
@@ -186,27 +186,27 @@ fn the_nearest_is_the_nearest() {
 
 #[test]
 fn boxes_may_move() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for mut boxes in scenes(&mut random) {
         let mut bvh = Bvh::new(&boxes);
-        for round in 0..30 {
+        for round in 0..count(30) {
             if boxes.is_empty() {
                 break;
             }
             if round % 10 == 9 {
                 boxes
                     .iter_mut()
-                    .for_each(|b| *b = Aabb::of_points([random.point()]));
+                    .for_each(|b| *b = Aabb::of_points([random.vector(1.0)]));
                 bvh.refit(&boxes);
             }
             let i = random.below(boxes.len());
-            let p = random.point() * 2.0;
+            let p = random.vector(1.0) * 2.0;
             boxes[i] = Aabb::of_points([p, p + 0.1]);
             bvh.set_box(i as u32, boxes[i]);
             let all = boxes.iter().filter(|b| !b.is_empty());
             let bounds = all.fold(Aabb::EMPTY, |all, b| all.union(b));
             assert_eq!(bvh.bounds(), bounds);
-            let query = Aabb::of_points([random.point(), random.point()]);
+            let query = Aabb::of_points([random.vector(1.0), random.vector(1.0)]);
             let mut found: Vec<u32> = bvh.overlapping(&query).collect();
             found.sort_unstable();
             assert_eq!(found, overlapping(&boxes, &query));

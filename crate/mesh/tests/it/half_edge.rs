@@ -1,8 +1,9 @@
 //! The half-edge structure: edits by hand, a long random run, and polygons that are no manifold.
 
-use crate::solids::{Random, cube, sphere, torus};
+use crate::solids::{cube, sphere, torus};
 use glam::DVec3;
 use mesh::{EditError, FaceId, HalfEdgeId, HalfEdgeMesh, PolygonSoup, TriangleMesh, VertexId};
+use trials::{Random, count};
 
 fn cube_mesh() -> HalfEdgeMesh {
     HalfEdgeMesh::from_polygons(&cube()).unwrap()
@@ -15,8 +16,8 @@ fn counts(mesh: &HalfEdgeMesh) -> [usize; 3] {
 }
 
 fn soup(positions: usize, faces: &[&[u32]]) -> PolygonSoup {
-    let mut random = Random(9);
-    let mut soup = PolygonSoup::new((0..positions).map(|_| random.point()).collect());
+    let mut random = Random::new(9);
+    let mut soup = PolygonSoup::new((0..positions).map(|_| random.vector(1.0)).collect());
     faces.iter().for_each(|f| soup.add_face(f));
     soup
 }
@@ -317,8 +318,8 @@ fn polygons_that_are_no_manifold_are_refused_or_repaired() {
 /// Random polygons on few vertices: about everything that can be wrong.
 #[test]
 fn any_polygons_are_repaired() {
-    let mut random = Random(77);
-    for _ in 0..3000 {
+    let mut random = Random::new(77);
+    for _ in 0..count(3000) {
         let vertices = 3 + random.below(8);
         let mut soup = soup(vertices, &[]);
         for _ in 0..1 + random.below(20) {
@@ -359,7 +360,7 @@ fn further(mesh: &HalfEdgeMesh, h: HalfEdgeId, steps: usize) -> HalfEdgeId {
 fn random_edit(mesh: &mut HalfEdgeMesh, random: &mut Random) -> Result<(), EditError> {
     let h = HalfEdgeId(random.below(mesh.half_edge_slots() + 1) as u32);
     let f = FaceId(random.below(mesh.face_slots() + 1) as u32);
-    let p = random.point();
+    let p = random.vector(1.0);
     let is_large = mesh.face_count() > 1500;
     match random.below(12) {
         0 if !is_large => mesh.split_edge(h, p).map(drop),
@@ -384,7 +385,7 @@ fn random_edit(mesh: &mut HalfEdgeMesh, random: &mut Random) -> Result<(), EditE
                 return Err(EditError::WrongSide);
             }
             let a = holes[random.below(holes.len())];
-            let b = if random.below(2) == 0 {
+            let b = if random.chance(0.5) {
                 mesh.next(a)
             } else {
                 let other = holes[random.below(holes.len())];
@@ -397,7 +398,7 @@ fn random_edit(mesh: &mut HalfEdgeMesh, random: &mut Random) -> Result<(), EditE
 }
 
 fn run(mut mesh: HalfEdgeMesh, seed: u64, steps: usize, every: usize) -> (HalfEdgeMesh, usize) {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut done = 0;
     for step in 0..steps {
         let before = (step % every == 0).then(|| mesh.clone());
@@ -431,15 +432,19 @@ fn run(mut mesh: HalfEdgeMesh, seed: u64, steps: usize, every: usize) -> (HalfEd
 #[test]
 fn random_edits_keep_all_invariants() {
     // Small meshes, looked at after every step: here the odd cases are.
-    for seed in 1..40 {
+    for seed in 0..count(40) as u64 {
         run(cube_mesh(), seed, 500, 1);
         let torus = HalfEdgeMesh::from_triangles(&torus(3, 4)).unwrap();
         run(torus, seed, 500, 1);
     }
     let sphere = HalfEdgeMesh::from_triangles(&sphere(10)).unwrap();
-    let (one, done) = run(sphere.clone(), 4711, 100_000, 100);
-    assert!(done > 30_000, "{done} edits were possible");
-    let (other, _) = run(sphere, 4711, 100_000, 100_000);
+    let steps = count(100_000);
+    let (one, done) = run(sphere.clone(), 4711, steps, 100);
+    assert!(
+        10 * done > 3 * steps,
+        "{done} edits of {steps} were possible"
+    );
+    let (other, _) = run(sphere, 4711, steps, steps);
     assert_eq!(one, other, "the same edits give the same mesh");
     let compact = one.compact();
     assert_eq!(counts(&compact), counts(&one));

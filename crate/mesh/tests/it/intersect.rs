@@ -1,9 +1,10 @@
 //! The exact test for self-intersections: cases that are decided by a hair, and random ones against
 //! arithmetic on whole numbers.
 
-use crate::solids::{Random, sphere, torus};
+use crate::solids::{sphere, torus};
 use glam::DVec3;
 use mesh::{TriangleMesh, self_intersections};
+use trials::{Random, count};
 
 fn pairs(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let positions = positions.iter().map(|p| DVec3::from(*p)).collect();
@@ -87,13 +88,13 @@ fn solids_are_free_and_shifted_copies_are_not() {
     for mesh in [sphere(12), torus(20, 14)] {
         assert!(self_intersections(&mesh, 10).unwrap().is_free());
         let mut twice = mesh.clone();
-        let count = mesh.positions.len() as u32;
+        let first = mesh.positions.len() as u32;
         twice
             .positions
             .extend(mesh.positions.iter().map(|p| *p + DVec3::X * 0.3));
         twice
             .triangles
-            .extend(mesh.triangles.iter().map(|t| t.map(|i| i + count)));
+            .extend(mesh.triangles.iter().map(|t| t.map(|i| i + first)));
         let found = self_intersections(&twice, 100_000).unwrap();
         assert!(found.is_complete && found.pairs.len() > 20);
         // All between the two, none within one.
@@ -163,9 +164,10 @@ fn meet(a: [[i64; 3]; 3], b: [[i64; 3]; 3]) -> bool {
 
 #[test]
 fn random_triangles_on_a_grid_are_judged_as_by_separating_axes() {
-    let mut random = Random(8);
+    let mut random = Random::new(8);
+    let tried = count(60_000);
     let mut counts = [0; 2];
-    for _ in 0..60_000 {
+    for _ in 0..tried {
         let mut triangle = || [0; 3].map(|_| [0; 3].map(|_| random.below(5) as i64));
         let (a, b) = (triangle(), triangle());
         let positions: Vec<[f64; 3]> = a
@@ -191,16 +193,17 @@ fn random_triangles_on_a_grid_are_judged_as_by_separating_axes() {
         let other = pairs(&positions, &[[4, 3, 5], [1, 2, 0]]);
         assert_eq!(one.len(), other.len());
     }
-    assert!(counts.iter().all(|n| *n > 5000), "{counts:?}");
+    assert!(counts.iter().all(|n| 12 * n > tried), "{counts:?}");
 }
 
 /// Triangles that share a vertex, judged by shrinking: they meet elsewhere if and only if they still
 /// meet when the shared corner of one is cut off by a little.
 #[test]
 fn random_triangles_with_a_common_vertex() {
-    let mut random = Random(12);
+    let mut random = Random::new(12);
+    let tried = count(40_000);
     let mut counts = [0; 2];
-    for _ in 0..40_000 {
+    for _ in 0..tried {
         let mut point = || [0; 3].map(|_| random.below(5) as i64 - 2);
         let [b, c, d, e] = [point(), point(), point(), point()];
         let whole = |p: [i64; 3]| DVec3::from(p.map(|x| x as f64));
@@ -218,5 +221,5 @@ fn random_triangles_with_a_common_vertex() {
         assert_eq!(!found.pairs.is_empty(), expected, "{b:?} {c:?} {d:?} {e:?}");
         counts[usize::from(expected)] += 1;
     }
-    assert!(counts.iter().all(|n| *n > 3000), "{counts:?}");
+    assert!(counts.iter().all(|n| 14 * n > tried), "{counts:?}");
 }

@@ -3,13 +3,10 @@
 use glam::DVec3;
 use motion::{Body, Obstacle, Settings, Setup, Simulation};
 use skeleton::{Node, Scheme, Skeleton};
+use trials::bits::Hash;
 
-/// Hash (FNV-1a) of all places in all frames.
-const PLACES: u64 = 0xB162_5CD8_C711_001B;
-
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
-fn a_motion_is_the_same_everywhere() {
+/// Returns a hash of all places in all frames of a motion.
+fn places() -> Hash {
     let node = |i: usize| {
         let t = i as f64;
         Node {
@@ -52,17 +49,21 @@ fn a_motion_is_the_same_everywhere() {
         },
     };
     let mut simulation = Simulation::new(&setup).unwrap();
-    let mut hash = 0xcbf2_9ce4_8422_2325u64;
+    let mut places = Vec::new();
     for frame in 0..60 {
         simulation.advance(&[DVec3::new(0.0, 3.0, 0.05 * f64::from(frame))]);
-        for byte in simulation
-            .positions()
-            .iter()
-            .flat_map(|p| p.to_array())
-            .flat_map(f64::to_le_bytes)
-        {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
+        places.extend(simulation.positions().iter().flat_map(|p| p.to_array()));
     }
-    assert_eq!(hash, PLACES, "{hash:#X}");
+    let mut hash = Hash::default();
+    hash.numbers(places);
+    hash
+}
+
+#[test]
+fn a_motion_is_the_same_everywhere() {
+    trials::bits::compare(
+        &[("places".into(), places())],
+        include_str!("../bits.txt"),
+        concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bits.txt"),
+    );
 }

@@ -1,6 +1,7 @@
 //! A text means the same scene, to the last bit, on every platform: run natively and as WebAssembly.
 
-use rats::{File, Project, compile, link};
+use rats::{Project, compile, link};
+use trials::bits::Hash;
 
 const TEXT: &str = "\
 seed 7
@@ -21,44 +22,24 @@ close
 rotate 1 1 0 30, SHELL
 ";
 
-/// Hash (FNV-1a) of the scene's bytes.
-const SCENE: u64 = 0xDE6F_AD6C_B6B5_40F7;
-
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
-fn a_scene_is_the_same_everywhere() {
-    let project = Project {
-        files: vec![File {
-            name: "main.rat".into(),
-            text: TEXT.into(),
-        }],
-    };
+#[test]
+fn a_scene_and_a_link_are_the_same_everywhere() {
+    let project = Project::single(TEXT);
     let compiled = compile(&project);
-    let errors = compiled
-        .diagnostics
-        .iter()
-        .filter(|d| d.severity == rats::Severity::Error);
-    assert_eq!(errors.count(), 0, "{:?}", compiled.diagnostics);
+    let mut messages = compiled.diagnostics.iter();
+    assert!(messages.all(|message| message.severity != rats::Severity::Error));
     assert_eq!(compiled.scene.elements.len(), 82);
-    let bytes = postcard::to_allocvec(&compiled.scene).expect("packs");
-    let hash = bytes.iter().fold(0xCBF2_9CE4_8422_2325_u64, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3)
-    });
-    assert_eq!(hash, SCENE, "{hash:#018x}: what the text means has changed");
-}
-
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
-fn a_link_is_read_back_everywhere() {
-    let shared = link::Shared {
-        project: Project {
-            files: vec![File {
-                name: "main.rat".into(),
-                text: TEXT.into(),
-            }],
-        },
-        camera: Some(scene::Camera::default()),
-    };
+    let scene = postcard::to_allocvec(&compiled.scene).expect("packs");
+    let camera = Some(scene::Camera::default());
+    let shared = link::Shared { project, camera };
     let fragment = link::encode(&shared).expect("small enough");
     assert_eq!(link::decode(&fragment).expect("reads back"), shared);
+    trials::bits::compare(
+        &[
+            ("scene".into(), Hash::of(&scene)),
+            ("link".into(), Hash::of(fragment.as_bytes())),
+        ],
+        include_str!("../bits.txt"),
+        concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bits.txt"),
+    );
 }

@@ -1,22 +1,22 @@
 //! Meshes that are not what one would wish: opened and repaired, or refused in words, never a crash.
 
-use crate::common::Random;
 use glam::DVec3;
 use mesh::TriangleMesh;
 use sculpt::{Action, Clay, Sculpture, Stroke};
+use trials::Random;
 
 /// Strokes of all kinds; each may be refused, none may break the mesh.
 fn sculpt_at(clay: Clay, seed: u64) -> usize {
     let mut sculpture = Sculpture::new(clay);
     let first = sculpture.clay().digest();
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut done = 0;
     for k in 0..12 {
         let stroke = match k % 6 {
-            0 => Stroke::Sweep(crate::common::sweep(&mut random, Action::Push)),
-            1 => Stroke::Sweep(crate::common::sweep(&mut random, Action::Pull)),
+            0 => Stroke::Sweep(crate::strokes::sweep(&mut random, Action::Push)),
+            1 => Stroke::Sweep(crate::strokes::sweep(&mut random, Action::Pull)),
             2 => Stroke::Refine(sculpt::Refinement::Propagate),
-            3 => Stroke::Sweep(crate::common::sweep(&mut random, Action::Smooth)),
+            3 => Stroke::Sweep(crate::strokes::sweep(&mut random, Action::Smooth)),
             4 => Stroke::Fill,
             _ => Stroke::Simplify(0.5),
         };
@@ -100,8 +100,6 @@ fn what_is_no_mesh_is_refused_in_words() {
     );
 }
 
-// A minute as wasm in the profile of tests.
-#[cfg(not(target_arch = "wasm32"))]
 #[test]
 fn a_file_of_a_million_faces_is_opened_and_a_stroke_of_it_is_quick() {
     let n = 708;

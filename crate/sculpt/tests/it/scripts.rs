@@ -1,8 +1,7 @@
 //! Texts of strokes.
 
-use crate::common::Random;
-use sculpt::{Beginning, COMMANDS, Clay, Script, Sculpture, Shape, Start, replay};
-use trials::trials;
+use sculpt::{Beginning, COMMANDS, Script, Shape, Start, replay};
+use trials::{Random, count, trials};
 
 /// The message for a text that begins well.
 fn message(line: &str) -> String {
@@ -12,14 +11,14 @@ fn message(line: &str) -> String {
 
 #[test]
 fn what_is_written_is_read_again() {
-    for seed in 0..500 {
-        let mut random = Random(seed);
+    for seed in 0..count(500) as u64 {
+        let mut random = Random::new(seed);
         let strokes = (0..20)
-            .map(|_| crate::common::stroke(&mut random, 100))
+            .map(|_| crate::strokes::stroke(&mut random, 100))
             .collect();
-        let mut start = Start::new(random.of(&Shape::ALL), 1 + random.below(9) as u32);
+        let mut start = Start::new(random.pick(&Shape::ALL), 1 + random.below(9) as u32);
         if seed % 2 == 0 {
-            start.semi_axes = random.point(2.0).abs() + 0.1;
+            start.semi_axes = random.vector(2.0).abs() + 0.1;
         }
         let script = Script::new(Beginning::Shape(start), strokes);
         let again: Script = script.to_string().parse().unwrap();
@@ -251,18 +250,4 @@ fn a_missing_file_is_told_at_the_start() {
     )
     .unwrap_err();
     assert_eq!(problem.to_string(), "line 2, column 1: no a.obj");
-}
-
-/// The same bits natively and as wasm.
-#[test]
-fn strokes_give_the_same_bits_everywhere() {
-    let start = Clay::of_shape(&Start::new(Shape::Box, 3)).unwrap();
-    let mut sculpture = Sculpture::new(start);
-    let mut random = Random(11);
-    for _ in 0..300 {
-        let stroke = crate::common::stroke(&mut random, sculpture.clay().mesh().face_count());
-        // What is refused changes nothing.
-        let _ = sculpture.carry_out(stroke);
-    }
-    assert_eq!(sculpture.clay().digest(), 10_020_182_067_518_698_356);
 }

@@ -46,7 +46,7 @@ fn push_drives_vertices_onto_the_tool_along_its_rays_and_leaves_the_others() {
             assert!(new.z < 0.0);
             moved += 1;
         } else {
-            assert_eq!(crate::common::bits(*old), crate::common::bits(new));
+            assert_eq!(crate::random::bits(*old), crate::random::bits(new));
         }
     }
     assert!(moved > 40);
@@ -155,7 +155,7 @@ fn pressure_scales_and_masks_hold_back() {
     for (v, old) in before.iter().enumerate() {
         let new = clay.mesh().position(VertexId(v as u32));
         match clay.mask(VertexId(v as u32)) {
-            1.0 => assert_eq!(crate::common::bits(new), crate::common::bits(*old)),
+            1.0 => assert_eq!(crate::random::bits(new), crate::random::bits(*old)),
             0.5 => assert_eq!(new.z, 0.25),
             _ => assert_eq!(new.z, 0.5),
         }

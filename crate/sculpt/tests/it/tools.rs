@@ -1,9 +1,9 @@
 //! Superquadrics, decay functions and start shapes against other definitions.
 
-use crate::common::Random;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 use sculpt::{Clay, Decay, Form, Shape, Start, Tool};
+use trials::{Random, count};
 
 /// Barr's parametric form, with angles from the equator and about the axis.
 fn on_surface(tool: &Tool, north: f64, east: f64) -> DVec3 {
@@ -20,13 +20,13 @@ fn on_surface(tool: &Tool, north: f64, east: f64) -> DVec3 {
 
 #[test]
 fn gauge_is_one_on_the_parametric_surface_and_grows_along_rays() {
-    let mut random = Random(1);
-    for _ in 0..5000 {
-        let tool = crate::common::tool(&mut random);
-        let north = random.between(-FRAC_PI_2, FRAC_PI_2);
-        let p = on_surface(&tool, north, random.between(-PI, PI));
+    let mut random = Random::new(1);
+    for _ in 0..count(5000) {
+        let tool = crate::strokes::tool(&mut random);
+        let north = random.range(-FRAC_PI_2, FRAC_PI_2);
+        let p = on_surface(&tool, north, random.range(-PI, PI));
         assert!((tool.gauge(p) - 1.0).abs() < 1e-9, "{tool:?} {p}");
-        let t = random.between(0.01, 3.0);
+        let t = random.range(0.01, 3.0);
         assert!((tool.gauge(p * t) - t).abs() < 1e-9 * t.max(1.0));
         assert_eq!(
             tool.inside_outside(p * t) < 1.0,
@@ -38,12 +38,12 @@ fn gauge_is_one_on_the_parametric_surface_and_grows_along_rays() {
 
 #[test]
 fn inside_outside_function_is_barrs() {
-    let mut random = Random(2);
-    for _ in 0..1000 {
-        let mut tool = crate::common::tool(&mut random);
+    let mut random = Random::new(2);
+    for _ in 0..count(1000) {
+        let mut tool = crate::strokes::tool(&mut random);
         tool.turn = DVec3::ZERO;
         tool.exponents = [0.3, 0.7];
-        let p = random.point(0.5);
+        let p = random.vector(0.5);
         let q = (p / tool.semi_axes).abs();
         let [e1, e2] = tool.exponents;
         let pow = libm::pow;
@@ -58,9 +58,9 @@ fn inside_outside_function_is_barrs() {
 
 #[test]
 fn solid_is_within_its_bounds_and_drives_vertices_onto_the_surface() {
-    let mut random = Random(3);
-    for _ in 0..300 {
-        let tool = crate::common::tool(&mut random);
+    let mut random = Random::new(3);
+    for _ in 0..count(300) {
+        let tool = crate::strokes::tool(&mut random);
         let (solid, axes) = (sculpt::Tool::solid(&tool), tool.axes());
         let bounds = sculpt::Solid::bounds(&solid);
         assert!(
@@ -70,7 +70,7 @@ fn solid_is_within_its_bounds_and_drives_vertices_onto_the_surface() {
                 .all(|x| x.abs() < 1e-12)
         );
         for _ in 0..20 {
-            let p = random.point(0.6);
+            let p = random.vector(0.6);
             let inside = sculpt::Solid::contains(&solid, p);
             assert_eq!(inside, tool.gauge(p) < 1.0);
             if inside {
@@ -96,9 +96,9 @@ fn quarter_turns_exchange_axes_exactly() {
 
 #[test]
 fn polyhedron_lies_on_the_tool() {
-    let mut random = Random(4);
-    for _ in 0..50 {
-        let tool = crate::common::tool(&mut random);
+    let mut random = Random::new(4);
+    for _ in 0..count(50) {
+        let tool = crate::strokes::tool(&mut random);
         let soup = tool.polyhedron(3);
         assert!(
             soup.positions
@@ -189,7 +189,7 @@ fn start_shapes_are_mirror_images_of_themselves() {
         for f in mesh.faces() {
             for (list, sign) in [(&mut faces, 1.0), (&mut mirrored, -1.0)] {
                 let place =
-                    |p: DVec3| crate::common::bits(p * DVec3::new(sign, 1.0, 1.0) + DVec3::ZERO);
+                    |p: DVec3| crate::random::bits(p * DVec3::new(sign, 1.0, 1.0) + DVec3::ZERO);
                 let mut face: Vec<_> = mesh
                     .face_vertices(f)
                     .map(|v| place(mesh.position(v)))

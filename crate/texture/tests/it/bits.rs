@@ -9,8 +9,7 @@ use texture::{
 use trials::Random;
 use trials::bits::Hash;
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn bits_are_the_same_on_every_platform() {
     let found = [
         ("noise", noise()),

@@ -6,8 +6,7 @@ use tracer::{Pass, tiles};
 use trials::bits::{Hash, compare};
 use worker::message::pack;
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn scenes_and_tiles_have_the_kept_bits() {
     let mut found = Vec::new();
     for name in FEW {

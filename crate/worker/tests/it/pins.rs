@@ -5,7 +5,7 @@
 //! With `SINEW_PICTURES` set to a folder, the native tests compare nothing: they write each picture there as
 //! `NAME-PASS.ppm` and print its pin. The command runs them so.
 
-use crate::common::{BENCH, EXAMPLES, EXAMPLES_WITH_FILES, compile_text, hash, say};
+use crate::common::{BENCH, EXAMPLES, EXAMPLES_WITH_FILES, compile_text, hash};
 use scene::Scene;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -142,7 +142,7 @@ fn compare(place: &str, scenes: &[(&str, &str)]) {
             let picture = format!("{place}/{name} {pass:?}");
             let pin = format!("{size} {:016x}", hash(&pixels));
             if let Some(folder) = &folder {
-                say(&format!("pin {picture} {pin}"));
+                println!("pin {picture} {pin}");
                 let file = folder.join(format!("{place}-{name}-{pass:?}.ppm"));
                 std::fs::write(file, ppm(size, &pixels)).expect("the folder takes pictures");
             }
@@ -161,32 +161,27 @@ fn compare(place: &str, scenes: &[(&str, &str)]) {
 
 // In parts, so that they run side by side, also as wasm. The names are in the order of the file.
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn pictures_are_as_pinned_1() {
     compare("example", &EXAMPLES[..16]);
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn pictures_are_as_pinned_2() {
     compare("example", &EXAMPLES[16..32]);
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn pictures_are_as_pinned_3() {
     compare("example", &EXAMPLES[32..]);
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn pictures_are_as_pinned_4() {
     compare("example", &EXAMPLES_WITH_FILES);
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn pictures_are_as_pinned_5() {
     compare("bench", &BENCH);
 }

@@ -1,8 +1,9 @@
 //! Time of the worker's engine for the scenes of `tests/bench/`, natively and as wasm. A measurement:
 //! `cargo xtask bench wasm` runs it.
 
-use crate::common::{BENCH, compile_text, say};
+use crate::common::{BENCH, compile_text};
 use scene::Scene;
+use std::time::Instant;
 use tracer::{Pass, tiles};
 use worker::{Engine, Kind, Order, Request, Step};
 
@@ -27,7 +28,7 @@ fn scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
 fn picture(scene: &Scene) -> f64 {
     let size = scene.settings.frame;
     let mut engine = Engine::default();
-    let start = now();
+    let start = Instant::now();
     engine.accept(Request::Begin {
         generation: 1,
         scene: Box::new(scene.clone()),
@@ -43,12 +44,11 @@ fn picture(scene: &Scene) -> f64 {
     let orders = tiles(size[0], size[1], TILE).into_iter().map(order);
     engine.accept(Request::Trace(orders.collect()));
     while !matches!(engine.step(&|| false, &|| 0.0), Step::Idle) {}
-    now() - start
+    start.elapsed().as_secs_f64()
 }
 
 /// Lines `speed SCENE SECONDS`.
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 #[ignore = "a measurement, for optimised builds"]
 fn speed() {
     for (name, text) in scenes() {
@@ -60,27 +60,6 @@ fn speed() {
             all += seconds;
             count += 1;
         }
-        say(&format!("speed {name} {best:.5}"));
+        println!("speed {name} {best:.5}");
     }
-}
-
-/// Seconds.
-#[cfg(not(target_arch = "wasm32"))]
-fn now() -> f64 {
-    use std::sync::LazyLock;
-    use std::time::Instant;
-    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    START.elapsed().as_secs_f64()
-}
-
-/// Seconds.
-#[cfg(target_arch = "wasm32")]
-fn now() -> f64 {
-    use wasm_bindgen::prelude::*;
-    #[wasm_bindgen]
-    extern "C" {
-        #[wasm_bindgen(js_namespace = performance)]
-        fn now() -> f64;
-    }
-    now() / 1000.0
 }

@@ -72,13 +72,19 @@ pub fn files(programs: &[Program], filter: Option<&str>, times: &str) -> Result<
 impl Program {
     /// The command that runs all tests.
     fn command(&self) -> Command {
-        let mut command = if self.path.extension().is_some_and(|e| e == "wasm") {
+        let mut command = if self.is_wasm() {
             tools::in_node(&self.path)
         } else {
             command(&self.path, &[])
         };
         command.current_dir(root().join("crate").join(&self.package));
         command
+    }
+
+    fn is_wasm(&self) -> bool {
+        self.path
+            .extension()
+            .is_some_and(|extension| extension == "wasm")
     }
 
     /// The names of the tests of each module.
@@ -94,6 +100,8 @@ impl Program {
                 continue;
             }
             let module = match name.split_once("::") {
+                // There is one thread as wasm: tests run side by side as files of their own.
+                _ if self.is_wasm() => name,
                 Some((module, _)) if self.of_modules => module,
                 _ => "src",
             };

@@ -141,15 +141,3 @@ pub fn traced(
         }
     }
 }
-
-/// Prints a line, natively and as wasm.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn say(line: &str) {
-    println!("{line}");
-}
-
-/// Prints a line, natively and as wasm.
-#[cfg(target_arch = "wasm32")]
-pub fn say(line: &str) {
-    wasm_bindgen_test::console_log!("{line}");
-}

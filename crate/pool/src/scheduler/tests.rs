@@ -5,6 +5,7 @@ use crate::assign::MOST_AHEAD;
 use crate::run::{LONGEST_LIMIT, RETRY, SLACK, TILE_LIMIT};
 use std::collections::{HashMap, HashSet, VecDeque};
 use tracer::{Pass, Tile};
+use trials::{Random, count};
 
 const STATS: Stats = Stats {
     primary_rays: 1,
@@ -370,28 +371,24 @@ fn idle_worker_is_reconsidered_when_costs_are_known() {
 #[test]
 fn every_picture_ends() {
     const EDGES: [fn(&Tile) -> u64; 3] = [|_| 0, |tile| 9 * tile.x as u64, |_| 2000];
-    let mut seed = 1_u64;
-    let mut random = |below: u64| {
-        // Knuth's MMIX generator.
-        seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 33) % below
-    };
-    for case in 0..3000 {
-        let workers = 1 + random(4) as usize;
+    let mut random = Random::new(1);
+    for case in 0..count(3000) {
+        let workers = 1 + random.below(4);
         let mut crowd = Crowd::new(workers);
-        crowd.edges = EDGES[random(3) as usize];
-        let size = [64 * (1 + random(4)) as u32, 64 * (1 + random(3)) as u32];
-        let samples = 1 + random(3) as u32;
-        let small = random(8) == 0;
+        crowd.edges = EDGES[random.below(3)];
+        let size = [
+            64 * (1 + random.below(4)) as u32,
+            64 * (1 + random.below(3)) as u32,
+        ];
+        let samples = 1 + random.below(3) as u32;
+        let small = random.below(8) == 0;
         let plan = Plan {
             size,
             samples,
             small,
             ..plan(1)
         };
-        for _ in 0..random(6) {
+        for _ in 0..random.below(6) {
             crowd.work();
         }
         crowd.scheduler.start(plan, crowd.now);
@@ -399,7 +396,7 @@ fn every_picture_ends() {
         let tiles = tracer::tile::tiles(size[0], size[1], crate::job::TILE);
         for tile in tiles {
             for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
-                if random(12) == 0 {
+                if random.below(12) == 0 {
                     let generation = crowd.scheduler.number();
                     crowd.deadly.insert(Order {
                         generation,
@@ -411,8 +408,8 @@ fn every_picture_ends() {
         }
         for step in 0.. {
             assert!(step < 100_000, "endless: {case}");
-            let worker = random(workers as u64) as usize;
-            if random(200) == 0 {
+            let worker = random.below(workers);
+            if random.below(200) == 0 {
                 crowd.scheduler.died(worker, "by chance", crowd.now);
                 crowd.obey();
             }

@@ -1,8 +1,8 @@
 //! Runs random texts and links through the compiler for a given time, and tells what was found.
 //!
-//! `cargo run --profile fuzz -p assist --example fuzz -- [SECONDS [SEED] | FILE.rat]`
+//! `cargo run --profile fuzz -p fuzzer -- [SECONDS [SEED] | FILE.rat]`
 //!
-//! SECONDS are of processor time; a FILE is a finding to be run again. What is checked stands in `check.rs`;
+//! SECONDS are of processor time; a FILE is a finding to be run again. What is checked stands in [`check`];
 //! besides, no compile may take more than [`SLOW`] three times in a row or need more than [`MEMORY`], and none
 //! may panic or overflow the stack of a browser's worker. A finding is made smaller and written to a file. The
 //! text that is being run always stands in `sinew-fuzz-case.rat` in the folder for temporary files, for the case
@@ -11,15 +11,14 @@
 //! The folder `fuzz/` at the top holds the same checks for cargo-fuzz, which is guided by what the code
 //! does but needs a nightly compiler.
 
-mod check;
-mod generate;
-
-use arbitrary::Unstructured;
+use fuzzer::{check, generate};
 use rats::{Project, compile};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use trials::Random;
+use trials::arbitrary::Unstructured;
 
 /// Longest time for one compile, of the processor, on the machine we develop on.
 const SLOW: Duration = Duration::from_millis(100);
@@ -70,28 +69,10 @@ fn again(path: &str) -> bool {
     found
 }
 
-/// A generator of bytes (splitmix64): a run can be repeated from its seed.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
-    }
-
-    fn bytes(&mut self, length: usize) -> Vec<u8> {
-        (0..length.div_ceil(8))
-            .flat_map(|_| self.next().to_le_bytes())
-            .take(length)
-            .collect()
-    }
+/// Returns random bytes.
+fn bytes(random: &mut Random, length: usize) -> Vec<u8> {
+    let words = (0..length.div_ceil(8)).flat_map(|_| random.bits().to_le_bytes());
+    words.take(length).collect()
 }
 
 struct Fuzzer {
@@ -118,7 +99,7 @@ impl Fuzzer {
         paths.sort();
         let read = |path| std::fs::read_to_string(path).expect("a text");
         Self {
-            random: Random(seed),
+            random: Random::fixed(seed),
             examples: paths.iter().map(read).collect(),
             case: std::env::temp_dir().join("sinew-fuzz-case.rat"),
             found: BTreeMap::new(),
@@ -135,14 +116,14 @@ impl Fuzzer {
         // Each panic is told once, below, with its text.
         std::panic::set_hook(Box::new(|_| ()));
         while processor_time() - begun < time {
-            let kind = ["bytes", "language", "language", "language", "slips", "link"]
-                [self.random.below(6)];
+            let kinds = ["bytes", "language", "language", "language", "slips", "link"];
+            let kind = self.random.pick(&kinds);
             *self.counts.entry(kind).or_default() += 1;
             match kind {
                 "link" => self.link(),
                 "bytes" => {
                     let length = self.random.below(600);
-                    let bytes = self.random.bytes(length);
+                    let bytes = bytes(&mut self.random, length);
                     self.text(&String::from_utf8_lossy(&bytes));
                 }
                 "slips" => {
@@ -151,7 +132,7 @@ impl Fuzzer {
                 }
                 _ => {
                     let length = 20 << self.random.below(9);
-                    let bytes = self.random.bytes(length);
+                    let bytes = bytes(&mut self.random, length);
                     // A generator that runs out of bytes leaves its text unfinished, which is fine too.
                     if let Ok(text) = generate::dataset(&mut Unstructured::new(&bytes)) {
                         self.text(&text);
@@ -180,7 +161,7 @@ impl Fuzzer {
 
     /// A text of the page with a few slips of the hand.
     fn slips(&mut self) -> String {
-        let mut text = self.examples[self.random.below(self.examples.len())].clone();
+        let mut text = self.random.pick(&self.examples);
         for _ in 0..self.random.below(6) {
             let at = text.floor_char_boundary(self.random.below(text.len()));
             match self.random.below(4) {
@@ -199,7 +180,7 @@ impl Fuzzer {
                         "^",
                         "for i = 1 to 1e9 {",
                     ];
-                    text.insert_str(at, parts[self.random.below(parts.len())]);
+                    text.insert_str(at, self.random.pick(&parts));
                 }
                 2 => {
                     let end = text.floor_char_boundary(at + self.random.below(40));
@@ -220,7 +201,7 @@ impl Fuzzer {
 
     fn link(&mut self) {
         let length = self.random.below(300);
-        let bytes = self.random.bytes(length);
+        let bytes = bytes(&mut self.random, length);
         let outcome = catch_unwind(AssertUnwindSafe(|| {
             check::link(&String::from_utf8_lossy(&bytes))?;
             check::link_content(&bytes)?;

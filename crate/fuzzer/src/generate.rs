@@ -1,9 +1,9 @@
 //! Random datasets that are nearly right: commands of the table with operands of the kinds that it names,
 //! now and then one too many, one too few or of another kind. They reach much deeper than random bytes.
 
-use arbitrary::{Result, Unstructured};
 use rats::commands::{self, Arity, CommandSpec, Kind, Names, Parameter};
 use rats::library;
+use trials::arbitrary::{Result, Unstructured};
 
 /// Deepest blocks and expressions. Deeper ones are a matter of counting, which the tests of limits do.
 const DEPTH: usize = 5;
