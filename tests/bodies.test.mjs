@@ -76,9 +76,13 @@ async function sliced() {
     location.hash = '#lab=slice';
   });
   const lab = () => sinew.page.evaluate(() => sinew.lab());
-  await until(lab, (state) => state?.readings.finished === 1);
+  await until(lab, (state) => state?.lesson === 'slice');
+  // Readings of a slice that was shown before are gone with the first frame.
+  await sinew.still();
+  await until(lab, (state) => state.readings.finished === 1);
   const { x, y, w, h } = await sinew.place('lab figure');
   await sinew.page.mouse.move(x + w / 2, y + h / 2);
+  await sinew.still();
   const { readings } = await until(lab, (state) => state.readings.value !== undefined);
   return readings;
 }

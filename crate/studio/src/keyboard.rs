@@ -1,13 +1,13 @@
 //! Keeps what a user does in order when much of it comes in one frame.
 //!
-//! A slow frame may bring a click, arrow keys, F2, "a" and Enter at once, and each of them is meant for
-//! what the one before has led to. Widgets see a frame's events all together, though, and some keys
+//! A slow frame may bring a click, arrow keys, F2, "a" and Enter at once, and each of them is meant
+//! for what the one before has led to. Widgets see a frame's events all together, though, and some keys
 //! (Enter, Tab, undo …) are handled by us before egui's text field sees the rest. So
 //! - such a key comes first in its frame, and keys after it wait for the next frame;
-//! - so do keys after a click or a key that may move the focus, and they wait a frame more, in which a
-//!   field that has opened takes the focus;
-//! - keys wait while the focus is new: a widget says only then which arrow keys it keeps. Those that come
-//!   before go from widget to widget, and take the focus along.
+//! - so do keys after a click or a key that may move the focus, and they wait a frame more, in which
+//!   a field that has opened takes the focus;
+//! - keys wait while the focus is new: a widget says only then which arrow keys it keeps. Those that
+//!   come before go from widget to widget, and take the focus along.
 //!
 //! Whatever comes after a key that waits waits with it.
 

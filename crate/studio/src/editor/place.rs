@@ -17,8 +17,8 @@ pub fn id() -> Id {
     Id::unique("editor")
 }
 
-/// Gives the text the focus, unless it has it: a focus that is requested anew does not keep arrow keys
-/// and Tab for a frame.
+/// Gives the text the focus, unless it has it: a focus that is requested anew does not keep arrow
+/// keys and Tab for a frame.
 pub fn focus(ctx: &egui::Context) {
     ctx.memory_mut(|memory| {
         if !memory.has_focus(id()) {

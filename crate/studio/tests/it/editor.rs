@@ -227,7 +227,7 @@ fn a_name_is_renamed_in_one_frame() {
     let mut window = window();
     let mut events = click(&mut window, 0).to_vec();
     events.extend([
-        with(Modifiers::COMMAND, Key::End),
+        with(Modifiers::CTRL, Key::End),
         key(Key::ArrowUp),
         key(Key::Home),
     ]);
