@@ -1,49 +1,54 @@
-// The page and the program draw the same pictures, to the last bit, with any number of workers and threads.
+// Each example opens in the page, and the page shows the pictures that the program draws, to the last bit, with any number of threads.
+// That all of them are drawn alike natively and as wasm is tested with the worker.
 import assert from 'node:assert/strict';
-import { readFileSync, readdirSync } from 'node:fs';
+import { readFile, readdir } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
 import { example, filesOf, launch, native } from './page.mjs';
 import { colours, decode, shareThatDiffers } from './pictures.mjs';
-import { readFile } from 'node:fs/promises';
-
-/** Width of the pictures; heights follow the frames of the datasets. */
-const WIDTH = 160;
-/** Widths of those that take long: folds that press each other flat are traced one ray at a time. */
-const NARROW = { coils: 64 };
 
 const folder = new URL('../www/examples/', import.meta.url);
-const names = readdirSync(folder)
-  .filter((name) => name.endsWith('.rat'))
-  .map((name) => name.slice(0, -4))
-  // Those with meshes or strokes of their own are no texts alone.
-  .filter((name) => !/^\s*mesh\s+\S+\s+\S+\.(obj|strokes)/m.test(readFileSync(new URL(`${name}.rat`, folder), 'utf8')));
 
 let browser;
 let sinew;
 before(async () => {
-  browser = await launch('webgl2');
-  sinew = await browser.open();
+  browser = await launch();
+  sinew = await browser.open({ size: [8, 6] });
 });
 after(() => browser?.close());
 
-test('there are examples, also with files', async () => {
-  assert.ok(names.length >= 6, names.join());
-  assert.deepEqual(Object.keys(await filesOf(await example('heads'))), ['head.obj']);
+/** Opens an example by its link, and gives its text once the worker has drawn it. */
+async function open(name) {
+  const text = await example(name);
+  await sinew.page.evaluate((name) => {
+    location.hash = `#example=${name}`;
+  }, name);
+  await sinew.written((now) => now === text);
+  await sinew.until(({ fresh, errors }) => fresh || errors);
+  const { diagnostics, errors, failure } = await sinew.status();
+  assert.deepEqual([errors, failure], [0, null], `${name}: ${JSON.stringify(diagnostics)}`);
+  return text;
+}
+
+test('each example opens, with its files and a thumbnail', async () => {
+  const names = (await readdir(folder)).filter((name) => name.endsWith('.rat')).map((name) => name.slice(0, -4));
+  assert.ok(names.length >= 50, names.join());
+  for (const name of names) {
+    await open(name);
+    const thumbnail = await sinew.page.request.get(new URL(`examples/${name}.png`, sinew.page.url()).href);
+    assert.ok(colours(decode(await thumbnail.body())) > 50, `${name}: the thumbnail shows something`);
+  }
 });
 
-for (const name of names) {
+// Without and with files, and one with flesh in contact.
+for (const name of ['cowrie', 'heads', 'touching']) {
   test(`${name} is the same in the page and from the program`, async () => {
-    const text = await example(name);
+    const text = await open(name);
     const files = await filesOf(text);
-    // The thumbnail has the proportions of the frame.
+    assert.equal(Object.keys(files).length, name === 'heads' ? 1 : 0);
     const thumbnail = decode(await readFile(new URL(`${name}.png`, folder)));
-    assert.ok(colours(thumbnail) > 50, 'the thumbnail shows something');
-    const width = NARROW[name] ?? WIDTH;
-    const size = [width, Math.round((width * thumbnail.height) / thumbnail.width)];
-    await sinew.load(text);
-    if (Object.keys(files).length) await sinew.take(files);
+    // The thumbnail has the proportions of the frame.
+    const size = [120, Math.round((120 * thumbnail.height) / thumbnail.width)];
     await sinew.resize(...size);
-    assert.equal((await sinew.status()).errors, 0);
     const page = await sinew.image();
     assert.ok(colours(page) > 50, 'the picture shows something');
     for (const threads of ['1', '2']) {
@@ -52,3 +57,7 @@ for (const name of names) {
     }
   });
 }
+
+test('nothing went wrong unseen', () => {
+  assert.deepEqual(sinew.troubles, []);
+});

@@ -1,8 +1,8 @@
-// Two bodies in one work: traced, drafted, picked, sliced and shared.
+// Two bodies in one work: traced, picked, sliced and shared.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { PATIENCE, launch, native } from './page.mjs';
-import { countNear, meanDeltaE, shareThatDiffers, shrink } from './pictures.mjs';
+import { launch, native, until } from './page.mjs';
+import { shareThatDiffers } from './pictures.mjs';
 
 const SIZE = [240, 180];
 /** Two balls that overlap. The eye is at 0 0 8, looking at 0 0 0, 45 degrees wide. */
@@ -21,8 +21,8 @@ const BLENDED = balls(['', '', '']);
 let browser;
 let sinew;
 before(async () => {
-  browser = await launch('webgl2');
-  sinew = await browser.open();
+  browser = await launch();
+  sinew = await browser.open({ size: SIZE });
 });
 after(() => browser?.close());
 
@@ -42,12 +42,8 @@ function between({ data, width, height }) {
   return count;
 }
 
-/** What is seen of the picture on the page, as large as the traced one. */
-const seen = async () => shrink(await sinew.screen('picture'), ...SIZE);
-
 test('bodies are traced without blending, as by the program', async () => {
   await show(BODIES);
-  await sinew.resize(...SIZE);
   const apart = await sinew.image();
   assert.equal(shareThatDiffers(apart, await native(BODIES, SIZE), 0), 0);
   await show(BLENDED);
@@ -58,52 +54,19 @@ test('bodies are traced without blending, as by the program', async () => {
   assert.ok(3 * counts[0] < counts[1], `${counts} pixels between the colours`);
 });
 
-test('the draft shows the same two bodies', async () => {
-  await show(BODIES);
-  await sinew.page.evaluate(() => sinew.debug.pictureSize());
-  await sinew.finished();
-  await sinew.click('show traced');
-  await sinew.page.mouse.move(5, 5);
-  await sinew.page.waitForTimeout(600);
-  const traced = await seen();
-  await sinew.keep('bodies traced');
-  await sinew.click('show draft');
-  await sinew.page.mouse.move(5, 5);
-  await sinew.page.waitForTimeout(600);
-  const draft = await seen();
-  await sinew.keep('bodies draft');
-  await sinew.click('show auto');
-  const difference = meanDeltaE(traced, draft);
-  assert.ok(difference < 6, `ΔE ${difference}`);
-  assert.ok(shareThatDiffers(traced, draft, 2) > 0, 'the draft is another picture');
-  // Both balls are there.
-  for (const picture of [traced, draft]) {
-    const [red, blue] = [[255, 99, 71], [70, 130, 180]].map((colour) => countNear(picture, colour, 90));
-    assert.ok(red > 1000 && blue > 1000, `${red} red pixels, ${blue} blue ones`);
-  }
-});
-
 test('a click picks the element of the body that is seen', async () => {
   await show(BODIES);
   const half = 8 * Math.tan(Math.PI / 8);
-  const centre = () => sinew.page.evaluate(() => {
-    const hand = Object.entries(sinew.debug.rects()).find(([name]) => /^hand .*centre/.test(name));
-    return hand ? hand[1].x + hand[1].w / 2 : null;
-  });
   for (const x of [-1.1, 1.1, 0.15, -0.15]) {
     const picture = await sinew.place('picture');
     const middle = picture.x + picture.w / 2;
     await sinew.page.mouse.click(middle + (picture.w * x) / 2 / half, picture.y + picture.h / 2);
     // The knob of the chosen ball stands at its centre.
-    await sinew.page.waitForFunction(
-      () => Object.keys(sinew.debug.rects()).some((name) => /^hand .*centre/.test(name)),
-      undefined,
-      { timeout: 30_000 },
-    );
-    assert.equal(Math.sign((await centre()) - middle), Math.sign(x), `at ${x}`);
+    const knob = await sinew.place('hand the centre');
+    assert.equal(Math.sign(knob.x + knob.w / 2 - middle), Math.sign(x), `at ${x}`);
     if (x === 0.15) await sinew.keep('bodies picked');
     await sinew.page.keyboard.press('Escape');
-    await sinew.page.waitForFunction(() => !Object.keys(sinew.debug.rects()).some((name) => name.startsWith('hand ')));
+    await until(() => sinew.places(), (places) => !places['hand the centre']);
   }
 });
 
@@ -112,11 +75,11 @@ async function sliced() {
   await sinew.page.evaluate(() => {
     location.hash = '#lab=slice';
   });
-  await sinew.page.waitForFunction(() => sinew.lab()?.readings.finished === 1, undefined, { timeout: PATIENCE });
+  const lab = () => sinew.page.evaluate(() => sinew.lab());
+  await until(lab, (state) => state?.readings.finished === 1);
   const { x, y, w, h } = await sinew.place('lab figure');
   await sinew.page.mouse.move(x + w / 2, y + h / 2);
-  await sinew.page.waitForFunction(() => sinew.lab().readings.value !== undefined);
-  const { readings } = await sinew.page.evaluate(() => sinew.lab());
+  const { readings } = await until(lab, (state) => state.readings.value !== undefined);
   return readings;
 }
 
@@ -136,12 +99,11 @@ test('a slice shows the larger of two fields, not their sum', async () => {
 
 test('a link carries the bodies', async () => {
   await show(BODIES);
-  await sinew.resize(...SIZE);
   const picture = await sinew.image();
   const link = await sinew.link();
-  const other = await browser.open({ fragment: link.slice(link.indexOf('#')) });
+  const other = await browser.open({ size: SIZE, fragment: link.slice(link.indexOf('#')) });
   assert.equal(await other.text(), BODIES);
-  await other.resize(...SIZE);
+  await other.finished();
   assert.equal(shareThatDiffers(await other.image(), picture, 0), 0);
   assert.deepEqual(other.troubles, []);
   await other.close();

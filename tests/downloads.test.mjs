@@ -21,10 +21,9 @@ sphere ball 0.6, x 0 0
 let browser;
 let sinew;
 before(async () => {
-  browser = await launch('webgl2');
-  sinew = await browser.open();
+  browser = await launch();
+  sinew = await browser.open({ size: SIZE });
   await sinew.load(MODEL);
-  await sinew.resize(...SIZE);
   await sinew.click('film length');
   await sinew.page.keyboard.type(`${FRAMES}`);
   await sinew.page.keyboard.press('Enter');
@@ -106,9 +105,8 @@ test('a film is saved as pictures', async () => {
 for (const [format, type] of [['webm', 'video/webm'], ['mp4', 'video/mp4']]) {
   test(`a film is saved as ${format} and played`, async (t) => {
     await sinew.click('save film');
-    const places = await sinew.page.evaluate(() => new Promise((resolve) => {
-      setTimeout(() => resolve(sinew.debug.rects()), 500);
-    }));
+    await sinew.place('download gif');
+    const places = await sinew.places();
     await sinew.page.keyboard.press('Escape');
     if (!places[`download ${format}`]) {
       t.skip(`${await browser.version()} encodes none`);
@@ -133,7 +131,7 @@ for (const [format, type] of [['webm', 'video/webm'], ['mp4', 'video/mp4']]) {
 }
 
 test('saving a film can be stopped', async () => {
-  await sinew.page.evaluate(() => sinew.debug.pictureSize(640, 480));
+  await sinew.pictureSize(640, 480);
   await sinew.click('save film');
   await sinew.click('download gif');
   await sinew.place('stop film');

@@ -6,7 +6,7 @@ import { example, launch } from './page.mjs';
 
 let browser;
 before(async () => {
-  browser = await launch('webgl2');
+  browser = await launch();
 });
 after(() => browser?.close());
 
@@ -27,7 +27,7 @@ const clock = (page) =>
   });
 
 test('a node of the snail is dragged, and the flesh follows', async () => {
-  const sinew = await browser.open({ before: clock });
+  const sinew = await browser.open({ before: clock, size: [48, 48] });
   const hand = await Hand.on(sinew, false);
   const { mouse } = sinew.page;
   /** Moves the pointer about a place of the screen; gives the quickest and the median frame. */

@@ -6,7 +6,7 @@ import { launch } from './page.mjs';
 
 let browser;
 before(async () => {
-  browser = await launch('webgl2');
+  browser = await launch();
 });
 after(() => browser?.close());
 
@@ -119,17 +119,15 @@ test("a pen's pressure makes a stroke thick", async () => {
     const { revision } = await sinew.status();
     const places = await hand.at(...pressures.map((_, i) => [0.25 + (0.5 * i) / (pressures.length - 1), height]));
     await page.mouse.move(...places[0]);
-    await page.waitForTimeout(120);
+    await sinew.still();
     await sinew.pen('pointermove', places[0], 0);
     await sinew.pen('pointerdown', places[0], pressures[0]);
-    // Each is seen in a frame of its own, on a busy machine too.
-    const frame = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    // Each is seen in a frame of its own.
     for (const [i, place] of places.entries()) {
-      await frame();
+      await sinew.still();
       await sinew.pen('pointermove', place, pressures[i]);
-      await page.waitForTimeout(150);
     }
-    await frame();
+    await sinew.still();
     await sinew.pen('pointerup', places.at(-1), 0);
     await sinew.until((status) => status.revision > revision);
   };

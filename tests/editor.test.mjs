@@ -15,8 +15,8 @@ sphere Clay 0.8, 1.5 0 0   # the second one
 let browser;
 let sinew;
 before(async () => {
-  browser = await launch('webgl2');
-  sinew = await browser.open();
+  browser = await launch();
+  sinew = await browser.open({ size: [200, 160] });
   await sinew.load(TEXT);
   await sinew.finished();
 });
@@ -29,14 +29,8 @@ after(async () => {
 async function toTheEnd() {
   const { x, y, w } = await sinew.place('editor');
   await sinew.page.mouse.click(x + w / 2, y + 60);
-  await nextFrame();
   await sinew.page.keyboard.press('Control+End');
-  await nextFrame();
 }
-
-/** Keys that come in the frame of a click may move egui's focus instead of the caret. */
-const nextFrame = () =>
-  sinew.page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 /** Where a point of the world is on the screen, in CSS pixels. */
 async function onScreen([x, y, z]) {
@@ -48,8 +42,7 @@ async function onScreen([x, y, z]) {
   return [picture.x + (picture.w * (1 + across)) / 2, picture.y + picture.h / 2 - (picture.w * up) / 2];
 }
 
-const written = (wanted) =>
-  sinew.page.waitForFunction((wanted) => sinew.text().includes(wanted), wanted, { timeout: 30_000 });
+const written = (wanted) => sinew.written((text) => text.includes(wanted));
 
 test('a command is completed as it is typed', async () => {
   await toTheEnd();
@@ -94,24 +87,15 @@ test('a click on the surface goes to its line, and its handle moves the numbers'
   await sinew.load(TEXT);
   await sinew.finished();
   await sinew.page.mouse.click(...(await onScreen([1.5, 0.3, 0.5])));
-  const handles = () =>
-    sinew.page.evaluate(() => Object.keys(sinew.debug.rects()).filter((name) => name.startsWith('hand ')));
-  await sinew.page.waitForFunction(
-    () => Object.keys(sinew.debug.rects()).some((name) => name.startsWith('hand ')),
-    undefined,
-    { timeout: 30_000 },
-  );
+  const { x, y, w, h } = await sinew.place('hand the centre');
   await sinew.keep('chosen');
-  const centre = (await handles()).find((name) => name.includes('centre'));
-  assert.ok(centre, (await handles()).join());
-  const { x, y, w, h } = await sinew.place(centre);
   await sinew.page.mouse.move(x + w / 2, y + h / 2);
   await sinew.page.mouse.down();
   await sinew.page.mouse.move(x + w / 2, y + h / 2 - 10, { steps: 4 });
   await sinew.page.mouse.move(x + w / 2, y + h / 2 - 40, { steps: 8 });
   await sinew.keep('dragging');
   await sinew.page.mouse.up();
-  await sinew.page.waitForFunction((text) => sinew.text() !== text, TEXT, { timeout: 30_000 });
+  await sinew.still();
   const moved = await sinew.text();
   const line = moved.split('\n')[5];
   const numbers = /^sphere Clay 0.8, (\S+) (\S+) (\S+)   # the second one$/.exec(line);
@@ -120,7 +104,7 @@ test('a click on the surface goes to its line, and its handle moves the numbers'
   assert.ok(Number(numbers[2]) > 0.2, line);
   assert.equal(moved.split('\n').toSpliced(5, 1).join(), TEXT.split('\n').toSpliced(5, 1).join(), 'nothing else changed');
   await sinew.page.keyboard.press('Control+Z');
-  await sinew.page.waitForFunction((text) => sinew.text() === text, TEXT, { timeout: 30_000 });
+  await sinew.written((text) => text === TEXT);
 });
 
 test('the text is laid out anew', async () => {

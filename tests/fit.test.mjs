@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
-import { launch } from './page.mjs';
+import { launch, until } from './page.mjs';
 
 const TEXT = `framesize 240 240
 eyep 3 -9 1
@@ -37,7 +37,7 @@ function cloud(obj) {
 
 let browser;
 before(async () => {
-  browser = await launch('webgl2');
+  browser = await launch();
 });
 after(async () => {
   await browser?.close();
@@ -46,7 +46,7 @@ after(async () => {
 for (const [size, options] of Object.entries(SIZES)) {
   test(`a mesh is fitted to dropped points on a ${size}`, async () => {
     const head = await readFile(new URL('../www/examples/head.obj', import.meta.url), 'utf8');
-    const sinew = await browser.open(options);
+    const sinew = await browser.open({ size: [120, 120], ...options });
     await sinew.page.evaluate(([text, head]) => sinew.take({ 'main.rat': text, 'head.obj': head }), [TEXT, head]);
     await sinew.until(({ assets, errors, elements }) => assets.includes('head.obj') && errors === 0 && elements > 400);
     const before = await sinew.text();
@@ -70,40 +70,31 @@ for (const [size, options] of Object.entries(SIZES)) {
     const { mouse } = sinew.page;
     await mouse.click(x + w / 2, y + h / 2);
     const knobs = async () => {
-      const places = await sinew.page.evaluate(() => sinew.debug.rects());
-      return Object.keys(places).filter((name) => name.startsWith('hand control'));
+      await sinew.still();
+      const places = Object.entries(await sinew.places());
+      return places.filter(([name]) => name.startsWith('hand control')).map(([, place]) => place);
     };
-    const deadline = Date.now() + 20_000;
-    while ((await knobs()).length === 0) {
-      assert.ok(Date.now() < deadline, 'the control points are shown');
-      await sinew.page.waitForTimeout(100);
-    }
-    const all = await knobs();
+    const all = await until(knobs, (knobs) => knobs.length > 0);
     assert.ok(all.length > 20, `${all.length} knobs`);
     await sinew.keep(`fit cage ${size}`);
     // The one that is highest on the screen has no other above it.
-    const places = await Promise.all(all.map(async (name) => sinew.place(name)));
-    const top = places.reduce((best, place) => (place.y < best.y ? place : best));
-    const fitted = JSON.stringify(await sinew.text());
+    const top = all.reduce((best, place) => (place.y < best.y ? place : best));
+    const fitted = await sinew.text();
     await mouse.move(top.x + top.w / 2, top.y + top.h / 2);
     await mouse.down();
     await mouse.move(top.x + top.w / 2 + 14, top.y + top.h / 2 + 8, { steps: 4 });
-    await sinew.page.waitForTimeout(300);
+    await sinew.still();
     await mouse.up();
-    await sinew.page.waitForTimeout(300);
-    assert.notEqual(JSON.stringify(await sinew.text()), fitted, 'the move is in the text');
+    await sinew.still();
+    assert.notEqual(await sinew.text(), fitted, 'the move is in the text');
     await sinew.click('undo');
-    // On a busy machine a frame takes its time.
-    const back = Date.now() + 5_000;
-    while (JSON.stringify(await sinew.text()) !== fitted) {
-      assert.ok(Date.now() < back, 'one step back');
-      await sinew.page.waitForTimeout(100);
-    }
+    await sinew.still();
+    assert.equal(await sinew.text(), fitted, 'one step back');
 
     // The whole fit is one step, too.
     await sinew.click('fit back');
-    await sinew.page.waitForTimeout(1000);
-    assert.deepEqual(await sinew.text(), before);
+    await sinew.still();
+    assert.equal(await sinew.text(), before);
 
     // What is no cloud is told of.
     await sinew.page.evaluate(() => sinew.take({ 'bad.xyz': '1 2\n' }));

@@ -5,7 +5,7 @@ import { launch, native } from './page.mjs';
 import { colours, meanDeltaE } from './pictures.mjs';
 
 /** Size of the pictures that are compared, pixels. */
-const SIZE = [200, 160];
+const SIZE = [100, 80];
 /** A mean difference (CIE76) that nobody can see. */
 const UNSEEN = 0.1;
 
@@ -21,21 +21,20 @@ for i = 1 to ${COUNT} { sphere dust 0.006 <rand rand rand> }
 
 let browser;
 before(async () => {
-  browser = await launch('webgl2');
+  browser = await launch();
 });
 after(async () => {
   await browser?.close();
 });
 
 test('a hundred thousand elements open, and are those that the program draws', async () => {
-  const sinew = await browser.open();
+  const sinew = await browser.open({ size: SIZE });
   await sinew.load(MODEL);
   const status = await sinew.finished();
   assert.equal(status.errors, 0);
   assert.equal(status.failure, null);
   assert.equal(status.elements, COUNT);
   await sinew.keep('large');
-  await sinew.resize(...SIZE);
   const [traced, expected] = [await sinew.image(), await native(MODEL, SIZE)];
   assert.ok(colours(traced) > 100, 'the picture is not blank');
   const difference = meanDeltaE(traced, expected);

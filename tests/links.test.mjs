@@ -2,20 +2,23 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { deflateRawSync, deflateSync } from 'node:zlib';
-import { launch } from './page.mjs';
+import { launch, until } from './page.mjs';
 
 const OWN = '# my own work\nsurface s diffuse Gold\nsphere s 1 0 0 0\n';
 
 let browser;
 let sinew;
+/** The link of another work. */
+let theirs;
 before(async () => {
-  browser = await launch('webgl2');
+  browser = await launch();
   sinew = await browser.open();
-  const editor = await sinew.place('editor');
-  await sinew.page.mouse.click(editor.x + editor.w / 2, editor.y + editor.h / 2);
+  await sinew.load('# theirs\nsurface s diffuse Red\nsphere s 1 0 0 0\n');
+  theirs = await sinew.link();
+  await sinew.click('editor');
   await sinew.page.keyboard.press('Control+A');
   await sinew.page.keyboard.type(OWN);
-  await sinew.page.waitForFunction((own) => sinew.text() === own, OWN);
+  await sinew.written((text) => text === OWN);
 });
 after(() => browser?.close());
 
@@ -50,6 +53,16 @@ const HOSTILE = {
   'with a script': async () => '<script>alert(1)</script><img src=x onerror=alert(1)>',
 };
 
+/** Closes the message. */
+async function close() {
+  const { x, y, w, h } = await sinew.place('notice');
+  await sinew.page.mouse.click(x + w - 26, y + h / 2);
+  await until(() => sinew.places(), ({ notice }) => !notice);
+}
+
+/** Those that are opened anew. */
+const OPENED = ['cut off', 'that unfolds to 300 MB', 'with a script'];
+
 for (const [name, fragment] of Object.entries(HOSTILE)) {
   test(`a link ${name} does no harm`, async () => {
     const hostile = await fragment();
@@ -59,37 +72,37 @@ for (const [name, fragment] of Object.entries(HOSTILE)) {
     }, hostile);
     await sinew.place('notice');
     assert.equal(await sinew.text(), OWN);
-    // … and opening it anew, in the same profile.
+    await sinew.keep(`link ${name}`);
+    // … and opening it anew, in the same profile: read as in the open page, so some kinds are enough.
+    await close();
+    if (!OPENED.includes(name)) return;
     await sinew.reload();
     await sinew.place('notice');
-    await sinew.finished();
-    const status = await sinew.status();
-    assert.equal(status.errors, 0);
-    await sinew.keep(`link ${name}`);
-    // Without the link the user's own work is there.
-    await sinew.page.evaluate(() => {
-      history.replaceState(null, '', location.pathname);
-    });
-    await sinew.reload();
     assert.equal(await sinew.text(), OWN);
+    const { errors } = await sinew.finished();
+    assert.equal(errors, 0);
+    await close();
   });
 }
 
+test('without the link the own work is there', async () => {
+  await sinew.page.evaluate(() => {
+    history.replaceState(null, '', location.pathname);
+  });
+  await sinew.reload();
+  assert.equal(await sinew.text(), OWN);
+});
+
 test('a good link opens beside the own work, not in its place', async () => {
   const link = await good();
-  const other = await browser.open();
-  await other.load('# theirs\nsurface s diffuse Red\nsphere s 1 0 0 0\n');
-  await other.page.waitForFunction(() => sinew.text().startsWith('# theirs'));
-  const theirs = await other.link();
-  await other.close();
   await sinew.page.evaluate((hash) => {
     location.hash = hash;
   }, theirs.slice(theirs.indexOf('#')));
-  await sinew.page.waitForFunction(() => sinew.text().startsWith('# theirs'));
+  await sinew.written((text) => text.startsWith('# theirs'));
   await sinew.page.evaluate((hash) => {
     location.hash = hash;
   }, link);
-  await sinew.page.waitForFunction((own) => sinew.text() === own, OWN);
+  await sinew.written((text) => text === OWN);
 });
 
 test('hostile texts do not stop the page', async () => {
@@ -105,7 +118,7 @@ test('hostile texts do not stop the page', async () => {
   ];
   for (const text of texts) {
     await sinew.load(text).catch(() => {}); // too long texts are refused
-    await sinew.page.waitForTimeout(300);
+    await sinew.still();
   }
   await sinew.load(OWN);
   await sinew.until((status) => status.errors === 0);

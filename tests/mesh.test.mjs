@@ -5,7 +5,7 @@ import { after, before, test } from 'node:test';
 import { launch } from './page.mjs';
 
 /** Squares along a side of the sheet. */
-const SIDE = 220;
+const SIDE = 160;
 const TRIANGLES = 2 * SIDE * SIDE;
 
 const head = `eyep 0 -3 3
@@ -33,7 +33,7 @@ function obj() {
 
 let browser;
 before(async () => {
-  browser = await launch('webgl2');
+  browser = await launch();
 });
 after(async () => {
   await browser?.close();

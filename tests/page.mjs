@@ -4,6 +4,7 @@ import { execFile } from 'node:child_process';
 import { mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { setTimeout } from 'node:timers/promises';
 import { promisify } from 'node:util';
 import { chromium } from 'playwright-core';
 import { decode } from './pictures.mjs';
@@ -30,9 +31,11 @@ const ASKED = { webgl2: '?backend=webgl' };
 export const PATIENCE = 180_000;
 
 /**
- * A browser of one kind and a server of the page. With `free` the page itself chooses what it draws with.
+ * A browser of one kind and a server of the page. With `free` the page itself chooses what it draws with. Without a kind the
+ * processor draws the window: forty times as quick here as a graphics card that it pretends to be. What cards draw is tested
+ * in the journey, and how the mesh of the surface stands in for the picture.
  */
-export async function launch(kind, { free = false } = {}) {
+export async function launch(kind = 'none', { free = false } = {}) {
   const asked = free ? '' : (ASKED[kind] ?? '');
   const browser = await chromium.launch({
     executablePath: setting('CHROMIUM'),
@@ -41,9 +44,16 @@ export async function launch(kind, { free = false } = {}) {
   const server = await serve(setting('SINEW_PAGE'));
   return {
     kind,
+    /** Where the page is. */
+    address: server.address,
     version: () => browser.version(),
-    /** Opens the page in a new profile. `fragment` ends the address; `before` may prepare the tab. */
-    async open({ fragment = '', before, viewport = { width: 1200, height: 760 }, ...options } = {}) {
+    /** An empty tab in a new profile. */
+    blank: async (options) => (await browser.newContext(options)).newPage(),
+    /**
+     * Opens the page in a new profile. `fragment` ends the address; `before` may prepare the tab. Pictures are traced at
+     * `size`, small as few tests are about one; null: as large as the window shows them.
+     */
+    async open({ fragment = '', before, size = [160, 120], viewport = { width: 1200, height: 760 }, ...options } = {}) {
       const context = await browser.newContext({
         viewport,
         colorScheme: 'dark',
@@ -52,7 +62,7 @@ export async function launch(kind, { free = false } = {}) {
       });
       const page = await context.newPage();
       await before?.(page);
-      const sinew = new Sinew(page, kind);
+      const sinew = new Sinew(page, kind, size);
       await sinew.goto(server.address + asked + fragment);
       return sinew;
     },
@@ -63,14 +73,26 @@ export async function launch(kind, { free = false } = {}) {
   };
 }
 
+/** Asks again and again, until the answer is as wanted, and gives it. */
+export async function until(ask, wanted) {
+  const deadline = Date.now() + PATIENCE;
+  for (;;) {
+    const answer = await ask();
+    if (wanted(answer)) return answer;
+    assert.ok(Date.now() < deadline, `${wanted} never came true: ${JSON.stringify(answer)?.slice(0, 2000)}`);
+    await setTimeout(30);
+  }
+}
+
 /** An open page. */
 export class Sinew {
   /** What the page wrote to the console as errors, and exceptions. */
   troubles = [];
 
-  constructor(page, kind) {
+  constructor(page, kind, size = null) {
     this.page = page;
     this.kind = kind;
+    this.size = size;
     page.on('pageerror', (error) => this.troubles.push(String(error)));
     page.on('console', (message) => {
       if (message.type() === 'error') this.troubles.push(message.text());
@@ -88,6 +110,7 @@ export class Sinew {
     const failure = await this.page.evaluate(() => document.querySelector('#loading.failed')?.innerText);
     assert.equal(failure, undefined, 'the page could not start');
     await this.page.evaluate(() => sinew.ready);
+    if (this.size) await this.pictureSize(...this.size);
   }
 
   async reload() {
@@ -127,19 +150,21 @@ export class Sinew {
   }
 
   /** Waits until the status is as wanted, and gives it. */
-  async until(wanted, timeout = PATIENCE) {
-    const deadline = Date.now() + timeout;
-    for (;;) {
-      const status = await this.status();
-      if (wanted(status)) return status;
-      assert.ok(Date.now() < deadline, `${wanted} never came true: ${JSON.stringify(status)}`);
-      await this.page.waitForTimeout(50);
-    }
+  until(wanted) {
+    return until(() => this.status(), wanted);
   }
 
-  /** The status when the picture of the present text is finished. */
-  async finished() {
-    return this.until((status) => status.fresh && status.phase === 'done');
+  /** Waits until the text of the first file is as wanted. */
+  written(wanted) {
+    return until(() => this.text(), wanted);
+  }
+
+  /** The status when the picture of the present text is finished, at the size that it is to have. */
+  finished() {
+    return this.until(({ fresh, phase, picture }) => {
+      const [width, height] = this.size ?? [picture?.width, picture?.height];
+      return fresh && phase === 'done' && picture.width === width && picture.height === height;
+    });
   }
 
   /** The traced picture, decoded. */
@@ -155,11 +180,16 @@ export class Sinew {
     return decode(Buffer.from(base64, 'base64'));
   }
 
+  /** Fixes the size of the traced picture; without numbers it is as large as the window shows it. */
+  pictureSize(...size) {
+    this.size = size.length ? size : null;
+    return this.page.evaluate(([width, height]) => sinew.debug.pictureSize(width, height), size);
+  }
+
   /** Fixes the size of the traced picture, and waits for such a picture to be finished. */
   async resize(width, height) {
-    await this.page.evaluate(([w, h]) => sinew.debug.pictureSize(w, h), [width, height]);
-    await this.until(({ picture }) => picture?.width === width && picture?.height === height);
-    await this.finished();
+    await this.pictureSize(width, height);
+    return this.finished();
   }
 
   /** Tells the page what a pen tells, events of a pointer and of the mouse, as Chromium's own tools make no pen events. */
@@ -175,22 +205,34 @@ export class Sinew {
     );
   }
 
-  /** Where a widget is, in CSS pixels. */
+  /** Waits until the page has drawn what has come so far, and nothing in it moves. */
+  still() {
+    return this.page.evaluate(() => sinew.debug.still());
+  }
+
+  /** Waits for the page's next frame. */
+  frame() {
+    return this.page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
+  }
+
+  /** Where widgets are, in CSS pixels. */
+  places() {
+    return this.page.evaluate(() => sinew.debug.rects());
+  }
+
+  /** Where a widget is once it is there and no longer moves. */
   async place(name) {
-    await this.page.waitForFunction((name) => sinew.debug.rects()[name], name, { timeout: 60_000 });
-    return this.page.evaluate(async (name) => {
-      const frame = () => new Promise((done) => requestAnimationFrame(done));
-      const now = () => sinew.debug.rects()[name];
-      let last = now();
-      // In the frame in which a menu opens, or grows, its rows may be elsewhere than in the next one.
-      for (let [still, frames] = [0, 0]; still < 3 && frames < 60; frames++) {
-        await frame();
-        const { x, y, w, h } = now() ?? last;
-        still = x === last.x && y === last.y && w === last.w && h === last.h ? still + 1 : 0;
-        last = { x, y, w, h };
-      }
-      return last;
-    }, name);
+    const deadline = Date.now() + 60_000;
+    for (;;) {
+      const place = await this.page.evaluate(async (name) => {
+        if (!sinew.debug.rects()[name]) return null;
+        await sinew.debug.still();
+        return sinew.debug.rects()[name];
+      }, name);
+      if (place) return place;
+      assert.ok(Date.now() < deadline, `there is no ${name}`);
+      await setTimeout(30);
+    }
   }
 
   /** Clicks the middle of a widget. */

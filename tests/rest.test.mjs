@@ -6,7 +6,7 @@ import { example, launch } from './page.mjs';
 let browser;
 let sinew;
 before(async () => {
-  browser = await launch('none');
+  browser = await launch();
   const count = () => {
     // One worker, so that a picture takes long on any machine.
     Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => 1 });
@@ -19,7 +19,8 @@ before(async () => {
   };
   sinew = await browser.open({ before: (page) => page.addInitScript(count) });
   await sinew.load('surface s diffuse Gold\nsphere s 1 0 0 0\n');
-  await sinew.finished();
+  const { workers } = await sinew.finished();
+  assert.equal(workers, 1);
 });
 after(() => browser?.close());
 

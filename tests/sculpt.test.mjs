@@ -1,12 +1,12 @@
 // Sculpting in the page: mouse, pen and touch; what is done becomes a text and is seen in the traced picture.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { launch } from './page.mjs';
+import { launch, until as untilAnswer } from './page.mjs';
 import { colours } from './pictures.mjs';
 
 let browser;
 before(async () => {
-  browser = await launch('webgl2');
+  browser = await launch();
 });
 after(() => browser?.close());
 
@@ -14,15 +14,7 @@ const sculpture = (sinew) => sinew.page.evaluate(() => sinew.sculpture());
 const strokes = (sinew) => sinew.page.evaluate(() => sinew.files()['sculpture.strokes']);
 
 /** Waits until the sculpture is as wanted, and gives it. */
-async function until(sinew, wanted) {
-  const deadline = Date.now() + 60_000;
-  for (;;) {
-    const now = await sculpture(sinew);
-    if (wanted(now)) return now;
-    assert.ok(Date.now() < deadline, `${wanted} never came true: ${JSON.stringify(now)}`);
-    await sinew.page.waitForTimeout(30);
-  }
-}
+const until = (sinew, wanted) => untilAnswer(() => sculpture(sinew), wanted);
 
 /** Begins with a ball, and gives the middle of the place. */
 async function begin(sinew, narrow = false) {
@@ -31,19 +23,20 @@ async function begin(sinew, narrow = false) {
   await sinew.click('begin ball');
   await until(sinew, (now) => now?.name === 'sculpture.strokes');
   const { x, y, w, h } = await sinew.place('sculpture');
-  await sinew.page.waitForTimeout(400);
+  await sinew.still();
   return { at: [x + w / 2, y + h / 2], side: Math.min(w, h) };
 }
 
-async function drag(page, [x, y], [dx, dy], steps = 6) {
-  await page.mouse.move(x, y);
-  await page.waitForTimeout(120);
-  await page.mouse.down();
+async function drag(sinew, [x, y], [dx, dy], steps = 6) {
+  const { mouse } = sinew.page;
+  await mouse.move(x, y);
+  await sinew.still();
+  await mouse.down();
   for (let i = 1; i <= steps; i += 1) {
-    await page.mouse.move(x + (dx * i) / steps, y + (dy * i) / steps);
-    await page.waitForTimeout(40);
+    await mouse.move(x + (dx * i) / steps, y + (dy * i) / steps);
+    await sinew.still();
   }
-  await page.mouse.up();
+  await mouse.up();
 }
 
 test('mouse and keys pull, push, smooth and undo, and the picture shows it', async () => {
@@ -54,16 +47,16 @@ test('mouse and keys pull, push, smooth and undo, and the picture shows it', asy
   const whole = await sinew.screen('sculpture');
   assert.ok(colours(whole) > 200, 'the ball is shaded');
 
-  await drag(page, [at[0] + 0.1 * side, at[1] - 0.1 * side], [0.25 * side, -0.2 * side]);
+  await drag(sinew, [at[0] + 0.1 * side, at[1] - 0.1 * side], [0.25 * side, -0.2 * side]);
   await until(sinew, ({ depth }) => depth[0] === 1);
   assert.match(await strokes(sinew), /^strokes 1\nstart sphere 12\npull sphere [\d. ]+ bell [\d.]+ : [-\d., ]+\n$/);
   await sinew.keep('sculpt pulled');
 
   await page.keyboard.press('p');
-  await drag(page, [at[0] - 0.15 * side, at[1] + 0.05 * side], [0.1 * side, 0.15 * side]);
+  await drag(sinew, [at[0] - 0.15 * side, at[1] + 0.05 * side], [0.1 * side, 0.15 * side]);
   await until(sinew, ({ depth }) => depth[0] === 2);
   await page.keyboard.down('Shift');
-  await drag(page, [at[0] - 0.1 * side, at[1]], [0.1 * side, 0.05 * side]);
+  await drag(sinew, [at[0] - 0.1 * side, at[1]], [0.1 * side, 0.05 * side]);
   await page.keyboard.up('Shift');
   await until(sinew, ({ depth }) => depth[0] === 3);
   const text = await strokes(sinew);
@@ -79,21 +72,21 @@ test('mouse and keys pull, push, smooth and undo, and the picture shows it', asy
 
   // G grabs without a button; Escape gives it up.
   await page.mouse.move(at[0], at[1]);
-  await page.waitForTimeout(150);
+  await sinew.still();
   await page.keyboard.press('g');
   await page.mouse.move(at[0] + 0.1 * side, at[1], { steps: 4 });
-  await page.waitForTimeout(150);
+  await sinew.still();
   await page.keyboard.press('Escape');
-  await page.waitForTimeout(150);
+  await sinew.still();
   assert.equal(await strokes(sinew), text);
 
   // Beside the mesh the view turns, which is no stroke; W shows the edges.
-  await drag(page, [at[0] - 0.47 * side, at[1] - 0.45 * side], [0.2 * side, 0.1 * side]);
+  await drag(sinew, [at[0] - 0.47 * side, at[1] - 0.45 * side], [0.2 * side, 0.1 * side]);
   await page.mouse.wheel(0, -200);
   await page.keyboard.press('w');
   await page.keyboard.press('d');
   await until(sinew, ({ counts }) => counts[1] === 4608);
-  await page.waitForTimeout(700);
+  await sinew.still();
   await sinew.keep('sculpt refined');
   assert.equal((await sculpture(sinew)).depth[0], 4);
 
@@ -118,14 +111,14 @@ test("a pen's pressure is written", async () => {
   await page.keyboard.press('p');
   const [x, y] = at;
   await page.mouse.move(x, y);
-  await page.waitForTimeout(120);
+  await sinew.still();
   await sinew.pen('pointermove', [x, y], 0);
   await sinew.pen('pointerdown', [x, y], 0.25);
   for (let i = 1; i <= 5; i += 1) {
-    await page.waitForTimeout(80);
+    await sinew.still();
     await sinew.pen('pointermove', [x + 0.04 * side * i, y], 0.25 + 0.1 * i);
   }
-  await page.waitForTimeout(80);
+  await sinew.still();
   await sinew.pen('pointerup', [x + 0.2 * side, y], 0);
   await until(sinew, ({ depth }) => depth[0] === 1);
   const line = (await strokes(sinew)).split('\n')[2];
@@ -147,26 +140,26 @@ test('a finger sculpts and two fingers turn, on a phone', async () => {
       type,
       touchPoints: points.map(([x, y], id) => ({ x, y, id })),
     });
-    await page.waitForTimeout(60);
+    if (type === 'touchMove') await sinew.still();
   };
   const [x, y] = at;
   await touch('touchStart', [[x, y]]);
   for (let i = 1; i <= 5; i += 1) await touch('touchMove', [[x + 0.05 * side * i, y - 0.04 * side * i]]);
   await touch('touchEnd', []);
   await until(sinew, ({ depth }) => depth[0] === 1);
-  await page.waitForTimeout(500);
+  await sinew.still();
   await sinew.keep('sculpt phone');
 
   const before = await sinew.page.screenshot();
-  await touch('touchStart', [[x - 60, y]]);
-  await touch('touchStart', [[x - 60, y], [x + 60, y]]);
+  // One soon after the other, however slow the frames are.
+  await Promise.all([touch('touchStart', [[x - 60, y]]), touch('touchStart', [[x - 60, y], [x + 60, y]])]);
   for (let i = 1; i <= 5; i += 1) await touch('touchMove', [[x - 60 - 6 * i, y + 5 * i], [x + 60 + 6 * i, y + 5 * i]]);
   await touch('touchEnd', []);
-  await page.waitForTimeout(500);
+  await sinew.still();
   assert.equal((await sculpture(sinew)).depth[0], 1, 'two fingers make no stroke');
   assert.ok(!before.equals(await sinew.page.screenshot()), 'they turn and zoom');
   await sinew.click('sculpt more');
-  await page.waitForTimeout(400);
+  await sinew.still();
   await sinew.keep('sculpt phone more');
   const places = await sinew.page.evaluate(() => sinew.debug.rects());
   for (const name of ['sculpt back', 'sculpt undo', 'sculpt more', 'sculpt pull', 'sculpture']) {
@@ -208,8 +201,8 @@ sphere flesh 0.6, 0.9 0.3 0
   assert.match(await strokes(sinew), /^strokes 1\nstart file model\.ply\n$/);
   const { x, y, w, h } = await sinew.place('sculpture');
   const [at, side] = [[x + w / 2, y + h / 2], Math.min(w, h)];
-  await page.waitForTimeout(400);
-  await drag(page, at, [0.1 * side, -0.2 * side]);
+  await sinew.still();
+  await drag(sinew, at, [0.1 * side, -0.2 * side]);
   await until(sinew, ({ depth }) => depth[0] === 1);
   const pulled = await strokes(sinew);
   await sinew.keep('sculpt this');
@@ -226,11 +219,7 @@ sphere flesh 0.6, 0.9 0.3 0
   await sinew.keep('sculpt this undone');
   await page.keyboard.press('Control+Shift+z');
   await page.keyboard.press('Control+Shift+z');
-  const deadline = Date.now() + 20_000;
-  while ((await strokes(sinew)) !== pulled) {
-    assert.ok(Date.now() < deadline, 'the clay and its stroke are back');
-    await page.waitForTimeout(100);
-  }
+  await untilAnswer(() => strokes(sinew), (now) => now === pulled);
   await sinew.until(({ elements }) => elements > 200);
 
   // Flesh grows on it, in the same history.

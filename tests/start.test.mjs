@@ -1,36 +1,29 @@
 // Loading: nothing from elsewhere, and words where the program cannot run.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { chromium } from 'playwright-core';
 import { launch } from './page.mjs';
-import { serve } from './server.mjs';
 
-let browser;
-let server;
+/** The page itself chooses what it draws with. */
+let own;
 before(async () => {
-  browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args: ['--no-sandbox'] });
-  server = await serve(process.env.SINEW_PAGE);
+  own = await launch('webgl2', { free: true });
 });
-after(async () => {
-  await browser?.close();
-  server?.close();
-});
+after(() => own?.close());
 
 test('without JavaScript the page says what it needs', async () => {
-  const context = await browser.newContext({ javaScriptEnabled: false });
-  const page = await context.newPage();
-  await page.goto(server.address);
+  const page = await own.blank({ javaScriptEnabled: false });
+  await page.goto(own.address);
   assert.match(await page.innerText('body'), /needs JavaScript/);
-  await context.close();
+  await page.context().close();
 });
 
 test('a program that does not come is reported in words', async () => {
-  const page = await browser.newPage();
+  const page = await own.blank();
   await page.route('**/studio_bg.wasm', (route) => route.fulfill({ status: 404, body: 'gone' }));
-  await page.goto(server.address);
+  await page.goto(own.address);
   await page.waitForSelector('#loading.failed');
   assert.match(await page.innerText('#message'), /could not start/);
-  await page.close();
+  await page.context().close();
 });
 
 for (const [file, words] of [
@@ -38,49 +31,30 @@ for (const [file, words] of [
   ['worker.js', /no worker could be kept running/i],
 ]) {
   test(`without ${file} the page says so, and the editor works`, async () => {
-    const own = await launch('webgl2');
-    try {
-      const sinew = await own.open({ before: (page) => page.route(`**/${file}`, (route) => route.abort()) });
-      const status = await sinew.until((status) => status.failure);
-      assert.match(status.failure, words);
-      await sinew.load('surface s diffuse Gold\nsphere s 1 0 0 0\n');
-      await sinew.until((status) => status.errors === 0 && status.failure);
-      await sinew.keep(`without ${file}`);
-      // Once it comes, all is well.
-      await sinew.page.unroute(`**/${file}`);
-      await sinew.page.evaluate(() => sinew.render());
-      const { failure } = await sinew.finished();
-      assert.equal(failure, null);
-      await sinew.close();
-    } finally {
-      await own.close();
-    }
+    const sinew = await own.open({ before: (page) => page.route(`**/${file}`, (route) => route.abort()) });
+    const status = await sinew.until((status) => status.failure);
+    assert.match(status.failure, words);
+    await sinew.load('surface s diffuse Gold\nsphere s 1 0 0 0\n');
+    await sinew.until((status) => status.errors === 0 && status.failure);
+    await sinew.keep(`without ${file}`);
+    // Once it comes, all is well.
+    await sinew.page.unroute(`**/${file}`);
+    await sinew.page.evaluate(() => sinew.render());
+    const { failure } = await sinew.finished();
+    assert.equal(failure, null);
+    await sinew.close();
   });
 }
 
-test('a graphics card that is only pretended does not draw the window', async () => {
-  const own = await launch('webgl2', { free: true });
-  try {
-    const sinew = await own.open();
-    const { backend, failure } = await sinew.finished();
-    assert.deepEqual([backend, failure], ['none', null]);
-    await sinew.close();
-  } finally {
-    await own.close();
-  }
-});
-
-test('everything comes from the page’s own folder', async () => {
-  const page = await browser.newPage();
+test('a graphics card that is only pretended does not draw the window, and all comes from the page’s own folder', async () => {
   const strangers = [];
-  page.on('request', (request) => {
+  const watch = (page) => page.on('request', (request) => {
     const url = request.url();
-    if (!url.startsWith(server.address) && !/^(data|blob):/.test(url)) strangers.push(url);
+    if (!url.startsWith(own.address) && !/^(data|blob):/.test(url)) strangers.push(url);
   });
-  await page.goto(server.address);
-  await page.waitForFunction(() => globalThis.sinew?.ready);
-  await page.evaluate(() => sinew.ready);
-  await page.waitForTimeout(1000);
+  const sinew = await own.open({ before: watch });
+  const { backend, failure } = await sinew.finished();
+  assert.deepEqual([backend, failure], ['none', null]);
   assert.deepEqual(strangers, []);
-  await page.close();
+  await sinew.close();
 });

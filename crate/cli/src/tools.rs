@@ -89,5 +89,4 @@ fn here(folder: &Path) -> &Path {
 }
 
 #[cfg(test)]
-#[path = "tools_tests.rs"]
 mod tests;

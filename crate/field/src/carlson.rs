@@ -231,8 +231,7 @@ mod tests {
         );
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn double_matches_quadrature() {
         for args in arguments(1e-18) {
             let [x, y, z] = args;
@@ -249,8 +248,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn single_matches_double() {
         let close32 = |value: f32, want: f64, what: &str| close(f64::from(value), want, 6e-7, what);
         for args in arguments(1e-12) {
@@ -280,8 +278,7 @@ mod tests {
 
     /// Carlson's own examples (Numerical computation of real or complex elliptic integrals, 1995), in
     /// the 14 digits that are printed.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn published_values() {
         let first = elliptic(0.0, 2.0, 1.0);
         close(first.f, 1.311_028_777_146_1, 1e-13, "R_F(1, 2, 0)");

@@ -83,8 +83,7 @@ mod tests {
         imaginary_dilogarithm(&z).lane(0)
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn is_its_power_series() {
         for beta in [1e-6, 0.1, 0.45, 0.55, 0.7, 0.9, 0.97] {
             for i in 1..60 {
@@ -110,8 +109,7 @@ mod tests {
     }
 
     /// Catalan's constant, the largest value, and the duplication of angles.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn is_clausens_function_on_the_circle() {
         use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6};
         let close = |a: f64, b: f64| assert!((a - b).abs() <= 2e-15, "{a} {b}");

@@ -43,21 +43,3 @@ macro_rules! cut {
 
 cut!(f32);
 cut!(f64);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
-    fn as_in_the_standard_library() {
-        let numbers = [f64::NAN, f64::NEG_INFINITY, -1.0, 0.0, 2.5, f64::INFINITY];
-        for a in numbers {
-            for b in numbers {
-                let same = |x: f64, y: f64| x == y || x.is_nan() && y.is_nan();
-                assert!(same(a.at_least(b), a.max(b)), "{a} {b}");
-                assert!(same(a.at_most(b), a.min(b)), "{a} {b}");
-            }
-        }
-    }
-}

@@ -265,8 +265,7 @@ mod tests {
         kernel.derivatives(p2 + t * t).0[0]
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn no_derivative_exceeds_its_envelope() {
         for kernel in Kernel::ALL {
             let order = order(kernel);
@@ -303,8 +302,7 @@ mod tests {
     }
 
     /// The integrals over a line and a plane, by a midpoint rule.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn integrals_are_bounds_and_near() {
         for kernel in Kernel::ALL {
             for u in [0.02, 0.1, 0.3, 0.7, 0.95, 1.5, 3.0] {
@@ -346,8 +344,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn cauchys_formulas_are_envelopes() {
         for i in 0..400 {
             let x = 1.0 + 0.01 * f64::from(i * i) / 4.0;

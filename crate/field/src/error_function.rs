@@ -36,8 +36,7 @@ pub fn erfc<R: Real>(x: R, bell: R) -> R {
 mod tests {
     use super::*;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn as_in_double_precision() {
         for i in 0..9000 {
             let x = i as f32 * 1e-3;

@@ -168,8 +168,7 @@ mod tests {
         worst
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn agrees_with_the_closed_forms() {
         let close = error(3.5);
         assert!(close[0] < 1e-7 && close[1] < 2e-6, "{close:?}");

@@ -366,8 +366,7 @@ mod tests {
     use super::*;
     use crate::quadrature::integral;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn values_as_defined() {
         for u in [0.0, 0.1, 0.3, 0.5, 0.9, 1.0, 1.5] {
             let inside = |x: f64| if u <= 1.0 { x } else { 0.0 };
@@ -412,8 +411,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn derivatives_and_integrals() {
         for kernel in Kernel::ALL {
             for q in [0.04, 0.2, 0.5, 0.8, 2.0] {

@@ -131,15 +131,15 @@ fn breaks(wave: Wave, scale: f64) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::{BlobScale, Kernel, Profile, Shaping};
+    use trials::Random;
 
     /// A step along a ray.
     const STEP: f64 = 1e-4;
     /// Second difference over the step's square that separates smooth places from kinks and jumps, mostly.
     const SHARP: f64 = 1e3;
 
-    fn wavy(which: usize, next: &mut impl FnMut() -> f64) -> Primitive {
-        let mut place = || DVec3::new(next(), next(), next()) * 2.0 - 1.0;
-        let [a, b, c] = [place(), place(), place()];
+    fn wavy(which: usize, random: &mut Random) -> Primitive {
+        let [a, b, c] = [(); 3].map(|()| random.vector(1.0));
         let skeleton = match which % 3 {
             0 => Skeleton::Segment { base: a, apex: b },
             1 => Skeleton::Triangle { corners: [a, b, c] },
@@ -148,7 +148,7 @@ mod tests {
                 u: b,
                 v: c,
                 radius: 0.7,
-                angle: 1.0 + 4.0 * next(),
+                angle: random.range(1.0, 5.0),
             },
         };
         let waves = [
@@ -161,7 +161,7 @@ mod tests {
         ];
         let profile = Profile {
             waves: [waves[which / 3 % 6], waves[which / 18 % 6]],
-            scale: [1.0 + 3.0 * next(), 1.0 + 3.0 * next()],
+            scale: [(); 2].map(|()| random.range(1.0, 4.0)),
             bounds: [0.2, 1.0],
             times: 1.0,
             restriction: if which.is_multiple_of(2) { 0.0 } else { 0.8 },
@@ -178,20 +178,14 @@ mod tests {
         Primitive::new(skeleton, &shaping, Some(profile)).expect("flesh")
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn between_the_kinks_a_field_is_smooth() {
-        let mut state = 9u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31)
-        };
+        let mut random = Random::new(9);
         let (mut sharp, mut told) = (0, 0);
         for which in 0..108 {
-            let primitive = wavy(which, &mut next);
+            let primitive = wavy(which, &mut random);
             let kinks = of(&primitive);
-            let mut unit = || DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5).normalize();
-            let (direction, offset) = (unit(), unit() * 0.4);
+            let (direction, offset) = (random.direction(), random.direction() * 0.4);
             let origin = offset - direction;
             let at =
                 |i: i32| primitive.value((origin + direction * (STEP * f64::from(i))).to_array());

@@ -73,8 +73,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn exact_for_polynomials() {
         integrates_powers::<1>();
         integrates_powers::<2>();

@@ -177,26 +177,18 @@ mod tests {
     use super::*;
     use crate::{BlobScale, Kernel, Primitive, Shaping};
     use glam::DVec3;
-
-    /// Random numbers between −1 and 1.
-    fn random() -> impl FnMut() -> f64 {
-        let mut state = 6u64;
-        move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
-        }
-    }
+    use trials::{Random, count};
 
     /// The factor along random lines near arcs, segments and triangles, at five places close to each other: its derivatives by
     /// differences are within the bounds, and come near to them.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn factors_change_no_faster_than_told() {
         const SMOOTH: [Wave; 5] = [Wave::X, Wave::Sin, Wave::Cos, Wave::Sin2, Wave::Cos2];
-        let mut next = random();
+        let mut random = Random::new(6);
+        let mut next = || random.range(-1.0, 1.0);
         // Largest ratio of a derivative to its bound, by kind of skeleton and order.
         let mut nearest = [[0.0f64; 4]; 3];
-        for case in 0..6000 {
+        for case in 0..count(6000) {
             let mut place = || DVec3::new(next(), next(), next());
             let (a, b, c) = (place(), place(), place());
             let skeleton = match case % 3 {
@@ -290,8 +282,7 @@ mod tests {
     }
 
     /// At 0 the derivatives of `e^t·e^(2t)` are the powers of 3.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn a_product_has_all_of_its_terms() {
         let bounds = Ripple::of_product(&[1.0; 5], &[2.0, 4.0, 8.0, 16.0]);
         assert_eq!(bounds, [9.0, 27.0, 81.0]);

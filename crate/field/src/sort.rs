@@ -40,18 +40,13 @@ pub fn heap_sort<T>(items: &mut [T], mut less: impl FnMut(&T, &T) -> bool) {
 mod tests {
     use super::*;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn lists_of_all_lengths_are_sorted() {
-        let mut state = 1_u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state >> 20
-        };
+        let mut random = trials::Random::new(1);
         for length in 0..200 {
             // Few different values, and many.
             for range in [3, 5000] {
-                let mut list: Vec<u32> = (0..length).map(|_| next() % range).collect();
+                let mut list: Vec<u32> = (0..length).map(|_| random.below(range) as u32).collect();
                 let mut want = list.clone();
                 want.sort_unstable();
                 heap_sort(&mut list, |a, b| a < b);

@@ -216,25 +216,20 @@ fn half_area(bounds: &Aabb) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trials::Random;
 
     #[test]
     fn queries_find_what_a_list_finds() {
-        let mut state = 5_u64;
-        let mut unit = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 33) as f64 / (1_u64 << 31) as f64
-        };
+        let mut random = Random::new(5);
         let mut a_box = || {
-            let corner = DVec3::new(unit(), unit(), unit());
-            Aabb::of_points([corner, corner + 0.2 * DVec3::new(unit(), unit(), unit())])
+            let corner = random.vector(0.5);
+            Aabb::of_points([corner, corner + 0.1 + random.vector(0.1)])
         };
-        for count in [0, 1, 2, 40] {
-            let mut list: Vec<Option<Aabb>> = (0..count).map(|_| Some(a_box())).collect();
+        for boxes in [0, 1, 2, 40] {
+            let mut list: Vec<Option<Aabb>> = (0..boxes).map(|_| Some(a_box())).collect();
             let start = (0..).zip(list.iter().flatten().copied()).collect();
             let mut boxes = Boxes::new(start);
-            for step in 0..300_usize {
+            for step in 0..300 {
                 let item = step * 7 % 60;
                 list.resize(list.len().max(item + 1), None);
                 list[item] = if step % 3 == 0 { None } else { Some(a_box()) };

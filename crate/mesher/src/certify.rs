@@ -360,27 +360,12 @@ mod tests {
     use crate::forest::Forest;
     use crate::surface::box_of;
     use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
+    use trials::{Random, count};
 
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn unit(&mut self) -> f64 {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(99);
-            (self.0 >> 33) as f64 / f64::from(1_u32 << 31)
-        }
-
-        fn vector(&mut self) -> DVec3 {
-            DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
-        }
-    }
-
-    fn sum(kernel: Kernel, n: &mut Numbers) -> Sum {
+    fn sum(kernel: Kernel, n: &mut Random) -> Sum {
         let shaping = Shaping {
             kernel,
-            radius: 0.2 + 0.3 * n.unit(),
+            radius: n.range(0.2, 0.5),
             blobbiness: -2.0,
             blob_scale: BlobScale::Relative,
             strength: 1.0,
@@ -389,7 +374,7 @@ mod tests {
         };
         let limb = |base: DVec3| Skeleton::Segment {
             base,
-            apex: base + n.vector(),
+            apex: base + n.vector(1.0),
         };
         let limbs = [DVec3::ZERO, DVec3::X].map(limb);
         let limbs = limbs.into_iter();
@@ -400,21 +385,21 @@ mod tests {
 
     #[test]
     fn what_is_proved_of_triangles_is_true_at_all_their_points() {
-        let mut n = Numbers(5);
+        let mut n = Random::new(5);
         let (mut proved, mut refuted) = (0, 0);
-        for trial in 0..240 {
+        for trial in 0..count(240) {
             let kernel = [Kernel::Gauss, Kernel::Cauchy, Kernel::Quartic][trial % 3];
             let sum = sum(kernel, &mut n);
             let domain = box_of(sum.support().unwrap());
             let size = (domain.max - domain.min).max_element();
             let space = Space::new(&sum, Forest::new(&domain, 0.01 * size, 0), 0.01);
             for _ in 0..40 {
-                let Some(start) = project(&space, 0.7 * n.vector(), 1.0, 1e-3) else {
+                let Some(start) = project(&space, n.vector(0.7), 1.0, 1e-3) else {
                     continue;
                 };
-                let reach = 0.02 + 0.3 * n.unit();
-                let corner = |n: &mut Numbers| {
-                    let near = start.position + n.vector() * reach;
+                let reach = n.range(0.02, 0.32);
+                let corner = |n: &mut Random| {
+                    let near = start.position + n.vector(1.0) * reach;
                     project(&space, near, 1.0, 1e-3).map(|vertex| vertex.position)
                 };
                 let corners = [corner(&mut n), corner(&mut n), corner(&mut n)];
@@ -427,13 +412,7 @@ mod tests {
                 };
                 let value = |p: DVec3| sum.jet(p).value - THRESHOLD;
                 let is_true = (0..300).all(|_| {
-                    let (u, v) = (n.unit(), n.unit());
-                    let [u, v] = if u + v > 1.0 {
-                        [1.0 - u, 1.0 - v]
-                    } else {
-                        [u, v]
-                    };
-                    let p = a + (b - a) * u + (c - a) * v;
+                    let p = n.in_triangle([a, b, c]);
                     WAYS.iter().any(|way| {
                         let way = normal * (way * tolerance);
                         value(p + way) < 0.0 && value(p - way) > 0.0
@@ -447,37 +426,32 @@ mod tests {
                 }
             }
         }
-        assert!(proved > 100 && refuted > 100, "{proved} {refuted}");
+        assert!(
+            proved > count(100) && refuted > count(100),
+            "{proved} {refuted}"
+        );
     }
 
     #[test]
     fn function_is_nowhere_lower_in_a_triangle_than_told() {
-        let mut n = Numbers(8);
+        let mut n = Random::new(8);
         let (mut told, mut sharp) = (0, 0);
-        for trial in 0..150 {
+        for trial in 0..count(150) {
             let kernel = [Kernel::Gauss, Kernel::Cauchy, Kernel::Quartic][trial % 3];
             let sum = sum(kernel, &mut n);
             let domain = box_of(sum.support().unwrap());
             let size = (domain.max - domain.min).max_element();
             let space = Space::new(&sum, Forest::new(&domain, 0.01 * size, 0), 0.01);
             for _ in 0..200 {
-                let start = 0.8 * n.vector();
-                let reach = 0.02 + 0.2 * n.unit();
-                let corners = [(); 3].map(|()| at(&space, start + n.vector() * reach));
+                let start = n.vector(0.8);
+                let reach = n.range(0.02, 0.22);
+                let corners = [(); 3].map(|()| at(&space, start + n.vector(1.0) * reach));
                 let sign = if corners[0].value > 0.0 { 1.0 } else { -1.0 };
                 let Some(height) = height(&space, &corners, sign) else {
                     continue;
                 };
                 let [a, b, c] = corners.map(|corner| corner.position);
-                let lowest = (0..100).map(|_| {
-                    let (u, v) = (n.unit(), n.unit());
-                    let [u, v] = if u + v > 1.0 {
-                        [1.0 - u, 1.0 - v]
-                    } else {
-                        [u, v]
-                    };
-                    sign * at(&space, a + (b - a) * u + (c - a) * v).value
-                });
+                let lowest = (0..100).map(|_| sign * at(&space, n.in_triangle([a, b, c])).value);
                 let lowest = lowest.fold(f64::INFINITY, f64::min);
                 assert!(
                     lowest >= height,
@@ -487,6 +461,6 @@ mod tests {
                 sharp += usize::from(height > 0.5 * lowest);
             }
         }
-        assert!(told > 1000 && sharp > 300, "{told} {sharp}");
+        assert!(told > count(1000) && sharp > count(300), "{told} {sharp}");
     }
 }

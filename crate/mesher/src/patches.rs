@@ -323,27 +323,16 @@ mod tests {
     use crate::surface::box_of;
     use core::ops::ControlFlow;
     use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
-
-    /// Random numbers from −1 to 1.
-    fn random(state: &mut u64) -> f64 {
-        *state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(99);
-        (*state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
-    }
-
-    fn vector(state: &mut u64) -> DVec3 {
-        DVec3::new(random(state), random(state), random(state))
-    }
+    use trials::{Random, count};
 
     #[test]
     fn polynomials_of_the_fifth_degree_are_found_again() {
-        let mut state = 3;
-        for _ in 0..20 {
+        let mut random = Random::new(3);
+        for _ in 0..count(20) {
             let patch = Patch {
                 center: DVec3::ZERO,
                 half: DVec3::ONE,
-                coefficients: core::array::from_fn(|_| random(&mut state)),
+                coefficients: core::array::from_fn(|_| random.range(-1.0, 1.0)),
             };
             let jets = nodes().into_iter().map(|place| patch.jet(place));
             let data = values_and_slopes(jets, patch.half);
@@ -356,12 +345,12 @@ mod tests {
 
     #[test]
     fn value_and_gradient_are_those_of_the_terms() {
-        let mut state = 4;
-        for _ in 0..50 {
+        let mut random = Random::new(4);
+        for _ in 0..count(50) {
             let patch = Patch {
                 center: DVec3::ZERO,
-                half: 1.5 + vector(&mut state),
-                coefficients: core::array::from_fn(|_| random(&mut state)),
+                half: 1.5 + random.vector(1.0),
+                coefficients: core::array::from_fn(|_| random.range(-1.0, 1.0)),
             };
             let at = |place: DVec3| {
                 let mut all = 0.0;
@@ -377,7 +366,7 @@ mod tests {
                 assert!(next.next().is_none());
                 all
             };
-            let place = vector(&mut state);
+            let place = random.vector(1.0);
             let jet = patch.jet(place);
             assert!((jet.value - at(place)).abs() < 1e-12);
             for (axis, slope) in DVec3::AXES.into_iter().zip(jet.gradient) {
@@ -391,13 +380,13 @@ mod tests {
 
     #[test]
     fn polynomials_are_near_the_function_where_the_surface_is() {
-        let mut state = 6;
+        let mut random = Random::new(6);
         let kernels = [Kernel::Gauss, Kernel::Cauchy, Kernel::Quartic];
         let (mut served, mut all) = (0, 0);
-        for trial in 0..12 {
+        for trial in 0..count(12) {
             let shaping = Shaping {
                 kernel: kernels[trial % 3],
-                radius: 0.3 + 0.1 * random(&mut state),
+                radius: random.range(0.2, 0.4),
                 blobbiness: -2.0,
                 blob_scale: BlobScale::Relative,
                 strength: 1.0,
@@ -405,8 +394,8 @@ mod tests {
                 taper: None,
             };
             let limbs = [(); 3].map(|()| Skeleton::Segment {
-                base: vector(&mut state),
-                apex: vector(&mut state),
+                base: random.vector(1.0),
+                apex: random.vector(1.0),
             });
             let limbs = limbs.into_iter();
             let sum: Sum = limbs
@@ -427,7 +416,7 @@ mod tests {
             for leaf in leaves.into_iter().step_by(7) {
                 let cell = space.forest.cells[leaf as usize];
                 let half = 0.5 * space.forest.size(cell.level);
-                let point = space.forest.center(&cell) + vector(&mut state) * half;
+                let point = space.forest.center(&cell) + random.vector(1.0) * half;
                 all += 1;
                 let before = space.evaluations();
                 let near = space.near_jet_at(point);
@@ -448,6 +437,9 @@ mod tests {
                 assert!(turned < 4.0 * LAST_SLOPE, "{turned} {cell:?}");
             }
         }
-        assert!(20 * served > 17 * all && all > 1000, "{served} of {all}");
+        assert!(
+            20 * served > 17 * all && all > count(1000),
+            "{served} of {all}"
+        );
     }
 }

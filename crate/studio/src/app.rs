@@ -172,12 +172,19 @@ pub struct App {
     titled: String,
     /// Scripts that wait for the picture to be finished.
     pub(crate) finished: Vec<Answer>,
+    /// Tests that wait until nothing changes its place any more.
+    pub(crate) still: Vec<Box<dyn FnOnce()>>,
+    /// Frames in which nothing has.
+    pub(crate) same: u32,
     pub(crate) touch: Option<bool>,
 }
 
 /// Seconds that tiles wait to be shown where the processor that traces them draws the page, too: each time it does
 /// keeps the workers waiting.
 const REST: f32 = 0.4;
+
+/// Frames after which what has its place keeps it: in the first ones a menu that opens grows.
+const STILL: u32 = 3;
 
 /// Has the window drawn again, once: what egui is asked for at once it draws twice.
 pub(crate) fn once(ctx: &Context) {
@@ -271,6 +278,8 @@ impl App {
             healthy: false,
             titled: String::new(),
             finished: Vec::new(),
+            still: Vec::new(),
+            same: 0,
             touch: None,
             work,
             parts,
@@ -371,6 +380,11 @@ impl App {
             self.notice = None;
         }
         self.report(ctx);
+        if self.same >= STILL {
+            answers.append(&mut self.still);
+        } else if !self.still.is_empty() {
+            once(ctx);
+        }
         for answer in answers {
             answer();
         }

@@ -230,7 +230,7 @@ impl Editor {
             let selected = CCursorRange::two(CCursor::new(start), CCursor::new(end));
             state.cursor.set_char_range(Some(selected));
             state.clone().store(ui.ctx(), id());
-            ui.memory_mut(|memory| memory.request_focus(id()));
+            place::focus(ui.ctx());
             let place = galley.pos_from_cursor(CCursor::new(start));
             ui.scroll_to_rect(place.translate(origin.to_vec2()), Some(Align::Center));
         } else if let Some(byte) = self.place.take() {

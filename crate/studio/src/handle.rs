@@ -41,6 +41,7 @@
 //! (whether there was such a worker),
 //! `rects()` (`{name: {x, y, w, h}}` of widgets in CSS pixels: `editor`, `picture`, `share`,
 //! `examples`, `undo`, `draw`, `tool draw`, `node NAME`, `sliders`, `slider NAME`, `problems`, `status`, `notice`, `dialog`, …),
+//! `still()` (promise, resolved when none of them moves any more),
 //! `pictureSize(w, h)`, which fixes the size of the traced picture (without arguments: back to what
 //! the user chose), and `panic()`, which stops the program as a mistake in it would.
 
@@ -224,6 +225,14 @@ fn debug(debug: &Object, parts: &Parts) -> Result<(), JsValue> {
             .map(|(width, height)| [width as u32, height as u32]);
         p.requests.ask(Request::PictureSize(size));
         Ok(JsValue::UNDEFINED)
+    })?;
+    let p = parts.clone();
+    method(debug, "still", move |_, _| {
+        Ok(promise(|yes, _| {
+            p.requests.ask(Request::Still(Box::new(move || {
+                call(&yes, &JsValue::UNDEFINED);
+            })));
+        }))
     })?;
     let p = parts.clone();
     method(debug, "rects", move |_, _| {

@@ -1,18 +1,27 @@
-//! Keeps keys in order when many come in one frame.
+//! Keeps what a user does in order when much of it comes in one frame.
 //!
-//! Some keys (Enter, Tab, undo …) are handled by us before egui's text field sees the rest. When a
-//! slow frame brings "a", Enter, "b" at once, Enter must come after "a" and before "b". So a frame
-//! gets at most one such key, and only at its beginning; what follows waits for the next frame. So do keys
-//! that come after a click: the widget that was clicked has them only from the next frame on, and until
-//! then arrow keys and Tab would go from widget to widget.
+//! A slow frame may bring a click, arrow keys, F2, "a" and Enter at once, and each of them is meant for
+//! what the one before has led to. Widgets see a frame's events all together, though, and some keys
+//! (Enter, Tab, undo …) are handled by us before egui's text field sees the rest. So
+//! - such a key comes first in its frame, and keys after it wait for the next frame;
+//! - so do keys after a click or a key that may move the focus, and they wait a frame more, in which a
+//!   field that has opened takes the focus;
+//! - keys wait while the focus is new: a widget says only then which arrow keys it keeps. Those that come
+//!   before go from widget to widget, and take the focus along.
+//!
+//! Whatever comes after a key that waits waits with it.
 
-use egui::{Context, Event, Key, Modifiers, RawInput};
+use egui::{Context, Event, Id, Key, Modifiers, RawInput};
 
 /// Events that wait for the next frame. A plugin, as egui moves the focus by arrow keys and Tab before
 /// any widget is shown.
 #[derive(Default)]
 pub struct Keyboard {
     waiting: Vec<Event>,
+    /// The widget that had the focus when the last frame began.
+    focused: Option<Id>,
+    /// Whether the last frame had an event that may move the focus.
+    moved: bool,
 }
 
 impl egui::Plugin for Keyboard {
@@ -23,36 +32,61 @@ impl egui::Plugin for Keyboard {
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
         let mut events = std::mem::take(&mut self.waiting);
         events.append(&mut input.events);
-        (input.events, self.waiting) = split(events);
+        let focused = ctx.memory(|memory| memory.focused());
+        let is_new = focused.is_some() && focused != self.focused;
+        self.focused = focused;
+        let focus = match focused {
+            _ if is_new || self.moved => Focus::Moves,
+            Some(_) => Focus::Stays,
+            None => Focus::Nowhere,
+        };
+        self.waiting = events.split_off(count(&events, focus));
+        self.moved = events.iter().any(moves_focus);
+        input.events = events;
         if !self.waiting.is_empty() {
             ctx.request_repaint();
         }
     }
 }
 
-/// Splits the events into those for this frame and those that must wait.
-fn split(events: Vec<Event>) -> (Vec<Event>, Vec<Event>) {
-    let (mut now, mut later) = (Vec::new(), Vec::new());
-    let (mut written, mut clicked) = (false, false);
-    for event in events {
-        let writes = writes(&event);
-        let click = is_click(&event);
-        // A key must not go up before it goes down.
-        let in_order = writes || click || matches!(event, Event::Key { .. });
-        if in_order && !later.is_empty() || writes && (clicked || written && is_ours(&event)) {
-            later.push(event);
-        } else {
-            written |= writes;
-            clicked |= click;
-            now.push(event);
-        }
-    }
-    (now, later)
+/// Where keys go.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Focus {
+    /// To a widget that may not have it for long enough.
+    Moves,
+    /// To a widget.
+    Stays,
+    /// To none: each key is a command.
+    Nowhere,
 }
 
-/// Whether a button of the pointer goes down or up.
-fn is_click(event: &Event) -> bool {
-    matches!(event, Event::PointerButton { .. })
+/// Returns how many of the events this frame gets.
+fn count(events: &[Event], focus: Focus) -> usize {
+    let mut closed = focus == Focus::Moves;
+    let mut written = false;
+    for (i, event) in events.iter().enumerate() {
+        if writes(event) && (closed || written && is_ours(event)) {
+            return i;
+        }
+        written |= writes(event);
+        let commands = focus == Focus::Nowhere && matches!(event, Event::Key { pressed: true, .. });
+        closed |= is_ours(event) || moves_focus(event) || commands;
+    }
+    events.len()
+}
+
+/// Whether a widget may take the focus because of an event, now or in the next frame.
+fn moves_focus(event: &Event) -> bool {
+    match event {
+        Event::PointerButton { .. } => true,
+        Event::Key {
+            key, pressed: true, ..
+        } => matches!(
+            key,
+            Key::Enter | Key::Tab | Key::Escape | Key::F1 | Key::F2 | Key::F12
+        ),
+        _ => false,
+    }
 }
 
 /// Whether an event can change a text or move its cursor.
@@ -107,59 +141,62 @@ mod tests {
         Event::Text(text.to_owned())
     }
 
-    fn key(key: Key) -> Event {
+    fn press(key: Key, modifiers: Modifiers) -> Event {
         Event::Key {
             key,
             physical_key: None,
             pressed: true,
             repeat: false,
+            modifiers,
+        }
+    }
+
+    fn key(key: Key) -> Event {
+        press(key, Modifiers::NONE)
+    }
+
+    fn click(pressed: bool) -> Event {
+        Event::PointerButton {
+            pos: egui::Pos2::ZERO,
+            button: egui::PointerButton::Primary,
+            pressed,
             modifiers: Modifiers::NONE,
         }
     }
 
     #[test]
     fn our_keys_come_first_in_a_frame_and_one_at_a_time() {
-        let pointer = Event::PointerGone;
-        let events = vec![
+        let undo = || press(Key::Z, Modifiers::COMMAND);
+        let events = [
             text("a"),
             key(Key::A),
-            key(Key::Enter),
-            pointer.clone(),
+            undo(),
+            Event::PointerGone,
             text("b"),
-            key(Key::Enter),
+            undo(),
         ];
-        let (now, later) = split(events);
-        assert_eq!(now, [text("a"), key(Key::A), pointer]);
-        let (now, later) = split(later);
-        assert_eq!(now, [key(Key::Enter), text("b")]);
-        assert_eq!(split(later), (vec![key(Key::Enter)], vec![]));
+        assert_eq!(count(&events, Focus::Stays), 2);
+        assert_eq!(count(&events[2..], Focus::Stays), 2);
+        assert_eq!(count(&events[4..], Focus::Stays), 1);
+        assert_eq!(count(&events[5..], Focus::Stays), 1);
     }
 
     #[test]
     fn keys_after_a_click_wait_for_the_widget_that_was_clicked() {
-        let click = |pressed| Event::PointerButton {
-            pos: egui::Pos2::ZERO,
-            button: egui::PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        };
-        let events = vec![
+        let events = [
             text("a"),
             click(true),
             click(false),
             key(Key::ArrowUp),
             text("b"),
         ];
-        let (now, later) = split(events);
-        assert_eq!(now, [text("a"), click(true), click(false)]);
-        let again = [later, vec![click(true), text("c")]].concat();
-        let (now, later) = split(again);
-        assert_eq!(now, [key(Key::ArrowUp), text("b"), click(true)]);
-        assert_eq!(later, [text("c")]);
+        assert_eq!(count(&events, Focus::Stays), 3);
+        assert_eq!(count(&events[3..], Focus::Moves), 0);
+        assert_eq!(count(&events[3..], Focus::Stays), 2);
     }
 
     #[test]
-    fn a_key_goes_up_after_it_went_down() {
+    fn what_comes_after_a_key_that_waits_waits_too() {
         let up = Event::Key {
             key: Key::Enter,
             physical_key: None,
@@ -167,8 +204,15 @@ mod tests {
             repeat: false,
             modifiers: Modifiers::NONE,
         };
-        let (now, later) = split(vec![text("a"), key(Key::Enter), up.clone()]);
-        assert_eq!(now, [text("a")]);
-        assert_eq!(later, [key(Key::Enter), up]);
+        let events = [text("a"), key(Key::Enter), up, click(true)];
+        assert_eq!(count(&events, Focus::Stays), 1);
+        assert_eq!(count(&events[1..], Focus::Stays), 3);
+    }
+
+    #[test]
+    fn without_a_focus_each_key_is_a_command() {
+        let events = [text("g"), key(Key::G), text("x"), key(Key::X)];
+        assert_eq!(count(&events, Focus::Stays), 4);
+        assert_eq!(count(&events, Focus::Nowhere), 2);
     }
 }

@@ -52,6 +52,10 @@ impl App {
                 self.mesh_export
                     .make_for(&self.work.session, self.film(), &name, order, taker);
             }
+            Request::Still(answer) => {
+                self.same = 0;
+                self.still.push(answer);
+            }
             Request::Cancel => self.renderer.cancel(),
             Request::Again => self.renderer.again(now),
             Request::PictureSize(size) => {
@@ -149,7 +153,13 @@ impl App {
         }
         outbox.chosen = session.chosen_camera();
         outbox.camera = session.camera();
-        outbox.places = places::all(ctx);
+        let places = places::all(ctx);
+        self.same = if places == outbox.places {
+            self.same + 1
+        } else {
+            0
+        };
+        outbox.places = places;
         outbox.lab = self.lab.report();
         outbox.sculpture = self.sculpting.as_ref().map(|place| report::Sculpture {
             name: place.name.clone(),

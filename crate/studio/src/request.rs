@@ -42,6 +42,8 @@ pub enum Request {
     /// Answer when the picture of the present text and camera is finished, or was stopped. It is refused, with
     /// the reason, while the lab keeps the picture waiting.
     Finished(Answer),
+    /// Answer when nothing in the window changes its place any more. For tests.
+    Still(Box<dyn FnOnce()>),
     /// Stop tracing.
     Cancel,
     /// Trace again.

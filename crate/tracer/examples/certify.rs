@@ -5,17 +5,14 @@
 //! Scenes have the seeds from FIRST (or 0) on. With a kernel, a kind and a seed only that scene is looked at. Faults go to standard error. With
 //! `--exact` before them the crossings that picking uses are judged instead of those of pictures. `--endless` takes kernels that never end
 //! alone, and `--clouds` of them scenes of very many points, which have a hierarchy of far fields.
-#[path = "../tests/it/common/mod.rs"]
-mod common;
-#[path = "../tests/it/random.rs"]
-mod trials;
 
 use field::Kernel;
 use glam::DVec3;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tracer::{Hit, Picture};
-use trials::{KINDS, Kind, Row, Trial, check};
+use trials::rays::{Row, Trial, check};
+use trials::scenes::{KINDS, Kind};
 
 /// Packets of eight rays in each scene; fewer where there are hundreds of primitives.
 fn packets(kind: Kind) -> usize {
@@ -56,7 +53,8 @@ fn main() {
         let kind = *KINDS.iter().find(named).expect("a kind");
         let mut told = String::new();
         let seed = number(4, 0) as u64;
-        let row = check(kernel, kind, seed, packets(kind), &cast, &mut told);
+        let trial = Trial::new(kernel, kind, seed, packets(kind));
+        let row = check(trial, &cast, &mut told);
         println!("{told}{row:?}");
         return;
     }
@@ -86,7 +84,8 @@ fn main() {
                     let seed = first + scene;
                     let (kernel, kind) = cells[cell];
                     let mut told = String::new();
-                    let row = check(kernel, kind, seed as u64, packets(kind), &cast, &mut told);
+                    let trial = Trial::new(kernel, kind, seed as u64, packets(kind));
+                    let row = check(trial, &cast, &mut told);
                     eprint!("{told}");
                     if let Ok(mut rows) = rows.lock() {
                         rows[cell].add(&row);

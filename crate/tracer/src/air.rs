@@ -210,8 +210,7 @@ mod tests {
         Air::new(scene, -1.0, DVec3::ZERO, 1.0)
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn a_cloud_is_the_integral_of_its_density() {
         let cloud = Cloud {
             colour: [1.0; 3],
@@ -240,8 +239,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn gradients_and_images_are_around_the_scene() {
         let mut scene = Scene {
             background: Background::Gradient(vec![[1.0, 0.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0]]),
@@ -267,8 +265,7 @@ mod tests {
         assert_eq!([see(-1.0), see(1.0)], [Vec3::X, Vec3::Y]);
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn the_ground_is_met_from_above_only() {
         let scene = Scene {
             ground: Some(Ground {

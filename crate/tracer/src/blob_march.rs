@@ -657,20 +657,12 @@ mod tests {
     use super::*;
     use field::{Kernel, Primitive, Shaping, Skeleton};
     use glam::DVec3;
-
-    /// Random numbers between 0 and 1.
-    fn random(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31)
-        }
-    }
+    use trials::{Random, count};
 
     /// Points and segments around the origin.
-    fn blobs(next: &mut impl FnMut() -> f64, count: usize) -> Vec<Primitive> {
-        let mut place = || DVec3::new(next(), next(), next()) * 1.6 - 0.8;
-        let places: Vec<_> = (0..count).map(|_| (place(), place())).collect();
+    fn blobs(random: &mut Random, many: usize) -> Vec<Primitive> {
+        let mut place = || random.vector(0.8);
+        let places: Vec<_> = (0..many).map(|_| (place(), place())).collect();
         let kernels = [
             Kernel::Gauss,
             Kernel::Gauss,
@@ -689,8 +681,8 @@ mod tests {
                 };
                 let shaping = Shaping {
                     kernel,
-                    radius: 0.03 + 0.3 * next() * next(),
-                    blobbiness: -1.0 - 4.0 * next(),
+                    radius: 0.03 + 0.3 * random.unit() * random.unit(),
+                    blobbiness: random.range(-5.0, -1.0),
                     blob_scale: field::BlobScale::Relative,
                     strength: 1.0,
                     influence: 1e-3,
@@ -698,6 +690,7 @@ mod tests {
                 };
                 Primitive::new(skeleton, &shaping, None)
             })
+            .filter(|p| p.blob::<f32>().is_some())
             .collect()
     }
 
@@ -766,18 +759,17 @@ mod tests {
         (None, nearest)
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn the_first_crossing_is_found_and_no_other() {
         // Kept, as it is between packets.
         let mut tops = Vec::new();
-        let mut next = random(11);
+        let mut random = Random::new(11);
         let (mut hits, mut misses) = (0, 0);
-        for case in 0..40 {
-            let primitives = blobs(&mut next, 1 + case % 9);
+        for case in 0..count(40) {
+            let primitives = blobs(&mut random, 1 + case % 9);
             let rays: [(DVec3, DVec3); 8] = core::array::from_fn(|_| {
-                let origin = DVec3::new(next() - 0.5, next() - 0.5, -4.0) * 0.5;
-                let aim = DVec3::new(next() - 0.5, next() - 0.5, 0.0);
+                let origin = random.vector(0.5).with_z(-4.0) * 0.5;
+                let aim = random.vector(0.5).with_z(0.0);
                 (origin, (aim - origin).normalize())
             });
             let ray_blobs = ray_blobs(&primitives, &rays);
@@ -810,20 +802,19 @@ mod tests {
                 }
             }
         }
-        assert!(hits > 60 && misses > 60, "{hits} {misses}");
+        assert!(hits > count(40) && misses > count(40), "{hits} {misses}");
     }
 
     /// Where the field comes nearer to T than it is known a ray that passes is in doubt, and nowhere else.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn rays_that_noise_may_have_kept_outside_are_in_doubt() {
         // Kept, as it is between packets.
         let mut tops = Vec::new();
         const NOISE: f64 = 0.05;
-        let mut next = random(23);
+        let mut random = Random::new(23);
         let (mut doubted, mut sure) = (0, 0);
-        for case in 0..160 {
-            let primitives = blobs(&mut next, 1 + case % 5);
+        for case in 0..count(160) {
+            let primitives = blobs(&mut random, 1 + case % 5);
             // Past the first blob, close to its surface.
             let target = primitives[0].blob_middle();
             let alone = |x: f64| primitives[0].value((target + DVec3::X * x).to_array());
@@ -832,9 +823,9 @@ mod tests {
                 .find(|x| alone(*x) < 1.0);
             let radius = radius.unwrap_or(0.0);
             let rays: [(DVec3, DVec3); 8] = core::array::from_fn(|_| {
-                let origin = DVec3::new(next() - 0.5, next() - 0.5, -4.0) * 0.5;
-                let aside = DVec3::new(next() - 0.5, next() - 0.5, 0.0).normalize_or_zero();
-                let aim = target + aside * (radius * (0.95 + 0.2 * next()));
+                let origin = random.vector(0.5).with_z(-4.0) * 0.5;
+                let aside = random.vector(0.5).with_z(0.0).normalize_or_zero();
+                let aim = target + aside * (radius * (0.95 + 0.2 * random.unit()));
                 (origin, (aim - origin).normalize())
             });
             let ray_blobs = ray_blobs(&primitives, &rays);
@@ -875,26 +866,25 @@ mod tests {
                 );
             }
         }
-        assert!(doubted > 30 && sure > 100, "{doubted} {sure}");
+        assert!(doubted > count(30) && sure > count(100), "{doubted} {sure}");
     }
 
     /// The march compiled for Gaussian points gives the same bits.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn gaussian_points_alone_are_as_among_others() {
         // Kept, as it is between packets.
         let mut tops = Vec::new();
-        let mut next = random(31);
+        let mut random = Random::new(31);
         let mut hits = 0;
-        for case in 0..60 {
-            let mut primitives = blobs(&mut next, 4 + case % 20);
+        for case in 0..count(60) {
+            let mut primitives = blobs(&mut random, 4 + case % 20);
             let gaussian = |p: &Primitive| {
                 matches!(p.skeleton, Skeleton::Point { .. }) && p.kernel == Kernel::Gauss
             };
             primitives.retain(gaussian);
             let rays: [(DVec3, DVec3); 8] = core::array::from_fn(|_| {
-                let origin = DVec3::new(next() - 0.5, next() - 0.5, -4.0) * 0.5;
-                let aim = DVec3::new(next() - 0.5, next() - 0.5, 0.0);
+                let origin = random.vector(0.5).with_z(-4.0) * 0.5;
+                let aim = random.vector(0.5).with_z(0.0);
                 (origin, (aim - origin).normalize())
             });
             let ray_blobs = ray_blobs(&primitives, &rays);
@@ -907,21 +897,20 @@ mod tests {
                     plain,
                 };
                 let marched = march(blobs, &way(1e-3), &mut tops)?;
-                hits += marched.met.count_ones();
+                hits += marched.met.count_ones() as usize;
                 let places = [marched.t, marched.between[0], marched.between[1]];
                 let bits = places.map(|t| t.to_array().map(f32::to_bits));
                 Some((bits, marched.met, marched.doubtful, marched.evaluations))
             });
             assert_eq!(alone, among, "case {case}");
         }
-        assert!(hits > 50, "{hits}");
+        assert!(hits > count(50), "{hits}");
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn a_ray_that_starts_inside_is_left_to_others() {
-        let mut next = random(5);
-        let primitive = &blobs(&mut next, 1)[0];
+        let mut random = Random::new(5);
+        let primitive = &blobs(&mut random, 1)[0];
         let blob = primitive.blob::<f32>().expect("a blob");
         let zero = f32x8::splat(0.0);
         let on_ray = blob.on_ray([zero; 3], [zero, zero, f32x8::splat(1.0)]);

@@ -224,22 +224,18 @@ impl Facts {
 mod tests {
     use super::*;
     use field::{Kernel, Primitive, Shaping, Skeleton};
+    use trials::Random;
 
     /// Tables bound their groups' sums, tightly for distant groups.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn a_view_bounds_what_a_group_adds_up_to() {
-        let mut state = 5u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31)
-        };
+        let mut random = Random::new(5);
         let primitives: Vec<Primitive> = (0..60)
             .map(|i| {
-                let center = DVec3::new(next(), next(), next());
+                let center = random.vector(0.5) + 0.5;
                 let shaping = Shaping {
                     kernel: [Kernel::Cauchy, Kernel::Gauss, Kernel::Inverse, Kernel::Soft][i % 4],
-                    radius: 0.02 + 0.1 * next(),
+                    radius: random.range(0.02, 0.12),
                     blobbiness: -1.0,
                     blob_scale: field::BlobScale::Relative,
                     strength: 1.0,
@@ -266,14 +262,14 @@ mod tests {
             for i in 0..60 {
                 // The last twenty are at a distance of up to 10⁶.
                 let far = match i {
-                    0..40 => 4.0 * next() * next(),
-                    _ => libm::exp10(6.0 * next()),
+                    0..40 => 4.0 * random.unit() * random.unit(),
+                    _ => random.decades(0.0, 6.0),
                 };
-                let center = DVec3::new(next(), next(), next()) * (1.0 + far);
-                let radius = 0.1 * next();
+                let center = (random.vector(0.5) + 0.5) * (1.0 + far);
+                let radius = 0.1 * random.unit();
                 let view = clusters.view(group, center, radius);
                 assert_eq!(view.count, clusters.all(group).len());
-                let offset = DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5).normalize();
+                let offset = random.direction();
                 let at = (center + offset * radius).to_array();
                 let all = clusters.all(group).iter();
                 let sum: f64 = all.map(|&i| primitives[i as usize].value(at)).sum();

@@ -211,31 +211,26 @@ fn build(items: &mut [(u32, DVec3, f64)], first: u32, leaf: usize, nodes: &mut V
 mod tests {
     use super::*;
     use crate::ray::Ray;
-    use crate::tests::common::Numbers;
+    use trials::Random;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn a_search_finds_what_a_full_scan_finds() {
-        let mut state = 3u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
-        };
+        let mut random = Random::new(3);
         let items: Vec<_> = (0..500)
             .map(|i| {
-                let c = DVec3::new(next(), next(), next());
-                (i, c, 0.1 * next().abs())
+                let c = random.vector(1.0);
+                (i, c, 0.1 * random.unit())
             })
             .collect();
         let tree = Hierarchy::new(items.clone());
-        for case in 0..200 {
+        for case in 0..trials::count(200) {
             let beam = Beam {
                 axis: Ray {
-                    origin: DVec3::new(next(), next(), next()) * 3.0,
-                    direction: DVec3::new(next(), next(), next()).normalize(),
+                    origin: random.vector(1.0) * 3.0,
+                    direction: random.direction(),
                 },
                 radius: if case % 2 == 0 { 0.0 } else { 0.05 },
-                spread: 0.05 * next().abs(),
+                spread: 0.05 * random.unit(),
                 ahead: 0.0,
             };
             let mut found = Vec::new();
@@ -262,11 +257,10 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn balls_of_nodes_hold_all_below_also_with_other_radii() {
-        let mut numbers = Numbers(5);
-        let mut ball = |i| (i, numbers.vector(), 0.1 * numbers.unit());
+        let mut numbers = Random::new(5);
+        let mut ball = |i| (i, numbers.vector(1.0), 0.1 * numbers.unit());
         let items: Vec<_> = (0..300).map(&mut ball).collect();
         let larger = |i: u32, r: f64| r * f64::from(1 + i % 5);
         let tree = Hierarchy::new(items.clone());
@@ -294,24 +288,19 @@ mod tests {
         assert_eq!(tree.items(0), other.items(0));
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn items_around_a_ball_are_those_that_meet_it() {
-        let mut state = 8u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
-        };
+        let mut random = Random::new(8);
         let items: Vec<_> = (0..400)
             .map(|i| {
-                let c = DVec3::new(next(), next(), next());
-                (i, c, 0.2 * next().abs())
+                let c = random.vector(1.0);
+                (i, c, 0.2 * random.unit())
             })
             .collect();
         let tree = Hierarchy::new(items.clone());
         let mut all = 0;
-        for _ in 0..200 {
-            let (middle, reach) = (DVec3::new(next(), next(), next()), 0.3 * next().abs());
+        for _ in 0..trials::count(200) {
+            let (middle, reach) = (random.vector(1.0), 0.3 * random.unit());
             let mut found = Vec::new();
             tree.around(middle, reach, |i, center, radius| {
                 assert_eq!((i, center, radius), items[i as usize]);
@@ -323,11 +312,10 @@ mod tests {
             assert_eq!(found, scanned);
             all += found.len();
         }
-        assert!(all > 500, "{all}");
+        assert!(all > trials::count(500), "{all}");
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn an_empty_tree_and_a_tree_of_equal_balls_work() {
         let beam = Beam::of_ray(Ray {
             origin: DVec3::ZERO,

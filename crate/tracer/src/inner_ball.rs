@@ -73,15 +73,15 @@ impl InnerBall {
 mod tests {
     use super::*;
     use crate::ray::Ray;
-    use crate::tests::common::Numbers;
     use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton};
+    use trials::{Random, count};
 
     /// Points and segments in a cube, of which some carve.
-    fn body(kernel: Kernel, carving: f64, numbers: &mut Numbers) -> Vec<Primitive> {
+    fn body(kernel: Kernel, carving: f64, numbers: &mut Random) -> Vec<Primitive> {
         let primitive = |i: u32| {
-            let base = numbers.vector();
+            let base = numbers.vector(1.0);
             let skeleton = if i.is_multiple_of(3) {
-                let apex = base + numbers.vector() * 0.2;
+                let apex = base + numbers.vector(0.2);
                 Skeleton::Segment { base, apex }
             } else {
                 Skeleton::Point { center: base }
@@ -101,17 +101,16 @@ mod tests {
     }
 
     /// The field is above T everywhere in the ball, whose radius is near that of the surface.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn the_field_is_above_the_threshold_in_the_ball() {
-        let mut numbers = Numbers(7);
+        let mut numbers = Random::new(7);
         let primitives = body(Kernel::Inverse, 1.0, &mut numbers);
         let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
         let ball = InnerBall::new(&bounds, (DVec3::ZERO, 2.0)).expect("a ball");
         let value = |place: DVec3| field::sum(&primitives, place.to_array()).value;
         for i in 0..300 {
             let radius = ball.radius * f64::from(i + 1) / 300.0;
-            let place = numbers.vector().normalize() * radius;
+            let place = numbers.direction() * radius;
             assert!(value(place) > THRESHOLD, "{place}");
         }
         let outside = DVec3::X * (ball.radius + 4.0);
@@ -125,22 +124,21 @@ mod tests {
     }
 
     /// All rays of a beam are in the ball until the beam leaves it, which is not much later.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn a_beam_is_in_the_ball_until_it_leaves_it() {
-        let mut numbers = Numbers(8);
+        let mut numbers = Random::new(8);
         let (mut within, mut outside) = (0, 0);
-        for _ in 0..400 {
+        for _ in 0..count(400) {
             let ball = InnerBall {
-                center: numbers.vector(),
-                radius: numbers.between(1.0, 3.0),
+                center: numbers.vector(1.0),
+                radius: numbers.range(1.0, 3.0),
             };
-            let origin = numbers.vector() * 3.0;
-            let (direction, narrow) = (numbers.vector().normalize(), numbers.between(0.0, 0.1));
+            let origin = numbers.vector(3.0);
+            let (direction, narrow) = (numbers.direction(), numbers.range(0.0, 0.1));
             let rays: Vec<Ray> = (0..8)
                 .map(|_| Ray {
-                    origin: origin + numbers.vector() * narrow,
-                    direction: (direction + numbers.vector() * narrow).normalize(),
+                    origin: origin + numbers.vector(1.0) * narrow,
+                    direction: (direction + numbers.vector(1.0) * narrow).normalize(),
                 })
                 .collect();
             let beam = Beam::around(&rays).expect("a beam");
@@ -162,6 +160,9 @@ mod tests {
                 "{after} {wide}"
             );
         }
-        assert!(within > 60 && outside > 60, "{within} {outside}");
+        assert!(
+            within > count(20) && outside > count(60),
+            "{within} {outside}"
+        );
     }
 }

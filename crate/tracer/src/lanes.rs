@@ -55,8 +55,7 @@ pub fn least(x: f32x8) -> f32 {
 mod tests {
     use super::*;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn the_least_is_found_in_every_lane() {
         for lane in 0..8 {
             let mut numbers = [3.0, 4.0, 5.0, f32::INFINITY, 7.0, 8.0, 9.0, 3.5];

@@ -125,8 +125,7 @@ mod tests {
     use super::*;
     use scene::{Camera, Scene};
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn the_rays_are_those_of_the_picture_and_within_their_beam() {
         for (distance, fov, shift) in [
             (10.0, 45.0, [0.0; 2]),
@@ -184,8 +183,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn a_square_seen_at_a_wide_angle_has_none() {
         let mut scene = Scene::default();
         scene.camera.fov = 120.0;

@@ -89,8 +89,7 @@ impl Media {
 mod tests {
     use super::*;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn bodies_nest_by_the_order_of_crossings() {
         let air = Media::default();
         let glass = air.cross(1, Way::In, 1.5, 0.0);

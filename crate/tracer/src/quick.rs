@@ -588,13 +588,12 @@ impl Soft {
 mod tests {
     use super::*;
     use crate::hierarchy::Hierarchy;
-    use crate::tests::common::{clothe, element, empty, soft};
     use field::Kernel;
     use scene::{Element, Shape};
+    use trials::scenes::{clothe, element, empty, soft};
 
     /// Tiny balls on the rays themselves, also in packets as wide as those of `Picture::cast`.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn the_beam_of_a_packet_holds_its_outer_rays() {
         for wide in [1e-4, 2e-3, 0.05, 0.14] {
             let rays: [Ray; PACKET] = core::array::from_fn(|i| Ray {
@@ -648,8 +647,7 @@ mod tests {
         (aside.map(ray), aside.map(enters))
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn an_entry_is_found_on_a_stretch() {
         let soft = ball();
         let (rays, enters) = past_the_ball();
@@ -666,8 +664,7 @@ mod tests {
         assert_eq!(soft.entry(0, rays[0], [2.0, 3.0]).0, Some(2.0));
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn doubts_are_isolated_where_they_are() {
         let soft = ball();
         let (rays, enters) = past_the_ball();

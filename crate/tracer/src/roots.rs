@@ -148,17 +148,7 @@ pub fn bracketed_from(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A small deterministic generator, enough for test inputs.
-    fn numbers(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        }
-    }
+    use trials::{Random, count};
 
     fn multiply(c: &[f64], root: f64) -> Vec<f64> {
         let mut out = vec![0.0; c.len() + 1];
@@ -169,20 +159,19 @@ mod tests {
         out
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn roots_of_built_polynomials_come_back() {
-        let mut next = numbers(7);
-        for case in 0..20_000 {
+        let mut random = Random::new(7);
+        for case in 0..count(20_000) {
             let degree = 1 + case % MAX_DEGREE;
-            let mut wanted: Vec<f64> = (0..degree).map(|_| 3.0 * next() - 1.0).collect();
+            let mut wanted: Vec<f64> = (0..degree).map(|_| 3.0 * random.unit() - 1.0).collect();
             wanted.sort_unstable_by(f64::total_cmp);
             if wanted.windows(2).any(|w| w[1] - w[0] < 1e-3) {
                 continue;
             }
             let c = wanted
                 .iter()
-                .fold(vec![4.0 * next() - 2.0], |c, &r| multiply(&c, r));
+                .fold(vec![4.0 * random.unit() - 2.0], |c, &r| multiply(&c, r));
             let found = roots(&c, 0.0, 1.0);
             let wanted: Vec<f64> = wanted
                 .into_iter()
@@ -195,8 +184,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn polynomials_without_a_crossing_have_no_roots() {
         assert!(roots(&[1.0, 0.0, 1.0], -5.0, 5.0).as_slice().is_empty());
         assert!(roots(&[0.0, 0.0, 0.0], 0.5, 0.25).as_slice().is_empty());

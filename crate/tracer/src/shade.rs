@@ -129,8 +129,7 @@ pub fn clamped(colour: Vec3) -> Vec3 {
 mod tests {
     use super::*;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn colours_are_cut_to_what_a_screen_shows() {
         let (far, none) = (f32::INFINITY, f32::NAN);
         for (colour, want) in [
@@ -142,8 +141,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn bytes_are_corrected_by_gamma() {
         let colour = Vec3::new(0.25, 0.6, f32::NAN);
         // 0.25 · 255 = 63.75, and its root is half.

@@ -353,26 +353,19 @@ mod tests {
     use crate::spans::{Node, Span};
     use field::bound::SpanLength;
     use field::{Bound, Kernel, Real, Shaping, Skeleton};
+    use trials::{Random, count};
 
-    fn random(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31)
-        }
-    }
-
-    fn primitive(kernel: Kernel, next: &mut impl FnMut() -> f64) -> Primitive {
-        let mut place = || DVec3::new(next(), next(), next()) * 2.0 - 1.0;
+    fn primitive(kernel: Kernel, random: &mut Random) -> Primitive {
+        let mut place = || random.vector(1.0);
         let (a, b) = (place(), place());
-        let skeleton = if next() < 0.5 {
+        let skeleton = if random.unit() < 0.5 {
             Skeleton::Point { center: a }
         } else {
             Skeleton::Segment { base: a, apex: b }
         };
         let shaping = Shaping {
             kernel,
-            radius: 0.1 + 0.4 * next(),
+            radius: random.range(0.1, 0.5),
             blobbiness: -1.0,
             blob_scale: field::BlobScale::Relative,
             strength: 1.0,
@@ -383,22 +376,21 @@ mod tests {
     }
 
     /// The interpolant is smooth and has the values and gradients at the corners, for any cubics along the edges.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn gradients_are_derivatives() {
-        let mut next = random(8);
+        let mut random = Random::new(8);
         let axis = Ray {
             origin: DVec3::ZERO,
             direction: DVec3::Z,
         };
         let beam = Beam::around(&[axis]).expect("a beam");
-        for _ in 0..100 {
+        for _ in 0..count(100) {
             let cell = Cell::around(&beam, 0.0, 1.0);
-            let mut eight = || f32x8::new(core::array::from_fn(|_| (next() - 0.5) as f32));
+            let mut eight = || f32x8::new(core::array::from_fn(|_| (random.unit() - 0.5) as f32));
             let sum = Corners([eight(), eight(), eight(), eight()]);
             let shared = Shared::new(&cell, &sum);
             let value = |p: DVec3| shared.jet(p.to_array()).0;
-            let place = DVec3::new(next(), next(), next());
+            let place = random.vector(0.5) + 0.5;
             let (here, gradient) = shared.jet(place.to_array());
             assert!(here <= shared.top(), "{here} {shared:?}");
             for (axis, slope) in DVec3::AXES.into_iter().zip(gradient) {
@@ -419,33 +411,28 @@ mod tests {
     }
 
     /// Along rays of a beam, the error of the cubic between the interpolant's ends is within its bound.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn no_ray_is_further_off_than_the_bound() {
-        let mut next = random(3);
+        let mut random = Random::new(3);
         let mut tightest = 0.0f64;
-        for case in 0..400 {
+        for case in 0..count(400) {
             let kernel = [Kernel::Cauchy, Kernel::Gauss, Kernel::Squared][case % 3];
-            let primitive = primitive(kernel, &mut next);
-            let mut unit = || {
-                (DVec3::new(next(), next(), next()) - 0.5)
-                    .try_normalize()
-                    .unwrap_or(DVec3::X)
-            };
+            let primitive = primitive(kernel, &mut random);
+            let mut unit = || random.direction();
             let axis = Ray {
                 origin: unit() * 2.0,
                 direction: unit(),
             };
             let (offset, turn) = (unit(), unit());
-            let (radius, spread) = (0.05 * next(), 0.05 * next() * next());
+            let (radius, spread) = (0.05 * random.unit(), 0.05 * random.unit() * random.unit());
             let direction = (axis.direction + turn * spread * 0.9).normalize();
             let ray = Ray {
                 origin: axis.origin + offset * radius,
                 direction,
             };
             let beam = Beam::around(&[axis, ray]).expect("a beam");
-            let from = next();
-            let to = from + 0.05 + 0.5 * next();
+            let from = random.unit();
+            let to = from + 0.05 + 0.5 * random.unit();
             let cell = Cell::around(&beam, from, to);
             let (center, ball) = beam.ball(from, to);
             let bound = Bound::new(&primitive);

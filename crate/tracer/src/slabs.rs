@@ -1226,17 +1226,18 @@ mod tests {
     use crate::beam::Beam;
     use crate::soft::Soft;
     use crate::spans::Span;
-    use crate::tests::common::{Numbers, clothe, element, empty, soft};
     use glam::DVec3;
     use scene::Shape;
+    use trials::Random;
+    use trials::scenes::{clothe, element, empty, soft};
 
     /// Balls in a cloud, of which every twentieth carves; `strength` of the others.
     fn cloud(radius: f64, strength: f64, carving: f64) -> Soft {
-        let mut numbers = Numbers(3);
+        let mut numbers = Random::new(3);
         let mut scene = empty();
         clothe(&mut scene, vec![soft(-2.0, strength), soft(-0.5, carving)]);
         for i in 0..400 {
-            let center = numbers.vector();
+            let center = numbers.vector(1.0);
             let carves = carving != 0.0 && i % 20 == 0;
             let shape = Shape::Sphere { center, radius };
             scene.elements.push(element(shape, u32::from(carves)));
@@ -1246,8 +1247,7 @@ mod tests {
     }
 
     /// The bound on rounding holds for terms that add up to T, whatever the sum of the negative ones.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn rounding_of_positive_and_negative_terms_is_bounded() {
         const PART: f64 = 1e-3;
         for carved in [0.0, 1.0, 99.0, 1e4] {
@@ -1273,8 +1273,7 @@ mod tests {
     }
 
     /// The listed primitives and the interpolants of the rest add up to the field within the bound told, on all rays of the beam.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn near_primitives_and_interpolants_add_up_to_the_field() {
         let (mut seen, mut shared, mut noisy, mut largest) = (0, 0, 0, 0.0f64);
         for soft in [

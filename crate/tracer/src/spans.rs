@@ -159,9 +159,9 @@ pub struct KnownPart<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trials::{Random, count};
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn a_span_reproduces_cubics_and_bounds_them() {
         let f = |t: f64| 2.0 - 3.0 * t + 0.5 * t * t + t * t * t;
         let slope = |t: f64| -3.0 + t + 3.0 * t * t;
@@ -185,21 +185,16 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn a_cubic_crosses_as_often_as_its_samples_change_sides() {
-        let mut state = 5u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31) - 0.5
-        };
+        let mut random = Random::new(5);
         let mut counts = [0; 4];
-        for _ in 0..2000 {
+        for _ in 0..count(2000) {
             // Also on the level itself, and very near to it.
-            let span = Span([0.0; 4].map(|_: f64| match (next() * 8.0) as i32 {
+            let span = Span([0.0; 4].map(|_: f64| match random.range(-4.0, 4.0) as i32 {
                 3 => 0.0,
-                2 => 1e-12 * next(),
-                _ => next(),
+                2 => 1e-12 * random.range(-0.5, 0.5),
+                _ => random.range(-0.5, 0.5),
             }));
             let found = span.crossings(0.0);
             let mut sampled = 0;
@@ -216,7 +211,10 @@ mod tests {
             }
             counts[found.len()] += 1;
         }
-        assert!(counts.iter().take(3).all(|count| *count > 50), "{counts:?}");
+        assert!(
+            counts.iter().take(3).all(|times| *times > count(50)),
+            "{counts:?}"
+        );
         // Cubics with coefficients that are not finite have no crossings.
         for bad in [f64::NAN, f64::INFINITY] {
             let _ = Span([bad, 0.4, 0.5, 0.6]).crossings(0.5);

@@ -56,8 +56,7 @@ pub fn tiles(width: u32, height: u32, side: u32) -> Vec<Tile> {
 mod tests {
     use super::*;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn tiles_cover_every_pixel_exactly_once_and_start_at_the_centre() {
         for (width, height, side) in [(640, 480, 64), (100, 37, 16), (1, 1, 64), (7, 90, 32)] {
             let tiles = tiles(width, height, side);

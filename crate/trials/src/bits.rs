@@ -1,45 +1,67 @@
-//! Results whose bits are to be the same on every platform.
+//! Hashes of results that have the same bits on every platform, kept in a text file.
 
 use core::fmt::Write;
 
-/// Returns the hash (FNV-1a) of bytes.
-pub fn hash(bytes: impl IntoIterator<Item = u8>) -> u64 {
-    bytes.into_iter().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
-    })
+/// An FNV-1a hash of bit patterns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hash(u64);
+
+impl Default for Hash {
+    fn default() -> Self {
+        Self(0xCBF2_9CE4_8422_2325)
+    }
 }
 
-/// Compares hashes with those of a file: a line for each, `NAME HASH`. Where `UPDATE_EXPECT` is set
-/// the file is written anew.
+impl Hash {
+    /// Adds bytes.
+    pub fn bytes(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3);
+        }
+    }
+
+    /// Adds numbers; every NaN is the same, as its bits are left to the platform.
+    pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) {
+        for x in numbers {
+            let x = if x.is_nan() { f64::NAN } else { x };
+            self.bytes(&x.to_bits().to_le_bytes());
+        }
+    }
+}
+
+/// Compares hashes with kept ones: lines `NAME HASH` of a file. `UPDATE_EXPECT=1` writes them
+/// anew, natively.
 ///
-/// `kept` is the file's text, as wasm can't read it: `include_str!("../bits.txt")`.
+/// ```no_run
+/// let mut hash = trials::bits::Hash::default();
+/// hash.numbers([libm::sin(1.0), libm::cos(1.0)]);
+/// let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bits.txt");
+/// let kept = "circle 5e1f7ed2f2b4e7b6"; // include_str!("../bits.txt")
+/// trials::bits::compare(&[("circle".into(), hash)], kept, path);
+/// ```
 ///
 /// # Panics
-/// If a hash differs, is missing, or is too much in the file; the message names each.
-pub fn compare(kept: &str, path: &str, found: &[(&str, u64)]) {
-    let lines = found
-        .iter()
-        .map(|(name, hash)| format!("{name} {hash:016x}"));
-    let lines: Vec<String> = lines.collect();
-    if std::env::var_os("UPDATE_EXPECT").is_some() {
-        std::fs::write(path, lines.join("\n") + "\n").expect("the file of hashes can be written");
+/// If they differ, with the names of those that do.
+pub fn compare(found: &[(String, Hash)], kept: &str, path: &str) {
+    let mut text = String::new();
+    for (name, Hash(hash)) in found {
+        let _ = writeln!(text, "{name} {hash:016x}");
+    }
+    if cfg!(not(target_arch = "wasm32")) && std::env::var_os("UPDATE_EXPECT").is_some() {
+        std::fs::write(path, text).unwrap_or_else(|error| panic!("{path}: {error}"));
         return;
     }
-    let mut differences = String::new();
-    for line in &lines {
-        if !kept.lines().any(|other| other == line) {
-            let _ = writeln!(differences, "  now     {line}");
-        }
-    }
-    for line in kept.lines() {
-        if !lines.iter().any(|other| other == line) {
-            let _ = writeln!(differences, "  before  {line}");
-        }
-    }
+    let [new, old] = [&text[..], kept].map(|text| text.lines().collect::<Vec<_>>());
+    let changed = new.iter().filter(|line| !old.contains(line));
+    let gone = old.iter().filter(|line| !new.contains(line));
+    let differing: Vec<String> = (changed.map(|line| format!("now  {line}")))
+        .chain(gone.map(|line| format!("kept {line}")))
+        .collect();
     assert!(
-        differences.is_empty(),
-        "These bits differ:\n{differences}If they are meant to change, run this test natively with \
-         UPDATE_EXPECT=1, which writes {path} anew."
+        differing.is_empty(),
+        "bits differ from those kept in {path}:\n{}\nIf that is meant, and it is so natively: run \
+         the test with UPDATE_EXPECT=1. Bits that differ only as wasm are a fault.",
+        differing.join("\n")
     );
 }
 
@@ -47,27 +69,36 @@ pub fn compare(kept: &str, path: &str, found: &[(&str, u64)]) {
 mod tests {
     use super::*;
 
-    #[test]
-    fn hashes_are_fnv_1a() {
-        assert_eq!(hash([]), 0xCBF2_9CE4_8422_2325);
-        assert_eq!(hash(*b"foobar"), 0x8594_4171_F739_67E8);
+    fn hash(number: f64) -> Hash {
+        let mut hash = Hash::default();
+        hash.numbers([number]);
+        hash
     }
 
     #[test]
-    fn same_hashes_pass() {
-        compare("a 000000000000000a\n", "", &[("a", 10)]);
-        compare("", "", &[]);
+    fn hashes_tell_numbers_apart() {
+        // FNV-1a's published value.
+        let mut foobar = Hash::default();
+        foobar.bytes(b"foobar");
+        assert_eq!(foobar, Hash(0x8594_4171_F739_67E8));
+        assert_ne!(hash(1.0), hash(1.0_f64.next_up()));
+        assert_ne!(hash(0.0), hash(-0.0));
+        assert_eq!(hash(f64::NAN), hash(-f64::NAN));
     }
 
     #[test]
-    #[should_panic(expected = "  now     a 000000000000000b\n  before  a 000000000000000a\n")]
-    fn another_hash_is_told() {
-        compare("a 000000000000000a\n", "", &[("a", 11)]);
-    }
-
-    #[test]
-    #[should_panic(expected = "  before  b 000000000000000a")]
-    fn a_hash_that_is_no_longer_made_is_told() {
-        compare("b 000000000000000a\n", "", &[]);
+    fn names_of_those_that_differ_are_told() {
+        let found = [1.0, 2.0].map(|x| (format!("number {x}"), hash(x)));
+        let text = found
+            .iter()
+            .map(|(name, Hash(hash))| format!("{name} {hash:016x}\n"));
+        let text: String = text.collect();
+        compare(&found, &text, "/nowhere");
+        for kept in [text.replace("number 2", "number 3"), String::new()] {
+            let told = std::panic::catch_unwind(|| compare(&found, &kept, "/nowhere"));
+            let told = told.expect_err("they differ");
+            let told = told.downcast_ref::<String>().expect("a message");
+            assert!(told.contains("now  number 2 "), "{told}");
+        }
     }
 }

@@ -17,10 +17,21 @@
 //! }
 //! ```
 //!
-//! [`bits`] compares what must be the same on every platform. [`WorkClock`] is for tests that something does not take long.
+//! Outputs whose bits must not change are hashed and compared with kept hashes: [`bits`].
+//!
+//! With the feature `field` there are random skeletons, with `scene` random scenes, with `tracer` rays
+//! through them and their judge.
+//!
+//! [`WorkClock`] is for tests that something does not take long.
 
 pub mod bits;
 mod random;
+#[cfg(feature = "tracer")]
+pub mod rays;
+#[cfg(feature = "scene")]
+pub mod scenes;
+#[cfg(feature = "field")]
+pub mod skeletons;
 
 pub use arbitrary;
 pub use random::Random;

@@ -6,21 +6,47 @@ use glam::{DQuat, DVec3};
 
 /// A SplitMix64 generator: the same numbers on every platform.
 #[derive(Clone, Debug)]
-pub struct Random(u64);
+pub struct Random(u64, Step);
+
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    SplitMix,
+    Linear,
+}
 
 impl Random {
     /// Returns a generator for a seed; `SINEW_SEED` asks for another one of the same seed.
     pub fn new(start: u64) -> Self {
         match seed() {
-            0 => Self::fixed(start),
-            other => Self(mixed(start ^ mixed(other))),
+            0 => Self(start, Step::SplitMix),
+            other => Self(mixed(start ^ mixed(other)), Step::SplitMix),
         }
+    }
+
+    /// Returns a generator for a seed whose numbers never change, for outputs that are compared
+    /// with kept ones.
+    pub fn fixed(seed: u64) -> Self {
+        Self(seed, Step::SplitMix)
+    }
+
+    /// Returns a linear congruential generator: scenes of earlier faults were found with its numbers.
+    pub fn linear(start: u64) -> Self {
+        Self(start, Step::Linear)
     }
 
     /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(STEP);
-        scrambled(self.0)
+        match self.1 {
+            Step::SplitMix => {
+                self.0 = self.0.wrapping_add(STEP);
+                scrambled(self.0)
+            }
+            Step::Linear => {
+                let times = self.0.wrapping_mul(6_364_136_223_846_793_005);
+                self.0 = times.wrapping_add(1_442_695_040_888_963_407);
+                self.0
+            }
+        }
     }
 
     /// Returns a number in [0, 1).
@@ -89,10 +115,13 @@ impl Random {
         DQuat::from_xyzw(axis.x, axis.y, axis.z, cosine)
     }
 
-    /// Returns a generator that gives the same numbers whatever `SINEW_SEED` is, for what is compared
-    /// with kept results.
-    pub fn fixed(start: u64) -> Self {
-        Self(start)
+    /// Returns a point of a triangle, each as likely as any other.
+    pub fn in_triangle(&mut self, [a, b, c]: [DVec3; 3]) -> DVec3 {
+        let (mut u, mut v) = (self.unit(), self.unit());
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        a + (b - a) * u + (c - a) * v
     }
 }
 
@@ -103,7 +132,7 @@ mod tests {
     #[test]
     fn numbers_are_splitmix64s() {
         // Published values for the seed 1234567.
-        let mut random = Random(1_234_567);
+        let mut random = Random(1_234_567, Step::SplitMix);
         let first: [u64; 3] = core::array::from_fn(|_| random.bits());
         let known = [
             6_457_827_717_110_365_317,
@@ -127,6 +156,8 @@ mod tests {
             assert!((x.cross(y) - z).length() < 1e-12 && x.dot(y).abs() < 1e-12);
             let turned = random.rotation() * DVec3::X;
             assert!((turned.length() - 1.0).abs() < 1e-12);
+            let inside = random.in_triangle([DVec3::ZERO, DVec3::X, DVec3::Y]);
+            assert!(inside.min_element() >= 0.0 && inside.element_sum() <= 1.0);
         }
         assert!([1, 2].contains(&random.pick(&[1, 2])) && !random.chance(0.0));
     }

@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 pub fn dist() -> Result<PathBuf> {
     let folder = root().join("dist");
     page::build(Build::Release, &folder)?;
+    let path = folder.display();
     tell(&format!(
-        "Wrote {}; any static host can serve it from any path.",
-        folder.display()
+        "Wrote {path}; any static host can serve it from any path."
     ));
     weigh(&folder)?;
     Ok(folder)
@@ -28,18 +28,12 @@ fn weigh(folder: &Path) -> Result<()> {
     for module in MODULES {
         let file = format!("{}_bg.wasm", module.name);
         let path = folder.join(&file);
-        let bytes = std::fs::metadata(&path)?.len();
+        let bytes = std::fs::metadata(&path)?.len() / 1000;
         let small = compressed(&path).with_context(|| format!("{file} is not compressed"))?;
-        let sizes = format!(
-            "{file}: {} kB, {} kB with brotli (at most {} kB)",
-            bytes / 1000,
-            small / 1000,
-            module.budget / 1000
-        );
+        let [kilobytes, most] = [small, module.budget].map(|bytes| bytes / 1000);
+        let sizes = format!("{file}: {bytes} kB, {kilobytes} kB with brotli (at most {most} kB)");
         tell(&sizes);
-        if small > module.budget {
-            heavy.push(sizes);
-        }
+        heavy.extend(Some(sizes).filter(|_| small > module.budget));
     }
     if !heavy.is_empty() {
         bail!("The first load is too large: {}", heavy.join("; "));
@@ -54,10 +48,8 @@ fn compressed(file: &Path) -> Option<usize> {
         const bytes = require('fs').readFileSync(process.argv[1]); \
         const params = { [constants.BROTLI_PARAM_QUALITY]: 11, [constants.BROTLI_PARAM_LGWIN]: 22 }; \
         console.log(brotliCompressSync(bytes, { params }).length);";
-    read(&mut command(
-        "node",
-        &["-e", SCRIPT, &file.to_string_lossy()],
-    ))?
-    .parse()
-    .ok()
+    let file = file.to_string_lossy();
+    read(&mut command("node", &["-e", SCRIPT, &file]))?
+        .parse()
+        .ok()
 }

@@ -1,6 +1,6 @@
 //! `cargo xtask fuzz`: random tests with other inputs than `cargo xtask test` runs them with.
 
-use crate::shell::{cargo, command, read, root, run};
+use crate::shell::{cargo, command, files, read, root, run, words};
 use anyhow::{Context, Result};
 use std::fs;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -10,21 +10,14 @@ const TIMES: &str = "10";
 
 /// Runs the random tests with fresh seeds, the fuzzer of the language, and each target of cargo-fuzz, each for so many minutes.
 pub fn fuzz(minutes: u64) -> Result<()> {
-    let time = Duration::from_secs(60 * minutes);
-    tests(time)?;
-    let seconds = time.as_secs().to_string();
-    let seed = fresh().to_string();
-    run(&mut cargo(&[
-        "run",
-        "--profile",
-        "fuzz",
-        "--package",
-        "fuzzer",
-        "--",
-        &seconds,
-        &seed,
-    ]))?;
-    guided(&seconds)
+    let seconds = 60 * minutes;
+    tests(Duration::from_secs(seconds))?;
+    let line = format!(
+        "run --profile fuzz --package fuzzer -- {seconds} {}",
+        fresh()
+    );
+    run(&mut cargo(&words(&line)))?;
+    guided(seconds)
 }
 
 /// A seed of this moment.
@@ -35,23 +28,20 @@ fn fresh() -> u64 {
 
 /// Tests of properties on random inputs, in rounds, each with another seed.
 fn tests(time: Duration) -> Result<()> {
-    let mut arguments = vec![String::from("test"), String::from("--tests")];
+    let mut line = String::from("test --tests");
     for package in fs::read_dir(root().join("crate"))? {
-        let folder = package?.path();
-        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap_or_default();
+        let package = package?;
+        let manifest = fs::read_to_string(package.path().join("Cargo.toml")).unwrap_or_default();
         if manifest.contains("\ntrials.workspace = true") {
-            let name = folder.file_name().unwrap_or_default();
-            arguments.push(String::from("--package"));
-            arguments.push(name.to_string_lossy().into_owned());
+            line += &format!(" --package {}", package.file_name().to_string_lossy());
         }
     }
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let begun = Instant::now();
     loop {
-        let seed = fresh();
+        let seed = fresh().to_string();
         println!("\nRandom tests with SINEW_SEED={seed} SINEW_TRIALS={TIMES}");
-        run(cargo(&arguments)
-            .env("SINEW_SEED", seed.to_string())
+        run(cargo(&words(&line))
+            .env("SINEW_SEED", &seed)
             .env("SINEW_TRIALS", TIMES))
         .with_context(|| format!("a random test failed with SINEW_SEED={seed}"))?;
         if begun.elapsed() >= time {
@@ -61,20 +51,18 @@ fn tests(time: Duration) -> Result<()> {
 }
 
 /// The targets of cargo-fuzz, which watches what the code does, and needs a nightly compiler.
-fn guided(seconds: &str) -> Result<()> {
+pub fn guided(seconds: u64) -> Result<()> {
     if read(&mut cargo(&["fuzz", "--version"])).is_none() {
         run(&mut cargo(&["install", "cargo-fuzz"]))
             .context("cargo-fuzz is missing. Install it: cargo install cargo-fuzz")?;
     }
-    let nightly = ["toolchain", "install", "nightly", "--profile", "minimal"];
+    let nightly = words("toolchain install nightly --profile minimal");
     run(&mut command("rustup", &nightly)).context("cargo-fuzz needs a nightly compiler")?;
-    for target in fs::read_dir(root().join("fuzz/fuzz_targets"))? {
-        let path = target?.path();
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let most = format!("-max_total_time={seconds}");
+    for target in files(&root().join("fuzz/fuzz_targets"), "rs")? {
+        let name = target.file_stem().unwrap_or_default().to_string_lossy();
         // The cargo that runs this program is not rustup's, and would not know of the other compiler.
-        let fuzz = ["run", "nightly", "cargo", "fuzz", "run", &name, "--", &most];
-        run(&mut command("rustup", &fuzz))
+        let line = format!("run nightly cargo fuzz run {name} -- -max_total_time={seconds}");
+        run(&mut command("rustup", &words(&line)))
             .with_context(|| format!("the target {name} found something"))?;
     }
     Ok(())

@@ -1,24 +1,9 @@
-//! Builds, serves, packs and tests Sinew: `cargo xtask COMMAND`.
-//!
-//! Every command installs what it lacks where that can be done without asking (Rust's wasm target,
-//! node packages, tools in `.tools/`, on Debian and Ubuntu the browser), says what it runs, and
-//! otherwise fails with a sentence that says what to install.
+//! `cargo xtask COMMAND`.
 
-mod bench;
-mod check;
-mod dist;
-mod examples;
-mod figures;
-mod fuzz;
-mod packages;
-mod page;
-mod pins;
-mod serve;
-mod shell;
-mod tools;
-
+use anyhow::Result;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
+use xtask::{check, dist, examples, figures, fuzz, pins, serve, shell};
 
 #[derive(Parser)]
 #[command(name = "cargo xtask", about = "Builds, serves, packs and tests Sinew.")]
@@ -34,7 +19,7 @@ enum Command {
         /// The port; another one is taken if it is in use and was not asked for.
         #[arg(long)]
         port: Option<u16>,
-        /// Build as for a release: slower to build, faster to use.
+        /// Build all of it as for a release: slower to build, faster to use.
         #[arg(long)]
         release: bool,
     },
@@ -53,10 +38,10 @@ enum Command {
         #[arg(default_value_t = 10)]
         minutes: u64,
     },
-    /// Measure, and write BENCHMARKS.md; or measure one part and print it.
+    /// Measure, and write BENCHMARKS.md.
     Bench {
-        /// Only this part.
-        part: Option<bench::Part>,
+        /// Only these parts.
+        parts: Vec<String>,
     },
     /// Draw the thumbnails of the examples, www/examples/*.png, with our own renderer.
     Examples {
@@ -73,22 +58,22 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
+    xtask::end(run(Arguments::parse().command))
+}
+
+fn run(command: Command) -> Result<()> {
+    match command {
         Command::Serve { port, release } => serve::serve(port, release),
         Command::Dist => dist::dist().map(|_| ()),
         Command::Test { part, filter } => check::test(part, filter),
         Command::Fuzz { minutes } => fuzz::fuzz(minutes),
-        Command::Bench { part } => bench::bench(part),
+        Command::Bench { parts } => {
+            let bench = shell::words("run --package bench --");
+            shell::run(shell::cargo(&bench).args(parts))
+        }
         Command::Examples { names } => examples::draw(&names),
         Command::Figures => figures::figures(),
         Command::Reference => examples::reference(),
         Command::Pins => pins::renew(),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("\nxtask: {error:#}");
-            ExitCode::FAILURE
-        }
     }
 }

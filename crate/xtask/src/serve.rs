@@ -2,7 +2,7 @@
 
 use crate::page::{self, Build};
 use anyhow::{Result, anyhow};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path};
 use tiny_http::{Header, Method, Request, Response, Server};
 
 /// The port that is tried first.
@@ -17,13 +17,16 @@ pub fn serve(port: Option<u16>, release: bool) -> Result<()> {
     };
     let folder = page::served();
     page::build(build, &folder)?;
-    let server = open(port)?;
-    let address = server
-        .server_addr()
-        .to_ip()
-        .map_or(PORT, |address| address.port());
-    println!("\nSinew is at http://127.0.0.1:{address}/ (Enter builds it anew, Ctrl+C ends it)");
-
+    let bind = |port| Server::http(("127.0.0.1", port));
+    let server = match port {
+        Some(port) => bind(port),
+        None => bind(PORT).or_else(|_| bind(0)),
+    };
+    let server = server.map_err(|error| {
+        anyhow!("The port cannot be used: {error}. Choose another one with --port.")
+    })?;
+    let address = server.server_addr();
+    println!("\nSinew is at http://{address}/ (Enter builds it anew, Ctrl+C ends it)");
     let served = folder.clone();
     std::thread::spawn(move || {
         for request in server.incoming_requests() {
@@ -44,48 +47,30 @@ pub fn serve(port: Option<u16>, release: bool) -> Result<()> {
     }
 }
 
-fn open(port: Option<u16>) -> Result<Server> {
-    let bind = |port| Server::http(("127.0.0.1", port));
-    let server = match port {
-        Some(port) => bind(port),
-        None => bind(PORT).or_else(|_| bind(0)),
-    };
-    server.map_err(|error| {
-        anyhow!("The port cannot be used: {error}. Choose another one with --port.")
-    })
-}
-
 fn answer(folder: &Path, request: Request) -> std::io::Result<()> {
     if !matches!(request.method(), Method::Get | Method::Head) {
         return request.respond(Response::empty(405));
     }
-    let Some((path, bytes)) = file(folder, request.url()) else {
-        return request.respond(Response::from_string("Not found.").with_status_code(404));
-    };
-    let headers = [
-        header("Content-Type", mime(&path)),
-        header("Cache-Control", "no-store"),
-    ];
-    let mut response = Response::from_data(bytes);
-    for header in headers.into_iter().flatten() {
-        response.add_header(header);
-    }
-    request.respond(response)
-}
-
-/// The file that an address means, inside the folder.
-fn file(folder: &Path, url: &str) -> Option<(PathBuf, Vec<u8>)> {
-    let path = url.split(['?', '#']).next()?.trim_start_matches('/');
-    let path = Path::new(if path.is_empty() { "index.html" } else { path });
+    let path = request.url().split(['?', '#']).next().unwrap_or_default();
+    let path = Path::new(path.trim_start_matches('/')).to_owned();
     let inside = path
         .components()
         .all(|part| matches!(part, Component::Normal(_)));
-    let file = folder.join(path);
-    inside.then(|| std::fs::read(&file).ok().map(|bytes| (file, bytes)))?
-}
-
-fn header(name: &str, value: &str) -> Option<Header> {
-    Header::from_bytes(name, value).ok()
+    let path = folder.join(if path.as_os_str().is_empty() {
+        "index.html".into()
+    } else {
+        path
+    });
+    let Some(bytes) = inside.then(|| std::fs::read(&path).ok()).flatten() else {
+        return request.respond(Response::from_string("Not found.").with_status_code(404));
+    };
+    let mut response = Response::from_data(bytes);
+    for (name, value) in [("Content-Type", mime(&path)), ("Cache-Control", "no-store")] {
+        if let Ok(header) = Header::from_bytes(name, value) {
+            response.add_header(header);
+        }
+    }
+    request.respond(response)
 }
 
 fn mime(path: &Path) -> &'static str {

@@ -1,6 +1,6 @@
 //! Installing what is missing.
 
-use crate::shell::{artifacts, cargo, command, executable, find, read, root, run, tell};
+use crate::shell::{command, find, read, root, run, tell, words};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,49 +8,51 @@ use std::process::Command;
 /// The target of everything that runs in the page.
 pub const WASM: &str = "wasm32-unknown-unknown";
 
-/// Makes sure that Rust can compile for [`WASM`].
-pub fn wasm_target() -> Result<()> {
-    let installed = read(&mut command(
-        "rustc",
-        &["--print", "target-libdir", "--target", WASM],
-    ))
-    .is_some_and(|folder| Path::new(&folder).is_dir());
-    if installed {
+/// Makes sure that Rust can compile for a target.
+pub fn target(name: &str) -> Result<()> {
+    let library = ["--print", "target-libdir", "--target", name];
+    let library = read(&mut command("rustc", &library));
+    if library.is_some_and(|folder| Path::new(&folder).is_dir()) {
         return Ok(());
     }
-    run(&mut command("rustup", &["target", "add", WASM])).context(
-        "The wasm32-unknown-unknown target of Rust is missing. Install rustup (https://rustup.rs), \
-         then run: rustup target add wasm32-unknown-unknown",
+    run(&mut command("rustup", &["target", "add", name])).with_context(|| {
+        format!(
+            "The {name} target of Rust is missing. Install rustup (https://rustup.rs), then run: \
+             rustup target add {name}"
+        )
+    })
+}
+
+/// The target of tests as wasm: what runs in the page, with a way to write lines.
+pub const WASI: &str = "wasm32-wasip1";
+
+/// Returns a command that runs a program for [`WASI`] in node.
+pub fn in_node(wasm: &Path) -> Command {
+    let host = root().join("tests/wasi.mjs");
+    command(
+        "node",
+        &[
+            "--no-warnings",
+            &host.to_string_lossy(),
+            &wasm.to_string_lossy(),
+        ],
     )
 }
 
-/// The runner of wasm tests, of the version of wasm-bindgen that the tests are compiled with.
-pub fn wasm_test_runner() -> Result<PathBuf> {
-    let build = [
-        "build",
-        "--package",
-        "runner",
-        "--message-format",
-        "json-render-diagnostics",
-    ];
-    executable(&artifacts(&mut cargo(&build))?, "wasm-bindgen-test-runner")
-}
-
-/// Environment variable that makes the test runner use a browser's worker; `.cargo/config.toml` sets it for `wasm-pack test`.
-pub const IN_WORKER: &str = "WASM_BINDGEN_USE_DEDICATED_WORKER";
-
-/// A command that runs tests as wasm in node.
-pub fn in_node(runner: &Path, wasm: &Path) -> Command {
-    let mut command = command(runner, &[&wasm.to_string_lossy()]);
-    command.env_remove(IN_WORKER);
-    command
+/// Makes sure that there is node, installed with apt-get on Debian.
+pub fn node() -> Result<()> {
+    const MISSING: &str =
+        "Node.js is missing. Install Node.js 20 or newer with npm (https://nodejs.org)";
+    let present = || find("node").is_some() && find("npm").is_some();
+    if !present() && find("apt-get").is_some() {
+        apt_install(&["nodejs", "npm"]).context(MISSING)?;
+    }
+    present().then_some(()).context(MISSING)
 }
 
 /// The node packages of tests/package.json (browser driver, wasm optimiser). Gives their folder.
 pub fn node_packages() -> Result<PathBuf> {
-    if find("node").is_none() || find("npm").is_none() {
-        bail!("Node.js is missing. Install Node.js 20 or newer with npm (https://nodejs.org).");
-    }
+    node()?;
     let tests = root().join("tests");
     let modules = tests.join("node_modules");
     // npm keeps a copy of the lock file of what it has installed.
@@ -84,16 +86,16 @@ pub fn wasm_opt() -> Option<PathBuf> {
 /// If `apt-get` fails, or this user may not install packages; the message says what to install.
 fn apt_install(packages: &[&str]) -> Result<()> {
     let root_user = read(&mut command("id", &["-u"])).is_some_and(|id| id == "0");
-    let sudo: &[&str] = if root_user { &[] } else { &["sudo", "-n"] };
-    let apt = |arguments: &[&str]| {
-        let lock: &[&str] = &["apt-get", "-o", "DPkg::Lock::Timeout=500"];
-        let words = [sudo, lock, arguments].concat();
+    let sudo = if root_user { "" } else { "sudo -n" };
+    let apt = |task: &str| {
+        let line = format!("{sudo} apt-get -o DPkg::Lock::Timeout=500 {task}");
+        let words = words(&line);
         run(command(words[0], &words[1..]).env("DEBIAN_FRONTEND", "noninteractive"))
     };
-    let install = ["install", "-y", "--no-install-recommends"];
-    apt(&["update"])
-        .and_then(|()| apt(&[&install, packages].concat()))
-        .with_context(|| format!("Install it: apt-get install {}", packages.join(" ")))
+    let packages = packages.join(" ");
+    apt("update")
+        .and_then(|()| apt(&format!("install -y --no-install-recommends {packages}")))
+        .with_context(|| format!("Install it: apt-get install {packages}"))
 }
 
 /// A Firefox that tests can drive, installed with apt-get on Debian.
@@ -118,40 +120,30 @@ pub fn chromium() -> Result<PathBuf> {
     if let Some(chosen) = std::env::var_os("CHROMIUM") {
         return Ok(chosen.into());
     }
-    let present = || {
-        [
-            "chromium",
-            "chromium-browser",
-            "google-chrome-stable",
-            "google-chrome",
-        ]
-        .into_iter()
-        .find_map(find)
-        // Ubuntu's /usr/bin/chromium-browser only says that there is a snap.
-        .filter(|path| read(&mut command(path, &["--version"])).is_some())
-    };
+    let names = words("chromium chromium-browser google-chrome-stable google-chrome");
+    // Ubuntu's /usr/bin/chromium-browser only says that there is a snap.
+    let runs = |path: &PathBuf| read(&mut command(path, &["--version"])).is_some();
+    let present = || names.iter().copied().find_map(find).filter(runs);
     if let Some(path) = present() {
         return Ok(path);
     }
     let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
     let is = |name: &str| release.lines().any(|line| line == format!("ID={name}"));
     if is("debian") {
-        // The second package is how tests as wasm drive the browser, the third draws without a graphics card.
-        apt_install(&["chromium", "chromium-driver", "mesa-vulkan-drivers"])
-            .context("The browser is missing")?;
+        // The second package draws without a graphics card.
+        apt_install(&["chromium", "mesa-vulkan-drivers"]).context("The browser is missing")?;
         return present().context("apt-get installed no chromium that runs");
     }
     if is("ubuntu") {
         // Ubuntu's own package is a snap, which does not run everywhere.
         let cli = node_packages()?.join("playwright-core/cli.js");
-        let cli = cli.to_string_lossy();
-        let with_libraries = run(&mut command(
-            "node",
-            &[&cli, "install", "--with-deps", "chromium"],
-        ));
-        with_libraries
-            .or_else(|_| run(&mut command("node", &[&cli, "install", "chromium"])))
-            .context("The browser is missing. Install Chromium or Google Chrome, or set CHROMIUM to its path")?;
+        let install = |options: &str| {
+            let line = format!("install {options} chromium");
+            run(command("node", &[&cli.to_string_lossy()]).args(words(&line)))
+        };
+        install("--with-deps").or_else(|_| install("")).context(
+            "The browser is missing. Install Chromium or Google Chrome, or set CHROMIUM to its path",
+        )?;
         let script = "console.log(require('playwright-core').chromium.executablePath())";
         return read(command("node", &["-e", script]).current_dir(root().join("tests")))
             .map(PathBuf::from)

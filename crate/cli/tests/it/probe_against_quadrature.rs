@@ -9,36 +9,11 @@ use field::quadrature;
 use glam::DVec3;
 use serde_json::Value;
 use std::fmt::Write;
+use trials::{Random, count};
 
 /// Relative error allowed between the program and the quadrature.
 const BOUND: f64 = 1e-5;
-const SCENES: u64 = 6;
 const POINTS: usize = 60;
-
-/// A small generator (splitmix64), so that a failure can be repeated from its seed.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn point(&mut self, size: f64) -> DVec3 {
-        DVec3::new(
-            self.within(-size, size),
-            self.within(-size, size),
-            self.within(-size, size),
-        )
-    }
-}
 
 fn words(p: DVec3) -> String {
     format!("{} {} {}", p.x, p.y, p.z)
@@ -47,63 +22,63 @@ fn words(p: DVec3) -> String {
 fn random_dataset(random: &mut Random) -> String {
     let mut text = String::new();
     for material in 0..4 {
-        let strength = random.within(0.5, 2.0);
+        let strength = random.range(0.5, 2.0);
         writeln!(
             text,
             "surface m{material} diffuse White blob -{} radius {} strength {strength}",
-            random.within(0.3, 6.0),
-            random.within(0.1, 0.8)
+            random.range(0.3, 6.0),
+            random.range(0.1, 0.8)
         )
         .expect("text");
     }
     for _ in 0..12 {
-        let material = (random.next() * 4.0) as usize;
-        let radius = random.within(0.05, 0.6);
-        match (random.next() * 5.0) as usize {
+        let material = random.below(4);
+        let radius = random.range(0.05, 0.6);
+        match random.below(5) {
             0 => writeln!(
                 text,
                 "sphere m{material} {radius} {}",
-                words(random.point(2.0))
+                words(random.vector(2.0))
             ),
             1 => writeln!(
                 text,
                 "cylinder m{material} {radius} {} {}",
-                words(random.point(2.0)),
-                words(random.point(2.0))
+                words(random.vector(2.0)),
+                words(random.vector(2.0))
             ),
             2 => {
-                let (start, width) = (random.within(0.0, 360.0), random.within(1.0, 360.0));
+                let (start, width) = (random.range(0.0, 360.0), random.range(1.0, 360.0));
                 writeln!(
                     text,
                     "arc m{material} {} {radius} {} {} {start} {width}",
-                    random.within(0.2, 2.0),
-                    words(random.point(2.0)),
-                    words(random.point(1.0))
+                    random.range(0.2, 2.0),
+                    words(random.vector(2.0)),
+                    words(random.vector(1.0))
                 )
             }
             3 => writeln!(
                 text,
                 "triangle m{material} {} {} {}",
-                words(random.point(2.0)),
-                words(random.point(2.0)),
-                words(random.point(2.0))
+                words(random.vector(2.0)),
+                words(random.vector(2.0)),
+                words(random.vector(2.0))
             ),
             _ => writeln!(
                 text,
                 "arch m{material} {radius} {{ {}, {}, {} }}",
-                words(random.point(2.0)),
-                words(random.point(2.0)),
-                words(random.point(2.0))
+                words(random.vector(2.0)),
+                words(random.vector(2.0)),
+                words(random.vector(2.0))
             ),
         }
         .expect("text");
     }
-    if random.next() < 0.5 {
+    if random.chance(0.5) {
         writeln!(
             text,
             "plane m0 {} {}",
-            words(random.point(2.0)),
-            words(random.point(1.0))
+            words(random.vector(2.0)),
+            words(random.vector(1.0))
         )
         .expect("text");
     }
@@ -113,8 +88,8 @@ fn random_dataset(random: &mut Random) -> String {
 #[test]
 fn probe_agrees_with_quadrature_on_random_scenes() {
     let folder = Folder::new("quadrature");
-    for seed in 0..SCENES {
-        let mut random = Random(seed);
+    for seed in 0..count(6) as u64 {
+        let mut random = Random::new(seed);
         let text = random_dataset(&mut random);
         let file = folder.write(&format!("{seed}.rat"), &text);
         let project = rats::Project {
@@ -129,7 +104,7 @@ fn probe_agrees_with_quadrature_on_random_scenes() {
             "seed {seed}: the text is understood"
         );
 
-        let points: Vec<DVec3> = (0..POINTS).map(|_| random.point(3.0)).collect();
+        let points: Vec<DVec3> = (0..count(POINTS)).map(|_| random.vector(3.0)).collect();
         let input: String = points.iter().map(|&point| words(point) + "\n").collect();
         for precision in ["f64", "f32"] {
             let output = sinew(
@@ -140,7 +115,7 @@ fn probe_agrees_with_quadrature_on_random_scenes() {
                 .lines()
                 .map(|line| serde_json::from_str(line).expect("JSON"))
                 .collect();
-            assert_eq!(lines.len(), POINTS);
+            assert_eq!(lines.len(), points.len());
             for (point, line) in points.iter().zip(&lines) {
                 let truth: f64 = surface
                     .sum
@@ -161,7 +136,7 @@ fn probe_agrees_with_quadrature_on_random_scenes() {
 
 /// One shape of every kind of skeleton, as the language writes it.
 fn shape_of(kind: &str, random: &mut Random) -> String {
-    let mut point = || words(random.point(1.0));
+    let mut point = || words(random.vector(1.0));
     match kind {
         "sphere" => format!("sphere m 0.4 {}", point()),
         "cylinder" => format!("cylinder m 0.4 {} {}", point(), point()),
@@ -169,19 +144,19 @@ fn shape_of(kind: &str, random: &mut Random) -> String {
             "arc m 0.9 0.4 {} {} 20 {}",
             point(),
             point(),
-            random.within(20.0, 360.0)
+            random.range(20.0, 360.0)
         ),
         "triangle" => format!("triangle m {} {} {}", point(), point(), point()),
         "polygon" => {
             // A star with a hole, tilted.
-            let center = random.point(0.3);
+            let center = random.vector(0.3);
             let (x, y) = (DVec3::new(1.0, 0.2, 0.1), DVec3::new(-0.1, 0.9, -0.3));
-            let mut ring = |low: f64, high: f64, count: usize| -> String {
-                (0..count)
+            let mut ring = |low: f64, high: f64, corners: usize| -> String {
+                (0..corners)
                     .map(|i| {
-                        let angle = std::f64::consts::TAU * i as f64 / count as f64;
+                        let angle = std::f64::consts::TAU * i as f64 / corners as f64;
                         let (sine, cosine) = libm::sincos(angle);
-                        let corner = center + (x * cosine + y * sine) * random.within(low, high);
+                        let corner = center + (x * cosine + y * sine) * random.range(low, high);
                         words(corner) + ", "
                     })
                     .collect()
@@ -210,7 +185,7 @@ fn probe_agrees_with_quadrature_in_every_cell() {
     ];
     for kernel in field::Kernel::ALL.map(field::Kernel::name) {
         for (number, kind) in kinds.into_iter().enumerate() {
-            let mut random = Random(100 + number as u64);
+            let mut random = Random::new(100 + number as u64);
             let text = format!(
                 "surface m diffuse White blob -1.5 radius 0.4 kernel {kernel}\n{}\n",
                 shape_of(kind, &mut random)
@@ -226,7 +201,7 @@ fn probe_agrees_with_quadrature_in_every_cell() {
             // One, but for a curve, which is cut.
             let primitives = &surface.sum.primitives;
             assert!(!primitives.is_empty() && primitives.iter().all(|p| p.kernel.name() == kernel));
-            let points: Vec<DVec3> = (0..30).map(|_| random.point(1.6)).collect();
+            let points: Vec<DVec3> = (0..count(30)).map(|_| random.vector(1.6)).collect();
             let input: String = points.iter().map(|&point| words(point) + "\n").collect();
             for (precision, bound, least) in [("f64", 1e-9, 1e-3), ("f32", 1e-4, 0.1)] {
                 let output = sinew(

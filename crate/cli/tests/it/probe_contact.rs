@@ -41,16 +41,12 @@ fn contact_is_what_the_formulas_say() {
         text += &format!("contact {pair} height 0.2 0.65 0.25\n");
     }
     let file = folder.write("balls.rat", &text);
-    let mut state = 3u64;
-    let mut unit = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
+    let mut random = trials::Random::new(3);
+    let mut point = || {
+        let [x, y, z] = random.vector(2.0).to_array();
+        [x, y + 0.4, 0.5 * z]
     };
-    let points: Vec<[f64; 3]> = (0..300)
-        .map(|_| [4.0 * unit() - 2.0, 4.0 * unit() - 1.6, 2.0 * unit() - 1.0])
-        .collect();
+    let points: Vec<[f64; 3]> = (0..300).map(|_| point()).collect();
     let input: String = points
         .iter()
         .map(|[x, y, z]| format!("{x} {y} {z}\n"))

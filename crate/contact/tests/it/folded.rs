@@ -1,65 +1,10 @@
 //! Folds of one skeleton in contact: against the formula and in balls.
 use contact::{Bulge, Folded};
-use field::local::Limb;
-use field::{Ball, BlobScale, Implicit, Kernel, Local, Primitive, Shaping, Skeleton, THRESHOLD};
+use field::{Ball, Implicit, Kernel, THRESHOLD};
 use glam::DVec3;
 use std::sync::Arc;
-
-/// Pseudo-random numbers in [0, 1).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - DVec3::ONE
-    }
-}
-
-/// A hairpin of two legs that are nearer than two radii.
-fn hairpin(apart: f64) -> Local {
-    let mut points = Vec::new();
-    for i in 0..=8 {
-        points.push(DVec3::new(-2.0 + 0.25 * f64::from(i), -0.5 * apart, 0.0));
-    }
-    for i in 1..8 {
-        let angle = core::f64::consts::PI * (f64::from(i) / 8.0 - 0.5);
-        points.push(DVec3::new(
-            0.9 * libm::cos(angle),
-            0.5 * apart * libm::sin(angle),
-            0.0,
-        ));
-    }
-    for i in 0..=8 {
-        points.push(DVec3::new(-0.25 * f64::from(i), 0.5 * apart, 0.0));
-    }
-    let shaping = Shaping {
-        kernel: Kernel::Cubed,
-        radius: 0.4,
-        blobbiness: -2.0,
-        blob_scale: BlobScale::Relative,
-        strength: 1.0,
-        influence: 1e-3,
-        taper: None,
-    };
-    let count = points.len() as u32 - 1;
-    let limbs = (0..count).map(|i| {
-        let [base, apex] = [i, i + 1].map(|k| points[k as usize]);
-        let piece = Primitive::new(Skeleton::Segment { base, apex }, &shaping, None);
-        Limb {
-            ends: [i, i + 1],
-            next: [i.checked_sub(1), (i + 1 < count).then_some(i + 1)],
-            pieces: vec![(piece.expect("it is a segment"), base.distance(apex))],
-        }
-    });
-    Local::new(&points, &limbs.collect::<Vec<_>>(), 1.2).expect("it is short")
-}
+use trials::skeletons::hairpin;
+use trials::{Random, count};
 
 const BULGES: [Bulge; 3] = [
     Bulge::Fast { c: 0.3 },
@@ -77,13 +22,13 @@ const BULGES: [Bulge; 3] = [
 
 #[test]
 fn folds_are_deformed_as_the_formula_says() {
-    let local = Arc::new(hairpin(0.5));
-    let mut random = Random(5);
+    let local = Arc::new(hairpin(Kernel::Cubed, 0.5));
+    let mut random = Random::new(5);
     let mut kinds = [0; 4];
     for bulge in BULGES {
         let folded = Folded::new(local.clone(), bulge);
-        for _ in 0..1200 {
-            let point = DVec3::new(-1.0, 0.0, 0.0) + random.vector() * DVec3::new(0.8, 0.6, 0.4);
+        for _ in 0..count(1200) {
+            let point = DVec3::new(-1.0, 0.0, 0.0) + random.vector(1.0) * DVec3::new(0.8, 0.6, 0.4);
             let (first, second) = local.two(point);
             let Some(second) = second else { continue };
             let (f, other) = (first.value, second.value);
@@ -122,7 +67,7 @@ fn folds_are_deformed_as_the_formula_says() {
             assert!(f <= THRESHOLD || value > THRESHOLD, "{f} {value}");
         }
     }
-    assert!(kinds.iter().all(|n| *n > 30), "{kinds:?}");
+    assert!(kinds.iter().all(|n| *n > count(30)), "{kinds:?}");
 }
 
 /// The bulge of a height h at m, times a wave on its first piece.
@@ -139,19 +84,20 @@ fn crest(f: f64, m: f64, h: f64, wave: f64) -> f64 {
 
 #[test]
 fn bounds_hold_in_balls() {
-    let local = Arc::new(hairpin(0.55));
-    let mut random = Random(9);
+    let local = Arc::new(hairpin(Kernel::Cubed, 0.55));
+    let mut random = Random::new(9);
     let (mut finite, mut all) = (0, 0);
     for bulge in BULGES {
         let folded = Folded::new(local.clone(), bulge);
-        for _ in 0..150 {
-            let center = DVec3::new(-1.0, 0.0, 0.0) + random.vector() * DVec3::new(1.5, 1.0, 0.7);
-            let radius = 0.3 * libm::pow(10.0, -3.0 * random.unit());
+        for _ in 0..count(150) {
+            let center =
+                DVec3::new(-1.0, 0.0, 0.0) + random.vector(1.0) * DVec3::new(1.5, 1.0, 0.7);
+            let radius = 0.3 * random.decades(-3.0, 0.0);
             let bounds = folded.enclose(Ball { center, radius });
             all += 1;
             finite += u32::from(bounds.slope.is_finite());
             for _ in 0..10 {
-                let point = center + random.vector().normalize() * (radius * random.unit());
+                let point = center + random.direction() * (radius * random.unit());
                 let jet = folded.jet(point);
                 let slack = 1e-9 * (1.0 + jet.value.abs());
                 let [low, high] = bounds.value;

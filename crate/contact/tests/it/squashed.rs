@@ -6,44 +6,27 @@ use field::{
 };
 use glam::DVec3;
 use std::sync::Arc;
+use trials::{Random, count};
 use wide::f32x8;
 
-/// Numbers that look random.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0
-    }
-}
-
 /// A limb of two segments, or some balls.
-fn body(numbers: &mut Numbers) -> Arc<dyn Implicit> {
-    if numbers.next() < 0.3 {
-        let hardness = 3.0 + 2.0 * numbers.next();
-        let balls = (0..2).map(|_| (0.5 * numbers.vector(), 0.3 + 0.2 * numbers.next()));
+fn body(random: &mut Random) -> Arc<dyn Implicit> {
+    if random.chance(0.3) {
+        let hardness = random.range(3.0, 5.0);
+        let balls = (0..2).map(|_| (0.5 * random.vector(1.0), random.range(0.3, 0.5)));
         let balls = Exponentials::new(hardness, balls.collect());
         return Arc::new(balls.expect("the numbers are usable"));
     }
-    let kernels = [Kernel::Cubed, Kernel::Cauchy, Kernel::Gauss];
     let shaping = Shaping {
-        kernel: kernels[(3.0 * numbers.next()) as usize],
-        radius: 0.25 + 0.2 * numbers.next(),
+        kernel: random.pick(&[Kernel::Cubed, Kernel::Cauchy, Kernel::Gauss]),
+        radius: random.range(0.25, 0.45),
         blobbiness: -2.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,
         taper: None,
     };
-    let [a, b, c] = [0; 3].map(|_| 0.7 * numbers.vector());
+    let [a, b, c] = [0; 3].map(|_| 0.7 * random.vector(1.0));
     let segments = [(a, b), (b, c)].into_iter();
     let primitives = segments.filter_map(|(base, apex)| {
         Primitive::new(Skeleton::Segment { base, apex }, &shaping, None)
@@ -51,31 +34,30 @@ fn body(numbers: &mut Numbers) -> Arc<dyn Implicit> {
     Arc::new(primitives.collect::<Sum>())
 }
 
-fn bulge(numbers: &mut Numbers) -> Bulge {
-    let c = 0.1 + 0.4 * numbers.next();
-    match (3.0 * numbers.next()) as u32 {
+fn bulge(random: &mut Random) -> Bulge {
+    let c = random.range(0.1, 0.5);
+    match random.below(3) {
         0 => Bulge::Fast { c },
         1 => Bulge::Height {
             c,
             m: 0.7,
-            h: 0.3 * numbers.next(),
+            h: 0.3 * random.unit(),
         },
         _ => Bulge::Ripple {
             c,
-            h: 0.3 * numbers.next(),
+            h: 0.3 * random.unit(),
             n: 2,
         },
     }
 }
 
 /// Some bodies, and each as all the others press it, with one bulge for all.
-fn crowd(seed: u64, count: usize) -> (Vec<Arc<dyn Implicit>>, Vec<Squashed>, Bulge) {
-    let numbers = &mut Numbers(seed);
-    numbers.next();
-    let bodies: Vec<_> = (0..count).map(|_| body(numbers)).collect();
-    let bulge = bulge(numbers);
-    let squashed = (0..count).map(|i| {
-        let others = (0..count).filter(|j| *j != i);
+fn crowd(seed: u64, size: usize) -> (Vec<Arc<dyn Implicit>>, Vec<Squashed>, Bulge) {
+    let random = &mut Random::new(seed);
+    let bodies: Vec<_> = (0..size).map(|_| body(random)).collect();
+    let bulge = bulge(random);
+    let squashed = (0..size).map(|i| {
+        let others = (0..size).filter(|j| *j != i);
         let others = others.map(|j| (bodies[j].clone(), bulge)).collect();
         Squashed::new(bodies[i].clone(), others)
     });
@@ -91,11 +73,11 @@ fn largest(bodies: &[Arc<dyn Implicit>], but: usize, point: DVec3) -> f64 {
 
 #[test]
 fn it_is_the_formula() {
-    for seed in 0..40 {
+    for seed in 0..count(40) as u64 {
         let (bodies, squashed, bulge) = crowd(seed, 2 + seed as usize % 3);
-        let numbers = &mut Numbers(seed + 1000);
+        let random = &mut Random::new(seed + 1000);
         for _ in 0..100 {
-            let point = 1.2 * numbers.vector();
+            let point = 1.2 * random.vector(1.0);
             for (i, touching) in squashed.iter().enumerate() {
                 let other = largest(&bodies, i, point);
                 let want = bodies[i].jet(point).value + bulge.jet(other).0;
@@ -112,11 +94,11 @@ fn it_is_the_formula() {
 #[test]
 fn bodies_share_space_without_gap_or_overlap() {
     let (mut together, mut boundary) = (0, 0);
-    for seed in 0..40 {
+    for seed in 0..count(40) as u64 {
         let (bodies, squashed, _) = crowd(seed, 2 + seed as usize % 3);
-        let numbers = &mut Numbers(seed + 2000);
+        let random = &mut Random::new(seed + 2000);
         for _ in 0..300 {
-            let point = 0.8 * numbers.vector();
+            let point = 0.8 * random.vector(1.0);
             let fields: Vec<f64> = bodies.iter().map(|body| body.jet(point).value).collect();
             let inside = fields.iter().filter(|f| **f > THRESHOLD).count();
             if inside < 2 {
@@ -137,7 +119,7 @@ fn bodies_share_space_without_gap_or_overlap() {
         // On the sheet both surfaces are at the same place.
         let [a, b] = [&bodies[0], &bodies[1]];
         for _ in 0..30 {
-            let (mut p, mut q) = (0.7 * numbers.vector(), 0.7 * numbers.vector());
+            let (mut p, mut q) = (0.7 * random.vector(1.0), 0.7 * random.vector(1.0));
             let ahead = |p: DVec3| a.jet(p).value - b.jet(p).value;
             if ahead(p) * ahead(q) > 0.0 {
                 continue;
@@ -164,19 +146,22 @@ fn bodies_share_space_without_gap_or_overlap() {
             }
         }
     }
-    assert!(together > 500 && boundary > 60, "{together} {boundary}");
+    assert!(
+        together > count(500) && boundary > count(60),
+        "{together} {boundary}"
+    );
 }
 
 /// The gradient is continuous where the other's field is c and where it is T, so that the surface's tangent is.
 #[test]
 fn tangents_are_continuous() {
     let mut looked = 0;
-    for seed in 0..60 {
+    for seed in 0..count(60) as u64 {
         let (bodies, squashed, bulge) = crowd(seed, 2);
-        let numbers = &mut Numbers(seed + 3000);
+        let random = &mut Random::new(seed + 3000);
         for level in [bulge.start(), THRESHOLD] {
             for _ in 0..10 {
-                let (mut p, mut q) = (1.2 * numbers.vector(), 1.2 * numbers.vector());
+                let (mut p, mut q) = (1.2 * random.vector(1.0), 1.2 * random.vector(1.0));
                 let over = |p: DVec3| bodies[1].jet(p).value - level;
                 if over(p) * over(q) > 0.0 {
                     continue;
@@ -199,15 +184,15 @@ fn tangents_are_continuous() {
             }
         }
     }
-    assert!(looked > 100, "{looked}");
+    assert!(looked > count(100), "{looked}");
 }
 
 #[test]
 fn all_precisions_agree() {
-    for seed in 0..20 {
+    for seed in 0..count(20) as u64 {
         let (_, squashed, _) = crowd(seed, 3);
-        let numbers = &mut Numbers(seed + 4000);
-        let points: [DVec3; 8] = core::array::from_fn(|_| 1.2 * numbers.vector());
+        let random = &mut Random::new(seed + 4000);
+        let points: [DVec3; 8] = core::array::from_fn(|_| 1.2 * random.vector(1.0));
         let lanes = [0, 1, 2].map(|k| f32x8::new(points.map(|p| p[k] as f32)));
         for touching in &squashed {
             let eight = touching.jet8(lanes);
@@ -228,18 +213,18 @@ fn all_precisions_agree() {
 #[test]
 fn enclosures_hold() {
     let (mut narrow, mut smooth) = (0, 0);
-    for seed in 0..40 {
+    for seed in 0..count(40) as u64 {
         let (_, squashed, _) = crowd(seed, 2 + seed as usize % 2);
-        let numbers = &mut Numbers(seed + 5000);
+        let random = &mut Random::new(seed + 5000);
         for _ in 0..20 {
-            let center = 1.2 * numbers.vector();
-            let radius = libm::pow(10.0, -4.0 * numbers.next());
+            let center = 1.2 * random.vector(1.0);
+            let radius = random.decades(-4.0, 0.0);
             let touching = &squashed[0];
             let bounds = touching.enclose(Ball { center, radius });
-            narrow += u32::from(bounds.value[0] > THRESHOLD || bounds.value[1] < THRESHOLD);
-            smooth += u32::from(bounds.curvature.is_finite());
+            narrow += usize::from(bounds.value[0] > THRESHOLD || bounds.value[1] < THRESHOLD);
+            smooth += usize::from(bounds.curvature.is_finite());
             for _ in 0..30 {
-                let offset = radius * numbers.vector() / 3.0_f64.sqrt();
+                let offset = radius * random.vector(1.0) / 3.0_f64.sqrt();
                 let point = center + offset;
                 let jet = touching.jet(point);
                 let slack = 1e-11 * (1.0 + jet.value.abs());
@@ -247,7 +232,7 @@ fn enclosures_hold() {
                 assert!(jet.value <= bounds.value[1] + slack, "{seed}");
                 let gradient = DVec3::from_array(jet.gradient);
                 assert!(gradient.length() <= bounds.slope * (1.0 + 1e-9), "{seed}");
-                let along = numbers.vector().normalize();
+                let along = random.direction();
                 let step = (1e-4 * radius).min(0.5 * (radius - offset.length()));
                 let slope =
                     |s: f64| DVec3::from_array(touching.jet(point + along * s).gradient).dot(along);
@@ -259,27 +244,30 @@ fn enclosures_hold() {
             }
         }
     }
-    assert!(narrow > 200 && smooth > 60, "{narrow} {smooth}");
+    assert!(
+        narrow > count(200) && smooth > count(60),
+        "{narrow} {smooth}"
+    );
 }
 
 #[test]
 fn outside_the_support_is_nothing() {
     let mut inside = 0;
-    for seed in 0..20 {
+    for seed in 0..count(20) as u64 {
         let (_, squashed, _) = crowd(seed, 2);
-        let numbers = &mut Numbers(seed + 6000);
+        let random = &mut Random::new(seed + 6000);
         let Some(ball) = squashed[0].support() else {
             continue;
         };
         for _ in 0..300 {
-            let point = ball.center + ball.radius * 1.5 * numbers.next() * numbers.vector();
+            let point = ball.center + ball.radius * 1.5 * random.unit() * random.vector(1.0);
             let above = squashed[0].jet(point).value > THRESHOLD;
             assert!(
                 !above || point.distance(ball.center) <= ball.radius,
                 "{seed}"
             );
-            inside += u32::from(above);
+            inside += usize::from(above);
         }
     }
-    assert!(inside > 100, "{inside}");
+    assert!(inside > count(100), "{inside}");
 }

@@ -3,9 +3,10 @@ use contact::{Bulge, Squashed};
 use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use std::sync::Arc;
+use trials::{Random, count};
 
 /// Points a figure. Its error is then about 0.3 % of the volume.
-const POINTS: u32 = 150_000;
+const POINTS: usize = 150_000;
 /// Half the edge of the cube that is sampled.
 const HALF: f64 = 1.7;
 
@@ -26,20 +27,14 @@ fn ball(kernel: Kernel, x: f64) -> Arc<dyn Implicit> {
 
 /// The part of the unit ball's volume where a function of the point holds.
 fn volume(inside: impl Fn(DVec3) -> bool) -> f64 {
-    let mut state = 17u64;
-    let mut unit = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut random = Random::new(17);
+    let points = count(POINTS);
     let mut found = 0;
-    for _ in 0..POINTS {
-        let point = (DVec3::new(unit(), unit(), unit()) * 2.0 - DVec3::ONE) * HALF;
-        found += u32::from(inside(point));
+    for _ in 0..points {
+        found += usize::from(inside(random.vector(HALF)));
     }
     let ball = 4.0 / 3.0 * core::f64::consts::PI;
-    f64::from(found) / f64::from(POINTS) * 8.0 * HALF * HALF * HALF / ball
+    found as f64 / points as f64 * 8.0 * HALF * HALF * HALF / ball
 }
 
 #[test]

@@ -121,8 +121,7 @@ mod tests {
     use super::*;
 
     /// Beside a polygon and nearly in its plane, also on the line of an edge, where h is 0 or nearly so.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn values_and_slopes_near_the_plane() {
         // Numbers of few bits, so that both precisions mean the same places.
         let corners = [[-3.0, -2.0], [3.0, -2.0], [0.0, 4.0]];

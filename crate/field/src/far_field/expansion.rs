@@ -333,14 +333,7 @@ impl Expansion {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn random(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
-        }
-    }
+    use trials::{Random, count};
 
     /// A node's coordinates.
     fn place_of(node: usize) -> [f64; 3] {
@@ -348,12 +341,11 @@ mod tests {
     }
 
     /// A polynomial within the degrees is reproduced, with its gradient, and along lines.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn polynomials_are_reproduced() {
-        let mut next = random(4);
-        for _ in 0..20 {
-            let c: [f64; 6] = core::array::from_fn(|_| next());
+        let mut random = Random::new(4);
+        for _ in 0..count(20) {
+            let c: [f64; 6] = core::array::from_fn(|_| random.range(-1.0, 1.0));
             let f = |[x, y, z]: [f64; 3]| {
                 let mixed = c[3] * x * x * y * z * z + c[4] * x.powi(4) * y;
                 c[0] + c[1] * x + c[2] * y * z + mixed + c[5] * y * y * z * z * x
@@ -363,11 +355,11 @@ mod tests {
             let fitted = Expansion::of(&series, None);
             let error = fitted.error + series.error;
             assert!(error < 1e-4, "{error}");
-            let (shift, scale) = ([next(), next(), next()].map(|x| 0.5 * x), 0.4);
+            let (shift, scale) = (random.vector(0.5).to_array(), 0.4);
             let moved = fitted.expansion.moved(shift, scale);
             let moved = Expansion::of(&Series::ZERO, Some(&moved)).expansion;
             for _ in 0..20 {
-                let place = [next(), next(), next()];
+                let place = random.vector(1.0).to_array();
                 let jet = fitted.expansion.jet(place, f64::from);
                 assert!((jet.value - f(place)).abs() <= error + 1e-6);
                 let outer = core::array::from_fn(|i| shift[i] + scale * place[i]);
@@ -381,9 +373,9 @@ mod tests {
                     let slope = (f(b) - f(a)) / 2e-4;
                     assert!((jet.gradient[axis] - slope).abs() < 1e-4, "{slope} {jet:?}");
                 }
-                let step = [next(), next(), next()].map(|x| 0.3 * x);
+                let step = random.vector(0.3).to_array();
                 let line = fitted.expansion.along(place, step, f64::from);
-                let t = next();
+                let t = random.range(-1.0, 1.0);
                 let there = core::array::from_fn(|i| place[i] + t * step[i]);
                 let value = line.iter().rev().fold(0.0, |sum, c| sum * t + c);
                 let want = fitted.expansion.jet(there, f64::from).value;
@@ -393,8 +385,7 @@ mod tests {
     }
 
     /// The terms dropped from a polynomial are part of its bound.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn terms_of_higher_degree_count_as_error() {
         let values = core::array::from_fn(|node| {
             let [x, y, z] = place_of(node);

@@ -329,8 +329,7 @@ mod tests {
     use super::*;
 
     /// The bounds on Gegenbauer polynomials: everywhere, and up to the cosine, where they are nearly reached.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn gegenbauer_polynomials_are_bounded() {
         for (bounds, e) in GEGENBAUER.iter().zip(1..) {
             let order = 0.5 * f64::from(e);
@@ -357,15 +356,11 @@ mod tests {
     }
 
     /// Interpolation of a single point's field at the nodes of a box is no further off than its bound, which is nearly reached.
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn interpolants_of_points_are_within_their_bounds() {
         use crate::{BlobScale, Kernel, Shaping, Skeleton};
-        let mut state = 6u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(99);
-            (state >> 33) as f64 / f64::from(1u32 << 31) * 2.0 - 1.0
-        };
+        let mut random = trials::Random::new(6);
+        let cases = trials::count(400);
         let nodes: [f64; 5] =
             core::array::from_fn(|i| libm::cos(core::f64::consts::PI * (2 * i + 1) as f64 / 10.0));
         // Lagrange's polynomials.
@@ -384,16 +379,16 @@ mod tests {
             Kernel::Cauchy,
         ] {
             let (mut tightest, mut checked) = (0.0f64, 0);
-            for case in 0..400 {
-                let mut direction = DVec3::new(next(), next(), next()).normalize();
+            for case in 0..cases {
+                let mut direction = random.direction();
                 if case % 2 == 0 {
                     // Nearly along an axis.
                     direction = (DVec3::X + 0.1 * direction).normalize();
                 }
-                let center = direction * (1.5 + 2.0 * next().abs());
+                let center = direction * (random.range(1.5, 3.5));
                 let shaping = Shaping {
                     kernel,
-                    radius: 0.05 + 0.5 * next().abs(),
+                    radius: random.range(0.05, 0.55),
                     blobbiness: -2.0,
                     blob_scale: BlobScale::Relative,
                     strength: 1.0,
@@ -408,7 +403,7 @@ mod tests {
                 points.seen(DVec3::ZERO, half, &[0], &mut seen);
                 let value = |x: f64, y: f64, z: f64| point.value([x, y, z].map(|c| c * half));
                 for _ in 0..6 {
-                    let place = [next(), next(), next()];
+                    let place = random.vector(1.0).to_array();
                     let [u, v, w] = place.map(weights);
                     let mut told = 0.0;
                     for k in 0..5 {
@@ -428,7 +423,10 @@ mod tests {
                     checked += 1;
                 }
             }
-            assert!(tightest > 0.1 && checked == 2400, "{kernel:?}: {tightest}");
+            assert!(
+                tightest > 0.1 && checked == 6 * cases,
+                "{kernel:?}: {tightest}"
+            );
         }
     }
 }

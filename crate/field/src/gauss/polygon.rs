@@ -309,8 +309,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn wings_are_owens_function() {
         wings::<f64>(2e-15);
         wings::<f32>(6e-7);

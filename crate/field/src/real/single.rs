@@ -271,8 +271,7 @@ mod tests {
     use super::*;
     use wide::f32x8;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn decay_is_as_in_double_precision() {
         for i in -80_000..=88_000 {
             let x = i as f32 * 1e-3;
@@ -283,8 +282,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn decay_is_bounded() {
         for i in 0..=900_000 {
             let x = i as f32 * 1e-4;
@@ -301,8 +299,7 @@ mod tests {
         }
     }
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn decay_ends_at_nothing() {
         assert_eq!(decay(0.0f32), 1.0);
         for x in [88.1, 89.0, 1e9, f32::MAX, f32::INFINITY] {

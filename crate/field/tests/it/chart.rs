@@ -1,12 +1,12 @@
 //! The conformance suite: every kernel × every kind of skeleton × every evaluator, against adaptive
 //! quadrature, against differences, and against the laws that convolution obeys.
 
-use crate::common::{
-    ALL_KINDS, Kind, Random, extent, jet, primitive, sensitivity, shaping, single,
-};
+use crate::common::{extent, jet, primitive, sensitivity, single};
 use core::f64::consts::TAU;
 use field::{Kernel, Primitive, Shaping, Skeleton, quadrature};
 use glam::{DQuat, DVec3};
+use trials::skeletons::{ALL_KINDS, Kind, shaping};
+use trials::{Random, count};
 use wide::f32x8;
 
 const EPSILON32: f64 = f32::EPSILON as f64 / 2.0;
@@ -54,12 +54,12 @@ fn skeleton(random: &mut Random, kind: Kind, low: f64, high: f64) -> Skeleton {
 
 fn matches_quadrature(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(101);
-    let count = match kind {
+    let cases = match kind {
         Kind::Triangle => 120,
         Kind::Polygon => 40,
         _ => 250,
     };
-    for _ in 0..count {
+    for _ in 0..count(cases) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.2);
         let shaping = shaped(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
@@ -82,7 +82,7 @@ fn matches_quadrature(kernel: Kernel, kind: Kind) {
 
 fn single_matches_double(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(102);
-    for _ in 0..4_000 {
+    for _ in 0..count(4_000) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.0);
         let shaping = shaped(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
@@ -135,7 +135,7 @@ fn single_matches_double(kernel: Kernel, kind: Kind) {
 
 fn gradient_is_the_derivative(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(103);
-    for _ in 0..600 {
+    for _ in 0..count(600) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.0);
         let shaping = shaped(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
@@ -168,7 +168,7 @@ fn gradient_is_the_derivative(kernel: Kernel, kind: Kind) {
 /// Cut in two: nothing changes.
 fn superposition(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(104);
-    for _ in 0..300 {
+    for _ in 0..count(300) {
         let skeleton = skeleton(&mut random, kind, -1.0, 0.7);
         let at = random.range(0.1, 0.9);
         let Some(parts) = halves(&skeleton, at) else {
@@ -203,7 +203,7 @@ fn superposition(kernel: Kernel, kind: Kind) {
 /// Moved, turned and scaled with its surroundings, a field stays what it was.
 fn rigid_motion_and_scale(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(105);
-    for _ in 0..200 {
+    for _ in 0..count(200) {
         let skeleton = skeleton(&mut random, kind, -1.0, 0.7);
         let shaping = shaped(&mut random, kernel);
         let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, TAU));
@@ -241,7 +241,7 @@ fn rigid_motion_and_scale(kernel: Kernel, kind: Kind) {
 /// compact kernel's support.
 fn falls_to_nothing(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(106);
-    for _ in 0..200 {
+    for _ in 0..count(200) {
         let skeleton = skeleton(&mut random, kind, -1.5, 0.7);
         let shaping = Shaping {
             kernel,
@@ -586,7 +586,7 @@ fn moved(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton
 /// compact kernels nothing at the depth of influence.
 fn radius_in_isolation(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(107);
-    for _ in 0..40 {
+    for _ in 0..count(40) {
         let radius = random.decades(-1.0, 1.0);
         let shaping = Shaping {
             radius,
@@ -643,13 +643,14 @@ macro_rules! chart {
         }
     )*};
     (@checks $kernel:expr, $($check:ident),*) => {
-        tests! {$(
+        $(
+            #[test]
             fn $check() {
                 for kind in ALL_KINDS {
                     super::$check($kernel, kind);
                 }
             }
-        )*}
+        )*
     };
 }
 

@@ -1,61 +1,90 @@
 //! Figures of every cell of the chart: how exact single precision is, which is a test, and how fast
 //! each evaluator is, which is a measurement (`cargo xtask bench` runs it, natively and as wasm).
 
-use crate::common::{ALL_KINDS, Kind, Random, jet, primitive, shaping, single};
 use core::hint::black_box;
 use field::real::Scalar;
 use field::{Evaluate, Kernel, Primitive, Shaping, Skeleton};
 use glam::DVec3;
+use trials::skeletons::{ALL_KINDS, Kind, shaping};
 use wide::f32x8;
 
-/// The worst relative error of single precision against double, at points 0.05 or more from the
-/// skeleton where the field is at least T/10, of random primitives of radius 1, a hundredth to ten
-/// long, that are no needles.
-fn worst_error(kernel: Kernel, kind: Kind) -> f64 {
-    let mut random = Random::new(41);
-    let mut worst = 0.0_f64;
-    for _ in 0..6_000 {
-        let size = random.decades(-2.0, 1.0);
-        let skeleton = random.skeleton(kind, size);
-        let blobbiness = random.decades(-1.0, 1.0);
-        let shaping = Shaping {
-            kernel,
-            ..shaping(1.0, blobbiness)
-        };
-        let primitive = primitive(skeleton.clone(), &shaping, None);
-        let point = single(random.near(&skeleton, -1.0, 0.7));
-        let (want, _) = jet::<f64>(&primitive, point);
-        if want < 0.1 || skeleton.distance(point) < 0.05 || is_needle(&skeleton) {
-            continue;
+/// The errors, which are the same as wasm.
+#[cfg(not(target_arch = "wasm32"))]
+mod errors {
+    use super::{name, say};
+    use crate::common::{jet, primitive, single};
+    use field::{Kernel, Shaping, Skeleton};
+    use trials::skeletons::{ALL_KINDS, Kind, shaping};
+    use trials::{Random, count};
+    use wide::f32x8;
+
+    /// The worst relative error of single precision against double, at points 0.05 or more from the
+    /// skeleton where the field is at least T/10, of random primitives of radius 1, a hundredth to ten
+    /// long, that are no needles.
+    fn worst_error(kernel: Kernel, kind: Kind) -> f64 {
+        let mut random = Random::new(41);
+        let mut worst = 0.0_f64;
+        for _ in 0..count(6_000) {
+            let size = random.decades(-2.0, 1.0);
+            let skeleton = random.skeleton(kind, size);
+            let blobbiness = random.decades(-1.0, 1.0);
+            let shaping = Shaping {
+                kernel,
+                ..shaping(1.0, blobbiness)
+            };
+            let primitive = primitive(skeleton.clone(), &shaping, None);
+            let point = single(random.near(&skeleton, -1.0, 0.7));
+            let (want, _) = jet::<f64>(&primitive, point);
+            if want < 0.1 || skeleton.distance(point) < 0.05 || is_needle(&skeleton) {
+                continue;
+            }
+            let (value, _) = jet::<f32x8>(&primitive, point);
+            worst = worst.max((value - want).abs() / want);
         }
-        let (value, _) = jet::<f32x8>(&primitive, point);
-        worst = worst.max((value - want).abs() / want);
+        worst
     }
-    worst
-}
 
-/// Whether a triangle is more than ten times as long as wide: its coordinates' rounding is then a good
-/// part of its width.
-fn is_needle(skeleton: &Skeleton) -> bool {
-    let Skeleton::Triangle { corners: [a, b, c] } = *skeleton else {
-        return false;
-    };
-    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-    (b - a).cross(c - a).length() < 0.1 * longest * longest
-}
+    /// Whether a triangle is more than ten times as long as wide: its coordinates' rounding is then a good
+    /// part of its width.
+    fn is_needle(skeleton: &Skeleton) -> bool {
+        let Skeleton::Triangle { corners: [a, b, c] } = *skeleton else {
+            return false;
+        };
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        (b - a).cross(c - a).length() < 0.1 * longest * longest
+    }
 
-/// The bound that each cell is held to. (Listed, with the figures, in BENCHMARKS.md.)
-fn bound(kernel: Kernel, kind: Kind) -> f64 {
-    match (kernel, kind) {
-        // The window over which it is integrated leaves out 2·10⁻⁶ of the field on the skeleton,
-        // which is up to e¹⁰·T here.
-        (Kernel::Gauss, Kind::Arc) => 2e-4,
-        // The rounding of coordinates alone, 1/40 of a radius from circles of 10: 3·10⁻⁷ of the distance, thrice.
-        (Kernel::Cubed, Kind::Arc) => 5e-5,
-        // Sums over edges, whose terms are larger than they.
-        (_, Kind::Triangle | Kind::Polygon) => 5e-5,
-        (Kernel::Metaballs, Kind::Segment) => 5e-5,
-        _ => 2e-5,
+    /// The bound that each cell is held to. (Listed, with the figures, in BENCHMARKS.md.)
+    fn bound(kernel: Kernel, kind: Kind) -> f64 {
+        match (kernel, kind) {
+            // The window over which it is integrated leaves out 2·10⁻⁶ of the field on the skeleton,
+            // which is up to e¹⁰·T here.
+            (Kernel::Gauss, Kind::Arc) => 2e-4,
+            // The rounding of coordinates alone, 1/40 of a radius from circles of 10: 3·10⁻⁷ of the distance, thrice.
+            (Kernel::Cubed, Kind::Arc) => 5e-5,
+            // Sums over edges, whose terms are larger than they.
+            (_, Kind::Triangle | Kind::Polygon) => 5e-5,
+            (Kernel::Metaballs, Kind::Segment) => 5e-5,
+            _ => 2e-5,
+        }
+    }
+
+    #[test]
+    fn single_precision_is_as_exact_as_listed() {
+        for kernel in Kernel::ALL {
+            for kind in ALL_KINDS {
+                let worst = worst_error(kernel, kind);
+                say(&format!(
+                    "error {} {} {worst:.1e}",
+                    kernel.name(),
+                    name(kind)
+                ));
+                assert!(
+                    worst <= bound(kernel, kind),
+                    "{kernel:?} {kind:?}: {worst:e}"
+                );
+            }
+        }
     }
 }
 
@@ -63,28 +92,30 @@ fn name(kind: Kind) -> String {
     format!("{kind:?}").to_lowercase()
 }
 
-tests! {
-    fn single_precision_is_as_exact_as_listed() {
-        for kernel in Kernel::ALL {
-            for kind in ALL_KINDS {
-                let worst = worst_error(kernel, kind);
-                say(&format!("error {} {} {worst:.1e}", kernel.name(), name(kind)));
-                assert!(worst <= bound(kernel, kind), "{kernel:?} {kind:?}: {worst:e}");
-            }
-        }
-    }
-
-    /// Lines `speed KERNEL KIND f32x8 f32 f64`, million values with gradients a second.
-    #[ignore = "a measurement, for optimised builds"]
-    fn speed() {
-        for kernel in Kernel::ALL {
-            for kind in ALL_KINDS {
-                let shaping = Shaping { kernel, ..shaping(0.2, 1.0) };
-                let primitive = primitive(typical(kind), &shaping, None);
-                let rates = [rate::<f32x8>(&primitive), rate::<f32>(&primitive), rate::<f64>(&primitive)];
-                let [a, b, c] = rates.map(|rate| format!("{rate:.2}"));
-                say(&format!("speed {} {} {a} {b} {c}", kernel.name(), name(kind)));
-            }
+/// Lines `speed KERNEL KIND f32x8 f32 f64`, million values with gradients a second.
+// This attribute is first, as it looks only at those after it (`ignore`).
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
+#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[ignore = "a measurement, for optimised builds"]
+fn speed() {
+    for kernel in Kernel::ALL {
+        for kind in ALL_KINDS {
+            let shaping = Shaping {
+                kernel,
+                ..shaping(0.2, 1.0)
+            };
+            let primitive = Primitive::new(typical(kind), &shaping, None).expect("flesh");
+            let rates = [
+                rate::<f32x8>(&primitive),
+                rate::<f32>(&primitive),
+                rate::<f64>(&primitive),
+            ];
+            let [a, b, c] = rates.map(|rate| format!("{rate:.2}"));
+            say(&format!(
+                "speed {} {} {a} {b} {c}",
+                kernel.name(),
+                name(kind)
+            ));
         }
     }
 }

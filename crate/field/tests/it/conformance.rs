@@ -1,9 +1,11 @@
 //! Every primitive × every evaluator, against quadrature.
 
-use crate::common::{KINDS, Kind, Random, extent, jet, primitive, sensitivity, shaping, single};
+use crate::common::{extent, jet, primitive, sensitivity, single};
 use core::f64::consts::{PI, TAU};
-use field::{Evaluate, Kernel, Primitive, Profile, Real, Shaping, Skeleton, Wave, quadrature};
+use field::{Evaluate, Kernel, Primitive, Real, Shaping, Skeleton, quadrature};
 use glam::DVec3;
+use trials::skeletons::{KINDS, Kind, shaping};
+use trials::{Random, count};
 use wide::f32x8;
 
 /// Half a unit in the last place of 1.
@@ -30,296 +32,295 @@ fn close_to_quadrature<R: Evaluate>(primitive: &Primitive, point: DVec3, relativ
     assert!(gradient.is_finite(), "{primitive:?} at {point:?}");
 }
 
-tests! {
-    /// Sizes from a thousandth to 300 kernel widths, distances from 10⁻⁶ to 10⁶.
-    fn double_precision_matches_quadrature() {
-        for kind in KINDS {
-            let mut random = Random::new(1);
-            for _ in 0..250 {
-                let size = random.decades(-3.0, 2.5);
-                let skeleton = random.skeleton(kind, size);
-                let shaping = random.shaping(1.0);
-                let primitive = primitive(skeleton.clone(), &shaping, None);
-                let far = random.pick(&[1.0, 1.0, 6.0]);
-                let point = random.near(&skeleton, -6.0, far);
-                close_to_quadrature::<f64>(&primitive, point, 1e-11);
-            }
+/// Sizes from a thousandth to 300 kernel widths, distances from 10⁻⁶ to 10⁶.
+#[test]
+fn double_precision_matches_quadrature() {
+    for kind in KINDS {
+        let mut random = Random::new(1);
+        for _ in 0..count(250) {
+            let size = random.decades(-3.0, 2.5);
+            let skeleton = random.skeleton(kind, size);
+            let shaping = random.shaping(1.0);
+            let primitive = primitive(skeleton.clone(), &shaping, None);
+            let far = random.pick(&[1.0, 1.0, 6.0]);
+            let point = random.near(&skeleton, -6.0, far);
+            close_to_quadrature::<f64>(&primitive, point, 1e-11);
         }
     }
+}
 
-    /// Scenes as people write them: the bound of 10⁻⁵ holds with no allowance.
-    fn single_precision_matches_quadrature() {
-        for kind in KINDS {
-            let mut random = Random::new(2);
-            for _ in 0..250 {
-                let size = random.decades(-2.0, 0.5);
-                let skeleton = random.skeleton(kind, size);
-                let radius = random.decades(-0.7, 0.3);
-                let shaping = random.shaping(radius);
-                let primitive = primitive(skeleton.clone(), &shaping, None);
-                let point = single(random.near(&skeleton, -3.0, 0.7));
-                let want = quadrature::value(&primitive, point);
-                let needle = match skeleton {
-                    Skeleton::Triangle { .. } => EPSILON32 * sensitivity(&primitive, point),
-                    _ => 0.0,
-                };
-                for value in [
-                    jet::<f32>(&primitive, point).0,
-                    jet::<f32x8>(&primitive, point).0,
-                ] {
-                    assert!(
-                        (value - want).abs() <= 1e-5 * want.abs() + 8.0 * needle,
-                        "{value:e} instead of {want:e}: {primitive:?} at {point:?}"
-                    );
-                }
-            }
-        }
-    }
-
-    /// The same formula in single and double precision, on many more cases than quadrature allows.
-    fn single_precision_is_exact_for_inputs_nearby() {
-        for kind in KINDS {
-            let mut random = Random::new(3);
-            for _ in 0..20_000 {
-                let size = random.decades(-3.0, 2.5);
-                let skeleton = random.skeleton(kind, size);
-                let primitive = primitive(skeleton.clone(), &random.shaping(1.0), None);
-                let far = random.pick(&[1.0, 1.0, 4.0]);
-                let point = single(random.near(&skeleton, -5.0, far));
-                let (want, want_gradient) = jet::<f64>(&primitive, point);
-                let (value, gradient) = jet::<f32>(&primitive, point);
-                let scale = want.abs() + sensitivity(&primitive, point) + 1e-25;
-                let error = (value - want).abs() / (EPSILON32 * scale);
+/// Scenes as people write them: the bound of 10⁻⁵ holds with no allowance.
+#[test]
+fn single_precision_matches_quadrature() {
+    for kind in KINDS {
+        let mut random = Random::new(2);
+        for _ in 0..count(250) {
+            let size = random.decades(-2.0, 0.5);
+            let skeleton = random.skeleton(kind, size);
+            let radius = random.decades(-0.7, 0.3);
+            let shaping = random.shaping(radius);
+            let primitive = primitive(skeleton.clone(), &shaping, None);
+            let point = single(random.near(&skeleton, -3.0, 0.7));
+            let want = quadrature::value(&primitive, point);
+            let needle = match skeleton {
+                Skeleton::Triangle { .. } => EPSILON32 * sensitivity(&primitive, point),
+                _ => 0.0,
+            };
+            for value in [
+                jet::<f32>(&primitive, point).0,
+                jet::<f32x8>(&primitive, point).0,
+            ] {
                 assert!(
-                    error <= ulps(kind),
-                    "{error} ulps, {value:e} instead of {want:e}: {primitive:?} at {point:?}"
-                );
-                // Gradients: the second derivative is at most a few times f/(1+d²) and f/(1+d).
-                let s = primitive.width;
-                let d = s * skeleton.distance(point);
-                let reach = s * (point.length() + extent(&skeleton));
-                let scale = scale * s * (1.0 / (1.0 + d) + reach / (1.0 + d * d))
-                    + want_gradient.length();
-                let error = (gradient - want_gradient).length() / (EPSILON32 * scale);
-                // Far outside its depth of influence a triangle's slope across its plane is lost.
-                let lost = kind == Kind::Triangle && d > 100.0;
-                assert!(
-                    lost || error <= 4.0 * ulps(kind),
-                    "{error} ulps, {gradient} instead of {want_gradient}: {primitive:?} at {point:?}"
+                    (value - want).abs() <= 1e-5 * want.abs() + 8.0 * needle,
+                    "{value:e} instead of {want:e}: {primitive:?} at {point:?}"
                 );
             }
         }
     }
+}
 
-    /// Lanes are computed as `f32` is, to the last bit.
-    fn lanes_equal_scalars() {
-        for kind in KINDS {
-            let mut random = Random::new(4);
-            for _ in 0..500 {
-                let size = random.decades(-2.0, 1.0);
-                let skeleton = random.skeleton(kind, size);
-                let kernel = random.pick(&Kernel::ALL);
-                let shaping = Shaping { kernel, ..random.shaping(1.0) };
-                let primitive = primitive(skeleton.clone(), &shaping, None);
-                let points: [DVec3; 8] =
-                    core::array::from_fn(|_| single(random.near(&skeleton, -3.0, 2.0)));
-                let lanes = primitive
-                    .jet([0, 1, 2].map(|axis| f32x8::from_lanes(|i| points[i][axis])));
-                for (i, point) in points.iter().enumerate() {
-                    let scalar = primitive.jet(point.to_array().map(|x| x as f32));
-                    let bits = [lanes.value, lanes.gradient[0], lanes.gradient[1], lanes.gradient[2]]
-                        .map(|x| x.to_array()[i].to_bits());
-                    let [x, y, z] = scalar.gradient;
-                    assert_eq!(bits, [scalar.value, x, y, z].map(f32::to_bits), "{primitive:?} at {point:?}");
-                }
+/// The same formula in single and double precision, on many more cases than quadrature allows.
+#[test]
+fn single_precision_is_exact_for_inputs_nearby() {
+    for kind in KINDS {
+        let mut random = Random::new(3);
+        for _ in 0..count(20_000) {
+            let size = random.decades(-3.0, 2.5);
+            let skeleton = random.skeleton(kind, size);
+            let primitive = primitive(skeleton.clone(), &random.shaping(1.0), None);
+            let far = random.pick(&[1.0, 1.0, 4.0]);
+            let point = single(random.near(&skeleton, -5.0, far));
+            let (want, want_gradient) = jet::<f64>(&primitive, point);
+            let (value, gradient) = jet::<f32>(&primitive, point);
+            let scale = want.abs() + sensitivity(&primitive, point) + 1e-25;
+            let error = (value - want).abs() / (EPSILON32 * scale);
+            assert!(
+                error <= ulps(kind),
+                "{error} ulps, {value:e} instead of {want:e}: {primitive:?} at {point:?}"
+            );
+            // Gradients: the second derivative is at most a few times f/(1+d²) and f/(1+d).
+            let s = primitive.width;
+            let d = s * skeleton.distance(point);
+            let reach = s * (point.length() + extent(&skeleton));
+            let scale =
+                scale * s * (1.0 / (1.0 + d) + reach / (1.0 + d * d)) + want_gradient.length();
+            let error = (gradient - want_gradient).length() / (EPSILON32 * scale);
+            // Far outside its depth of influence a triangle's slope across its plane is lost.
+            let lost = kind == Kind::Triangle && d > 100.0;
+            assert!(
+                lost || error <= 4.0 * ulps(kind),
+                "{error} ulps, {gradient} instead of {want_gradient}: {primitive:?} at {point:?}"
+            );
+        }
+    }
+}
+
+/// Lanes are computed as `f32` is, to the last bit.
+#[test]
+fn lanes_equal_scalars() {
+    for kind in KINDS {
+        let mut random = Random::new(4);
+        for _ in 0..count(500) {
+            let size = random.decades(-2.0, 1.0);
+            let skeleton = random.skeleton(kind, size);
+            let kernel = random.pick(&Kernel::ALL);
+            let shaping = Shaping {
+                kernel,
+                ..random.shaping(1.0)
+            };
+            let primitive = primitive(skeleton.clone(), &shaping, None);
+            let points: [DVec3; 8] =
+                core::array::from_fn(|_| single(random.near(&skeleton, -3.0, 2.0)));
+            let lanes = primitive.jet([0, 1, 2].map(|axis| f32x8::from_lanes(|i| points[i][axis])));
+            for (i, point) in points.iter().enumerate() {
+                let scalar = primitive.jet(point.to_array().map(|x| x as f32));
+                let bits = [
+                    lanes.value,
+                    lanes.gradient[0],
+                    lanes.gradient[1],
+                    lanes.gradient[2],
+                ]
+                .map(|x| x.to_array()[i].to_bits());
+                let [x, y, z] = scalar.gradient;
+                assert_eq!(
+                    bits,
+                    [scalar.value, x, y, z].map(f32::to_bits),
+                    "{primitive:?} at {point:?}"
+                );
             }
         }
     }
+}
 
-    /// The same bits in native code and in WebAssembly, optimised or not: a change of this number is a
-    /// change of every picture, and must be meant.
-    fn bits_are_the_same_on_every_platform() {
-        let mut hash = 0xCBF2_9CE4_8422_2325_u64;
-        let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x100_0000_01B3);
-        for kind in KINDS {
-            let mut random = Random::new(8);
-            for _ in 0..500 {
-                let size = random.decades(-2.0, 1.0);
-                let skeleton = random.skeleton(kind, size);
-                let profile = Profile {
-                    waves: [Wave::Sin, Wave::Cos2],
-                    scale: [22.0, 5.0],
-                    bounds: [0.5, 0.7],
-                    times: 1.15,
-                    restriction: 0.0,
+/// Against a five-point difference of the value.
+#[test]
+fn gradient_is_the_derivative() {
+    for kind in KINDS {
+        let mut random = Random::new(5);
+        for _ in 0..count(1_000) {
+            let size = random.decades(-2.0, 1.5);
+            let skeleton = random.skeleton(kind, size);
+            let primitive = primitive(skeleton.clone(), &random.shaping(1.0), None);
+            let point = random.near(&skeleton, -3.0, 1.0);
+            let h = 1e-3 / primitive.width;
+            let (value, gradient) = jet::<f64>(&primitive, point);
+            for axis in 0..3 {
+                let at = |step: f64| {
+                    let mut p = point;
+                    p[axis] += step * h;
+                    primitive.value(p.to_array())
                 };
-                let profile = random.pick(&[None, Some(profile)]);
-                let kernel = random.pick(&Kernel::ALL);
-                let shaping = Shaping { kernel, ..random.shaping(1.0) };
-                let primitive = primitive(skeleton.clone(), &shaping, profile);
-                let point = random.near(&skeleton, -3.0, 2.0);
-                let (value, gradient) = jet::<f64>(&primitive, point);
-                let (value8, gradient8) = jet::<f32x8>(&primitive, point);
-                let origin = random.vector(2.0);
-                let interval = primitive.ray_interval(origin, point - origin).unwrap_or_default();
-                for x in [value, gradient.x, gradient.y, gradient.z, value8, gradient8.x, gradient8.y, gradient8.z, primitive.influence, interval[0], interval[1]] {
-                    add(x.to_bits());
-                }
-            }
-        }
-        assert_eq!(hash, 0x4BC7_87FF_D4AD_2915, "{hash:#018x}");
-    }
-
-    /// Against a five-point difference of the value.
-    fn gradient_is_the_derivative() {
-        for kind in KINDS {
-            let mut random = Random::new(5);
-            for _ in 0..1_000 {
-                let size = random.decades(-2.0, 1.5);
-                let skeleton = random.skeleton(kind, size);
-                let primitive = primitive(skeleton.clone(), &random.shaping(1.0), None);
-                let point = random.near(&skeleton, -3.0, 1.0);
-                let h = 1e-3 / primitive.width;
-                let (value, gradient) = jet::<f64>(&primitive, point);
-                for axis in 0..3 {
-                    let at = |step: f64| {
-                        let mut p = point;
-                        p[axis] += step * h;
-                        primitive.value(p.to_array())
-                    };
-                    let difference = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
-                    let tolerance = 1e-9 * primitive.width * (value.abs() + sensitivity(&primitive, point) * 1e-3);
-                    assert!(
-                        (gradient[axis] - difference).abs() <= tolerance,
-                        "axis {axis}: {} instead of {difference}, tolerance {tolerance:e}: {primitive:?} at {point:?}",
-                        gradient[axis]
-                    );
-                }
+                let difference = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
+                let tolerance =
+                    1e-9 * primitive.width * (value.abs() + sensitivity(&primitive, point) * 1e-3);
+                assert!(
+                    (gradient[axis] - difference).abs() <= tolerance,
+                    "axis {axis}: {} instead of {difference}, tolerance {tolerance:e}: {primitive:?} at {point:?}",
+                    gradient[axis]
+                );
             }
         }
     }
+}
 
-    /// Exactly degenerate positions and skeletons, and their neighbours a few units in the last
-    /// place away.
-    fn degenerate_inputs() {
-        let arc = |radius: f64, angle: f64| Skeleton::Arc {
+/// Exactly degenerate positions and skeletons, and their neighbours a few units in the last
+/// place away.
+#[test]
+fn degenerate_inputs() {
+    let arc = |radius: f64, angle: f64| Skeleton::Arc {
+        center: DVec3::ZERO,
+        u: DVec3::X,
+        v: DVec3::Y,
+        radius,
+        angle,
+    };
+    let triangle = |b: [f64; 2], c: [f64; 2]| Skeleton::Triangle {
+        corners: [
+            DVec3::ZERO,
+            DVec3::new(b[0], b[1], 0.0),
+            DVec3::new(c[0], c[1], 0.0),
+        ],
+    };
+    let segment = |length: f64| Skeleton::Segment {
+        base: DVec3::ZERO,
+        apex: DVec3::X * length,
+    };
+    let skeletons = [
+        Skeleton::Point {
             center: DVec3::ZERO,
-            u: DVec3::X,
-            v: DVec3::Y,
-            radius,
-            angle,
-        };
-        let triangle = |b: [f64; 2], c: [f64; 2]| Skeleton::Triangle {
-            corners: [
-                DVec3::ZERO,
-                DVec3::new(b[0], b[1], 0.0),
-                DVec3::new(c[0], c[1], 0.0),
-            ],
-        };
-        let segment = |length: f64| Skeleton::Segment {
-            base: DVec3::ZERO,
-            apex: DVec3::X * length,
-        };
-        let skeletons = [
-            Skeleton::Point { center: DVec3::ZERO },
-            Skeleton::Plane { point: DVec3::ZERO, normal: DVec3::Z },
-            segment(2.0),
-            segment(0.0),
-            segment(1e-30),
-            segment(1e-9),
-            arc(1.0, TAU),
-            arc(1.0, PI),
-            arc(1.0, TAU.next_down()),
-            arc(1.0, PI.next_down()),
-            arc(1.0, PI.next_up()),
-            arc(1.0, 1e-9),
-            arc(1.0, 1e-300),
-            arc(1.0, 0.0),
-            arc(0.0, 3.0),
-            arc(1e-12, TAU),
-            arc(1e3, 1e-3),
-            triangle([2.0, 0.0], [0.0, 2.0]),
-            triangle([2.0, 0.0], [1.0, 0.0]),
-            triangle([2.0, 0.0], [1.0, 1e-16]),
-            triangle([2.0, 0.0], [2.0, 0.0]),
-            triangle([0.0, 0.0], [0.0, 0.0]),
-            triangle([1e-9, 0.0], [0.0, 1e-9]),
-            triangle([0.0, 1e3], [1e3, 0.0]),
-        ];
-        let mut points = vec![];
-        for x in [0.0, 1.0, -1.0, 2.0, 0.5, -3.0, 1e3, 1e6] {
-            for y in [0.0, 1.0, 0.5, -1.0] {
-                for z in [0.0, 1.0, 1e-8, -1e6] {
-                    points.push(DVec3::new(x, y, z));
-                }
-            }
-        }
-        for skeleton in skeletons {
-            let primitive = primitive(skeleton.clone(), &shaping(1.0, 1.0), None);
-            for &point in &points {
-                close_to_quadrature::<f64>(&primitive, point, 1e-10);
-                let beside = DVec3::new(point.x.next_up(), point.y.next_down(), point.z.next_up());
-                close_to_quadrature::<f64>(&primitive, beside, 1e-10);
-                let (want, _) = jet::<f64>(&primitive, point);
-                let scale = want.abs() + sensitivity(&primitive, point);
-                let beside = point.to_array().map(|x| f64::from((x as f32).next_up()));
-                for p in [point, DVec3::from_array(beside)] {
-                    let (value, gradient) = jet::<f32x8>(&primitive, p);
-                    assert!(gradient.is_finite(), "{skeleton:?} at {p:?}");
-                    assert!(
-                        (value - want).abs() <= 64.0 * EPSILON32 * scale + 1e-30,
-                        "{value:e} instead of {want:e}: {skeleton:?} at {p:?}"
-                    );
-                }
+        },
+        Skeleton::Plane {
+            point: DVec3::ZERO,
+            normal: DVec3::Z,
+        },
+        segment(2.0),
+        segment(0.0),
+        segment(1e-30),
+        segment(1e-9),
+        arc(1.0, TAU),
+        arc(1.0, PI),
+        arc(1.0, TAU.next_down()),
+        arc(1.0, PI.next_down()),
+        arc(1.0, PI.next_up()),
+        arc(1.0, 1e-9),
+        arc(1.0, 1e-300),
+        arc(1.0, 0.0),
+        arc(0.0, 3.0),
+        arc(1e-12, TAU),
+        arc(1e3, 1e-3),
+        triangle([2.0, 0.0], [0.0, 2.0]),
+        triangle([2.0, 0.0], [1.0, 0.0]),
+        triangle([2.0, 0.0], [1.0, 1e-16]),
+        triangle([2.0, 0.0], [2.0, 0.0]),
+        triangle([0.0, 0.0], [0.0, 0.0]),
+        triangle([1e-9, 0.0], [0.0, 1e-9]),
+        triangle([0.0, 1e3], [1e3, 0.0]),
+    ];
+    let mut points = vec![];
+    for x in [0.0, 1.0, -1.0, 2.0, 0.5, -3.0, 1e3, 1e6] {
+        for y in [0.0, 1.0, 0.5, -1.0] {
+            for z in [0.0, 1.0, 1e-8, -1e6] {
+                points.push(DVec3::new(x, y, z));
             }
         }
     }
-
-    /// However far, results are numbers.
-    fn nothing_overflows() {
-        for kind in KINDS {
-            let mut random = Random::new(6);
-            for _ in 0..2_000 {
-                let size = random.decades(-8.0, 5.0);
-                let skeleton = random.skeleton(kind, size);
-                let primitive = primitive(skeleton.clone(), &random.shaping(1.0), None);
-                let point = random.near(&skeleton, -20.0, 30.0);
-                for (value, gradient) in [
-                    jet::<f64>(&primitive, point),
-                    jet::<f32>(&primitive, point),
-                    jet::<f32x8>(&primitive, point),
-                ] {
-                    assert!(value.is_finite() && gradient.is_finite(), "{value} {gradient}: {primitive:?} at {point:?}");
-                }
+    for skeleton in skeletons {
+        let primitive = primitive(skeleton.clone(), &shaping(1.0, 1.0), None);
+        for &point in &points {
+            close_to_quadrature::<f64>(&primitive, point, 1e-10);
+            let beside = DVec3::new(point.x.next_up(), point.y.next_down(), point.z.next_up());
+            close_to_quadrature::<f64>(&primitive, beside, 1e-10);
+            let (want, _) = jet::<f64>(&primitive, point);
+            let scale = want.abs() + sensitivity(&primitive, point);
+            let beside = point.to_array().map(|x| f64::from((x as f32).next_up()));
+            for p in [point, DVec3::from_array(beside)] {
+                let (value, gradient) = jet::<f32x8>(&primitive, p);
+                assert!(gradient.is_finite(), "{skeleton:?} at {p:?}");
+                assert!(
+                    (value - want).abs() <= 64.0 * EPSILON32 * scale + 1e-30,
+                    "{value:e} instead of {want:e}: {skeleton:?} at {p:?}"
+                );
             }
         }
     }
+}
 
-    /// The ray's own evaluation, with origins far from the world's.
-    fn along_ray_is_the_field() {
-        for kind in KINDS {
-            let mut random = Random::new(7);
-            for _ in 0..500 {
-                let mut skeleton = random.skeleton(kind, 1.0);
-                if kind == Kind::Triangle && skeleton.measure() < 0.1 {
-                    continue; // The shift would change a needle's shape.
-                }
-                let shift = DVec3::new(1e4, -2e4, 3e4);
-                translate(&mut skeleton, shift);
-                let primitive = primitive(skeleton.clone(), &random.shaping(0.1), None);
-                let origin = shift + random.vector(1.0);
-                let direction = random.direction() * random.range(0.5, 2.0);
-                let t = f64::from(random.range(-1.0, 1.0) as f32);
-                let (want, gradient) = jet::<f64>(&primitive, origin + direction * t);
-                let slope = gradient.dot(direction);
-                let scale = primitive.width * want.abs();
-                let (value, derivative) = primitive.along_ray(origin, direction, f32x8::splat(t as f32));
-                assert!((value.lane(0) - want).abs() <= 3e-5 * want.abs(), "{primitive:?}");
-                assert!((derivative.lane(0) - slope).abs() <= 1e-4 * scale, "{primitive:?}");
-                let (value, derivative) = primitive.along_ray(origin, direction, t);
-                assert!((value - want).abs() <= 1e-9 * want.abs(), "{primitive:?}");
-                assert!((derivative - slope).abs() <= 1e-9 * scale, "{primitive:?}");
+/// However far, results are numbers.
+#[test]
+fn nothing_overflows() {
+    for kind in KINDS {
+        let mut random = Random::new(6);
+        for _ in 0..count(2_000) {
+            let size = random.decades(-8.0, 5.0);
+            let skeleton = random.skeleton(kind, size);
+            let primitive = primitive(skeleton.clone(), &random.shaping(1.0), None);
+            let point = random.near(&skeleton, -20.0, 30.0);
+            for (value, gradient) in [
+                jet::<f64>(&primitive, point),
+                jet::<f32>(&primitive, point),
+                jet::<f32x8>(&primitive, point),
+            ] {
+                assert!(
+                    value.is_finite() && gradient.is_finite(),
+                    "{value} {gradient}: {primitive:?} at {point:?}"
+                );
             }
+        }
+    }
+}
+
+/// The ray's own evaluation, with origins far from the world's.
+#[test]
+fn along_ray_is_the_field() {
+    for kind in KINDS {
+        let mut random = Random::new(7);
+        for _ in 0..count(500) {
+            let mut skeleton = random.skeleton(kind, 1.0);
+            if kind == Kind::Triangle && skeleton.measure() < 0.1 {
+                continue; // The shift would change a needle's shape.
+            }
+            let shift = DVec3::new(1e4, -2e4, 3e4);
+            translate(&mut skeleton, shift);
+            let primitive = primitive(skeleton.clone(), &random.shaping(0.1), None);
+            let origin = shift + random.vector(1.0);
+            let direction = random.direction() * random.range(0.5, 2.0);
+            let t = f64::from(random.range(-1.0, 1.0) as f32);
+            let (want, gradient) = jet::<f64>(&primitive, origin + direction * t);
+            let slope = gradient.dot(direction);
+            let scale = primitive.width * want.abs();
+            let (value, derivative) =
+                primitive.along_ray(origin, direction, f32x8::splat(t as f32));
+            assert!(
+                (value.lane(0) - want).abs() <= 3e-5 * want.abs(),
+                "{primitive:?}"
+            );
+            assert!(
+                (derivative.lane(0) - slope).abs() <= 1e-4 * scale,
+                "{primitive:?}"
+            );
+            let (value, derivative) = primitive.along_ray(origin, direction, t);
+            assert!((value - want).abs() <= 1e-9 * want.abs(), "{primitive:?}");
+            assert!((derivative - slope).abs() <= 1e-9 * scale, "{primitive:?}");
         }
     }
 }

@@ -6,19 +6,7 @@ use field::{
 };
 use glam::DVec3;
 use std::sync::Arc;
-
-struct Numbers(u64);
-
-impl Numbers {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(99);
-        (self.0 >> 33) as f64 / f64::from(1u32 << 31)
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
-    }
-}
+use trials::{Random, count};
 
 const ENDLESS: [Kernel; 4] = [
     Kernel::Cauchy,
@@ -27,9 +15,9 @@ const ENDLESS: [Kernel; 4] = [
     Kernel::Cubed,
 ];
 
-fn primitive(kernel: Kernel, kind: usize, size: f64, n: &mut Numbers) -> Primitive {
-    let a = n.vector();
-    let [b, c] = [0, 1].map(|_| a + n.vector() * size * 4.0);
+fn primitive(kernel: Kernel, kind: usize, size: f64, n: &mut Random) -> Primitive {
+    let a = n.vector(1.0);
+    let [b, c] = [0, 1].map(|_| a + n.vector(1.0) * size * 4.0);
     let skeleton = match kind {
         0 => Skeleton::Point { center: a },
         1 => Skeleton::Segment { base: a, apex: b },
@@ -37,7 +25,7 @@ fn primitive(kernel: Kernel, kind: usize, size: f64, n: &mut Numbers) -> Primiti
         _ => Skeleton::Arc {
             center: a,
             u: DVec3::X,
-            v: n.vector(),
+            v: n.vector(1.0),
             radius: size * 3.0,
             angle: 1.0 + 4.0 * n.unit(),
         },
@@ -77,21 +65,21 @@ fn far(primitives: &[Primitive], cell: &Cell, place: DVec3) -> f64 {
 
 #[test]
 fn polynomials_are_within_their_bounds() {
-    let mut n = Numbers(7);
+    let mut n = Random::new(7);
     let (mut checked, mut tightest, mut listed, mut all) = (0, 0.0f64, 0, 0);
     for case in 0..48 {
         let kernel = ENDLESS[case % 4];
         let kind = case / 4 % 4;
-        let count = [30, 200, 600][case / 16];
+        let number = [30, 200, 600][case / 16];
         // The more there are the smaller, so that the field is about T somewhere.
-        let size = 0.5 / f64::from(count).sqrt();
-        let primitives: Vec<Primitive> = (0..count)
+        let size = 0.5 / f64::from(number).sqrt();
+        let primitives: Vec<Primitive> = (0..number)
             .map(|i| primitive(kernel, if i % 8 == 0 { 0 } else { kind }, size, &mut n))
             .collect();
         let field = FarField::new(&primitives, DVec3::ZERO, 4.0);
-        for _ in 0..12 {
-            let depth = 2 + (n.unit() * 6.0) as u32;
-            let cell = descend(&field, &primitives, 1.5 * n.vector(), depth);
+        for _ in 0..count(12) {
+            let depth = 2 + n.below(6) as u32;
+            let cell = descend(&field, &primitives, 1.5 * n.vector(1.0), depth);
             assert!(cell.error.is_finite());
             listed += cell.near.len();
             all += primitives.len();
@@ -99,7 +87,7 @@ fn polynomials_are_within_their_bounds() {
                 continue;
             }
             for _ in 0..12 {
-                let local = n.vector();
+                let local = n.vector(1.0);
                 let place = cell.center + local * cell.reach();
                 let want = far(&primitives, cell, place);
                 let told = cell.expansion.jet(local.to_array(), f64::from).value;
@@ -117,26 +105,29 @@ fn polynomials_are_within_their_bounds() {
             }
         }
     }
-    assert!(checked > 2000 && tightest > 0.02, "{checked} {tightest}");
+    assert!(
+        checked > count(2000) && tightest > 0.02,
+        "{checked} {tightest}"
+    );
     assert!(listed * 3 < all * 2, "{listed} of {all}");
 }
 
 /// Errors stay below the limit where rounding does not count, and the slope of the polynomial is that of the field.
 #[test]
 fn balls_have_small_errors_and_true_slopes() {
-    let mut n = Numbers(3);
+    let mut n = Random::new(3);
     for kernel in ENDLESS {
         let primitives: Vec<Primitive> = (0..400)
             .map(|_| primitive(kernel, 0, 0.02, &mut n))
             .collect();
         let field = FarField::new(&primitives, DVec3::ZERO, 2.0);
         let mut far_ones = 0;
-        for _ in 0..30 {
-            let cell = descend(&field, &primitives, n.vector(), 4);
+        for _ in 0..count(30) {
+            let cell = descend(&field, &primitives, n.vector(1.0), 4);
             let rounding = 2e-4 * cell.far_most.abs().max(0.1);
             assert!(cell.error <= MOST_ERROR + rounding, "{}", cell.error);
             far_ones += primitives.len() - cell.near.len();
-            let local = n.vector() * 0.6;
+            let local = n.vector(1.0) * 0.6;
             let place = cell.center + local * cell.reach();
             let slope = (0..)
                 .zip(&primitives)
@@ -152,7 +143,7 @@ fn balls_have_small_errors_and_true_slopes() {
         }
         // A field that falls as 1/r is far larger than T here, and needs as many more digits.
         let least = if kernel == Kernel::Inverse { 100 } else { 200 };
-        assert!(far_ones > 30 * least, "{kernel:?} {far_ones}");
+        assert!(far_ones > count(30) * least, "{kernel:?} {far_ones}");
     }
 }
 
@@ -161,7 +152,7 @@ fn balls_have_small_errors_and_true_slopes() {
 fn work_is_about_linear() {
     let mut work = Vec::new();
     for count in [500u32, 4000] {
-        let mut n = Numbers(11);
+        let mut n = Random::new(11);
         let size = 0.4 / libm::cbrt(f64::from(count));
         let primitives: Vec<Primitive> = (0..count)
             .map(|_| primitive(Kernel::Cauchy, 0, size, &mut n))
@@ -190,39 +181,39 @@ fn work_is_about_linear() {
 /// Where only the surface counts, the cells that are left empty have a field below T, and most of space is such.
 #[test]
 fn empty_cells_hold_no_surface() {
-    let mut n = Numbers(9);
+    let mut n = Random::new(9);
     let (mut empty, mut highest) = (0, 0.0f64);
     for kernel in ENDLESS {
         let primitives: Vec<Primitive> = (0..100)
             .map(|i| primitive(kernel, i % 2, 0.02, &mut n))
             .collect();
         let field = FarField::new(&primitives, DVec3::ZERO, 2.0).surface_only();
-        for _ in 0..200 {
-            let place = 2.0 * n.vector();
+        for _ in 0..count(200) {
+            let place = 2.0 * n.vector(1.0);
             let cell = descend(&field, &primitives, place, 6);
             if !cell.is_empty {
                 continue;
             }
             empty += 1;
             for _ in 0..20 {
-                let within = (cell.center + n.vector() * cell.reach()).to_array();
+                let within = (cell.center + n.vector(1.0) * cell.reach()).to_array();
                 let value: f64 = primitives.iter().map(|p| p.value(within)).sum();
                 assert!(value <= cell.most && cell.most < 1.0, "{kernel:?} {value}");
                 highest = highest.max(value);
             }
         }
     }
-    assert!(empty > 200 && highest > 0.3, "{empty} {highest}");
+    assert!(empty > count(200) && highest > 0.3, "{empty} {highest}");
 }
 
 /// A field of cells depends on the primitives alone, not on the order in which cells are asked for.
 #[test]
 fn cells_are_the_same_in_any_order() {
-    let mut n = Numbers(5);
+    let mut n = Random::new(5);
     let primitives: Vec<Primitive> = (0..300)
         .map(|_| primitive(Kernel::Cauchy, 0, 0.03, &mut n))
         .collect();
-    let places: Vec<DVec3> = (0..20).map(|_| n.vector()).collect();
+    let places: Vec<DVec3> = (0..20).map(|_| n.vector(1.0)).collect();
     let [a, b] = [0, 1].map(|_| FarField::new(&primitives, DVec3::ZERO, 2.0));
     for place in places.iter().rev() {
         descend(&b, &primitives, *place, 5);
@@ -238,7 +229,7 @@ fn cells_are_the_same_in_any_order() {
 /// After an edit of few primitives a hierarchy takes over most of an earlier one's cells, and has the same bits as one made anew.
 #[test]
 fn edits_give_the_bits_of_a_fresh_hierarchy() {
-    let mut n = Numbers(17);
+    let mut n = Random::new(17);
     for case in 0..9 {
         let kinds = [1, 2, 4][case % 3];
         let mut primitives: Vec<Primitive> = (0..500)
@@ -252,13 +243,13 @@ fn edits_give_the_bits_of_a_fresh_hierarchy() {
                 _ => field.with_derivatives(),
             }
         };
-        let mut places: Vec<DVec3> = (0..30).map(|_| n.vector()).collect();
+        let mut places: Vec<DVec3> = (0..30).map(|_| n.vector(1.0)).collect();
         let mut field = make(&primitives);
         for place in &places {
             descend(&field, &primitives, *place, 7);
         }
-        for _ in 0..4 {
-            let moved = (n.unit() * 500.0) as usize;
+        for _ in 0..count(4) {
+            let moved = n.below(500);
             primitives[moved] = primitive(Kernel::Cauchy, 0, 0.02, &mut n);
             places[0] = primitives[moved].blob_middle();
             let changed: Arc<[u32]> = [moved as u32].into();
@@ -295,7 +286,7 @@ fn edits_give_the_bits_of_a_fresh_hierarchy() {
 /// Gradients are no further off than the bound, derivatives no larger than theirs, and both bounds are of use.
 #[test]
 fn slopes_are_within_their_bounds() {
-    let mut n = Numbers(31);
+    let mut n = Random::new(31);
     for case in 0..16 {
         let kernel = ENDLESS[case % 4];
         let kind = case / 4;
@@ -304,8 +295,8 @@ fn slopes_are_within_their_bounds() {
             .collect();
         let field = FarField::new(&primitives, DVec3::ZERO, 2.0).with_derivatives();
         let (mut checked, mut worst, mut steepest) = (0, 0.0f64, 0.0f64);
-        for _ in 0..40 {
-            let center = n.vector();
+        for _ in 0..count(40) {
+            let center = n.vector(1.0);
             let radius = 0.05 * n.unit();
             let cell = field
                 .around(&primitives, center, radius)
@@ -314,7 +305,7 @@ fn slopes_are_within_their_bounds() {
                 continue;
             }
             for _ in 0..8 {
-                let place = center + n.vector().clamp_length_max(1.0) * radius;
+                let place = center + n.vector(1.0).clamp_length_max(1.0) * radius;
                 let of =
                     |p: &Primitive, at: DVec3| DVec3::from_array(p.jet(at.to_array()).gradient);
                 let far = |at: DVec3| {
@@ -329,7 +320,7 @@ fn slopes_are_within_their_bounds() {
                 let off = told.distance(want);
                 assert!(off <= cell.smooth.slope_error, "{kernel:?} {kind}: {off}");
                 assert!(want.length() <= slope, "{kernel:?} {kind}: {want} {slope}");
-                let along = n.vector().normalize();
+                let along = n.vector(1.0).normalize();
                 let h = 1e-3 * cell.half;
                 let [a, b] = [-h, h].map(|h| far(place + along * h).dot(along));
                 let bend = (b - a) / (2.0 * h);
@@ -344,7 +335,7 @@ fn slopes_are_within_their_bounds() {
         // Bounds add up where slopes cancel, and rounding of coordinates is bounded for the worst.
         let [least, steep] = [1e-5, 0.01];
         assert!(
-            checked > 60 && worst > least && steepest > steep,
+            checked > count(60) && worst > least && steepest > steep,
             "{kernel:?} {kind}: {checked} {worst} {steepest}"
         );
     }
@@ -353,14 +344,14 @@ fn slopes_are_within_their_bounds() {
 /// The cell for a ball holds it in its loose cube; outside the hierarchy's cube there is none.
 #[test]
 fn cells_around_balls_hold_them() {
-    let mut n = Numbers(77);
+    let mut n = Random::new(77);
     let primitives: Vec<Primitive> = (0..500)
         .map(|_| primitive(Kernel::Cauchy, 0, 0.02, &mut n))
         .collect();
     let field = FarField::new(&primitives, DVec3::ZERO, 2.0);
     let mut sizes = Vec::new();
-    for _ in 0..200 {
-        let (center, radius) = (n.vector(), n.unit() * n.unit() * 0.3);
+    for _ in 0..count(200) {
+        let (center, radius) = (n.vector(1.0), n.unit() * n.unit() * 0.3);
         let cell = field.around(&primitives, center, radius).expect("a cell");
         let reach = (center - cell.center).abs().max_element() + radius;
         assert!(reach <= cell.reach());
@@ -381,15 +372,15 @@ fn cells_around_balls_hold_them() {
 /// The hierarchy of some of the primitives sums these alone.
 #[test]
 fn parts_of_the_sum_have_hierarchies() {
-    let mut n = Numbers(15);
+    let mut n = Random::new(15);
     let primitives: Vec<Primitive> = (0..400)
         .map(|i| primitive(Kernel::Squared, i % 2, 0.02, &mut n))
         .collect();
     let all = FarField::new(&primitives, DVec3::ZERO, 2.0);
     let odd = all.of_positive(|i| i % 2 == 1);
     let mut largest = 0.0f64;
-    for _ in 0..100 {
-        let place = n.vector();
+    for _ in 0..count(100) {
+        let place = n.vector(1.0);
         let cell = odd.around(&primitives, place, 0.0).expect("a cell");
         let of = |p: &Primitive| p.value(place.to_array());
         let near: f64 = cell.near.iter().map(|i| of(&primitives[*i as usize])).sum();
@@ -406,19 +397,19 @@ fn parts_of_the_sum_have_hierarchies() {
 /// Sums use their hierarchy where the caller bears its error, and only there.
 #[test]
 fn sums_are_as_exact_as_is_asked() {
-    let mut n = Numbers(8);
+    let mut n = Random::new(8);
     let kernel = Kernel::Cauchy;
     let primitives: Vec<Primitive> = (0..2000)
         .map(|i| primitive(kernel, i % 3, 0.008, &mut n))
         .collect();
     let sum = Sum::new(primitives);
     let (mut shortened, mut largest) = (0, 0.0f64);
-    for _ in 0..200 {
+    for _ in 0..count(200) {
         let ball = Ball {
-            center: n.vector(),
+            center: n.vector(1.0),
             radius: 0.02 * n.unit(),
         };
-        let point = ball.center + n.vector().clamp_length_max(1.0) * ball.radius;
+        let point = ball.center + n.vector(1.0).clamp_length_max(1.0) * ball.radius;
         let want = sum.jet(point);
         let error = 2e-4;
         let [exact, slack] = [0.0, error].map(|far| Slack {
@@ -452,5 +443,8 @@ fn sums_are_as_exact_as_is_asked() {
             assert!((told.value - want.value).abs() <= smaller.error()[0] + 2e-9);
         }
     }
-    assert!(shortened > 150 && largest > 1e-9, "{shortened} {largest}");
+    assert!(
+        shortened > count(150) && largest > 1e-9,
+        "{shortened} {largest}"
+    );
 }

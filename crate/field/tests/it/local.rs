@@ -1,11 +1,11 @@
 //! Local convolution: against its definition, by quadrature and search; its bounds, by sampling; and how far it jumps.
 
-use crate::common::Random;
 use field::local::{Limb, Place, Two};
 use field::{
     Ball, BlobScale, Implicit, Kernel, Local, Primitive, Shaping, Skeleton, Taper, quadrature,
 };
 use glam::DVec3;
+use trials::{Random, count};
 
 /// A skeleton: points with radii, and segments between them, curve by curve.
 struct Figure {
@@ -240,7 +240,7 @@ fn figure(random: &mut Random, kernel: Kernel) -> Figure {
     for _ in 0..7 {
         heading = (heading + 0.7 * random.direction()).normalize();
         let before = points[points.len() - 1].0;
-        let radius = if random.range(0.0, 1.0) < 0.5 {
+        let radius = if random.chance(0.5) {
             0.3
         } else {
             random.range(0.15, 0.4)
@@ -263,11 +263,8 @@ fn figure(random: &mut Random, kernel: Kernel) -> Figure {
 
 fn near(figure: &Figure, random: &mut Random, spread: f64) -> DVec3 {
     let segments = &figure.segments;
-    let [a, b] =
-        segments[(random.range(0.0, 1.0) * segments.len() as f64) as usize % segments.len()].0;
-    let on = figure.points[a]
-        .0
-        .lerp(figure.points[b].0, random.range(0.0, 1.0));
+    let [a, b] = random.pick(segments).0;
+    let on = figure.points[a].0.lerp(figure.points[b].0, random.unit());
     on + random.direction() * random.range(0.05, spread)
 }
 
@@ -279,7 +276,7 @@ fn the_field_is_the_largest_stretch() {
         for _ in 0..2 {
             let figure = figure(&mut random, kernel);
             let (local, between) = (figure.local(), figure.distances());
-            for _ in 0..8 {
+            for _ in 0..count(8) {
                 let point = near(&figure, &mut random, 0.8);
                 let places = figure.places(point);
                 let stretches: Vec<f64> = places
@@ -315,7 +312,7 @@ fn the_field_is_the_largest_stretch() {
             }
         }
     }
-    assert!(compared > 40, "{compared}");
+    assert!(compared > count(40), "{compared}");
 }
 
 /// Cells of space that know which places matter change nothing, down to the last bit.
@@ -327,7 +324,7 @@ fn cells_leave_nothing_out() {
         for _ in 0..4 {
             let figure = figure(&mut random, kernel);
             let local = figure.local();
-            for _ in 0..400 {
+            for _ in 0..count(400) {
                 let point = near(&figure, &mut random, 0.7);
                 // Below the faintest level all terms are asked.
                 let (first, second) = local.two(point);
@@ -353,7 +350,7 @@ fn gradients_are_derivatives() {
     for _ in 0..10 {
         let figure = figure(&mut random, Kernel::Cubed);
         let local = figure.local();
-        for _ in 0..40 {
+        for _ in 0..count(40) {
             let point = near(&figure, &mut random, 0.6);
             let jet = local.jet(point);
             let h = 1e-5;
@@ -385,7 +382,7 @@ fn bounds_hold_in_balls() {
         for _ in 0..8 {
             let figure = figure(&mut random, kernel);
             let local = figure.local();
-            for _ in 0..60 {
+            for _ in 0..count(60) {
                 let center = near(&figure, &mut random, 0.7);
                 let radius = random.decades(-4.0, -0.5);
                 let ball = Ball { center, radius };
@@ -393,7 +390,7 @@ fn bounds_hold_in_balls() {
                 all += 1;
                 finite += u32::from(first.slope.is_finite());
                 for _ in 0..12 {
-                    let point = center + random.direction() * (radius * random.range(0.0, 1.0));
+                    let point = center + random.direction() * (radius * random.unit());
                     let (own, other) = local.two(point);
                     let inside = |value: f64, [low, high]: [f64; 2]| {
                         let slack = 1e-9 * (1.0 + value.abs());
@@ -442,16 +439,13 @@ fn bounds_hold_in_balls() {
 }
 
 /// Across the planes at joints and at the ends of curves in a branch the value is continuous and the slope jumps a little; where places
-/// vanish that lead, far out beside bends, the value jumps. With SINEW_POINTS as many points.
+/// vanish that lead, far out beside bends, the value jumps.
 #[test]
 fn jumps_are_small() {
-    let points: u32 = (std::env::var("SINEW_POINTS").ok())
-        .and_then(|n| n.parse().ok())
-        .unwrap_or(3000);
     for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
         let [coarse, fine] = [36, 144].map(|segments| {
             let (figure, planes) = wave(segments, kernel);
-            jumps(&figure, &planes, points)
+            jumps(&figure, &planes)
         });
         // The value has none. A slope's is that of the turn at a joint: the finer the curve, the smaller.
         assert!(
@@ -464,7 +458,7 @@ fn jumps_are_small() {
         );
         for arms in [3, 6] {
             let (figure, planes) = star(arms, kernel);
-            let branch = jumps(&figure, &planes, points);
+            let branch = jumps(&figure, &planes);
             assert!(
                 branch[0] < 1e-6 && branch[1] < 0.2,
                 "{kernel:?} {arms}: {branch:?}"
@@ -511,14 +505,13 @@ fn star(arms: usize, kernel: Kernel) -> (Figure, Vec<[DVec3; 2]>) {
 }
 
 /// The largest jump of the value and of the slope, relative to them, at some planes.
-fn jumps(figure: &Figure, planes: &[[DVec3; 2]], points: u32) -> [f64; 2] {
+fn jumps(figure: &Figure, planes: &[[DVec3; 2]]) -> [f64; 2] {
     let mut random = Random::new(74);
     let local = figure.local();
     let (mut largest, mut steepest, mut at_surface) = (0.0f64, 0.0f64, 0.0f64);
-    for _ in 0..points {
+    for _ in 0..count(3000) {
         // On the plane, as far from its middle as flesh is.
-        let number = (random.range(0.0, 1.0) * planes.len() as f64) as usize;
-        let [middle, normal] = planes[number];
+        let [middle, normal] = random.pick(planes);
         let aside = normal.cross(random.direction()).normalize() * random.range(0.05, 0.45);
         let sides = [-1e-7, 1e-7].map(|off| local.jet(middle + aside + normal * off));
         let [before, after] = sides.map(|jet| DVec3::from_array(jet.gradient));

@@ -1,16 +1,16 @@
 //! Bounds on the logarithm of a sum of Gaussians against differences of values and gradients in balls.
 
-use crate::common::Random;
 use field::{
     Ball, BlobScale, Implicit, Jet, Kernel, Logarithm, Primitive, Shaping, Skeleton, Slack, Sum,
     THRESHOLD, Variation,
 };
 use glam::DVec3;
+use trials::{Random, count};
 
 /// A few points and segments, some much thinner than others and some in one place.
 fn sum(random: &mut Random) -> Sum {
-    let count = 1 + (random.unit() * 7.0) as usize;
-    (0..count)
+    let terms = 1 + random.below(7);
+    (0..terms)
         .filter_map(|i| {
             let base = 0.5 * random.vector(1.0);
             let length = random.decades(-3.0, 0.5);
@@ -83,67 +83,78 @@ fn check(sum: &Sum, ball: Ball, variation: &Variation, random: &mut Random) -> [
     nearest
 }
 
-tests! {
-    fn bounds_on_the_logarithm_hold_in_balls() {
-        let mut random = Random::new(61);
-        let mut nearest = [0.0_f64; 2];
-        for _ in 0..400 {
-            let sum = sum(&mut random);
-            if sum.primitives.is_empty() {
-                continue;
-            }
-            let logarithm = sum.logarithm().expect("all are Gaussians");
-            let ball = Ball {
-                center: 0.7 * random.vector(1.0),
-                radius: random.decades(-3.0, -0.3),
-            };
-            let found = check(&sum, ball, &logarithm.variation(None, ball), &mut random);
-            // In a part that leaves some out.
-            let slack = Slack { left_out: Logarithm::slack(1e-7), far: 0.0 };
-            if let Some(part) = sum.narrow(ball, None, slack) {
-                let bounds = logarithm.variation(Some(&part), ball);
-                check(&sum, ball, &bounds, &mut random);
-                let whole = jet(&sum, ball.center);
-                let own = Logarithm::of(&sum.jet_of(&part, ball.center));
-                assert!((whole.value - own.value).abs() <= 1e-7, "{whole:?} {own:?}");
-            }
-            nearest = [0, 1].map(|i| nearest[i].max(found[i]));
+#[test]
+fn bounds_on_the_logarithm_hold_in_balls() {
+    let mut random = Random::new(61);
+    let mut nearest = [0.0_f64; 2];
+    for _ in 0..count(400) {
+        let sum = sum(&mut random);
+        if sum.primitives.is_empty() {
+            continue;
         }
-        // A single term has its own second derivative, and no bound is far from all.
-        assert!(nearest[0] > 0.9 && nearest[1] > 0.05, "{nearest:?}");
-    }
-
-    fn logarithm_is_the_function_at_the_threshold() {
-        let mut random = Random::new(62);
-        for _ in 0..200 {
-            let at = Jet {
-                value: THRESHOLD,
-                gradient: random.vector(1.0).to_array(),
-            };
-            let of = Logarithm::of(&at);
-            assert!((of.value - THRESHOLD).abs() < 1e-12);
-            let off = DVec3::from_array(of.gradient) - DVec3::from_array(at.gradient);
-            assert!(off.length() < 1e-12);
-            // It grows with the function.
-            let above = Logarithm::of(&Jet { value: THRESHOLD + 1e-6, ..at });
-            assert!(above.value > of.value);
-        }
-    }
-
-    fn others_have_no_logarithm() {
-        let shaping = |kernel, strength| Shaping {
-            kernel,
-            radius: 0.3,
-            blobbiness: -2.0,
-            blob_scale: BlobScale::Relative,
-            strength,
-            influence: 1e-3,
-            taper: None,
+        let logarithm = sum.logarithm().expect("all are Gaussians");
+        let ball = Ball {
+            center: 0.7 * random.vector(1.0),
+            radius: random.decades(-3.0, -0.3),
         };
-        let ball = Skeleton::Point { center: DVec3::ZERO };
-        for shaping in [shaping(Kernel::Cauchy, 1.0), shaping(Kernel::Gauss, -1.0)] {
-            let sum: Sum = Primitive::new(ball.clone(), &shaping, None).into_iter().collect();
-            assert!(!sum.primitives.is_empty() && sum.logarithm().is_none());
+        let found = check(&sum, ball, &logarithm.variation(None, ball), &mut random);
+        // In a part that leaves some out.
+        let slack = Slack {
+            left_out: Logarithm::slack(1e-7),
+            far: 0.0,
+        };
+        if let Some(part) = sum.narrow(ball, None, slack) {
+            let bounds = logarithm.variation(Some(&part), ball);
+            check(&sum, ball, &bounds, &mut random);
+            let whole = jet(&sum, ball.center);
+            let own = Logarithm::of(&sum.jet_of(&part, ball.center));
+            assert!((whole.value - own.value).abs() <= 1e-7, "{whole:?} {own:?}");
         }
+        nearest = [0, 1].map(|i| nearest[i].max(found[i]));
+    }
+    // A single term has its own second derivative, and no bound is far from all.
+    assert!(nearest[0] > 0.9 && nearest[1] > 0.05, "{nearest:?}");
+}
+
+#[test]
+fn logarithm_is_the_function_at_the_threshold() {
+    let mut random = Random::new(62);
+    for _ in 0..count(200) {
+        let at = Jet {
+            value: THRESHOLD,
+            gradient: random.vector(1.0).to_array(),
+        };
+        let of = Logarithm::of(&at);
+        assert!((of.value - THRESHOLD).abs() < 1e-12);
+        let off = DVec3::from_array(of.gradient) - DVec3::from_array(at.gradient);
+        assert!(off.length() < 1e-12);
+        // It grows with the function.
+        let above = Logarithm::of(&Jet {
+            value: THRESHOLD + 1e-6,
+            ..at
+        });
+        assert!(above.value > of.value);
+    }
+}
+
+#[test]
+fn others_have_no_logarithm() {
+    let shaping = |kernel, strength| Shaping {
+        kernel,
+        radius: 0.3,
+        blobbiness: -2.0,
+        blob_scale: BlobScale::Relative,
+        strength,
+        influence: 1e-3,
+        taper: None,
+    };
+    let ball = Skeleton::Point {
+        center: DVec3::ZERO,
+    };
+    for shaping in [shaping(Kernel::Cauchy, 1.0), shaping(Kernel::Gauss, -1.0)] {
+        let sum: Sum = Primitive::new(ball.clone(), &shaping, None)
+            .into_iter()
+            .collect();
+        assert!(!sum.primitives.is_empty() && sum.logarithm().is_none());
     }
 }

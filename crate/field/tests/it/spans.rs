@@ -1,9 +1,11 @@
 //! [`field::Bound`] holds: for values, slopes, curvatures and the errors of Hermite spans.
 
-use crate::common::{ALL_KINDS, Kind, Random, primitive, span_error};
+use crate::common::{primitive, span_error};
 use field::bound::{Bound, Estimate, SpanLength};
 use field::{Kernel, Primitive, Profile, Shaping, Taper, Wave};
 use glam::DVec3;
+use trials::skeletons::{ALL_KINDS, Kind};
+use trials::{Random, count};
 
 /// Options of a primitive beyond kernel and bone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,8 +72,8 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
     let (mut tightest_slope, mut tightest_turn) = (0.0_f64, 0.0_f64);
     let mut tightest_bend = 0.0_f64;
     // Those that taper take long to prepare.
-    let count = if dress == Dress::Tapered { 8 } else { 120 };
-    for _ in 0..count {
+    let cases = if dress == Dress::Tapered { 8 } else { 120 };
+    for _ in 0..count(cases) {
         let primitive = random_primitive(&mut random, kernel, kind, dress);
         let kinks = field::kinks::of(&primitive);
         let bound = Bound::new(&primitive);
@@ -172,32 +174,39 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
     );
 }
 
-tests! {
-    fn cauchy() {
-        bounds_hold(Kernel::Cauchy);
-    }
-    fn gauss() {
-        bounds_hold(Kernel::Gauss);
-    }
-    fn inverse() {
-        bounds_hold(Kernel::Inverse);
-    }
-    fn squared() {
-        bounds_hold(Kernel::Squared);
-    }
-    fn metaballs() {
-        bounds_hold(Kernel::Metaballs);
-    }
-    fn soft() {
-        bounds_hold(Kernel::Soft);
-    }
-    fn quartic() {
-        bounds_hold(Kernel::Quartic);
-    }
-    fn compact6() {
-        bounds_hold(Kernel::Compact6);
-    }
-    fn cubed() {
-        bounds_hold(Kernel::Cubed);
-    }
+#[test]
+fn cauchy() {
+    bounds_hold(Kernel::Cauchy);
+}
+#[test]
+fn gauss() {
+    bounds_hold(Kernel::Gauss);
+}
+#[test]
+fn inverse() {
+    bounds_hold(Kernel::Inverse);
+}
+#[test]
+fn squared() {
+    bounds_hold(Kernel::Squared);
+}
+#[test]
+fn metaballs() {
+    bounds_hold(Kernel::Metaballs);
+}
+#[test]
+fn soft() {
+    bounds_hold(Kernel::Soft);
+}
+#[test]
+fn quartic() {
+    bounds_hold(Kernel::Quartic);
+}
+#[test]
+fn compact6() {
+    bounds_hold(Kernel::Compact6);
+}
+#[test]
+fn cubed() {
+    bounds_hold(Kernel::Cubed);
 }

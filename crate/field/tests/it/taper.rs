@@ -1,11 +1,13 @@
 //! Bones whose radius and blobbiness vary along them: against adaptive quadrature, against
 //! differences, and against what a taper promises.
 
-use crate::common::{Kind, Random, jet, primitive, sensitivity, shaping, single};
+use crate::common::{jet, primitive, sensitivity, single};
 use field::bound::Bound;
 use field::shaping::SLIMMEST;
 use field::{Kernel, Primitive, Shaping, Skeleton, THRESHOLD, Taper, quadrature};
 use glam::DVec3;
+use trials::skeletons::{Kind, shaping};
+use trials::{Random, count};
 use wide::f32x8;
 
 const KINDS: [Kind; 3] = [Kind::Segment, Kind::Arc, Kind::Curve];
@@ -42,7 +44,7 @@ fn peak(primitive: &Primitive) -> f64 {
 fn matches_quadrature(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(401);
-        for _ in 0..120 {
+        for _ in 0..count(120) {
             let primitive = random_primitive(&mut random, kernel, kind, -2.0);
             let far = random.pick(&[0.3, 0.3, 2.0]);
             let point = random.near(&primitive.skeleton, -4.0, far);
@@ -77,7 +79,7 @@ fn matches_quadrature(kernel: Kernel) {
 fn single_matches_double(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(402);
-        for _ in 0..500 {
+        for _ in 0..count(500) {
             let primitive = random_primitive(&mut random, kernel, kind, -2.0);
             for _ in 0..3 {
                 let point = single(random.near(&primitive.skeleton, -3.0, 1.0));
@@ -130,7 +132,7 @@ fn single_matches_double(kernel: Kernel) {
 fn gradient_is_the_derivative(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(403);
-        for _ in 0..60 {
+        for _ in 0..count(60) {
             let primitive = random_primitive(&mut random, kernel, kind, -1.0);
             let point = random.near(&primitive.skeleton, -2.0, 0.5);
             let u = primitive.width * primitive.skeleton.distance(point);
@@ -224,7 +226,7 @@ fn parts(skeleton: &Skeleton, fraction: f64) -> [Skeleton; 2] {
 fn superposition(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(404);
-        for _ in 0..60 {
+        for _ in 0..count(60) {
             let size = random.decades(-1.0, 1.0);
             let skeleton = random.skeleton(kind, size);
             let mut shaping = tapered(&mut random, kernel);
@@ -279,7 +281,7 @@ fn superposition(kernel: Kernel) {
 fn scale_invariance(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(405);
-        for _ in 0..40 {
+        for _ in 0..count(40) {
             let size = random.decades(-1.0, 1.0);
             let skeleton = random.skeleton(kind, size);
             let shaping = tapered(&mut random, kernel);
@@ -389,7 +391,7 @@ fn cones_have_their_radius(kernel: Kernel) {
 fn bounds_hold(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(406);
-        for _ in 0..80 {
+        for _ in 0..count(80) {
             let primitive = random_primitive(&mut random, kernel, kind, -1.5);
             let level = THRESHOLD * 1e-3;
             let bound = Bound::new(&primitive);
@@ -539,11 +541,12 @@ macro_rules! kernels {
         }
     )*};
     (@checks $kernel:expr, $($check:ident),*) => {
-        tests! {$(
+        $(
+            #[test]
             fn $check() {
                 super::$check($kernel);
             }
-        )*}
+        )*
     };
 }
 

@@ -19,6 +19,7 @@ use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
+use trials::Random;
 
 /// The tolerance as a share of the diagonal of the box of the surface.
 const SHARE: f64 = 1e-3;
@@ -186,13 +187,7 @@ fn load(path: &Path) -> Result<Scene, String> {
 /// The largest distance found between mesh and surface, either way.
 fn two_way(function: &dyn Implicit, mesh: &TriangleMesh) -> f64 {
     let bvh = Bvh::new(&mesh.triangle_boxes());
-    let mut state = 5_u64;
-    let mut random = || {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 33) as f64 / (1_u64 << 31) as f64
-    };
+    let mut random = Random::new(5);
     let mut areas: Vec<f64> = Vec::new();
     let mut all = 0.0;
     for i in 0..mesh.triangles.len() {
@@ -202,15 +197,11 @@ fn two_way(function: &dyn Implicit, mesh: &TriangleMesh) -> f64 {
     }
     let mut farthest = 0.0_f64;
     for _ in 0..SAMPLES {
-        let place = random() * all;
+        let place = random.range(0.0, all);
         let i = areas.partition_point(|area| *area < place);
         let i = i.min(areas.len() - 1);
         let [a, b, c] = mesh.corners(i);
-        let (mut u, mut v) = (random(), random());
-        if u + v > 1.0 {
-            (u, v) = (1.0 - u, 1.0 - v);
-        }
-        let point = a + (b - a) * u + (c - a) * v;
+        let point = random.in_triangle([a, b, c]);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let Some(found) = on_surface(function, point, longest) else {
             continue;

@@ -1,12 +1,13 @@
 //! Coatings of skeletons.
 
-use crate::judges::{assert_manifold, on_surface};
+use crate::judges::{assert_manifold, of_mesh, on_surface};
 use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use mesh::Topology;
 use mesher::{Cage, Coat, CoatedBody, Coating, MeshError, Progress, coat_scene};
 use scene::{Element, Flesh, Scene, Shape};
 use std::ops::ControlFlow;
+use trials::{Random, count};
 
 fn shaping(radius: f64) -> Shaping {
     Shaping {
@@ -91,10 +92,10 @@ fn check(name: &str, function: &dyn Implicit, coat: &Coat, bound: f64) {
 
 /// The largest distance of sampled points of the mesh outside the surface from it: webs in bends and between limbs.
 fn largest_web(function: &dyn Implicit, coat: &Coat) -> f64 {
-    let mut random = crate::judges::Random(3);
+    let mut random = Random::new(3);
     let mut farthest = 0.0_f64;
-    for _ in 0..4000 {
-        let (_, point) = random.of_mesh(&coat.mesh);
+    for _ in 0..count(4000) {
+        let (_, point) = of_mesh(&mut random, &coat.mesh);
         let jet = function.jet(point);
         if jet.value >= THRESHOLD {
             continue;
@@ -322,16 +323,16 @@ fn no_webs_between_limbs() {
 }
 
 /// A body of cylinders at random places, of about this length and radius.
-fn scattered(count: usize, (length, radius): (f64, f64), seed: u64) -> Scene {
+fn scattered(limbs: usize, (length, radius): (f64, f64), seed: u64) -> Scene {
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
         blobbiness: -2.0,
         ..Flesh::default()
     });
-    let mut random = crate::judges::Random(seed);
-    for _ in 0..count {
-        let base = random.vector();
-        let apex = base + length * random.vector();
+    let mut random = Random::new(seed);
+    for _ in 0..limbs {
+        let base = random.vector(1.0);
+        let apex = base + length * random.vector(1.0);
         scene.elements.push(Element {
             flesh: Some(0),
             ..Element::new(Shape::Cylinder { base, apex, radius })

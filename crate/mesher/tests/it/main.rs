@@ -10,10 +10,3 @@ mod sculpted;
 mod surfaces;
 mod thin;
 mod variation;
-
-#[allow(dead_code, reason = "the tracer's tests use the rest")]
-#[path = "../../../tracer/tests/it/common/mod.rs"]
-mod common;
-#[allow(dead_code, reason = "the tracer's tests use the rest")]
-#[path = "../../../tracer/tests/it/random.rs"]
-mod random;

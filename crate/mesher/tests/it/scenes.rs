@@ -6,8 +6,7 @@
 //! Meshes of the 200 scenes and of all examples that take longer than a minute of a processor, or the seconds that `SINEW_SECONDS` says, are
 //! given up; they are told, and are not taken for wrong.
 
-use crate::judges::{Distances, Random, crossings, manifold, on_surface};
-use crate::random::{KINDS, Trial};
+use crate::judges::{Distances, crossings, manifold, of_mesh, on_surface};
 use field::Kernel;
 use glam::DVec3;
 use mesh::{Topology, TriangleMesh, self_intersections};
@@ -18,6 +17,8 @@ use std::path::Path;
 use std::time::Instant;
 use tracer::Reference;
 use tracer::reference::Near;
+use trials::scenes::{self, KINDS};
+use trials::{Random, count};
 
 /// How much is asked of a scene.
 #[derive(Clone, Copy)]
@@ -166,15 +167,15 @@ fn judge(scene: &Scene, care: Care) -> Result<Row, String> {
 
 /// Random rays meet no surface.
 fn is_empty(scene: &Scene) -> Result<(), String> {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for surface in scene.surfaces() {
         let function = surface.function();
         let Some(ball) = function.support().filter(|ball| ball.radius > 0.0) else {
             continue;
         };
         for _ in 0..20 {
-            let from = ball.center + random.vector() * ball.radius;
-            let to = ball.center + random.vector() * ball.radius;
+            let from = ball.center + random.vector(1.0) * ball.radius;
+            let to = ball.center + random.vector(1.0) * ball.radius;
             let (length, direction) = (from.distance(to), (to - from).normalize_or(DVec3::X));
             let met = crossings(function, from, direction, length, 1e-6 * ball.radius);
             if !met.is_empty() {
@@ -214,7 +215,7 @@ fn distances(
     let allowed = tolerance * (1.0 + 1e-6) + slack;
     // Triangles that are not proved may be farther; they are counted.
     let may_be_off = row.unproved + row.undecided > 0;
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let is_cut = function.support().is_none();
     let bounds = mesh.bounds();
     let is_lid = |i: usize| {
@@ -227,7 +228,7 @@ fn distances(
             })
     };
     for _ in 0..care.samples {
-        let (i, point) = random.of_mesh(mesh);
+        let (i, point) = of_mesh(&mut random, mesh);
         if is_lid(i) {
             continue;
         }
@@ -256,9 +257,9 @@ fn distances(
     let near = Distances::new(mesh);
     let size = bounds.size();
     for _ in 0..care.rays {
-        let inside = |random: &mut Random| bounds.center() + 0.5 * random.vector() * size;
+        let inside = |random: &mut Random| bounds.center() + 0.5 * random.vector(1.0) * size;
         let to = inside(&mut random);
-        let direction = random.vector().normalize_or(DVec3::X);
+        let direction = random.direction();
         let from = to - direction * size.length();
         let limit = 2.0 * size.length();
         let resolution = 0.01 * tolerance;
@@ -374,7 +375,7 @@ fn random_scenes() {
     let (from, to): (usize, usize) = some.unwrap_or((0, 199));
     let is_all = is_all || some.is_some();
     let only: Option<usize> = wanted.and_then(|wanted| wanted.parse().ok());
-    let (count, care) = if is_all {
+    let (scenes, care) = if is_all {
         (
             200,
             Care {
@@ -388,7 +389,7 @@ fn random_scenes() {
         )
     } else {
         (
-            26,
+            count(26),
             Care {
                 relative: tolerance(1e-2),
                 samples: 10,
@@ -400,7 +401,7 @@ fn random_scenes() {
         )
     };
     let mut wrong = 0;
-    for number in 0..count {
+    for number in 0..scenes {
         let kernel = Kernel::ALL[number % Kernel::ALL.len()];
         let kind = KINDS[(number * 5) % KINDS.len()];
         let is_wanted = only.map_or(is_all || !SLOW.contains(&number), |only| only == number);
@@ -408,7 +409,7 @@ fn random_scenes() {
         if !is_wanted {
             continue;
         }
-        let scene = Trial::new(kernel, kind, 40_000 + number as u64, 0).scene;
+        let (scene, _) = scenes::scene(kernel, kind, &mut Random::new(number as u64));
         let clock = Clock::new();
         let result = judge(&scene, care);
         let seconds = clock.seconds();

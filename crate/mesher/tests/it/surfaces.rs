@@ -10,6 +10,7 @@ use glam::DVec3;
 use mesh::Topology;
 use mesher::{MeshError, Options, Progress, SurfaceMesh, box_of, polygonize};
 use std::ops::ControlFlow;
+use trials::{Random, count};
 use wide::f32x8;
 
 fn shaping(kernel: Kernel, radius: f64) -> Shaping {
@@ -84,11 +85,11 @@ fn each_kernel_gives_proved_meshes() {
 /// would not be so: the mesh may end before a limb does.
 #[test]
 fn the_surface_is_near_the_mesh_as_well() {
-    for seed in 1..7 {
-        let mut random = crate::judges::Random(seed);
+    for seed in 0..count(6) as u64 {
+        let mut random = Random::new(seed);
         let limb = |_| {
-            let base = random.vector();
-            let apex = base + random.vector();
+            let base = random.vector(1.0);
+            let apex = base + random.vector(1.0);
             let skeleton = Skeleton::Segment { base, apex };
             Primitive::new(skeleton, &shaping(Kernel::Gauss, 0.08), None).unwrap()
         };
@@ -96,9 +97,9 @@ fn the_surface_is_near_the_mesh_as_well() {
         let tolerance = 0.03;
         let surface = mesh_with(&sum, &Options::new(tolerance)).unwrap();
         let [_, back] = surface.measured.largest;
-        let (share, [_, count]) = (back / tolerance, surface.measured.samples);
-        println!("{seed}: {share:.3} tolerances at {count} places");
-        assert!(share <= 0.805 && count > 300, "{seed}: {share} {count}");
+        let (share, [_, places]) = (back / tolerance, surface.measured.samples);
+        println!("{seed}: {share:.3} tolerances at {places} places");
+        assert!(share <= 0.805 && places > 300, "{seed}: {share} {places}");
     }
 }
 

@@ -1,10 +1,11 @@
 //! Parts of a surface that are thinner than the tolerance: each of their points is within the tolerance of the mesh.
 
-use crate::judges::{Distances, Random, assert_embedded, assert_manifold, crossings, on_surface};
+use crate::judges::{Distances, assert_embedded, assert_manifold, crossings, of_mesh, on_surface};
 use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use mesher::{Options, Progress, SurfaceMesh, box_of, polygonize};
 use std::ops::ControlFlow;
+use trials::{Random, count};
 
 const TOLERANCE: f64 = 0.05;
 
@@ -35,7 +36,7 @@ fn meshed(function: &dyn Implicit) -> SurfaceMesh {
 
 /// Points of the surface around points of a thin part, each looked for in some direction.
 fn around(function: &dyn Implicit, from: DVec3, random: &mut Random) -> Option<DVec3> {
-    let direction = random.vector().try_normalize()?;
+    let direction = random.direction();
     let met = crossings(function, from, direction, 1.0, 1e-4);
     Some(from + direction * *met.first()?)
 }
@@ -47,32 +48,32 @@ fn check(name: &str, sum: &Sum, parts: &[(DVec3, DVec3)], within: &dyn Fn(DVec3)
     assert_manifold(name, mesh);
     assert_embedded(name, mesh);
     let near = Distances::new(mesh);
-    let mut random = Random(5);
-    let (mut farthest, mut count) = (0.0_f64, 0);
+    let mut random = Random::new(5);
+    let (mut farthest, mut points) = (0.0_f64, 0);
     for (base, apex) in parts {
-        for _ in 0..60 {
+        for _ in 0..count(60) {
             let from = base.lerp(*apex, random.unit());
             if sum.jet(from).value <= THRESHOLD {
                 continue;
             }
             if let Some(point) = around(sum, from, &mut random) {
                 farthest = farthest.max(near.to(point));
-                count += 1;
+                points += 1;
             }
         }
     }
     println!(
-        "{name}: {} triangles, {} unproved, {} undecided, {count} points within {:.3} tolerances",
+        "{name}: {} triangles, {} unproved, {} undecided, {points} points within {:.3} tolerances",
         mesh.triangles.len(),
         surface.unproved,
         surface.undecided.len(),
         farthest / TOLERANCE
     );
-    assert!(count > 25 * parts.len(), "{name}: {count}");
+    assert!(points > count(20) * parts.len(), "{name}: {points}");
     assert!(farthest <= TOLERANCE, "{name}: {farthest}");
     // Back: the surface goes around the inside of the thin part, no farther from a point than that is.
-    for _ in 0..2000 {
-        let (_, point) = random.of_mesh(mesh);
+    for _ in 0..count(2000) {
+        let (_, point) = of_mesh(&mut random, mesh);
         let own = on_surface(sum, point).map_or(f64::INFINITY, |found| found.distance(point));
         let own = own.min(within(point));
         assert!(own <= TOLERANCE, "{name}: {point} is {own} off");
@@ -87,9 +88,9 @@ fn spikes_thinner_than_the_tolerance_are_there() {
         (Kernel::Quartic, 0.04 * TOLERANCE),
         (Kernel::Gauss, 0.01 * TOLERANCE),
     ] {
-        let mut random = Random(9);
+        let mut random = Random::new(9);
         let spike = |_| {
-            let way = random.vector().normalize();
+            let way = random.direction();
             (way * 0.8, way * 1.8)
         };
         let spikes: Vec<(DVec3, DVec3)> = (0..3).map(spike).collect();
@@ -138,20 +139,20 @@ fn plates_and_cracks_thinner_than_the_tolerance_are_there() {
     assert_manifold("crack", &surface.mesh);
     assert_embedded("crack", &surface.mesh);
     let near = Distances::new(&surface.mesh);
-    let mut random = Random(3);
-    let mut count = 0;
-    for _ in 0..400 {
-        let (base, apex) = lines[(random.unit() * lines.len() as f64) as usize];
+    let mut random = Random::new(3);
+    let mut points = 0;
+    for _ in 0..count(400) {
+        let (base, apex) = random.pick(&lines);
         let from = base.lerp(apex, random.unit());
         let is_in_it = from.length() < 0.9 && carved.jet(from).value < THRESHOLD;
         if let Some(point) = is_in_it
             .then(|| around(&carved, from, &mut random))
             .flatten()
         {
-            count += 1;
+            points += 1;
             let off = near.to(point);
             assert!(off <= TOLERANCE, "{point}: {off}");
         }
     }
-    assert!(count > 30, "{count}");
+    assert!(points > count(30), "{points}");
 }

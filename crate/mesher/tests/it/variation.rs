@@ -1,11 +1,11 @@
 //! Bounds that proofs rest on: of random scenes over all kernels and primitives, with kinks, and of composed functions.
 
-use crate::judges::Random;
-use crate::random::{KINDS, Kind, Trial};
 use contact::{Bulge, Squashed};
 use field::{Ball, Blend, Exponentials, Implicit, Kernel, Slack, Variation};
 use glam::DVec3;
 use std::sync::Arc;
+use trials::scenes::{self, KINDS, Kind};
+use trials::{Random, count};
 
 /// Holds the bounds in some balls against samples. Returns the largest shares of the bounds that were met: of changes of the
 /// slope, and of its distance from its linear interpolant.
@@ -17,10 +17,10 @@ fn check(
     random: &mut Random,
 ) -> [f64; 2] {
     let mut met = [0.0_f64; 2];
-    for _ in 0..balls {
-        let radius = around.radius * libm::exp10(-3.0 * random.unit());
+    for _ in 0..count(balls) {
+        let radius = around.radius * random.decades(-3.0, 0.0);
         let ball = Ball {
-            center: around.center + around.radius * random.vector(),
+            center: around.center + around.radius * random.vector(1.0),
             radius,
         };
         let large = Ball {
@@ -30,7 +30,7 @@ fn check(
         // Some with a polynomial for far terms.
         let slack = Slack {
             left_out: 1e-7,
-            far: if random.unit() < 0.5 { 2e-4 } else { 0.0 },
+            far: if random.chance(0.5) { 2e-4 } else { 0.0 },
         };
         let part = function.narrow(large, None, slack);
         let Variation {
@@ -42,7 +42,7 @@ fn check(
             step,
         } = function.variation(part.as_ref(), ball);
         let point =
-            |random: &mut Random| ball.center + radius * random.vector().clamp_length_max(1.0);
+            |random: &mut Random| ball.center + radius * random.vector(1.0).clamp_length_max(1.0);
         let [a, b] = [point(random), point(random)];
         let Some(along) = (b - a).try_normalize() else {
             continue;
@@ -97,7 +97,7 @@ fn check(
 
 #[test]
 fn sums_keep_within_their_bounds() {
-    let mut random = Random(17);
+    let mut random = Random::new(17);
     let mut met = [0.0_f64; 2];
     for kernel in Kernel::ALL {
         for kind in KINDS {
@@ -105,7 +105,7 @@ fn sums_keep_within_their_bounds() {
                 continue;
             }
             for seed in 0..2 {
-                let scene = Trial::new(kernel, kind, 60_000 + seed, 0).scene;
+                let (scene, _) = scenes::scene(kernel, kind, &mut random);
                 for surface in scene.surfaces() {
                     let function = surface.function();
                     let around = function.support().unwrap_or(Ball {
@@ -135,9 +135,10 @@ fn sums_keep_within_their_bounds() {
 
 #[test]
 fn composed_functions_keep_within_their_bounds() {
-    let mut random = Random(23);
+    let mut random = Random::new(23);
     let body = |seed: u64| -> Arc<dyn Implicit> {
-        let scene = Trial::new(Kernel::Gauss, Kind::Segment, seed, 0).scene;
+        let mut random = Random::new(seed);
+        let (scene, _) = scenes::scene(Kernel::Gauss, Kind::Segment, &mut random);
         let sum = scene.soft_surfaces().swap_remove(0).sum;
         let balls = vec![(DVec3::X * 0.5, 0.3), (DVec3::Y * 0.5, 0.2)];
         Arc::new(Blend::new(

@@ -1,9 +1,10 @@
 //! The function against a plain sum, differences and samples.
 
-use crate::common::{Numbers, lumpy_sphere};
+use crate::common::lumpy_sphere;
 use field::{Ball, Enclosure, Implicit, Jet, THRESHOLD};
 use glam::DVec3;
 use metaballs::{Error, Kind, Metaballs, circumscribed, nearest};
+use trials::{Random, count};
 use wide::f32x8;
 
 const KINDS: [(Kind, f64); 3] = [
@@ -44,9 +45,9 @@ fn plain(facets: &[[DVec3; 3]], kind: Kind, k: f64, p: DVec3) -> Jet<f64> {
 fn cut_sum_is_the_plain_sum_but_for_the_stated_remainder() {
     for (kind, k) in KINDS {
         let (balls, facets) = balls(kind, k, 12);
-        let mut numbers = Numbers(1);
-        for _ in 0..2000 {
-            let p = numbers.point() * 1.4;
+        let mut random = Random::new(1);
+        for _ in 0..count(2000) {
+            let p = random.vector(1.4);
             let exact = plain(&facets, kind, k, p);
             let jet = balls.jet(p);
             let remainder = 1.2e-7 * facets.len() as f64;
@@ -63,9 +64,9 @@ fn cut_sum_is_the_plain_sum_but_for_the_stated_remainder() {
 fn cut_sum_is_the_sum_of_all_facets_within_reach() {
     for (kind, k) in KINDS {
         let (balls, facets) = balls(kind, k, 12);
-        let mut numbers = Numbers(2);
-        for _ in 0..500 {
-            let p = numbers.point() * 1.4;
+        let mut random = Random::new(2);
+        for _ in 0..count(500) {
+            let p = random.vector(1.4);
             let mut sum = 0.0;
             for facet in &facets {
                 let (distance, radius) = match kind {
@@ -90,9 +91,9 @@ fn gradient_agrees_with_differences() {
     let h = 1e-6;
     for (kind, k) in KINDS {
         let (balls, _) = balls(kind, k, 8);
-        let mut numbers = Numbers(3);
-        for _ in 0..1000 {
-            let p = numbers.direction() * (0.8 + 0.4 * numbers.next());
+        let mut random = Random::new(3);
+        for _ in 0..count(1000) {
+            let p = random.direction() * (random.range(0.8, 1.2));
             let jet = balls.jet(p);
             for (axis, gradient) in [DVec3::X, DVec3::Y, DVec3::Z].iter().zip(jet.gradient) {
                 let [after, before] = [p + axis * h, p - axis * h].map(|p| balls.jet(p).value);
@@ -108,10 +109,10 @@ fn gradient_agrees_with_differences() {
 fn single_precision_is_near_and_lanes_are_equal_to_it() {
     for (kind, k) in KINDS {
         let (balls, _) = balls(kind, k, 12);
-        let mut numbers = Numbers(4);
-        for _ in 0..300 {
-            let middle = numbers.direction();
-            let points: [DVec3; 8] = core::array::from_fn(|_| middle + numbers.point() * 0.2);
+        let mut random = Random::new(4);
+        for _ in 0..count(300) {
+            let middle = random.direction();
+            let points: [DVec3; 8] = core::array::from_fn(|_| middle + random.vector(0.2));
             let lanes = [0, 1, 2].map(|i| f32x8::new(points.map(|p| p[i] as f32)));
             let together = balls.jet8(lanes);
             for (lane, p) in points.iter().enumerate() {
@@ -135,15 +136,15 @@ fn single_precision_is_near_and_lanes_are_equal_to_it() {
 fn enclosures_hold() {
     for (kind, k) in KINDS {
         let (balls, _) = balls(kind, k, 10);
-        let mut numbers = Numbers(5);
+        let mut random = Random::new(5);
         let (mut decided, mut curved, mut together) = (0, 0, 0);
-        for _ in 0..1500 {
-            let center = numbers.point() * 1.5;
+        for _ in 0..count(1500) {
+            let center = random.vector(1.5);
             // From far below the size of a facet to above that of the mesh.
-            let radius = libm::exp(-9.0 * numbers.next()) * 1.5;
+            let radius = libm::exp(-9.0 * random.unit()) * 1.5;
             let ball = Ball { center, radius };
             // The two ways in turn.
-            let enclosure = if numbers.next() < 0.5 {
+            let enclosure = if random.chance(0.5) {
                 balls.enclose(ball)
             } else {
                 let (variation, jet) = balls.variation_with_jet(ball);
@@ -161,10 +162,10 @@ fn enclosures_hold() {
                 }
             };
             let [low, high] = enclosure.value;
-            decided += u32::from(low > THRESHOLD || high < THRESHOLD);
-            curved += u32::from(enclosure.curvature.is_finite());
+            decided += usize::from(low > THRESHOLD || high < THRESHOLD);
+            curved += usize::from(enclosure.curvature.is_finite());
             for _ in 0..20 {
-                let p = center + numbers.direction() * radius * numbers.next();
+                let p = center + random.direction() * radius * random.unit();
                 let jet = balls.jet(p);
                 assert!(
                     low <= jet.value && jet.value <= high,
@@ -173,7 +174,7 @@ fn enclosures_hold() {
                 let gradient = DVec3::from_array(jet.gradient);
                 assert!(gradient.length() <= enclosure.slope * (1.0 + 1e-9));
                 // The gradient between two points of the ball, as far as the bound says.
-                let q = center + numbers.direction() * radius * numbers.next();
+                let q = center + random.direction() * radius * random.unit();
                 let change = gradient - DVec3::from_array(balls.jet(q).gradient);
                 let along = (p - q).normalize_or_zero();
                 let bend = change.dot(along).abs();
@@ -181,8 +182,11 @@ fn enclosures_hold() {
             }
         }
         // They say something, too.
-        assert!(decided > 500 && curved > 700, "{kind:?} {decided} {curved}");
-        assert!(together > 200, "{kind:?} {together}");
+        assert!(
+            decided > count(500) && curved > count(700),
+            "{kind:?} {decided} {curved}"
+        );
+        assert!(together > count(200), "{kind:?} {together}");
     }
 }
 
@@ -191,9 +195,9 @@ fn surface_is_within_its_support() {
     for (kind, k) in KINDS {
         let (balls, _) = balls(kind, k, 6);
         let support = balls.support().expect("a mesh is bounded");
-        let mut numbers = Numbers(6);
-        for _ in 0..2000 {
-            let p = support.center + numbers.direction() * support.radius * (1.0 + numbers.next());
+        let mut random = Random::new(6);
+        for _ in 0..count(2000) {
+            let p = support.center + random.direction() * support.radius * (1.0 + random.unit());
             assert!(balls.jet(p).value < THRESHOLD);
         }
     }
@@ -243,9 +247,9 @@ fn degenerate_facets_are_segments_and_points() {
     let kind = Kind::Triangular { thickness: 0.1 };
     let k = 30.0;
     let balls = Metaballs::new(&positions, &triangles, kind, k).expect("flat facets are allowed");
-    let mut numbers = Numbers(8);
-    for _ in 0..500 {
-        let p = numbers.point() * 0.6 + 0.5 * DVec3::X;
+    let mut random = Random::new(8);
+    for _ in 0..count(500) {
+        let p = random.vector(0.6) + 0.5 * DVec3::X;
         let on_axis = DVec3::new(p.x.clamp(0.0, 1.0), 0.0, 0.0);
         let term = |d: f64| metaballs::profile(k * (d - 0.1)).0;
         let exact = 2.0 * term(p.distance(on_axis)) + term(p.distance(DVec3::X));
@@ -262,9 +266,9 @@ fn cost_grows_with_what_is_near() {
             thickness: 0.2 * edge,
         };
         let (balls, _) = balls(kind, 12.0 / edge, rings);
-        let mut numbers = Numbers(9);
+        let mut random = Random::new(9);
         let near: usize = (0..200)
-            .map(|_| balls.near(numbers.direction()).count())
+            .map(|_| balls.near(random.direction()).count())
             .sum();
         near as f64 / 200.0
     };
@@ -307,12 +311,12 @@ fn balls_of_clearance_hold_no_crossing_and_are_not_small() {
         .chain([(Kind::Triangular { thickness: 0.02 }, 900.0)])
     {
         let (balls, facets) = balls(kind, k, 10);
-        let mut numbers = Numbers(6);
+        let mut random = Random::new(6);
         let [mut outside, mut inside] = [0, 0];
-        for turn in 0..1500 {
+        for turn in 0..count(1500) {
             // Near the surface, and far from it.
-            let reach = libm::pow(10.0, 4.0 * numbers.next() - 3.0);
-            let p = numbers.direction() * (1.0 + reach * (2.0 * numbers.next() - 1.0));
+            let reach = random.decades(-3.0, 1.0);
+            let p = random.direction() * (1.0 + reach * random.range(-1.0, 1.0));
             let side = balls.jet(p).value >= THRESHOLD;
             let clear = balls.clearance(p).expect("a ball");
             assert_eq!(clear.scale, 1.0 / k);
@@ -321,7 +325,7 @@ fn balls_of_clearance_hold_no_crossing_and_are_not_small() {
             }
             *(if side { &mut inside } else { &mut outside }) += 1;
             for _ in 0..60 {
-                let q = p + numbers.direction() * (clear.radius * libm::cbrt(numbers.next()));
+                let q = p + random.direction() * (clear.radius * libm::cbrt(random.unit()));
                 assert_eq!(
                     balls.jet(q).value >= THRESHOLD,
                     side,
@@ -350,7 +354,7 @@ fn balls_of_clearance_hold_no_crossing_and_are_not_small() {
                 );
             }
         }
-        assert!(outside > 300, "{kind:?} {outside}");
-        assert!(inside > 10 || k > 100.0, "{kind:?} {inside}");
+        assert!(outside > count(300), "{kind:?} {outside}");
+        assert!(inside > count(10) || k > 100.0, "{kind:?} {inside}");
     }
 }

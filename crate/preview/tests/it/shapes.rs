@@ -7,6 +7,7 @@ use core::f64::consts::TAU;
 use glam::{DMat3, DQuat, DVec3};
 use scene::{Camera, Quadric, Scene, Shape};
 use std::slice;
+use trials::Random;
 
 const SIZE: [u32; 2] = [56, 42];
 
@@ -433,17 +434,10 @@ fn edge_on_things_are_thin_but_there() {
 fn shapes_hide_each_other_where_they_meet() {
     // Sixteen shapes of all kinds through each other.
     let mut shapes = Vec::new();
-    let mut state = 7u64;
-    let mut random = || {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 33) as f64 / f64::from(1u32 << 30) - 1.0
-    };
+    let mut random = Random::new(7);
     for i in 0..16 {
-        let mut point = || [random(), random(), random()];
-        let (p, q, r) = (point(), point(), point());
-        let size = 0.2 + 0.1 * random().abs();
+        let [p, q, r] = [(); 3].map(|()| random.vector(1.0).to_array());
+        let size = random.range(0.2, 0.3);
         shapes.push(match i % 4 {
             0 => sphere(p, 2.0 * size),
             1 => cylinder(p, q, size),

@@ -1,33 +1,19 @@
 //! Refined curves against the closed forms of their limits, and graphs of every shape.
 use glam::{DVec3, DVec4};
 use skeleton::{Error, MOST_SEGMENTS, Node, Polyline, Scheme, Skeleton};
+use trials::{Random, count};
 
 const SCHEMES: [Scheme; 3] = [Scheme::Cubic, Scheme::Chaikin, Scheme::FourPoint];
 
-/// A splitmix64 generator.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        (z >> 11) as f64 / (1_u64 << 53) as f64
+fn node(random: &mut Random) -> Node {
+    Node {
+        position: random.vector(2.0),
+        radius: random.range(0.1, 1.1),
     }
+}
 
-    fn node(&mut self) -> Node {
-        let mut coordinate = || 4.0 * self.unit() - 2.0;
-        Node {
-            position: DVec3::new(coordinate(), coordinate(), coordinate()),
-            radius: 0.1 + self.unit(),
-        }
-    }
-
-    fn nodes(&mut self, count: usize) -> Vec<Node> {
-        (0..count).map(|_| self.node()).collect()
-    }
+fn nodes(random: &mut Random, count: usize) -> Vec<Node> {
+    (0..count).map(|_| node(random)).collect()
 }
 
 fn polyline(nodes: &[Node], curves: &[&[usize]], scheme: Scheme, levels: u32) -> Polyline {
@@ -82,9 +68,9 @@ fn four(node: &Node) -> DVec4 {
 
 #[test]
 fn cubic_is_the_cubic_b_spline() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for count in 2..8 {
-        let nodes = random.nodes(count);
+        let nodes = nodes(&mut random, count);
         let all: Vec<usize> = (0..count).collect();
         // Mirrored at the ends.
         let mut control: Vec<DVec4> = nodes.iter().map(four).collect();
@@ -111,9 +97,9 @@ fn cubic_is_the_cubic_b_spline() {
 
 #[test]
 fn chaikin_is_the_quadratic_b_spline() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     for count in 2..8 {
-        let nodes = random.nodes(count);
+        let nodes = nodes(&mut random, count);
         let all: Vec<usize> = (0..count).collect();
         // The ends twice.
         let mut control: Vec<DVec4> = nodes.iter().map(four).collect();
@@ -132,15 +118,15 @@ fn chaikin_is_the_quadratic_b_spline() {
 
 #[test]
 fn four_point_interpolates_and_reproduces_cubics() {
-    let mut random = Random(3);
-    let nodes = random.nodes(7);
+    let mut random = Random::new(3);
+    let nodes = nodes(&mut random, 7);
     let all: Vec<usize> = (0..7).collect();
     let points_of = |nodes: &[Node]| points(&polyline(nodes, &[&all], Scheme::FourPoint, 5), 0);
     let refined = points_of(&nodes);
     for (i, node) in nodes.iter().enumerate() {
         assert_eq!(refined[i << 5], four(node));
     }
-    let mut coefficients = || random.node().position;
+    let mut coefficients = || node(&mut random).position;
     let [a, b, c, d] = core::array::from_fn(|_| coefficients());
     let cubic = |t: f64| a + t * (b + t * (c + t * d));
     let on_cubic: Vec<Node> = (0..7)
@@ -160,8 +146,8 @@ fn four_point_interpolates_and_reproduces_cubics() {
 /// Levels are polygons of one curve: each has the points of the level before.
 #[test]
 fn levels_have_the_points_of_those_before() {
-    let mut random = Random(4);
-    let nodes = random.nodes(8);
+    let mut random = Random::new(4);
+    let nodes = nodes(&mut random, 8);
     let curves: [&[usize]; 3] = [&[0, 1, 2, 3, 4], &[2, 5, 6], &[3, 6, 7, 3]];
     for scheme in SCHEMES {
         for levels in 0..6 {
@@ -185,9 +171,9 @@ fn levels_have_the_points_of_those_before() {
 /// Curves meet at their branch nodes, in one vertex, and go on without a corner.
 #[test]
 fn curves_pass_smoothly_through_branches() {
-    let mut random = Random(5);
-    for _ in 0..20 {
-        let nodes = random.nodes(9);
+    let mut random = Random::new(5);
+    for _ in 0..count(20) {
+        let nodes = nodes(&mut random, 9);
         // Two branches side by side; a node in the middle of two curves; a loop.
         let curves: [&[usize]; 4] = [&[0, 1, 2, 3, 4], &[2, 5], &[6, 3, 7], &[8, 1, 5, 8]];
         for scheme in SCHEMES {
@@ -225,8 +211,8 @@ fn curves_pass_smoothly_through_branches() {
 
 #[test]
 fn graphs_know_their_lengths_and_neighbours() {
-    let mut random = Random(6);
-    let nodes = random.nodes(6);
+    let mut random = Random::new(6);
+    let nodes = nodes(&mut random, 6);
     let curves: [&[usize]; 3] = [&[0, 1, 2], &[1, 3, 4], &[4, 5]];
     for scheme in SCHEMES {
         let graph = polyline(&nodes, &curves, scheme, 3);

@@ -2,19 +2,14 @@
 
 use glam::DVec3;
 use skeleton::{Node, Scheme, Skeleton};
+use trials::{Random, count};
 
 #[test]
 fn vertices_are_means_of_nodes() {
-    let mut state = 7u64;
-    let mut next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
-    for _ in 0..5 {
+    let mut random = Random::new(7);
+    for _ in 0..count(5) {
         let nodes = (0..9).map(|_| Node {
-            position: DVec3::new(next(), next(), next()) * 5.0,
+            position: random.vector(5.0),
             radius: 0.1,
         });
         let skeleton = Skeleton {

@@ -2,7 +2,7 @@
 //! writing one, going to definitions, renaming, laying the text out, the card under the pointer.
 
 use super::completion::Keyed;
-use super::place::{Place, id, to_bytes, to_chars};
+use super::place::{self, Place, id, to_bytes, to_chars};
 use super::{Editor, rename};
 use crate::command::Command;
 use crate::session::Session;
@@ -23,7 +23,7 @@ impl Editor {
         };
         if !rename.show(ui, session, caret, commands) {
             self.rename = None;
-            ui.memory_mut(|memory| memory.request_focus(id()));
+            place::focus(ui.ctx());
         }
     }
 
@@ -66,7 +66,7 @@ impl Editor {
         }
         self.buffer.replace_range(range.clone(), &item.insert);
         self.put_caret(ui.ctx(), range.start + item.insert.len());
-        ui.memory_mut(|memory| memory.request_focus(id()));
+        place::focus(ui.ctx());
         true
     }
 

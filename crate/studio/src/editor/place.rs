@@ -17,6 +17,16 @@ pub fn id() -> Id {
     Id::unique("editor")
 }
 
+/// Gives the text the focus, unless it has it: a focus that is requested anew does not keep arrow keys
+/// and Tab for a frame.
+pub fn focus(ctx: &egui::Context) {
+    ctx.memory_mut(|memory| {
+        if !memory.has_focus(id()) {
+            memory.request_focus(id());
+        }
+    });
+}
+
 /// Selects all of a field's text.
 pub fn select_all(ctx: &egui::Context, id: Id, text: &str) {
     let mut state = TextEdit::load_state(ctx, id).unwrap_or_default();

@@ -183,67 +183,120 @@ fn a_click_with_control_goes_to_where_a_name_is_made() {
     assert!(line.starts_with("var # "), "{line}");
 }
 
-/// In a slow browser several keys come in one frame.
-#[test]
-fn a_question_is_about_where_the_keys_before_it_lead() {
-    let mut window = window();
-    window.edit();
-    let mut keys = vec![Key::ArrowDown; 4];
-    keys.extend([Key::ArrowRight; "sphere flesh si".len()]);
-    keys.push(Key::F2);
-    for key in keys {
-        for pressed in [true, false] {
-            let event = Event::Key {
-                key,
-                physical_key: None,
-                pressed,
-                repeat: false,
-                modifiers: Modifiers::NONE,
-            };
-            window.harness.input_mut().events.push(event);
-        }
-    }
-    window.steps(5);
-    window.write("girth");
-    window.key(Modifiers::NONE, Key::Enter);
-    window.steps(3);
-    assert!(window.text().contains("var girth"), "{}", window.text());
+/// A key that goes down.
+fn key(key: Key) -> Event {
+    with(Modifiers::NONE, key)
 }
 
-/// Also the click before them may come in the same frame.
-#[test]
-fn keys_that_come_with_a_click_go_to_what_was_clicked() {
-    let mut window = window();
-    let at = window.place("editor").center_top() + egui::vec2(0.0, 20.0);
-    window.harness.event(Event::PointerMoved(at));
-    window.steps(1);
-    let key = |key| Event::Key {
+fn with(modifiers: Modifiers, key: Key) -> Event {
+    Event::Key {
         key,
         physical_key: None,
         pressed: true,
         repeat: false,
-        modifiers: Modifiers::NONE,
-    };
-    let button = |pressed| Event::PointerButton {
-        pos: at,
+        modifiers,
+    }
+}
+
+fn letters(text: &str) -> Event {
+    Event::Text(text.to_owned())
+}
+
+/// A click on a line of the text, from 0, which the pointer is on from now on.
+fn click(window: &mut Window, line: u8) -> [Event; 2] {
+    let pos = window.place("editor").center_top() + vec2(0.0, 20.0 + 19.6 * f32::from(line));
+    window.harness.event(Event::PointerMoved(pos));
+    window.steps(1);
+    [true, false].map(|pressed| Event::PointerButton {
+        pos,
         button: egui::PointerButton::Primary,
         pressed,
         modifiers: Modifiers::NONE,
-    };
-    let events = [
-        button(true),
-        button(false),
-        key(Key::ArrowDown),
-        key(Key::Home),
-        Event::Text(String::from("# here ")),
-    ];
+    })
+}
+
+/// Has all of it come in one frame, as in a slow browser.
+fn at_once(window: &mut Window, events: impl IntoIterator<Item = Event>) {
     window.harness.input_mut().events.extend(events);
-    window.steps(3);
-    let line = window
-        .text()
-        .lines()
-        .position(|line| line.starts_with("# here "));
-    assert!(line.is_some_and(|line| line > 0), "{}", window.text());
+    // As many frames as a browser would be asked for.
+    window.steps(40);
+}
+
+#[test]
+fn a_name_is_renamed_in_one_frame() {
+    let mut window = window();
+    let mut events = click(&mut window, 0).to_vec();
+    events.extend([
+        with(Modifiers::COMMAND, Key::End),
+        key(Key::ArrowUp),
+        key(Key::Home),
+    ]);
+    events.extend(vec![key(Key::ArrowRight); "sphere flesh si".len()]);
+    events.extend([key(Key::F2), letters("girth"), key(Key::Enter)]);
+    // The text has the focus again, and the caret where it was.
+    events.extend([key(Key::ArrowUp), key(Key::Home), letters("# ")]);
+    at_once(&mut window, events);
+    let renamed = TEXT
+        .replace("size", "girth")
+        .replace("framegirth", "framesize")
+        .replace("sphere flesh girth, 0", "# sphere flesh girth, 0");
+    assert_eq!(window.text(), renamed);
+}
+
+#[test]
+fn keys_that_come_with_a_click_go_to_what_was_clicked() {
+    // Also if the button goes up a frame after it went down.
+    for together in [true, false] {
+        for (arrow, line) in [(Key::ArrowUp, 0), (Key::ArrowDown, 2)] {
+            let mut window = window();
+            let [down, up] = click(&mut window, 1);
+            let mut events = vec![down];
+            if !together {
+                at_once(&mut window, std::mem::take(&mut events));
+            }
+            events.extend([up, key(arrow), key(Key::Home), letters("# ")]);
+            at_once(&mut window, events);
+            let text = window.text();
+            let written = text.lines().position(|line| line.starts_with("# "));
+            assert_eq!(written, Some(line), "{text}");
+        }
+    }
+}
+
+#[test]
+fn keys_after_a_completion_stay_in_the_text() {
+    let mut window = window();
+    at_end(&mut window);
+    type_in(&mut window, "sph");
+    let keys = [
+        key(Key::Tab),
+        key(Key::ArrowUp),
+        key(Key::Home),
+        letters("# "),
+    ];
+    at_once(&mut window, keys);
+    let text = window.text();
+    assert!(
+        text.contains("\n# sphere flesh size, 1 0 0\nsphere"),
+        "{text}"
+    );
+}
+
+#[test]
+fn keys_after_a_jump_stay_in_the_text() {
+    let mut window = window();
+    window.edit();
+    let mut keys = vec![key(Key::ArrowDown); 4];
+    keys.extend(vec![key(Key::ArrowRight); "sphere flesh si".len()]);
+    keys.extend([
+        key(Key::F12),
+        key(Key::ArrowUp),
+        key(Key::Home),
+        letters("# "),
+    ]);
+    at_once(&mut window, keys);
+    let text = window.text();
+    assert!(text.contains("\n# surface flesh"), "{text}");
 }
 
 #[test]

@@ -66,8 +66,7 @@ mod tests {
     type Refine = fn(&mut dyn FnMut(f64) -> f64, Bracket) -> f64;
     type Function = fn(f64) -> f64;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn roots_in_brackets_are_refined_whatever_the_function() {
         // Functions, the root between 0 and 1, and the accuracy to expect of a method that stops when its
         // steps become small.

@@ -1,37 +1,21 @@
 //! Every shape against its own definition as a set of points.
 use super::*;
 use core::f64::consts::TAU;
+use trials::{Random, count};
 
-/// A small deterministic generator, enough for test inputs: numbers in −1 … 1.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-
-    /// A ray that passes near the origin.
-    fn ray(&mut self) -> Ray {
-        let origin = self.vector() * 4.0;
-        let direction = (self.vector() - origin).normalize();
-        Ray { origin, direction }
-    }
+/// A ray that passes near the origin.
+fn ray_near(n: &mut Random) -> Ray {
+    let origin = n.vector(4.0);
+    let direction = (n.vector(1.0) - origin).normalize();
+    Ray { origin, direction }
 }
 
 /// Walks along rays in small steps and compares where being inside changes with the crossings.
-fn check(numbers: &mut Numbers, solid: &Solid, inside: &dyn Fn(DVec3) -> bool) -> usize {
+fn check(numbers: &mut Random, solid: &Solid, inside: &dyn Fn(DVec3) -> bool) -> usize {
     let (ball, reach) = solid.ball().unwrap_or((DVec3::ZERO, 10.0));
     let mut seen = 0;
     for _ in 0..20 {
-        let ray = numbers.ray();
+        let ray = ray_near(numbers);
         let mut crossings = Vec::new();
         solid.crossings(&ray, &mut crossings);
         crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
@@ -73,13 +57,12 @@ fn check(numbers: &mut Numbers, solid: &Solid, inside: &dyn Fn(DVec3) -> bool) -
     seen
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn spheres() {
-    let mut n = Numbers(1);
+    let mut n = Random::new(1);
     let mut seen = 0;
-    for _ in 0..30 {
-        let (center, radius) = (n.vector(), 0.05 + n.next().abs());
+    for _ in 0..count(30) {
+        let (center, radius) = (n.vector(1.0), 0.05 + n.unit());
         let solid = Solid::new(
             &Shape::Sphere {
                 center,
@@ -90,16 +73,15 @@ fn spheres() {
         .unwrap();
         seen += check(&mut n, &solid, &|p| p.distance(center) < radius);
     }
-    assert!(seen > 200);
+    assert!(seen > count(200));
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn cylinders() {
-    let mut n = Numbers(2);
+    let mut n = Random::new(2);
     let mut seen = 0;
-    for _ in 0..30 {
-        let (base, apex, radius) = (n.vector(), n.vector(), 0.02 + n.next().abs());
+    for _ in 0..count(30) {
+        let (base, apex, radius) = (n.vector(1.0), n.vector(1.0), 0.02 + n.unit());
         let shape = Shape::Cylinder { base, apex, radius };
         let solid = Solid::new(&shape, radius).unwrap();
         let axis = (apex - base).normalize();
@@ -109,24 +91,23 @@ fn cylinders() {
             (0.0..length).contains(&along) && (p - base - axis * along).length() < radius
         });
     }
-    assert!(seen > 200);
+    assert!(seen > count(200));
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn tubes_thin_and_fat_short_and_closed() {
-    let mut n = Numbers(3);
+    let mut n = Random::new(3);
     let mut seen = 0;
-    for case in 0..80 {
-        let center = n.vector() * 0.5;
-        let u = n.vector().normalize();
-        let v = u.cross(n.vector()).normalize();
-        let sweep = 0.1 + n.next().abs();
-        let radius = [0.02, 0.2, 0.5, 1.5][case % 4] * (0.5 + n.next().abs());
+    for case in 0..count(80) {
+        let center = n.vector(0.5);
+        let u = n.direction();
+        let v = u.cross(n.vector(1.0)).normalize();
+        let sweep = 0.1 + n.unit();
+        let radius = [0.02, 0.2, 0.5, 1.5][case % 4] * (0.5 + n.unit());
         let angle = if case % 5 == 0 {
             TAU
         } else {
-            0.1 + 3.0 * (1.0 + n.next())
+            0.1 + 3.0 * (1.0 + n.range(-1.0, 1.0))
         };
         let shape = Shape::Arc {
             center,
@@ -150,17 +131,16 @@ fn tubes_thin_and_fat_short_and_closed() {
             disc(azimuth, rho) || disc(azimuth + TAU / 2.0, -rho)
         });
     }
-    assert!(seen > 500);
+    assert!(seen > count(500));
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn prisms_and_slabs() {
-    let mut n = Numbers(4);
+    let mut n = Random::new(4);
     let mut seen = 0;
-    for _ in 0..30 {
-        let corners = [n.vector() * 2.0, n.vector() * 2.0, n.vector() * 2.0];
-        let half = 0.02 + 0.5 * n.next().abs();
+    for _ in 0..count(30) {
+        let corners = [n.vector(2.0), n.vector(2.0), n.vector(2.0)];
+        let half = 0.02 + 0.5 * n.unit();
         let solid = Solid::new(
             &Shape::Triangle {
                 corners,
@@ -175,7 +155,7 @@ fn prisms_and_slabs() {
             let left = |a: DVec3, b: DVec3| (b - a).cross(p - a).dot(normal) > 0.0;
             left(a, b) && left(b, c) && left(c, a) && (p - a).dot(normal).abs() < half
         });
-        let point = n.vector();
+        let point = n.vector(1.0);
         let plane = Shape::Plane {
             point,
             normal,
@@ -184,11 +164,10 @@ fn prisms_and_slabs() {
         let solid = Solid::new(&plane, half).unwrap();
         seen += check(&mut n, &solid, &|p| (p - point).dot(normal).abs() < half);
     }
-    assert!(seen > 200);
+    assert!(seen > count(200));
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn sheets_are_crossed_once() {
     let ray = Ray {
         origin: DVec3::new(0.2, 0.2, 5.0),
@@ -228,8 +207,7 @@ fn sheets_are_crossed_once() {
     assert_eq!(out[0].normal, DVec3::Z);
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn a_distant_eye_sees_a_thin_tube() {
     let shape = Shape::Arc {
         center: DVec3::ZERO,
@@ -252,8 +230,7 @@ fn a_distant_eye_sees_a_thin_tube() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn shapes_without_a_surface_are_refused() {
     let sphere = |r| {
         Solid::new(
@@ -293,14 +270,14 @@ fn shapes_without_a_surface_are_refused() {
 /// Walks along rays like [`check`], for surfaces that end: `height` is of one sign on each side of
 /// the surface, and `None` where it does not reach.
 fn check_sheet(
-    numbers: &mut Numbers,
+    numbers: &mut Random,
     solid: &Solid,
     height: &dyn Fn(DVec3) -> Option<f64>,
 ) -> usize {
     let (ball, reach) = solid.ball().unwrap();
     let mut seen = 0;
     for _ in 0..20 {
-        let ray = numbers.ray();
+        let ray = ray_near(numbers);
         let mut crossings = Vec::new();
         solid.crossings(&ray, &mut crossings);
         let step = 5e-3;
@@ -337,18 +314,17 @@ fn check_sheet(
     seen
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn cones_blunt_and_pointed() {
-    let mut n = Numbers(5);
+    let mut n = Random::new(5);
     let mut seen = 0;
-    for case in 0..60 {
-        let (base, apex) = (n.vector(), n.vector());
-        let mut radii = [0.02 + n.next().abs(), 0.02 + n.next().abs()];
+    for case in 0..count(60) {
+        let (base, apex) = (n.vector(1.0), n.vector(1.0));
+        let mut radii = [0.02 + n.unit(), 0.02 + n.unit()];
         match case % 4 {
             0 => radii[0] = 0.0,
             1 => radii[1] = 0.0,
-            2 => radii[1] = radii[0] * (1.0 + 1e-9 * n.next()),
+            2 => radii[1] = radii[0] * (1.0 + 1e-9 * n.range(-1.0, 1.0)),
             _ => {}
         }
         let shape = Shape::Cone {
@@ -366,24 +342,23 @@ fn cones_blunt_and_pointed() {
             (0.0..length).contains(&along) && (p - base - axis * along).length() < radius
         });
     }
-    assert!(seen > 400, "{seen}");
+    assert!(seen > count(300), "{seen}");
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn a_cone_of_even_width_is_a_cylinder() {
-    let mut n = Numbers(6);
-    for _ in 0..200 {
-        let (base, apex, radius) = (n.vector(), n.vector(), 0.02 + n.next().abs());
+    let mut n = Random::new(6);
+    for _ in 0..count(200) {
+        let (base, apex, radius) = (n.vector(1.0), n.vector(1.0), 0.02 + n.unit());
         let cone = Cone::new([base, apex], [radius; 2]).unwrap();
         let cylinder = Cylinder::new(base, apex, radius).unwrap();
         let axis = (apex - base).normalize();
         // Some go along the axis, inside and outside.
         let along = Ray {
-            origin: base + axis.any_orthonormal_vector() * n.next(),
+            origin: base + axis.any_orthonormal_vector() * n.range(-1.0, 1.0),
             direction: axis,
         };
-        for ray in [n.ray(), n.ray(), along] {
+        for ray in [ray_near(&mut n), ray_near(&mut n), along] {
             let (mut a, mut b) = (Vec::new(), Vec::new());
             cone.crossings(&ray, &mut a);
             cylinder.crossings(&ray, &mut b);
@@ -395,8 +370,7 @@ fn a_cone_of_even_width_is_a_cylinder() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn rays_along_the_wall_of_a_cone() {
     // Parallel to a line of the wall, the equation is of the first degree.
     let cone = Cone::new([DVec3::ZERO, DVec3::Z], [1.0, 0.0]).unwrap();
@@ -415,17 +389,16 @@ fn rays_along_the_wall_of_a_cone() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn boxes_straight_and_sheared() {
-    let mut n = Numbers(7);
+    let mut n = Random::new(7);
     let mut seen = 0;
-    for case in 0..40 {
-        let center = n.vector() * 0.5;
+    for case in 0..count(40) {
+        let center = n.vector(0.5);
         let axes = if case % 2 == 0 {
-            [n.vector(), n.vector(), n.vector()]
+            [n.vector(1.0), n.vector(1.0), n.vector(1.0)]
         } else {
-            [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * n.next())
+            [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * n.range(-1.0, 1.0))
         };
         let solid = Solid::new(&Shape::Box { center, axes }, 0.0).unwrap();
         let [x, y, z] = axes;
@@ -437,16 +410,15 @@ fn boxes_straight_and_sheared() {
             s.iter().all(|s| (s / volume).abs() < 1.0)
         });
     }
-    assert!(seen > 200, "{seen}");
+    assert!(seen > count(200), "{seen}");
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn pipes_are_open() {
-    let mut n = Numbers(8);
+    let mut n = Random::new(8);
     let mut seen = 0;
-    for _ in 0..40 {
-        let (base, apex, radius) = (n.vector(), n.vector(), 0.02 + n.next().abs());
+    for _ in 0..count(40) {
+        let (base, apex, radius) = (n.vector(1.0), n.vector(1.0), 0.02 + n.unit());
         let solid = Solid::new(&Shape::Pipe { base, apex, radius }, radius).unwrap();
         let axis = (apex - base).normalize();
         let length = base.distance(apex);
@@ -456,7 +428,7 @@ fn pipes_are_open() {
             (0.0..=length).contains(&along).then_some(across - radius)
         });
     }
-    assert!(seen > 200, "{seen}");
+    assert!(seen > count(200), "{seen}");
     let pipe = Pipe::new(DVec3::ZERO, DVec3::Z, 1.0).unwrap();
     let through = Ray {
         origin: DVec3::new(0.5, 0.0, 5.0),
@@ -467,14 +439,13 @@ fn pipes_are_open() {
     assert!(out.is_empty());
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn patches_are_flat_but_lit_round() {
-    let mut n = Numbers(9);
+    let mut n = Random::new(9);
     let mut seen = 0;
-    for _ in 0..60 {
-        let corners = [n.vector() * 2.0, n.vector() * 2.0, n.vector() * 2.0];
-        let normals = [n.vector(), n.vector(), n.vector()];
+    for _ in 0..count(60) {
+        let corners = [n.vector(2.0), n.vector(2.0), n.vector(2.0)];
+        let normals = [n.vector(1.0), n.vector(1.0), n.vector(1.0)];
         let solid = Solid::new(&Shape::Patch { corners, normals }, 0.0).unwrap();
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize();
@@ -494,20 +465,19 @@ fn patches_are_flat_but_lit_round() {
         assert_eq!(out.len(), 1);
         assert!(out[0].normal.cross(ray.direction).length() < 1e-6);
     }
-    assert!(seen > 100, "{seen}");
+    assert!(seen > count(100), "{seen}");
 }
 
 /// The returned normal is on the visible side of the face, for any normals at the corners.
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn patches_near_the_outline_are_not_lit_from_within() {
-    let mut n = Numbers(10);
+    let mut n = Random::new(10);
     let mut turned = 0;
-    for _ in 0..2000 {
-        let normals = [0, 1, 2].map(|_| DVec3::Z + n.vector() * 0.9);
+    for _ in 0..count(2000) {
+        let normals = [0, 1, 2].map(|_| DVec3::Z + n.vector(0.9));
         let corners = [DVec3::NEG_ONE, DVec3::X, DVec3::Y].map(|c| c.with_z(0.0));
         let patch = Patch::new(corners, normals).unwrap();
-        let ray = n.ray();
+        let ray = ray_near(&mut n);
         let mut out = Vec::new();
         patch.crossings(&ray, &mut out);
         for crossing in out {
@@ -517,19 +487,18 @@ fn patches_near_the_outline_are_not_lit_from_within() {
             turned += usize::from(faces.abs() < 1e-8);
         }
     }
-    assert!(turned > 5, "{turned}");
+    assert!(turned >= count(6), "{turned}");
 }
 
 /// No ray slips between two patches that share an edge.
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn patches_join_without_gaps() {
-    let mut n = Numbers(11);
-    for _ in 0..2000 {
-        let [a, b, c, d] = [n.vector(), n.vector(), n.vector(), n.vector()];
+    let mut n = Random::new(11);
+    for _ in 0..count(2000) {
+        let [a, b, c, d] = [n.vector(1.0), n.vector(1.0), n.vector(1.0), n.vector(1.0)];
         let patches = [[a, b, c], [b, a, d]].map(|corners| Patch::new(corners, corners).unwrap());
-        let origin = n.vector() * 20.0;
-        let target = a.lerp(b, 0.5 + 0.45 * n.next());
+        let origin = n.vector(20.0);
+        let target = a.lerp(b, 0.5 + 0.45 * n.range(-1.0, 1.0));
         let ray = Ray {
             origin,
             direction: (target - origin).normalize(),
@@ -545,13 +514,12 @@ fn patches_join_without_gaps() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn quadrics_of_every_kind() {
     use glam::DMat3;
-    let mut n = Numbers(12);
+    let mut n = Random::new(12);
     let mut seen = 0;
-    for case in 0..120 {
+    for case in 0..count(120) {
         // Ellipsoids, hyperboloids, cones; then cylinders and paraboloids; then planes.
         let mut signs = [DVec3::ONE, DVec3::new(1.0, 1.0, -1.0)][case % 2];
         match case % 5 {
@@ -560,14 +528,14 @@ fn quadrics_of_every_kind() {
             2 => signs = DVec3::ZERO,
             _ => {}
         }
-        let turn = DMat3::from_cols(n.vector(), n.vector(), n.vector());
+        let turn = DMat3::from_cols(n.vector(1.0), n.vector(1.0), n.vector(1.0));
         let square = turn.transpose() * DMat3::from_diagonal(signs) * turn;
-        let (low, high) = (-0.3 - n.vector().abs(), 0.3 + n.vector().abs());
-        let linear = n.vector() * 0.5;
-        let constant = [0.4 * n.next(), -0.2, 0.0][case % 3];
+        let (low, high) = (-0.3 - n.vector(1.0).abs(), 0.3 + n.vector(1.0).abs());
+        let linear = n.vector(0.5);
+        let constant = [0.4 * n.range(-1.0, 1.0), -0.2, 0.0][case % 3];
         let mut surface = scene::Quadric::new(square, linear, constant, low, high).unwrap();
         if case % 2 == 0 {
-            surface.axes = [n.vector(), n.vector(), n.vector()];
+            surface.axes = [n.vector(1.0), n.vector(1.0), n.vector(1.0)];
         }
         let shape = Shape::Quadric(Box::new(surface));
         let solid = Solid::new(&shape, 0.0).unwrap();
@@ -579,20 +547,19 @@ fn quadrics_of_every_kind() {
             (q.abs().max_element() <= 1.0).then(|| surface.value(q).0)
         });
     }
-    assert!(seen > 300, "{seen}");
+    assert!(seen > count(300), "{seen}");
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn a_round_quadric_is_a_ball() {
     use glam::DMat3;
     let bounds = DVec3::splat(1.0);
     let ball = scene::Quadric::new(DMat3::IDENTITY, DVec3::ZERO, -0.81, -bounds, bounds).unwrap();
     let quadric = Quadric::new(&ball).unwrap();
     let sphere = Sphere::new(DVec3::ZERO, 0.9).unwrap();
-    let mut n = Numbers(13);
-    for case in 0..500 {
-        let mut ray = n.ray();
+    let mut n = Random::new(13);
+    for case in 0..count(500) {
+        let mut ray = ray_near(&mut n);
         if case % 2 == 0 {
             ray.origin -= ray.direction * 1e5;
         }
@@ -606,8 +573,7 @@ fn a_round_quadric_is_a_ball() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn new_shapes_without_a_surface_are_refused() {
     let cone = |apex, r, s| Cone::new([DVec3::ZERO, apex], [r, s]);
     assert!(cone(DVec3::X, 1.0, 0.0).is_some());

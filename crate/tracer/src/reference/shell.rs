@@ -160,8 +160,7 @@ mod tests {
     use super::largest;
     use field::Kernel;
 
-    #[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-    #[cfg_attr(not(target_arch = "wasm32"), test)]
+    #[test]
     fn nothing_in_a_shell_is_larger() {
         let mut tight = 0;
         for kernel in Kernel::ALL {

@@ -1,17 +1,17 @@
 //! The reference against steps so small that they need no bounds.
 use super::{Near, Reference};
-use crate::tests::common::{Numbers, clothe, element, empty, soft};
 use field::{Kernel, Profile, Wave};
 use glam::DVec3;
 use scene::{Element, Scene, Shape};
+use trials::scenes::{clothe, element, empty, soft};
+use trials::{Random, count};
 
 /// Some elements of one kernel; every other scene carves, tapers or has a profile.
 fn scene(kernel: Kernel, seed: u64) -> Scene {
-    let mut n = Numbers((seed * 8 + kernel as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
-    n.unit();
+    let mut n = Random::new(seed * 8 + kernel as u64);
     let mut scene = empty();
     for i in 0..1 + seed % 3 {
-        let mut material = soft(-libm::exp(n.between(-2.0, 3.0)), 1.0);
+        let mut material = soft(-libm::exp(n.range(-2.0, 3.0)), 1.0);
         material.kernel = Some(kernel);
         if i == 2 {
             material.strength = -0.7;
@@ -21,8 +21,8 @@ fn scene(kernel: Kernel, seed: u64) -> Scene {
             2 => {
                 let waves = [Wave::Sin, Wave::Hat, Wave::Step, Wave::Saw, Wave::Cos2];
                 material.profile = Some(Profile {
-                    waves: [waves[(n.unit() * 5.0) as usize], Wave::One],
-                    scale: [n.between(1.0, 9.0), 1.0],
+                    waves: [n.pick(&waves), Wave::One],
+                    scale: [n.range(1.0, 9.0), 1.0],
                     bounds: [0.5, 1.0],
                     times: 1.3,
                     restriction: 0.4,
@@ -30,11 +30,11 @@ fn scene(kernel: Kernel, seed: u64) -> Scene {
             }
             _ => (),
         }
-        let kind = (n.unit() * 7.0) as u64;
+        let kind = n.below(7);
         let radius = 0.25;
         let shape = match kind {
             5 => Shape::Curve {
-                control: [0, 1, 2, 3].map(|_| n.vector()),
+                control: [0, 1, 2, 3].map(|_| n.vector(1.0)),
                 radius,
             },
             6 => {
@@ -66,18 +66,17 @@ fn reference(scene: &Scene) -> Reference {
     Reference::new(scene.soft_surfaces().swap_remove(0).sum.primitives)
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn crossings_are_those_of_small_steps() {
     let mut seen = 0;
     for kernel in Kernel::ALL {
-        for seed in 0..12 {
+        for seed in 0..count(6) as u64 {
             let scene = scene(kernel, seed);
             let mut reference = reference(&scene);
-            let mut n = Numbers(seed * 77 + kernel as u64);
+            let mut n = Random::new(seed * 77 + kernel as u64);
             for _ in 0..2 {
-                let origin = n.vector() * 3.0;
-                let direction = (n.vector() * 0.5 - origin).normalize();
+                let origin = n.vector(3.0);
+                let direction = (n.vector(0.5) - origin).normalize();
                 let found = reference.crossings(origin, direction, 7.0, 1e-9);
                 assert!(found.complete, "{kernel:?} {seed}");
                 assert!(found.roots.windows(2).all(|w| w[0].t < w[1].t));
@@ -106,16 +105,15 @@ fn crossings_are_those_of_small_steps() {
             }
         }
     }
-    assert!(seen > 150, "{seen} crossings");
+    assert!(seen > count(75), "{seen} crossings");
 }
 
 /// Without profiles, as those with kinks have no second derivative there.
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn slopes_change_no_faster_than_the_bound() {
     let mut tight = 0;
     for kernel in Kernel::ALL {
-        for seed in 0..24 {
+        for seed in 0..count(12) as u64 {
             let mut scene = scene(kernel, seed);
             for material in &mut scene.flesh {
                 if let Some(profile) = &mut material.profile {
@@ -125,12 +123,12 @@ fn slopes_change_no_faster_than_the_bound() {
                 }
             }
             let mut reference = reference(&scene);
-            let mut n = Numbers(seed * 91 + kernel as u64);
+            let mut n = Random::new(seed * 91 + kernel as u64);
             for _ in 0..40 {
-                let center = n.vector() * 1.5;
-                let radius = libm::exp(n.between(-9.0, 0.0));
+                let center = n.vector(1.5);
+                let radius = libm::exp(n.range(-9.0, 0.0));
                 for _ in 0..4 {
-                    let [a, b] = [0, 1].map(|_| center + n.vector() * (radius * 0.57));
+                    let [a, b] = [0, 1].map(|_| center + n.vector(1.0) * (radius * 0.57));
                     let way = (b - a).normalize();
                     let extent = reference.function.extent(center, radius, Some(way));
                     let [p, q] = [a, b].map(|x| reference.sample(x));
@@ -160,11 +158,14 @@ fn slopes_change_no_faster_than_the_bound() {
             }
         }
     }
-    assert!(tight > 3000, "{tight} of 30720 within a factor of 10");
+    assert!(
+        tight > count(1500),
+        "{tight} of {} within a factor of 10",
+        count(15_360)
+    );
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn a_ball_is_found_to_the_last_digits() {
     let mut scene = empty();
     clothe(&mut scene, vec![soft(-4.0, 1.0)]);
@@ -201,17 +202,16 @@ fn a_ball_is_found_to_the_last_digits() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn wrong_reports_are_told() {
     use super::Fault;
     let scene = scene(Kernel::Cauchy, 0);
     let mut reference = reference(&scene);
-    let mut n = Numbers(3);
+    let mut n = Random::new(3);
     let mut tried = 0;
     for _ in 0..40 {
-        let origin = n.vector().normalize() * 4.0;
-        let direction = (n.vector() * 0.3 - origin).normalize();
+        let origin = n.direction() * 4.0;
+        let direction = (n.vector(0.3) - origin).normalize();
         let found = reference.crossings(origin, direction, 10.0, 1e-9);
         let tolerance = 1e-4;
         let mut judge = |t: Option<f64>| reference.judge(origin, direction, t, 10.0, |_| tolerance);

@@ -1,8 +1,9 @@
 //! The root finders for comparison, against exact hits.
-use crate::common::{Numbers, blend, clothe, element, empty, soft};
 use glam::DVec3;
 use scene::{Digger, Scene, Shape};
 use tracer::{Pass, Picture, Stats, Tile};
+use trials::scenes::{blend, clothe, element, empty, soft};
+use trials::{Random, count};
 
 const ALL: [Digger; 9] = [
     Digger::Hermite,
@@ -70,19 +71,18 @@ fn easy() -> Scene {
     scene
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn all_diggers_agree_on_an_easy_scene() {
     let scene = easy();
     let exact = Picture::new(&scene, [16, 16]);
     for digger in ALL {
         let picture = dug(&scene, digger);
-        let mut n = Numbers(9);
+        let mut n = Random::new(9);
         let (mut met, mut worst) = (0, 0.0_f64);
-        for _ in 0..400 {
-            let origin = n.vector().normalize() * 4.0;
+        for _ in 0..count(400) {
+            let origin = n.direction() * 4.0;
             // At the bars' axes, so that no ray grazes.
-            let aim = DVec3::new(n.between(-0.8, 0.8), 0.0, 0.1);
+            let aim = DVec3::new(n.range(-0.8, 0.8), 0.0, 0.1);
             let direction = (aim - origin).normalize();
             let hits = exact.hits(origin, direction);
             let Some(first) = hits.first() else { continue };
@@ -96,17 +96,16 @@ fn all_diggers_agree_on_an_easy_scene() {
             worst = worst.max((t - first.t).abs() * steep);
             met += 1;
         }
-        assert!(met > 200, "{met}");
+        assert!(met > count(200), "{met}");
         assert!(worst < tolerance(digger), "{digger:?}: {worst}");
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
-    let mut n = Numbers(3);
+    let mut n = Random::new(3);
     let mut met = 0;
-    for seed in 0..40 {
+    for seed in 0..count(40) as u64 {
         let mut scene = blend(seed, 2 + seed as usize % 7);
         scene.settings.influence = 1e-9;
         // Rays that leave through the far end of a plane are beyond what is compared.
@@ -118,8 +117,8 @@ fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
         for digger in [Digger::Lg, Digger::Sphere] {
             let picture = dug(&scene, digger);
             for case in 0..25 {
-                let origin = n.vector() * if case % 2 == 0 { 4.0 } else { 0.8 };
-                let direction = (n.vector() * 0.8 - origin).normalize();
+                let origin = n.vector(1.0) * if case % 2 == 0 { 4.0 } else { 0.8 };
+                let direction = (n.vector(0.8) - origin).normalize();
                 let hits = exact.hits(origin, direction);
                 let found = meets(&picture, origin, direction);
                 // Whether the field stays near T on the missed or invented interval.
@@ -142,7 +141,7 @@ fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
             }
         }
     }
-    assert!(met > 700, "{met}");
+    assert!(met > count(700), "{met}");
 }
 
 /// A picture in one tile.
@@ -159,8 +158,7 @@ fn traced(scene: &Scene, size: [u32; 2]) -> (Vec<u8>, Stats) {
     (pixels.unwrap(), stats)
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn pictures_of_all_diggers_are_much_alike() {
     let scene = easy();
     let size = [40, 32];
@@ -184,8 +182,7 @@ fn pictures_of_all_diggers_are_much_alike() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn rays_along_the_surface_come_to_an_end() {
     // All along the ray the field of the plane is T, and its slope 0.
     let mut scene = empty();
@@ -208,8 +205,7 @@ fn rays_along_the_surface_come_to_an_end() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn a_map_shows_costs_and_does_not_depend_on_tiles() {
     for digger in [Digger::Hermite, Digger::Lg] {
         let mut scene = easy();
@@ -260,16 +256,15 @@ fn a_map_shows_costs_and_does_not_depend_on_tiles() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn a_ray_through_very_many_primitives_comes_to_an_end() {
     let mut scene = empty();
     // So weak that all together they never reach T, and all of them are met.
     clothe(&mut scene, vec![soft(-1.0, 2e-5)]);
     scene.settings.influence = 1e-9;
-    let mut n = Numbers(1);
+    let mut n = Random::new(1);
     for _ in 0..5_000 {
-        let center = n.vector() * 0.3;
+        let center = n.vector(0.3);
         let radius = 0.25;
         let ball = Shape::Sphere { center, radius };
         scene.elements.push(element(ball, 0));

@@ -3,40 +3,20 @@
 use crate::looks::*;
 use glam::DVec3;
 use scene::{Background, Finish, Light, LightKind, Scene, Shape, Tone};
+use trials::{Random, count};
 
 const SIZE: [u32; 2] = [24, 18];
 
-/// A sequence of numbers in [0, 1), the same on every machine.
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.next()
-    }
-
-    fn point(&mut self, half: f64) -> DVec3 {
-        DVec3::from_array([0; 3].map(|_| self.between(-half, half)))
-    }
-
-    /// Diffuse, specular, mirrored and passed shares of a channel that sum to `sum`.
-    fn shares(&mut self, sum: f64) -> [f64; 4] {
-        let parts = [0; 4].map(|_| self.next());
-        let whole: f64 = parts.iter().sum();
-        parts.map(|part| sum * part / whole)
-    }
+/// Diffuse, specular, mirrored and passed shares of a channel that sum to 1.
+fn shares(random: &mut Random) -> [f64; 4] {
+    let parts = [0; 4].map(|_| random.unit());
+    let whole: f64 = parts.iter().sum();
+    parts.map(|part| part / whole)
 }
 
 /// A material without light of its own whose shares sum to 1 in each channel.
-fn closed(chance: &mut Chance) -> Finish {
-    let channels = [0; 3].map(|_| chance.shares(1.0));
+fn closed(random: &mut Random) -> Finish {
+    let channels = [0; 3].map(|_| shares(random));
     let of = |k: usize| [0, 1, 2].map(|channel| channels[channel][k] as f32);
     Finish {
         ambient: [0.0; 3],
@@ -44,40 +24,40 @@ fn closed(chance: &mut Chance) -> Finish {
         specular: of(1),
         reflective: of(2),
         transparent: of(3),
-        shine: chance.between(1.0, 100.0) as f32,
-        index: chance.between(0.7, 2.4) as f32,
-        dispersion: chance.between(0.0, 0.2) as f32,
+        shine: random.range(1.0, 100.0) as f32,
+        index: random.range(0.7, 2.4) as f32,
+        dispersion: random.range(0.0, 0.2) as f32,
         ..Finish::default()
     }
 }
 
-fn shape(chance: &mut Chance) -> Shape {
-    let center = chance.point(1.5);
-    match (5.0 * chance.next()) as u32 {
+fn shape(random: &mut Random) -> Shape {
+    let center = random.vector(1.5);
+    match random.below(5) {
         0 => Shape::Box {
             center,
-            axes: [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * chance.between(0.001, 0.8)),
+            axes: [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * random.range(0.001, 0.8)),
         },
         1 => Shape::Cylinder {
             base: center,
-            apex: chance.point(1.5),
-            radius: chance.between(0.01, 0.5),
+            apex: random.vector(1.5),
+            radius: random.range(0.01, 0.5),
         },
         2 => Shape::Triangle {
-            corners: [center, chance.point(2.0), chance.point(2.0)],
+            corners: [center, random.vector(2.0), random.vector(2.0)],
             radius: 0.0,
         },
-        _ => ball(center, chance.between(0.2, 1.0)),
+        _ => ball(center, random.range(0.2, 1.0)),
     }
 }
 
 /// The brightest channel of a scene under one light of this brightness that nothing else lights.
 fn brightest(seed: u64, light: f32) -> u8 {
-    let mut chance = Chance(seed);
+    let mut random = Random::new(seed);
     let mut scene = dark();
     scene.settings.vanish = 0.0;
     for k in 0..7 {
-        let (shape, finish) = (shape(&mut chance), closed(&mut chance));
+        let (shape, finish) = (shape(&mut random), closed(&mut random));
         if k % 3 == 0 && !matches!(shape, Shape::Box { .. }) {
             add_soft(&mut scene, shape, finish);
         } else {
@@ -85,7 +65,7 @@ fn brightest(seed: u64, light: f32) -> u8 {
         }
     }
     let kind = LightKind::Point {
-        position: chance.point(8.0) + DVec3::Z * 4.0,
+        position: random.vector(8.0) + DVec3::Z * 4.0,
     };
     scene.lights.push(Light::new(kind, [light; 3]));
     draw(&scene, SIZE).into_iter().flatten().fold(0, u8::max)
@@ -94,25 +74,25 @@ fn brightest(seed: u64, light: f32) -> u8 {
 #[test]
 fn no_pixel_is_brighter_than_the_light() {
     let mut lit = 0;
-    for seed in 0..40 {
+    for seed in 0..count(40) as u64 {
         let found = brightest(seed, 0.5);
         assert!(
             found <= 128,
             "scene {seed}: {found} of 255 from a light of a half"
         );
-        lit += u32::from(found > 30);
+        lit += usize::from(found > 30);
     }
-    assert!(lit > 20, "only {lit} scenes are lit at all");
+    assert!(2 * lit > count(40), "only {lit} scenes are lit at all");
 }
 
 #[test]
 fn a_background_is_not_made_brighter_by_what_stands_before_it() {
-    for seed in 0..20 {
-        let mut chance = Chance(seed);
+    for seed in 0..count(20) as u64 {
+        let mut random = Random::new(seed);
         let mut scene = dark();
         scene.background = Background::Colour([0.5; 3]);
         for _ in 0..7 {
-            let (shape, finish) = (shape(&mut chance), closed(&mut chance));
+            let (shape, finish) = (shape(&mut random), closed(&mut random));
             add(&mut scene, shape, finish);
         }
         // Without lights a scene would be lit evenly.

@@ -1,14 +1,14 @@
 //! Examples of the gallery whose skeletons fold and touch: what pictures show of them, against the reference.
 //!
-//! With SINEW_RAYS as many rays of each, and with SINEW_SCENE only those of one; the counts are printed with `--nocapture`.
-#![cfg(not(target_arch = "wasm32"))]
+//! With SINEW_SCENE only those of one; the counts are printed with `--nocapture`.
 
-use crate::common::Numbers;
-use crate::judged::{Range, Row, asked, is_outside, packet, reference};
+use crate::judged::{Range, distances, is_outside, packet, reference};
 use glam::DVec3;
 use rats::Project;
 use scene::Scene;
 use tracer::Picture;
+use trials::Random;
+use trials::rays::Row;
 
 /// Side of the pictures, pixels.
 const SIDE: u32 = 256;
@@ -81,13 +81,13 @@ fn judge(name: &str, text: &str, frame: u32, rays: usize) -> Row {
     let eye = scene.camera.eye;
     assert!(is_outside(&mut reference, eye), "{name}");
     let far = eye.distance(range.center) + range.half.length();
-    let mut numbers = Numbers(41 + u64::from(frame));
+    let mut numbers = Random::new(41 + u64::from(frame));
     let mut row = Row::default();
-    while row.rays < rays {
-        let (packet, limit) = if numbers.unit() < 0.5 {
+    while row.rays < rays as u64 {
+        let (packet, limit) = if numbers.chance(0.5) {
             let (x, y) = (numbers.unit(), numbers.unit());
-            let spread = libm::pow(10.0, numbers.between(-3.0, -1.0));
-            let about = |numbers: &mut Numbers, x: f64| x + spread * numbers.between(-1.0, 1.0);
+            let spread = numbers.decades(-3.0, -1.0);
+            let about = |numbers: &mut Random, x: f64| x + spread * numbers.range(-1.0, 1.0);
             let rays = (0..8).map(|_| {
                 let (x, y) = (about(&mut numbers, x), about(&mut numbers, y));
                 pixel(&scene, x, y)
@@ -97,7 +97,9 @@ fn judge(name: &str, text: &str, frame: u32, rays: usize) -> Row {
             let packet = packet(&mut numbers, &range, &picture, &mut reference);
             (packet, 2.0 * range.far)
         };
-        row.judge(name, (&picture, &mut reference), &packet, limit, |_, _| {});
+        let said = distances(&picture, &packet);
+        let told = row.judge((&picture, &mut reference), &packet, &said, limit);
+        print!("{told}");
     }
     println!("{name} frame {frame}: {row:?}");
     row
@@ -110,7 +112,7 @@ fn examples_show_what_is_there() {
         if only.as_ref().is_some_and(|only| only != name) {
             continue;
         }
-        let row = judge(name, text, frame, asked(160));
+        let row = judge(name, text, frame, trials::count(50));
         assert!(row.missed == 0 && row.invented == 0, "{name} {row:?}");
         // Grazing rays may be left undecided.
         assert!(

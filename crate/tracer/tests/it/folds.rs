@@ -1,7 +1,5 @@
 //! Local convolution and folds in contact, as pictures show them, against a search along the ray.
-#![cfg(not(target_arch = "wasm32"))]
 
-use crate::common::{Numbers, empty};
 use contact::Bulge;
 use field::{Implicit, Kernel, THRESHOLD};
 use glam::{DAffine3, DVec3};
@@ -9,10 +7,12 @@ use scene::{Contact, Curves, Element, Flesh, Form, Function, Scene, Shape};
 use skeleton::{Node, Scheme, Skeleton};
 use std::sync::Arc;
 use tracer::Picture;
+use trials::Random;
+use trials::scenes::empty;
 
 /// Worms that fold and cross themselves, with or without contact of the folds.
 fn worm(seed: u64, touching: bool) -> Scene {
-    let mut numbers = Numbers(seed * 2 + 11);
+    let mut numbers = Random::new(seed * 2 + 11);
     numbers.unit();
     let mut scene = empty();
     scene.flesh = vec![Flesh {
@@ -25,12 +25,12 @@ fn worm(seed: u64, touching: bool) -> Scene {
     for i in 0..7 {
         // To and fro.
         let x = [-0.7, 0.7][i % 2];
-        let position = DVec3::new(x, 0.34 * (i as f64 - 3.0), 0.0) + 0.12 * numbers.vector();
-        let radius = numbers.between(0.16, 0.24);
+        let position = DVec3::new(x, 0.34 * (i as f64 - 3.0), 0.0) + numbers.vector(0.12);
+        let radius = numbers.range(0.16, 0.24);
         nodes.push(Node { position, radius });
     }
     nodes.push(Node {
-        position: numbers.vector(),
+        position: numbers.vector(1.0),
         radius: 0.2,
     });
     let curves = vec![(0..7).collect(), vec![3, 7]];
@@ -82,12 +82,9 @@ fn march(function: &dyn Implicit, (origin, direction): (DVec3, DVec3)) -> (Optio
     (None, nearest)
 }
 
-/// With SINEW_RAYS as many rays.
 #[test]
 fn folds_are_seen_where_they_are() {
-    let rays: usize = (std::env::var("SINEW_RAYS").ok())
-        .and_then(|n| n.parse().ok())
-        .unwrap_or(360);
+    let rays = trials::count(360);
     const SCENES: usize = 6;
     let (mut hits, mut grazing, mut worst) = (0, 0, 0.0f64);
     for seed in 0..SCENES {
@@ -96,12 +93,12 @@ fn folds_are_seen_where_they_are() {
         let surfaces = scene.surfaces();
         assert_eq!(surfaces.len(), 1);
         let function = surfaces[0].function();
-        let mut numbers = Numbers(seed as u64 * 7 + 3);
+        let mut numbers = Random::new(seed as u64 * 7 + 3);
         for _ in 0..rays.div_ceil(8 * SCENES) {
-            let eye = numbers.vector().normalize() * 4.5;
-            let to = numbers.vector() * 0.8;
+            let eye = numbers.direction() * 4.5;
+            let to = numbers.vector(0.8);
             let packet: Vec<(DVec3, DVec3)> = (0..8)
-                .map(|_| (eye, (to + 0.05 * numbers.vector() - eye).normalize()))
+                .map(|_| (eye, (to + numbers.vector(0.05) - eye).normalize()))
                 .collect();
             for (ray, hit) in packet.iter().zip(picture.cast(&packet)) {
                 let (want, nearest) = march(function, *ray);

@@ -1,5 +1,4 @@
 //! Mirrors and glass against paths made by hand, with the sines' law written as angles.
-#![cfg(not(target_arch = "wasm32"))]
 
 use crate::looks::*;
 use field::Kernel;

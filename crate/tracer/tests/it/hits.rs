@@ -1,8 +1,9 @@
 //! All crossings of rays, against marching along them in small steps.
-use crate::common::{Numbers, blend, clothe, element, empty};
 use glam::DVec3;
 use scene::{Scene, Shape};
 use tracer::Picture;
+use trials::scenes::{blend, clothe, element, empty};
+use trials::{Random, count};
 
 /// Marches a ray through the exact field. Crossings closer together than a step may go unseen, so
 /// within each step the number of hits must only be odd where the sign changes.
@@ -38,29 +39,27 @@ fn march(scene: &Scene, picture: &Picture, origin: DVec3, direction: DVec3) -> u
     hits.len()
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn rays_through_random_blends_cross_where_marching_says() {
-    let mut n = Numbers(5);
+    let mut n = Random::new(5);
     let mut seen = 0;
-    for seed in 0..30 {
+    for seed in 0..count(30) as u64 {
         let scene = blend(seed, 2 + seed as usize % 7);
         let picture = Picture::new(&scene, [64, 64]);
         for case in 0..6 {
             // From outside, and from somewhere in the middle, inside or not.
-            let origin = n.vector() * if case % 2 == 0 { 4.0 } else { 0.8 };
-            let direction = (n.vector() * 0.8 - origin).normalize();
+            let origin = n.vector(1.0) * if case % 2 == 0 { 4.0 } else { 0.8 };
+            let direction = (n.vector(0.8) - origin).normalize();
             seen += march(&scene, &picture, origin, direction);
         }
     }
-    assert!(seen > 150, "{seen} hits");
+    assert!(seen > count(150), "{seen} hits");
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn a_ray_grazing_a_ball_finds_both_crossings_or_none() {
     let mut scene = empty();
-    clothe(&mut scene, vec![crate::common::soft(-4.0, 1.0)]);
+    clothe(&mut scene, vec![trials::scenes::soft(-4.0, 1.0)]);
     scene.elements.push(element(
         Shape::Sphere {
             center: DVec3::ZERO,
@@ -84,8 +83,7 @@ fn a_ray_grazing_a_ball_finds_both_crossings_or_none() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn scenes_far_away_and_of_any_size_are_hit_alike() {
     for (scale, shift) in [
         (1.0, 0.0),
@@ -95,7 +93,7 @@ fn scenes_far_away_and_of_any_size_are_hit_alike() {
         (1e-3, 50.0),
     ] {
         let mut scene = empty();
-        clothe(&mut scene, vec![crate::common::soft(-1.0, 1.0)]);
+        clothe(&mut scene, vec![trials::scenes::soft(-1.0, 1.0)]);
         let center = DVec3::splat(shift);
         let radius = 0.25 * scale;
         scene.flesh[0].radius = radius;
@@ -111,13 +109,12 @@ fn scenes_far_away_and_of_any_size_are_hit_alike() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn hard_and_soft_crossings_come_in_one_order() {
     let mut scene = empty();
     clothe(
         &mut scene,
-        vec![crate::common::soft(-1.0, 1.0), scene::Flesh::default()],
+        vec![trials::scenes::soft(-1.0, 1.0), scene::Flesh::default()],
     );
     for (x, material) in [(-1.0, 0), (0.0, 1), (1.0, 0)] {
         let center = DVec3::X * x;
@@ -136,8 +133,7 @@ fn hard_and_soft_crossings_come_in_one_order() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn senseless_rays_hit_nothing() {
     let picture = Picture::new(&blend(3, 5), [8, 8]);
     assert!(picture.hits(DVec3::ZERO, DVec3::ZERO).is_empty());
@@ -147,8 +143,7 @@ fn senseless_rays_hit_nothing() {
 }
 
 /// With `double off` a face that is seen from behind is not there for the eye.
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn faces_seen_from_behind_may_be_hidden() {
     let mut scene = empty();
     let corners = [DVec3::NEG_X - DVec3::Y, DVec3::X - DVec3::Y, DVec3::Y];

@@ -1,11 +1,11 @@
 //! Scenes of bodies, skeletons and contacts as the reference knows them, and verdicts on rays through them.
-use crate::common::Numbers;
 use contact::Bulge;
 use glam::DVec3;
 use scene::{Scene, Shape, Surface};
 use std::sync::Arc;
 use tracer::Picture;
-use tracer::reference::{Deformation, Fault, Near, Reference, Substance, TouchingBody};
+use tracer::reference::{Deformation, Near, Reference, Substance, TouchingBody};
+use trials::Random;
 
 /// The bulges written out once more.
 pub fn deformation(bulge: Bulge) -> Deformation {
@@ -94,19 +94,19 @@ pub struct Range {
 
 /// A packet of rays from outside.
 pub fn packet(
-    numbers: &mut Numbers,
+    numbers: &mut Random,
     range: &Range,
     picture: &Picture,
     reference: &mut Reference,
 ) -> Vec<(DVec3, DVec3)> {
     let Range { center, half, far } = *range;
-    let eye = center + numbers.vector().normalize() * far;
-    let aim = center + half * numbers.vector();
-    let mut rays: Vec<(DVec3, DVec3)> = match (3.0 * numbers.unit()) as u32 {
+    let eye = center + numbers.direction() * far;
+    let aim = center + half * numbers.vector(1.0);
+    let mut rays: Vec<(DVec3, DVec3)> = match numbers.below(3) as u32 {
         // Like neighbouring pixels.
         0 => {
-            let spread = libm::pow(10.0, numbers.between(-3.0, -1.0)) * half.max_element();
-            let to = |numbers: &mut Numbers| aim + spread * numbers.vector() - eye;
+            let spread = numbers.decades(-3.0, -1.0) * half.max_element();
+            let to = |numbers: &mut Random| aim + spread * numbers.vector(1.0) - eye;
             (0..8).map(|_| (eye, to(numbers).normalize())).collect()
         }
         // Tangents, a little inside or outside.
@@ -114,10 +114,10 @@ pub fn packet(
             let ray = (eye, (aim - eye).normalize());
             let met = picture.cast(&[ray])[0];
             let Some(hit) = met else { return Vec::new() };
-            let along = hit.normal.cross(numbers.vector()).normalize_or(DVec3::X);
+            let along = hit.normal.cross(numbers.vector(1.0)).normalize_or(DVec3::X);
             (0..8)
                 .map(|i| {
-                    let off = libm::pow(10.0, numbers.between(-6.0, -1.5));
+                    let off = numbers.decades(-6.0, -1.5);
                     let off = if i % 4 == 3 { off } else { -off };
                     let off = off * half.max_element();
                     let back = 5.0 / 9.0 * far;
@@ -128,8 +128,8 @@ pub fn packet(
         // Nothing to do with one another.
         _ => (0..8)
             .map(|_| {
-                let from = center + numbers.vector().normalize() * (2.0 / 3.0 * far);
-                let to = center + 0.8 * half.max_element() * numbers.vector();
+                let from = center + numbers.direction() * (2.0 / 3.0 * far);
+                let to = center + 0.8 * half.max_element() * numbers.vector(1.0);
                 (from, (to - from).normalize())
             })
             .collect(),
@@ -143,47 +143,8 @@ pub fn is_outside(reference: &mut Reference, point: DVec3) -> bool {
     reference.excess(point).0 < 0.0 && reference.surface_near(point, 1e-4) == Near::Beyond
 }
 
-/// Counts of rays and verdicts.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Row {
-    pub rays: usize,
-    pub hits: usize,
-    pub missed: usize,
-    pub grazed: usize,
-    pub invented: usize,
-    pub uncertain: usize,
-}
-
-impl Row {
-    /// Judges what a picture shows of some rays; `spoil` may change that. Faults are printed.
-    pub fn judge(
-        &mut self,
-        name: &str,
-        (picture, reference): (&Picture, &mut Reference),
-        rays: &[(DVec3, DVec3)],
-        limit: f64,
-        spoil: impl Fn(&mut Option<f64>, usize),
-    ) {
-        for (number, (ray, hit)) in rays.iter().zip(picture.cast(rays)).enumerate() {
-            let mut t = hit.map(|hit| hit.t).filter(|t| *t < limit);
-            spoil(&mut t, number);
-            let verdict = reference.judge(ray.0, ray.1, t, limit, |t| picture.tolerance(t));
-            self.rays += 1;
-            self.hits += usize::from(t.is_some());
-            self.uncertain += usize::from(!verdict.certain);
-            match verdict.fault {
-                None => continue,
-                Some(Fault::Missed { grazing: true, .. }) => self.grazed += 1,
-                Some(Fault::Missed { .. }) => self.missed += 1,
-                Some(Fault::Invented(_)) => self.invented += 1,
-            }
-            println!("{name} {ray:?} hit {t:?}: {:?}", verdict.fault);
-        }
-    }
-}
-
-/// The number of rays that SINEW_RAYS asks for, or this one.
-pub fn asked(usual: usize) -> usize {
-    let asked = std::env::var("SINEW_RAYS").ok();
-    asked.and_then(|n| n.parse().ok()).unwrap_or(usual)
+/// How far rays go in a picture.
+pub fn distances(picture: &Picture, rays: &[(DVec3, DVec3)]) -> Vec<Option<f64>> {
+    let hits = picture.cast(rays).into_iter();
+    hits.map(|hit| hit.map(|hit| hit.t)).collect()
 }

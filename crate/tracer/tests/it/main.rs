@@ -2,7 +2,6 @@
 
 mod bodies;
 mod certified;
-mod common;
 mod diggers;
 mod energy;
 mod examples;
@@ -11,11 +10,3 @@ mod glass;
 mod hits;
 mod judged;
 mod looks;
-mod paint;
-mod picture;
-mod povray;
-mod random;
-mod room;
-mod spread;
-mod textures;
-mod touching;

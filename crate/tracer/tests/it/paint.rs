@@ -1,5 +1,4 @@
 //! Colours at the corners of triangles, against barycentric coordinates computed from areas.
-#![cfg(not(target_arch = "wasm32"))]
 
 use crate::looks::*;
 use glam::{DVec3, Vec3};

@@ -2,7 +2,6 @@
 //!
 //! One light model on both sides: no fall of reflection with the angle, a mirror's and a glass's share as given, light of a point
 //! without attenuation, linear colours. Edges differ by where rays run between two pixels, so shares of pixels are bounded, not each.
-#![cfg(not(target_arch = "wasm32"))]
 
 use crate::looks::*;
 use glam::DVec3;

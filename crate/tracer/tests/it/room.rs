@@ -13,8 +13,7 @@ const ROOM: u64 = 3 << 29;
 /// elements (24). With 176 bytes for an element or a bound and 440 for a primitive those are
 /// 10⁶ × (176 + 440 + 176 + 104) = 0.90·10⁹ bytes of 1.61·10⁹; the rest is for the picture, the lists of a beam,
 /// the blob set (about 150 bytes each) or the groups of others (not counted here), and the program itself.
-#[cfg_attr(target_arch = "wasm32", wasm_bindgen_test::wasm_bindgen_test)]
-#[cfg_attr(not(target_arch = "wasm32"), test)]
+#[test]
 fn a_million_elements_leave_two_fifths_of_the_room_for_the_picture() {
     let [element, primitive, bound] = [
         size_of::<Element>(),

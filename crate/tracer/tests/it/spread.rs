@@ -1,5 +1,4 @@
 //! Lens, soft shadows, shutter, sky and fog in pictures against their laws.
-#![cfg(not(target_arch = "wasm32"))]
 
 use crate::looks::*;
 use core::f64::consts::PI;

@@ -1,5 +1,4 @@
 //! Textures in pictures: in the coordinates of their objects, and mixed by the shares of elements.
-#![cfg(not(target_arch = "wasm32"))]
 
 use crate::looks::*;
 use glam::{DAffine3, DQuat, DVec3, Vec3};

@@ -1,7 +1,8 @@
 //! The tests of `worker`, as one program: a module for each subject.
 
-#[macro_use]
+mod bits;
 mod common;
 mod pins;
+#[cfg(not(target_arch = "wasm32"))]
 mod same;
 mod speed;

@@ -1,93 +1,82 @@
 //! Selection of tests within a part: `cargo xtask test PART FILTER`.
 
-use crate::shell::{command, read, root};
-use anyhow::{Result, bail};
+use crate::shell::{command, read, root, words};
+use anyhow::{Context, Result};
 use std::collections::BTreeSet;
 
-/// The selection: everything, a package, tests by a part of their names, or changed packages.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Chosen {
-    /// All of it.
-    All,
-    /// One package, a folder in `crate/`.
-    Package(String),
-    /// The packages of the workspace's `default-members`.
-    Default,
-    /// Packages that have been changed since the last commit.
-    Changed(Vec<String>),
-    /// Tests whose names, or files of browser tests whose names, contain this.
-    Test(String),
+/// The selection.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Chosen {
+    /// Packages, folders in `crate/`: all if `None`, the workspace's `default-members` if empty.
+    packages: Option<Vec<String>>,
+    /// A part of the names of tests, or of files of browser tests.
+    pub test: Option<String>,
 }
 
 impl Chosen {
     /// Interprets a filter: a package if there is one of that name, else tests.
     pub fn new(filter: Option<String>) -> Self {
-        match filter {
-            None => Self::All,
-            Some(name) if is_package(&name) => Self::Package(name),
-            Some(name) => Self::Test(name),
+        let (packages, test) = match filter {
+            Some(name) if is_package(&name) => (Some(vec![name]), None),
+            test => (None, test),
+        };
+        Self { packages, test }
+    }
+
+    /// Interprets a filter as tests, where there are no packages.
+    pub fn tests(filter: Option<String>) -> Self {
+        Self {
+            packages: None,
+            test: filter,
         }
     }
 
-    /// The same, but without a filter what has been changed since the last commit, or if nothing has the packages that cargo
-    /// builds if it is told nothing.
+    /// The same, but without a filter what has been changed since the last commit.
     ///
     /// # Errors
     /// If git does not say what has been changed.
     pub fn changed(filter: Option<String>) -> Result<Self> {
-        if filter.is_some() {
-            return Ok(Self::new(filter));
+        let mut chosen = Self::new(filter);
+        if chosen.test.is_some() {
+            // Tests of a name are looked for in the packages that are built soon.
+            chosen.packages = Some(Vec::new());
+        } else if chosen.packages.is_none() {
+            let status = words("status --porcelain --no-renames -uall");
+            let status = read(&mut command("git", &status))
+                .context("git does not say what has been changed; name a package")?;
+            chosen.packages = Some(packages_of(&status));
         }
-        let Some(status) = read(&mut command(
-            "git",
-            &["status", "--porcelain", "--no-renames", "-uall"],
-        )) else {
-            bail!("git does not say what has been changed; name a package");
-        };
-        let changed = packages_of(&status);
-        Ok(if changed.is_empty() {
-            Self::Default
-        } else {
-            Self::Changed(changed)
-        })
+        Ok(chosen)
+    }
+
+    /// Whether everything is meant.
+    pub fn is_all(&self) -> bool {
+        *self == Self::default()
     }
 
     /// Options that say to cargo which packages are meant.
     pub fn packages(&self) -> Vec<&str> {
-        match self {
-            Self::All | Self::Test(_) => vec!["--workspace"],
-            Self::Default => Vec::new(),
-            Self::Package(name) => vec!["--package", name],
-            Self::Changed(names) => names
-                .iter()
-                .flat_map(|name| ["--package", name.as_str()])
-                .collect(),
-        }
+        let Some(names) = &self.packages else {
+            return vec!["--workspace"];
+        };
+        names
+            .iter()
+            .flat_map(|name| ["--package", name.as_str()])
+            .collect()
     }
 
     /// Whether a package is among them.
     pub fn has(&self, package: &str) -> bool {
-        match self {
-            Self::All | Self::Test(_) | Self::Default => true,
-            Self::Package(name) => name == package,
-            Self::Changed(names) => names.iter().any(|name| name == package),
-        }
-    }
-
-    /// Text that names of tests must contain, if any.
-    pub fn test(&self) -> Option<&str> {
-        match self {
-            Self::Test(name) => Some(name),
-            _ => None,
-        }
+        let names = self.packages.as_deref().unwrap_or_default();
+        names.is_empty() || names.iter().any(|name| name == package)
     }
 }
 
 fn is_package(name: &str) -> bool {
-    let plain = name
+    let is_word = name
         .chars()
         .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
-    plain && root().join("crate").join(name).join("Cargo.toml").is_file()
+    is_word && root().join("crate").join(name).join("Cargo.toml").is_file()
 }
 
 /// The packages with files that `git status --porcelain` lists.
@@ -110,14 +99,18 @@ mod tests {
         assert_eq!(chosen("field").packages(), ["--package", "field"]);
         assert!(chosen("field").has("field") && !chosen("field").has("tracer"));
         assert_eq!(chosen("far_out").packages(), ["--workspace"]);
-        assert_eq!(chosen("far_out").test(), Some("far_out"));
-        assert_eq!(Chosen::new(None).test(), None);
-        assert_eq!(chosen("../crate/field").test(), Some("../crate/field"));
+        assert_eq!(chosen("far_out").test.as_deref(), Some("far_out"));
+        assert!(Chosen::new(None).is_all() && !chosen("far_out").is_all());
+        assert_eq!(
+            chosen("../crate/field").test.as_deref(),
+            Some("../crate/field")
+        );
     }
 
     #[test]
     fn changed_packages_are_found() {
-        let status = "M crate/tracer/src/lib.rs\n M crate/field/Cargo.toml\n?? crate/tracer/x y\n M README.md\n D crate/gone/a";
+        let status = "M crate/tracer/src/lib.rs\n M crate/field/Cargo.toml\n\
+            ?? crate/tracer/x y\n M README.md\n D crate/gone/a";
         assert_eq!(packages_of(status), ["field", "tracer"]);
     }
 }

@@ -1,6 +1,7 @@
 //! Formatting and lints, for this machine and for wasm.
 
-use super::{Chosen, Watch};
+use super::Chosen;
+use super::files::Watch;
 use crate::packages::MODULES;
 use crate::shell::{cargo, run};
 use crate::tools;
@@ -12,16 +13,20 @@ const DENY: [&str; 3] = ["--", "-D", "warnings"];
 pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
     format()?;
     watch.step("native", || clippy(&chosen.packages()))?;
-    tools::wasm_target()?;
+    tools::target(tools::WASM)?;
     watch.step("wasm", || {
-        MODULES
-            .iter()
-            .filter(|module| chosen.has(module.package))
-            .try_for_each(|module| {
-                let options = ["--package", module.package, "--features", module.features];
-                // Tests of these packages are for this machine only.
-                lint(&[&options[..], &["--target", tools::WASM]].concat())
-            })
+        // The tests of these packages are for this machine only.
+        let mut options = vec![String::from("--target"), tools::WASM.into()];
+        for module in MODULES.iter().filter(|module| chosen.has(module.package)) {
+            options.extend(["--package".into(), module.package.into()]);
+            if !module.features.is_empty() {
+                options.push(format!("--features={}/{}", module.package, module.features));
+            }
+        }
+        if options.len() == 2 {
+            return Ok(());
+        }
+        lint(&options)
     })?;
     Ok(String::from("clean"))
 }
@@ -37,6 +42,6 @@ pub fn clippy(packages: &[&str]) -> Result<()> {
     lint(&[&["--all-targets"], packages].concat())
 }
 
-fn lint(options: &[&str]) -> Result<()> {
+fn lint(options: &[impl AsRef<std::ffi::OsStr>]) -> Result<()> {
     run(cargo(&["clippy"]).args(options).args(DENY))
 }

@@ -2,9 +2,10 @@
 
 mod chosen;
 mod e2e;
+mod files;
 mod lint;
 mod native;
-mod portable;
+mod programs;
 mod quick;
 mod wasm;
 
@@ -12,94 +13,90 @@ use crate::shell::{in_lane, tell};
 use anyhow::{Result, bail};
 use chosen::Chosen;
 use clap::ValueEnum;
+use files::{Count, Watch};
 use std::time::Instant;
 
 /// A part of the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Part {
-    /// Formatting, lints and tests of the packages that have been changed since the last commit, and the pins of pictures: after
-    /// each edit. Runs only where it is asked for, as the others do all of it.
+    /// After each edit: formatting, lints and tests, with a tenth of the random inputs, of the crates
+    /// that have been changed since the last commit, and the pins of pictures.
     Quick,
     /// Formatting and lints.
     Lint,
     /// Tests on this machine.
     Native,
-    /// The mathematics' tests as wasm, in node and in a browser, and pictures on every kind of processor.
+    /// The same bits and pictures as wasm.
     Wasm,
     /// The page in a real browser.
     E2e,
-    /// The page in Firefox. Runs only where it is asked for.
+    /// The page in Firefox.
     Firefox,
+    /// Everything with ten times as many random inputs, Firefox, and a minute of each target of the
+    /// fuzzer. Takes hours.
+    All,
 }
 
-/// What a part takes, step by step.
-#[derive(Default)]
-pub struct Watch {
-    steps: Vec<(&'static str, u64)>,
-}
+/// As many random inputs as the tests name.
+const BASIC: &str = "1";
+/// A tenth of that, and ten times that.
+const FEW: &str = "0.1";
+const MANY: &str = "10";
 
-impl Watch {
-    /// Does something and keeps how long it takes.
-    pub fn step<T>(&mut self, name: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
-        let begun = Instant::now();
-        let done = work();
-        self.steps.push((name, begun.elapsed().as_secs()));
-        done
-    }
-
-    /// `, 46 s (lint 12, build 34)`.
-    fn told(&self) -> String {
-        let all: u64 = self.steps.iter().map(|(_, seconds)| seconds).sum();
-        let steps: Vec<String> = self
-            .steps
-            .iter()
-            .map(|(name, seconds)| format!("{name} {seconds}"))
-            .collect();
-        if steps.is_empty() {
-            String::new()
-        } else {
-            format!(", {all} s ({})", steps.join(", "))
-        }
-    }
-}
-
-/// Runs one part, or all. A part that fails does not keep the others from being run.
+/// Runs one part, or all but Firefox and the fuzzer. A part that fails does not keep the others from
+/// being run.
 pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
     let begun = Instant::now();
     let done = match part {
         Some(Part::Quick) => vec![run(Part::Quick, &Chosen::changed(filter)?)],
-        // Crates are not to be seen there.
-        Some(Part::E2e) => vec![run(Part::E2e, &filter.map_or(Chosen::All, Chosen::Test))],
-        Some(Part::Firefox) => vec![run(Part::Firefox, &Chosen::All)],
+        Some(Part::E2e) => vec![run(Part::E2e, &Chosen::tests(filter))],
+        Some(Part::All) => {
+            tell("Ten times as many random inputs, Firefox and the fuzzer: this takes hours.");
+            let mut done = all(MANY);
+            done.push(run(Part::Firefox, &Chosen::default()));
+            done.push(attempt(Part::All, Watch::default(), |_| {
+                crate::fuzz::guided(60)?;
+                Ok(String::from("the fuzzer found nothing"))
+            }));
+            done
+        }
         Some(part) => vec![run(part, &Chosen::new(filter))],
-        None => all(),
+        None => all(BASIC),
     };
-    let summary: String = done
-        .iter()
-        .map(|done| format!("\n  {}", done.said))
-        .collect();
-    println!("\nTested in {} s:{summary}", begun.elapsed().as_secs());
-    let failed: Vec<String> = done
-        .iter()
-        .filter(|done| done.failed)
-        .map(|done| name(done.part))
-        .collect();
+    let mut watch = Watch::default();
+    let mut failed = Vec::new();
+    println!("\nTested in {} s:", begun.elapsed().as_secs());
+    for part in done {
+        println!("  {}", part.said);
+        if part.failed {
+            failed.push(name(part.part));
+        }
+        watch.add(part.watch);
+    }
+    println!("Files of tests that took longest:{}", watch.slowest());
+    let Count {
+        passed,
+        failed: fell,
+        skipped,
+    } = watch.count;
+    println!("\n{passed} passed, {fell} failed, {skipped} skipped");
     if !failed.is_empty() {
         bail!("{} failed", failed.join(", "));
     }
     Ok(())
 }
 
-/// All parts, in two lanes: the code's, and beside it the page is built. Its tests come last, as they want the machine for
-/// themselves.
-fn all() -> Vec<Done> {
+/// Runs all parts, in two lanes: the code's, and beside it the page is built. Its tests come last, as
+/// they want the machine for themselves.
+fn all(times: &'static str) -> Vec<Done> {
     let mut watch = Watch::default();
     let (mut done, built) = std::thread::scope(|scope| {
-        let page =
-            scope.spawn(|| in_lane("page", true, || e2e::build(&mut watch, e2e::Of::Release)));
+        let page = scope.spawn(|| in_lane("page", || e2e::build(&mut watch, true)));
         let code = scope.spawn(|| {
             let parts = [Part::Lint, Part::Native, Part::Wasm];
-            in_lane("code", true, || parts.map(|part| run(part, &Chosen::All)))
+            in_lane("code", || {
+                parts.map(|part| run_times(part, &Chosen::default(), times))
+            })
         });
         let done = code
             .join()
@@ -110,87 +107,68 @@ fn all() -> Vec<Done> {
         |_| panicked(Part::E2e),
         |built| {
             attempt(Part::E2e, watch, |watch| {
-                e2e::check(watch, &Chosen::All, built?)
+                e2e::check(watch, &Chosen::default(), built?)
             })
         },
     ));
     done
 }
 
-/// What a part has come to.
+/// The result of a part.
 struct Done {
     part: Part,
     said: String,
     failed: bool,
+    watch: Watch,
 }
 
-/// What a part has come to whose lane panicked.
+/// The result of a part whose lane panicked.
 fn panicked(part: Part) -> Done {
-    let said = format!("the lane of {} panicked", name(part));
-    let failed = true;
-    Done { part, said, failed }
+    Done {
+        part,
+        said: format!("the lane of {} panicked", name(part)),
+        failed: true,
+        watch: Watch::default(),
+    }
 }
 
 fn run(part: Part, chosen: &Chosen) -> Done {
+    run_times(part, chosen, BASIC)
+}
+
+/// Runs a part with `times` as many random inputs as its tests name.
+fn run_times(part: Part, chosen: &Chosen, times: &str) -> Done {
     attempt(part, Watch::default(), |watch| match part {
-        Part::Quick => quick::check(watch, chosen),
+        Part::Quick => quick::check(watch, chosen, FEW),
         Part::Lint => lint::check(watch, chosen),
-        Part::Native => native::check(watch, chosen),
+        Part::Native => native::check(watch, chosen, times),
         Part::Wasm => wasm::check(watch, chosen),
         Part::E2e => {
-            let of = if *chosen == Chosen::All {
-                e2e::Of::Release
-            } else {
-                e2e::Of::Development
-            };
-            let built = e2e::build(watch, of)?;
+            let built = e2e::build(watch, chosen.is_all())?;
             e2e::check(watch, chosen, built)
         }
         Part::Firefox => e2e::firefox(watch),
+        Part::All => bail!("all is made of the others"),
     })
 }
 
-/// Does the work of a part, or what is left of it, and tells what has come of it.
+/// Does the work of a part, or what is left of it, and tells its result.
 fn attempt(part: Part, mut watch: Watch, work: impl FnOnce(&mut Watch) -> Result<String>) -> Done {
     tell(&format!("\n== {} ==", name(part)));
     let result = work(&mut watch);
     let failed = result.is_err();
     let said = result.unwrap_or_else(|error| format!("FAILED: {error:#}"));
-    let said = format!("{}: {said}{}", name(part), watch.told());
+    let said = format!("{}: {said}{}", name(part), watch.steps());
     tell(&said);
-    Done { part, said, failed }
+    Done {
+        part,
+        said,
+        failed,
+        watch,
+    }
 }
 
 fn name(part: Part) -> String {
     part.to_possible_value()
         .map_or_else(String::new, |value| value.get_name().to_owned())
-}
-
-/// How many tests a run of libtest or wasm-bindgen-test says have passed.
-fn passed(output: &str) -> usize {
-    output
-        .lines()
-        .filter_map(|line| line.trim().strip_prefix("test result: ok. "))
-        .filter_map(|line| line.split(' ').next()?.parse::<usize>().ok())
-        .sum()
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn passed_tests_are_counted() {
-        let output = "test a ... ok\ntest result: ok. 3 passed; 0 failed\n\ntest result: ok. 20 passed; 0 failed";
-        assert_eq!(super::passed(output), 23);
-        assert_eq!(super::passed("no tests to run!"), 0);
-    }
-
-    #[test]
-    fn steps_are_told_with_their_seconds() {
-        let mut watch = super::Watch::default();
-        assert_eq!(watch.told(), "");
-        assert_eq!(watch.step("build", || Ok(3)).ok(), Some(3));
-        let failed: anyhow::Result<()> = watch.step("run", || anyhow::bail!("no"));
-        assert!(failed.is_err());
-        assert_eq!(watch.told(), ", 0 s (build 0, run 0)");
-    }
 }

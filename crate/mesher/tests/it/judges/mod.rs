@@ -5,6 +5,7 @@ use glam::DVec3;
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64};
 use mesh::{Bvh, Topology, TriangleMesh, closest_point, self_intersections};
+use trials::{Random, count};
 
 /// Whether our half-edges and `manifold-rust` take a mesh for a closed manifold, of the volume that we say it has.
 pub fn manifold(mesh: &TriangleMesh) -> Result<(), String> {
@@ -59,34 +60,10 @@ pub fn on_surface(function: &dyn Implicit, mut point: DVec3) -> Option<DVec3> {
     None
 }
 
-/// A small generator of random numbers.
-pub struct Random(pub u64);
-
-impl Random {
-    /// Between 0 and 1.
-    pub fn unit(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 33) as f64 / (1_u64 << 31) as f64
-    }
-
-    /// Between −1 and 1 along each axis.
-    pub fn vector(&mut self) -> DVec3 {
-        2.0 * DVec3::new(self.unit(), self.unit(), self.unit()) - 1.0
-    }
-
-    /// A point of a triangle of a mesh, and the triangle.
-    pub fn of_mesh(&mut self, mesh: &TriangleMesh) -> (usize, DVec3) {
-        let i = (self.unit() * mesh.triangles.len() as f64) as usize;
-        let [a, b, c] = mesh.corners(i);
-        let (mut u, mut v) = (self.unit(), self.unit());
-        if u + v > 1.0 {
-            (u, v) = (1.0 - u, 1.0 - v);
-        }
-        (i, a + (b - a) * u + (c - a) * v)
-    }
+/// A point of a triangle of a mesh, and the triangle.
+pub fn of_mesh(random: &mut Random, mesh: &TriangleMesh) -> (usize, DVec3) {
+    let i = random.below(mesh.triangles.len());
+    (i, random.in_triangle(mesh.corners(i)))
 }
 
 /// Distances from a mesh.
@@ -113,9 +90,9 @@ impl<'a> Distances<'a> {
 pub fn distances(function: &dyn Implicit, mesh: &TriangleMesh, samples: usize) -> [f64; 2] {
     let near = Distances::new(mesh);
     let mut farthest = [0.0_f64; 2];
-    let mut random = Random(7);
-    for _ in 0..samples {
-        let (i, point) = random.of_mesh(mesh);
+    let mut random = Random::new(7);
+    for _ in 0..count(samples) {
+        let (i, point) = of_mesh(&mut random, mesh);
         let Some(found) = on_surface(function, point) else {
             continue;
         };
@@ -123,7 +100,7 @@ pub fn distances(function: &dyn Implicit, mesh: &TriangleMesh, samples: usize) -
         // A point of the surface somewhere near, found from outside of the mesh.
         let [a, b, c] = mesh.corners(i);
         let size = a.distance(b).max(a.distance(c));
-        if let Some(found) = on_surface(function, point + 0.5 * random.vector() * size) {
+        if let Some(found) = on_surface(function, point + 0.5 * random.vector(1.0) * size) {
             farthest[1] = farthest[1].max(near.to(found));
         }
     }

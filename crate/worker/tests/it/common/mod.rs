@@ -69,8 +69,18 @@ pub const BENCH: [(&str, &str); 10] = [
     bench!("tee"),
 ];
 
+/// Scenes for what is not tried on all: a plain sum, far fields, contact and local convolution, textures and glass.
+pub const FEW: [&str; 4] = ["tshape", "flake-820-cauchy", "squeeze", "glass-drops"];
+
+/// Compiles the scene of a name.
+pub fn compile(name: &str) -> Scene {
+    let mut all = EXAMPLES.iter().chain(&BENCH);
+    let (_, text) = all.find(|(known, _)| *known == name).expect("it is known");
+    compile_text(text)
+}
+
 /// Compiles a text; it may read `flake.rat`, and the meshes and strokes of the examples.
-pub fn compile(text: &str) -> Scene {
+pub fn compile_text(text: &str) -> Scene {
     let file = |name: &str, text: &str| File {
         name: name.into(),
         text: text.into(),

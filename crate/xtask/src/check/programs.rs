@@ -1,0 +1,104 @@
+//! The tests of crates: one program for those in `src/` and one for those in `tests/it/`, native or
+//! as wasm.
+
+use super::files::File;
+use crate::shell::{artifacts, cargo, command, read, root};
+use crate::tools;
+use anyhow::{Context, Result};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Files that take longest: begun first, so that no core is idle at the end.
+const LONGEST: [&str; 6] = [
+    "field taper",
+    "tracer certified",
+    "worker pins",
+    "field chart",
+    "assist nearly_right",
+    "tracer src",
+];
+
+/// A crate's tests, compiled.
+pub struct Program {
+    package: String,
+    /// Whether they are those of `tests/it/`, a module for each subject.
+    of_modules: bool,
+    path: PathBuf,
+}
+
+/// Compiles the tests that some options of `cargo test` choose.
+pub fn compile(options: &[&str]) -> Result<Vec<Program>> {
+    let message = ["--message-format", "json-render-diagnostics"];
+    let made = artifacts(cargo(&["test", "--no-run"]).args(options).args(message))?;
+    made.iter()
+        .filter(|made| made["profile"]["test"] == true && made["executable"].is_string())
+        .map(|made| {
+            let [manifest, path] = [&made["manifest_path"], &made["executable"]]
+                .map(|text| Path::new(text.as_str().unwrap_or_default()));
+            let folder = manifest.parent().and_then(Path::file_name);
+            Ok(Program {
+                package: folder
+                    .context("a crate has a folder")?
+                    .to_string_lossy()
+                    .into_owned(),
+                of_modules: made["target"]["name"] == "it",
+                path: path.to_owned(),
+            })
+        })
+        .collect()
+}
+
+/// Returns the files of some programs, the longest first: those tests whose names contain `filter`.
+/// `times` as many random inputs as usual are taken.
+pub fn files(programs: &[Program], filter: Option<&str>, times: &str) -> Result<Vec<File>> {
+    let mut files = Vec::new();
+    for program in programs {
+        for (module, tests) in program.modules(filter)? {
+            let mut command = program.command();
+            command
+                .arg("--exact")
+                .args(tests)
+                .env("SINEW_TRIALS", times);
+            let name = format!("{} {module}", program.package);
+            files.push(File { name, command });
+        }
+    }
+    let rank = |file: &File| LONGEST.iter().position(|name| file.name.starts_with(name));
+    files.sort_by_key(|file| rank(file).unwrap_or(LONGEST.len()));
+    Ok(files)
+}
+
+impl Program {
+    /// The command that runs all tests.
+    fn command(&self) -> Command {
+        let mut command = if self.path.extension().is_some_and(|e| e == "wasm") {
+            tools::in_node(&self.path)
+        } else {
+            command(&self.path, &[])
+        };
+        command.current_dir(root().join("crate").join(&self.package));
+        command
+    }
+
+    /// The names of the tests of each module.
+    fn modules(&self, filter: Option<&str>) -> Result<BTreeMap<String, Vec<String>>> {
+        let listed = read(self.command().args(["--list", "--format", "terse"]))
+            .with_context(|| format!("{} does not list its tests", self.path.display()))?;
+        let mut modules = BTreeMap::<String, Vec<String>>::new();
+        for name in listed
+            .lines()
+            .filter_map(|line| line.strip_suffix(": test"))
+        {
+            if filter.is_some_and(|filter| !name.contains(filter)) {
+                continue;
+            }
+            let module = match name.split_once("::") {
+                Some((module, _)) if self.of_modules => module,
+                _ => "src",
+            };
+            modules.entry(module.into()).or_default().push(name.into());
+        }
+        Ok(modules)
+    }
+}

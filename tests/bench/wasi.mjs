@@ -1,8 +1,0 @@
-// Runs a program for WASI, which may read the files of the current folder: `node wasi.mjs FILE.wasm ARGUMENTS`.
-import { readFile } from 'node:fs/promises';
-import { WASI } from 'node:wasi';
-
-const [file, ...args] = process.argv.slice(2);
-const wasi = new WASI({ version: 'preview1', args: [file, ...args], preopens: { '.': '.' } });
-const module = await WebAssembly.compile(await readFile(file));
-process.exit(wasi.start(await WebAssembly.instantiate(module, wasi.getImportObject())));
