@@ -17,7 +17,7 @@ average 2 0.35
 simplify 0.5
 ";
 
-/// Returns the digest after the text.
+/// Returns the mesh's digest after the text.
 fn of_text() -> u64 {
     let script: Script = STROKES.parse().expect("a text of strokes");
     let none = &mut |name: &str| Err(format!("there is no {name}"));
