@@ -360,7 +360,8 @@ mod tests {
     fn interpolants_of_points_are_within_their_bounds() {
         use crate::{BlobScale, Kernel, Shaping, Skeleton};
         let mut random = trials::Random::new(6);
-        let cases = trials::count(400);
+        // Fewer do not come near to the bound.
+        let cases = trials::count(400).max(400);
         let nodes: [f64; 5] =
             core::array::from_fn(|i| libm::cos(core::f64::consts::PI * (2 * i + 1) as f64 / 10.0));
         // Lagrange's polynomials.

@@ -82,7 +82,7 @@ fn matches_quadrature(kernel: Kernel, kind: Kind) {
 
 fn single_matches_double(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(102);
-    for _ in 0..count(4_000) {
+    for _ in 0..count(2_000) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.0);
         let shaping = shaped(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
@@ -241,7 +241,7 @@ fn rigid_motion_and_scale(kernel: Kernel, kind: Kind) {
 /// compact kernel's support.
 fn falls_to_nothing(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(106);
-    for _ in 0..count(200) {
+    for _ in 0..count(100) {
         let skeleton = skeleton(&mut random, kind, -1.5, 0.7);
         let shaping = Shaping {
             kernel,

@@ -25,7 +25,7 @@ mod errors {
     fn worst_error(kernel: Kernel, kind: Kind) -> f64 {
         let mut random = Random::new(41);
         let mut worst = 0.0_f64;
-        for _ in 0..count(6_000) {
+        for _ in 0..count(2_000) {
             let size = random.decades(-2.0, 1.0);
             let skeleton = random.skeleton(kind, size);
             let blobbiness = random.decades(-1.0, 1.0);

@@ -324,7 +324,7 @@ fn cells_leave_nothing_out() {
         for _ in 0..4 {
             let figure = figure(&mut random, kernel);
             let local = figure.local();
-            for _ in 0..count(400) {
+            for _ in 0..count(400).max(400) {
                 let point = near(&figure, &mut random, 0.7);
                 // Below the faintest level all terms are asked.
                 let (first, second) = local.two(point);
@@ -509,7 +509,7 @@ fn jumps(figure: &Figure, planes: &[[DVec3; 2]]) -> [f64; 2] {
     let mut random = Random::new(74);
     let local = figure.local();
     let (mut largest, mut steepest, mut at_surface) = (0.0f64, 0.0f64, 0.0f64);
-    for _ in 0..count(3000) {
+    for _ in 0..count(1500).max(300) {
         // On the plane, as far from its middle as flesh is.
         let [middle, normal] = random.pick(planes);
         let aside = normal.cross(random.direction()).normalize() * random.range(0.05, 0.45);

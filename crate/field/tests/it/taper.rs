@@ -44,7 +44,7 @@ fn peak(primitive: &Primitive) -> f64 {
 fn matches_quadrature(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(401);
-        for _ in 0..count(120) {
+        for _ in 0..count(80) {
             let primitive = random_primitive(&mut random, kernel, kind, -2.0);
             let far = random.pick(&[0.3, 0.3, 2.0]);
             let point = random.near(&primitive.skeleton, -4.0, far);
@@ -79,7 +79,7 @@ fn matches_quadrature(kernel: Kernel) {
 fn single_matches_double(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(402);
-        for _ in 0..count(500) {
+        for _ in 0..count(150) {
             let primitive = random_primitive(&mut random, kernel, kind, -2.0);
             for _ in 0..3 {
                 let point = single(random.near(&primitive.skeleton, -3.0, 1.0));
@@ -391,7 +391,7 @@ fn cones_have_their_radius(kernel: Kernel) {
 fn bounds_hold(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(406);
-        for _ in 0..count(80) {
+        for _ in 0..count(50) {
             let primitive = random_primitive(&mut random, kernel, kind, -1.5);
             let level = THRESHOLD * 1e-3;
             let bound = Bound::new(&primitive);

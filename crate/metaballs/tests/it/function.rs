@@ -313,7 +313,8 @@ fn balls_of_clearance_hold_no_crossing_and_are_not_small() {
         let (balls, facets) = balls(kind, k, 10);
         let mut random = Random::new(6);
         let [mut outside, mut inside] = [0, 0];
-        for turn in 0..count(1500) {
+        let turns = count(1000).max(500);
+        for turn in 0..turns {
             // Near the surface, and far from it.
             let reach = random.decades(-3.0, 1.0);
             let p = random.direction() * (1.0 + reach * random.range(-1.0, 1.0));
@@ -346,7 +347,7 @@ fn balls_of_clearance_hold_no_crossing_and_are_not_small() {
                     clear.radius
                 );
                 // Afar, boxes stand for facets, which are a third of a unit long.
-                let loss = 0.2 + 1.2 * libm::log(facets.len() as f64) / k + 0.2 * best;
+                let loss = 0.25 + 1.2 * libm::log(facets.len() as f64) / k + 0.2 * best;
                 assert!(
                     best > 1e3 || clear.radius >= best - loss,
                     "{} {best}",
@@ -354,7 +355,7 @@ fn balls_of_clearance_hold_no_crossing_and_are_not_small() {
                 );
             }
         }
-        assert!(outside > count(300), "{kind:?} {outside}");
-        assert!(inside > count(10) || k > 100.0, "{kind:?} {inside}");
+        assert!(6 * outside > turns, "{kind:?} {outside}");
+        assert!(150 * inside > turns || k > 100.0, "{kind:?} {inside}");
     }
 }

@@ -19,7 +19,7 @@ fn patterns_stay_between_0_and_1_and_use_most_of_it() {
     let mut random = Random::new(21);
     for solid in Solid::ALL {
         let (mut low, mut high) = (1.0_f64, 0.0_f64);
-        for _ in 0..count(4_000) {
+        for _ in 0..count(4_000).max(4_000) {
             let p = random.vector(6.0);
             for x in solid.pattern(p, Grain::default()) {
                 assert!((0.0..=1.0).contains(&x), "{solid:?} at {p}: {x}");
