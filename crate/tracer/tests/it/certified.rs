@@ -324,15 +324,12 @@ fn a_thin_bone_beside_blobs_is_not_stepped_over() {
 #[test]
 fn earlier_faults_do_not_recur() {
     let once = [
-        (Kernel::Gauss, Kind::Polygon, 138),
         (Kernel::Gauss, Kind::Arc, 89),
         (Kernel::Soft, Kind::Plane, 136),
         (Kernel::Gauss, Kind::Plane, 145),
         (Kernel::Quartic, Kind::Triangle, 121),
         (Kernel::Cauchy, Kind::Waves, 56),
-        (Kernel::Inverse, Kind::Mixed, 76),
         (Kernel::Gauss, Kind::Mixed, 127),
-        (Kernel::Compact6, Kind::Mixed, 16),
         (Kernel::Soft, Kind::Restricted, 136),
         (Kernel::Metaballs, Kind::Waves, 132),
         (Kernel::Quartic, Kind::Restricted, 56),
@@ -344,17 +341,32 @@ fn earlier_faults_do_not_recur() {
         (Kernel::Quartic, Kind::Kinks, 108),
         (Kernel::Metaballs, Kind::Polygon, 9043),
     ];
-    // Most rays miss these.
-    let thin = [(Kernel::Quartic, Kind::Taper, 5031)];
-    for (kernel, kind, seed) in once.into_iter().chain(thin) {
-        let cast = |trial: &Trial, picture: &Picture| picture.cast(&trial.rays);
-        let mut told = String::new();
-        let row = check(Trial::earlier(kernel, kind, seed, 8), &cast, &mut told);
-        let few = thin.contains(&(kernel, kind, seed));
-        let least = if few { 0 } else { row.rays / 4 };
-        assert!(
-            row.faults() == 0 && row.hits > least,
-            "{kernel:?} {kind:?} {seed} {row:?}\n{told}"
-        );
+    for (kernel, kind, seed) in once {
+        recheck(kernel, kind, seed, 4);
     }
+    // Most rays miss these.
+    recheck(Kernel::Quartic, Kind::Taper, 5031, u64::MAX);
+}
+
+/// Three more, whose reference takes seconds.
+#[test]
+fn earlier_faults_that_are_hard_to_judge_do_not_recur() {
+    let once = [
+        (Kernel::Gauss, Kind::Polygon, 138),
+        (Kernel::Inverse, Kind::Mixed, 76),
+        (Kernel::Compact6, Kind::Mixed, 16),
+    ];
+    for (kernel, kind, seed) in once.into_iter().take(count(3)) {
+        recheck(kernel, kind, seed, 4);
+    }
+}
+
+/// A scene of an earlier fault has none; one of so many rays meets something.
+fn recheck(kernel: Kernel, kind: Kind, seed: u64, least: u64) {
+    let cast = |trial: &Trial, picture: &Picture| picture.cast(&trial.rays);
+    let mut told = String::new();
+    let row = check(Trial::earlier(kernel, kind, seed, 8), &cast, &mut told);
+    let name = format!("{kernel:?} {kind:?} {seed}");
+    assert!(row.faults() == 0, "{name} {row:?}\n{told}");
+    assert!(row.hits > row.rays / least, "{name} {row:?}");
 }
