@@ -61,5 +61,9 @@ fn places() -> Hash {
 #[test]
 fn a_motion_is_the_same_everywhere() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bits.txt");
-    trials::bits::compare(&[("places".into(), places())], include_str!("../bits.txt"), path);
+    trials::bits::compare(
+        &[("places".into(), places())],
+        include_str!("../bits.txt"),
+        path,
+    );
 }
