@@ -381,11 +381,10 @@ mod tests {
                 };
                 list.push(near, &Extent::of(&blob, blob.radius(square)));
             }
+            let origin = middle + random.vector(4.0);
+            let direction = (middle + random.vector(2.0) - origin).normalize();
             let beam = Beam {
-                axis: Ray {
-                    origin: middle + 4.0 * random.vector(1.0),
-                    direction: random.direction(),
-                },
+                axis: Ray { origin, direction },
                 radius: 0.02 * random.unit(),
                 spread: 0.1 * random.unit() * random.unit(),
                 ahead: 0.0,
@@ -419,6 +418,7 @@ mod tests {
         }
         assert!(kept * 3 < all, "{kept} of {all}");
         assert!((1..count(60)).contains(&empty), "{empty}");
-        assert!(largest > 1e-3, "{largest}");
+        // Few cases may all be clear.
+        assert!(count(60) < 60 || largest > 1e-3, "{largest}");
     }
 }

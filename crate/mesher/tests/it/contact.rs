@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The largest error of a mesh.
-const TOLERANCE: f64 = 0.03;
+const TOLERANCE: f64 = 0.045;
 
 /// A thick limb that leans to one side.
 fn limb(x: f64, lean: f64, kernel: Kernel) -> Arc<dyn Implicit> {

@@ -497,7 +497,7 @@ mod tests {
         let mut pixels = trace(&picture);
         for number in [7, 100, 101] {
             if let Shape::Sphere { center, .. } = &mut scene.elements[number].shape {
-                *center = 0.25 * scene.camera.eye + numbers.vector(0.2);
+                *center = 0.2 * scene.camera.eye + numbers.vector(0.15);
             }
             let mut next = crate::Picture::new(&scene, size);
             let fresh = trace(&next);
