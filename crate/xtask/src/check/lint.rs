@@ -3,15 +3,17 @@
 use super::Chosen;
 use super::files::Watch;
 use crate::packages::MODULES;
-use crate::shell::{cargo, run};
+use crate::shell::{cargo, root, run};
 use crate::tools;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
+use std::fs;
 
 const DENY: [&str; 3] = ["--", "-D", "warnings"];
 
 /// Runs this part.
 pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
     format()?;
+    modules()?;
     watch.step("native", || clippy(&chosen.packages()))?;
     tools::target(tools::WASM)?;
     watch.step("wasm", || {
@@ -29,6 +31,27 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
         lint(&options)
     })?;
     Ok(String::from("clean"))
+}
+
+/// Checks that each file of tests is a module of its program: another one would never run.
+fn modules() -> Result<()> {
+    for package in fs::read_dir(root().join("crate"))? {
+        let tests = package?.path().join("tests");
+        let Ok(program) = fs::read_to_string(tests.join("it/main.rs")) else {
+            continue;
+        };
+        let beside = fs::read_dir(&tests)?.chain(fs::read_dir(tests.join("it"))?);
+        for file in beside {
+            let path = file?.path();
+            let is_module = path.extension().is_some_and(|extension| extension == "rs")
+                || path.join("mod.rs").is_file();
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            if is_module && name != "main" && !program.contains(&format!("mod {name};")) {
+                bail!("{} is no module of tests/it/main.rs", path.display());
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Checks the format of all code.
