@@ -10,7 +10,7 @@ use glam::DVec3;
 use mesh::Topology;
 use mesher::{MeshError, Options, Progress, SurfaceMesh, box_of, polygonize};
 use std::ops::ControlFlow;
-use trials::{Random, count};
+use trials::Random;
 use wide::f32x8;
 
 fn shaping(kernel: Kernel, radius: f64) -> Shaping {
@@ -81,13 +81,13 @@ fn each_kernel_gives_proved_meshes() {
     }
 }
 
-/// Samples of mesh and surface alike stay near the share of the tolerance, 0.8, that leaves room for proofs: those taken last may be a
-/// little beyond. From mesh to surface alone that
-/// would not be so: the mesh may end before a limb does.
+/// Samples of mesh and surface alike stay within the share of the tolerance that leaves room for
+/// proofs. From mesh to surface alone that would not be so: the mesh may end before a limb does. The
+/// scenes are kept: a mesh that forgets places of the surface is 0.836 tolerances off in one of them.
 #[test]
 fn the_surface_is_near_the_mesh_as_well() {
-    for seed in 0..count(6) as u64 {
-        let mut random = Random::new(seed);
+    for seed in 1..7 {
+        let mut random = Random::linear(seed);
         let limb = |_| {
             let base = random.vector(1.0);
             let apex = base + random.vector(1.0);
@@ -100,7 +100,7 @@ fn the_surface_is_near_the_mesh_as_well() {
         let [_, back] = surface.measured.largest;
         let (share, [_, places]) = (back / tolerance, surface.measured.samples);
         println!("{seed}: {share:.3} tolerances at {places} places");
-        assert!(share <= 0.85 && places > 300, "{seed}: {share} {places}");
+        assert!(share <= 0.805 && places > 300, "{seed}: {share} {places}");
     }
 }
 
