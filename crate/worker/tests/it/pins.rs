@@ -16,14 +16,21 @@ const PINS: &str = include_str!("../../../../tests/pins.txt");
 /// Width and height of the pictures, pixels.
 const SIZE: u32 = 256;
 /// Scenes that take too long, and the sides of the squares in the middle of their pictures that are traced instead, pixels.
-const PARTS: [(&str, u32); 7] = [
-    ("generators", 128),
-    ("flake-7381-cauchy", 16),
-    ("coils", 24),
-    ("folds", 64),
-    ("grasp", 128),
+const PARTS: [(&str, u32); 14] = [
+    ("coils", 12),
+    ("coral-crab", 128),
     ("elder", 8),
+    ("flake-7381-cauchy", 16),
+    ("folds", 64),
+    ("generators", 64),
+    ("grasp", 64),
+    ("heads", 128),
+    ("octopus", 128),
+    ("pebbles", 128),
     ("queen", 16),
+    ("squeeze", 128),
+    ("still-life", 128),
+    ("touching", 128),
 ];
 /// At most n×n rays a pixel, so that the smooth pass has something to do in every scene.
 const SAMPLES: u32 = 2;
