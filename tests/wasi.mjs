@@ -7,4 +7,6 @@ const [file, ...args] = process.argv.slice(2);
 const { env } = process;
 const wasi = new WASI({ version: 'preview1', args: [file, ...args], env, preopens: { '.': '.' } });
 const module = await WebAssembly.compile(await readFile(file));
-process.exit(wasi.start(await WebAssembly.instantiate(module, wasi.getImportObject())));
+const instance = await WebAssembly.instantiate(module, wasi.getImportObject());
+// Not process.exit(): node may crash in it while it still compiles functions anew in the background.
+process.exitCode = wasi.start(instance);
