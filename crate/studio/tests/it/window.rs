@@ -134,7 +134,8 @@ fn a_shared_link_leaves_the_own_work_alone() {
     assert!(window.place("notice").width() > 100.0);
     window.harness.get_by_label("Back to my work").click();
     window.steps(3);
-    assert!(window.text().starts_with("# mine\n"));
+    let text = window.text();
+    assert!(text.starts_with("# mine\n"), "{text}");
     assert_eq!(platform::hash(), "");
 
     // A damaged link says so and changes nothing.
