@@ -112,7 +112,7 @@ fn bench(named: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Where a part is kept that was measured.
+/// Returns the file that keeps the figures of a part.
 fn path(name: &str) -> PathBuf {
     root().join(format!("tests/bench/measured/{name}.json"))
 }

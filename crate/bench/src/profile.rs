@@ -1,4 +1,4 @@
-//! Where the time goes: counts of work, the functions that the processor was seen in.
+//! Profile: counts of work, and the functions that the processor spends its time in.
 
 use crate::fields::Chart;
 use crate::report::{Report, Short};

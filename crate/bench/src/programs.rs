@@ -23,7 +23,7 @@ pub fn example_as_wasm(package: &str, name: &str, arguments: &[&str]) -> Result<
     run_and_read(tools::in_node(&wasm).args(arguments))
 }
 
-/// What a program writes about one thing, by name.
+/// Figures that a program writes, by name.
 pub struct Figures(pub Value);
 
 impl Figures {

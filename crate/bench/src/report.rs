@@ -1,4 +1,4 @@
-//! What a part of the measurements comes to, as text.
+//! Report of a part of the measurements, as text.
 
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;

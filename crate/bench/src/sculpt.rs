@@ -1,4 +1,4 @@
-//! What a step of a sculpting tool costs, natively and as wasm.
+//! Cost of a step of a sculpting tool, natively and as wasm.
 
 use crate::programs::{Figures, example, example_as_wasm};
 use crate::report::{Report, Short};

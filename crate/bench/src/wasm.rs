@@ -15,7 +15,7 @@ pub fn measure() -> Result<Report> {
     tools::target(tools::WASI)?;
     let native = built("--profile release")?;
     let slow = built(&format!("--profile worker --target {}", tools::WASI))?;
-    // As the page's worker is.
+    // Optimised like the worker of the page.
     let wasm = slow.with_file_name("speed.wasm");
     page::optimise(
         &tools::wasm_opt().context("wasm-opt is missing")?,
