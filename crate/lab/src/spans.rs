@@ -9,6 +9,7 @@ use crate::grid::refused;
 use crate::pictures::Shown;
 use crate::slice::shade;
 use crate::tools::{Stage, choice, heading, reading, remark, slider};
+use digger::errors::Pixel;
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui,
     pos2, vec2,
@@ -16,7 +17,6 @@ use egui::{
 use field::Kernel;
 use std::rc::Rc;
 use widgets::theme;
-use worker::errors::Pixel;
 
 /// Pixels of a map, across and down.
 const SIDE: usize = 96;
@@ -324,9 +324,9 @@ fn legend(ui: &mut Ui) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use digger::errors::{Errors, unpack};
     use rats::{File, Project};
     use tracer::Tile;
-    use worker::errors::{Errors, unpack};
 
     #[test]
     fn more_spans_are_nearer_and_certified_ones_are_there() {

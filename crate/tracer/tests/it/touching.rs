@@ -4,12 +4,12 @@ use crate::judged::{Range, distances, packet, reference};
 use contact::Bulge;
 use field::Kernel;
 use glam::{DAffine3, DVec3};
+use oracle::rays::Row;
 use scene::{Body, Contact, Curves, Element, Flesh, Form, Function, Scene, Shape};
 use skeleton::{Node, Scheme, Skeleton};
 use std::sync::Arc;
 use tracer::Picture;
 use trials::Random;
-use trials::rays::Row;
 use trials::scenes::empty;
 
 /// Kinds of scenes.
