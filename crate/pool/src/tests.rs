@@ -100,10 +100,10 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
             })
         });
     }
-    let mut pictures = Vec::new();
+    let mut means = Vec::new();
     for (generation, digger) in [(1, Digger::Hermite), (2, Digger::Spans(2))] {
         scene.settings.digger = digger;
-        for kind in [Kind::Colours, Kind::Errors] {
+        let mut trace = |kind| {
             let job = Job {
                 scene: &scene,
                 size: [40, 32],
@@ -113,31 +113,21 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
             };
             assert_eq!(job.compares(), (generation, kind) != (1, Kind::Colours));
             pool.start(job);
-            let [tile] = &finish(&mut pool)[..] else {
-                panic!("it is a tile");
-            };
-            pictures.push(tile.pixels.clone());
-        }
-    }
-    let [certified, small, spans, large] = &pictures[..] else {
-        unreachable!("they are four");
-    };
-    assert_ne!(certified, spans);
-    let mean = |bytes: &[u8]| {
-        let found = digger::errors::unpack(bytes).into_iter();
-        let off = found.filter_map(|pixel| match pixel {
+            finish(&mut pool).pop().expect("a tile")
+        };
+        let TileDone { tile, pixels, .. } = trace(Kind::Colours);
+        let stats = &mut tracer::Stats::default();
+        let picture = digger::picture(&scene, [40, 32]);
+        assert!(picture.trace(tile, Pass::Smooth, &|| false, stats) == Some(pixels));
+        let pixels = digger::errors::unpack(&trace(Kind::Errors).pixels);
+        let distances = pixels.into_iter().filter_map(|pixel| match pixel {
             digger::errors::Pixel::Off(distance) => Some(f64::from(distance)),
             _ => None,
         });
-        let all: Vec<f64> = off.collect();
-        all.iter().sum::<f64>() / all.len() as f64
-    };
-    assert!(
-        mean(small) < 1e-4 && mean(large) > 1e-3,
-        "{} {}",
-        mean(small),
-        mean(large)
-    );
+        let distances: Vec<f64> = distances.collect();
+        means.push(distances.iter().sum::<f64>() / distances.len() as f64);
+    }
+    assert!(means[0] < 1e-4 && means[1] > 1e-3, "{means:?}");
 }
 
 /// Workers that run single steps on request.

@@ -38,7 +38,7 @@ macro_rules! held {
 held! {
     pictures: PICTURES, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds,
         starts_beside_a_cloud, earlier_faults, earlier_faults_that_are_hard_to_judge;
-    exact: EXACT, blobs, points_and_lines;
+    exact: EXACT, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds;
 }
 
 /// Kinds in whose pictures each of the following faults would show.
