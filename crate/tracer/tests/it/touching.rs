@@ -317,5 +317,6 @@ fn bodies_that_touch_keep_their_colours_beside_a_mirror() {
             .count(),
         0
     );
-    assert!(plain.chunks(4).filter(|p| p[2] > 2 * p[0].max(20)).count() > 50);
+    let is_blue = |p: &&[u8]| p[2] > 60 && p[2] / 2 > p[0];
+    assert!(plain.chunks(4).filter(is_blue).count() > 50);
 }
