@@ -16,7 +16,7 @@
 //! let centre = handles.iter().find(|handle| handle.label == "the centre").unwrap();
 //! // To the right by 2.5, exact to a tenth.
 //! let edits = drag(centre, DVec3::new(2.5, 0.0, 0.0), 0.1);
-//! let moved = assist::apply(&project, &edits);
+//! let moved = project.edited(&edits);
 //! assert!(moved.files[0].text.ends_with("sphere Clay 1, 2.5 0 0\n"));
 //! ```
 

@@ -57,6 +57,7 @@ mod strokes;
 pub mod suggest;
 pub mod symbol;
 pub mod syntax;
+mod text_edit;
 pub mod tool;
 mod value;
 
@@ -67,4 +68,5 @@ pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
 pub use reads::{ASSET_ENDINGS, asset_names, is_image, places, reads};
 pub use strokes::{is_strokes, keep_sculpted, start_file};
+pub use text_edit::TextEdit;
 pub use tool::Tool;
