@@ -106,7 +106,7 @@ impl Figure for Profiles {
             let height = 4.0 * (0.72 * stage.figure.width()) + 3.0 * 12.0;
             let all = Rect::from_min_size(stage.figure.min, vec2(stage.figure.width(), height));
             let below = stage.controls.max_rect().with_min_y(all.bottom() + 12.0);
-            stage.controls = ui.new_child(egui::UiBuilder::new().max_rect(below).id_salt("below"));
+            stage.controls = ui.new_child(places::part("lab below", below));
             stage.controls.spacing_mut().item_spacing.y = 5.0;
             stage.figure = all;
             all
