@@ -16,7 +16,7 @@
 //! let centre = handles.iter().find(|handle| handle.label == "the centre").unwrap();
 //! // To the right by 2.5, exact to a tenth.
 //! let edits = drag(centre, DVec3::new(2.5, 0.0, 0.0), 0.1);
-//! let moved = project.edited(&edits);
+//! let moved = project.apply(&edits);
 //! assert!(moved.files[0].text.ends_with("sphere Clay 1, 2.5 0 0\n"));
 //! ```
 
@@ -94,8 +94,8 @@ pub fn handles(
     handles
 }
 
-/// The number of elements that the command of an element makes: a curve has one for each three points
-/// after the first.
+/// The number of elements that the command of an element makes: a curve has one for each three
+/// points after the first.
 fn parts(seen: &Provenance, element: &Element) -> usize {
     if !matches!(element.shape, Shape::Curve { .. }) {
         return 1;

@@ -16,7 +16,7 @@
 //! let made = assist::definition(&project, 0, used).unwrap();
 //! assert_eq!(&text[made.span], "Clay");
 //! let edits = assist::rename(&project, 0, used, "Mud").unwrap();
-//! let renamed = project.edited(&edits);
+//! let renamed = project.apply(&edits);
 //! assert_eq!(renamed.files[0].text, text.replace("Clay", "Mud"));
 //! ```
 

@@ -17,7 +17,7 @@ use rats::{Project, TextEdit, colours, commands, functions};
 /// let project = rats::Project::single("var r = 1\nvar s = 2\nsurface Clay, diffuse SandyBrown\nsphere Clay r, s 0 0\n");
 /// let edits = assist::rename(&project, 0, 4, "radius").unwrap();
 /// assert_eq!(edits.len(), 2);
-/// let renamed = project.edited(&edits);
+/// let renamed = project.apply(&edits);
 /// assert!(renamed.files[0].text.ends_with("sphere Clay radius, s 0 0\n"));
 /// assert!(assist::rename(&project, 0, 4, "s").is_err());
 /// ```
@@ -61,7 +61,7 @@ pub fn rename(
     }
     let edits = edits(&index, occurrence, new_name);
     // A word's meaning depends on its neighbours, so the renamed texts are checked.
-    let after = project.edited(&edits);
+    let after = project.apply(&edits);
     if Index::of(&after).shape() != index.shape() {
         return Err(format!(
             "`{new_name}` would be taken for something else in one of the places"
@@ -82,7 +82,7 @@ pub fn rename(
 /// let mut project = Project::single("read leg.rat\n");
 /// project.files.push(File { name: "leg.rat".into(), text: String::new() });
 /// let edits = assist::rename_file(&project, 1, "arm.rat").unwrap();
-/// assert_eq!(project.edited(&edits).files[0].text, "read arm.rat\n");
+/// assert_eq!(project.apply(&edits).files[0].text, "read arm.rat\n");
 /// ```
 pub fn rename_file(
     project: &Project,

@@ -11,15 +11,15 @@ use std::fmt;
 pub struct Words {
     /// The word in its link.
     pub link: &'static str,
-    /// Its title.
+    /// The title.
     pub title: &'static str,
-    /// Its name in the list of a wide page.
+    /// The name in the list of a wide page.
     pub name: &'static str,
-    /// Its name in the list of a narrow page.
+    /// The name in the list of a narrow page.
     pub short: &'static str,
-    /// A few words for the list.
+    /// Few words for the list.
     pub about: &'static str,
-    /// Three sentences.
+    /// The text, three sentences.
     pub sentences: &'static str,
 }
 
@@ -32,7 +32,7 @@ pub trait Figure {
     fn dataset(&self) -> Command;
 }
 
-/// A line of the list of lessons.
+/// Line of the list of lessons.
 pub struct Entry {
     words: &'static Words,
     figure: fn() -> Box<dyn Figure>,
@@ -46,7 +46,7 @@ pub const fn entry<F: Figure + Default + 'static>(words: &'static Words) -> Entr
     }
 }
 
-/// A lesson of the lab, by its place in the list.
+/// Lesson of the lab, by its place in the list.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Lesson(usize);
 
@@ -65,18 +65,18 @@ impl Lesson {
         (0..lessons::ALL.len()).map(Self)
     }
 
-    /// Its place in the list, from 0 on.
+    /// Returns its place in the list, from 0 on.
     pub(crate) fn index(self) -> usize {
         self.0
     }
 
-    /// Its words.
+    /// Returns its words.
     #[must_use]
     pub fn words(self) -> &'static Words {
         lessons::ALL[self.0].words
     }
 
-    /// Its figure as it begins.
+    /// Makes its figure, as it begins.
     pub(crate) fn figure(self) -> Box<dyn Figure> {
         (lessons::ALL[self.0].figure)()
     }

@@ -15,7 +15,7 @@ mod textures;
 
 use crate::lesson::{Entry, entry};
 
-/// All lessons, in the order of the page.
+/// The lessons, in the order of the page.
 pub static ALL: &[Entry] = &[
     entry::<kernels::Kernels>(&kernels::WORDS),
     entry::<convolution::Convolution>(&convolution::WORDS),

@@ -14,7 +14,7 @@ use std::rc::Rc;
 pub struct Report {
     /// The word of the open lesson.
     pub lesson: &'static str,
-    /// Its title.
+    /// The title of the open lesson.
     pub title: &'static str,
     /// The words of all lessons, in the order of the list.
     pub lessons: Vec<&'static str>,

@@ -1,8 +1,8 @@
 //! Reads a command's operands as the table says, and keeps where each one stands.
 //!
 //! [`Reader::given`] goes through the parameters of a command, then through its options; so the table
-//! is the one place that knows what a command takes. From the operands the table takes the values of
-//! the types in its [`Slot`]s. The few commands with a form of their own (`var`, the method of a
+//! is the one place that knows what a command takes. From the operands it takes the values of the
+//! types in its [`Slot`]s. The few commands with a form of their own (`var`, the method of a
 //! `texture`) read their own part with the functions of [`crate::reader`].
 
 use crate::commands::slot::{Backdrop, Choice, Named, Placed, Slot, Text, Word};
@@ -57,7 +57,7 @@ pub struct Chosen<'a> {
     pub option: &'static OptionSpec,
     /// Where its word stands.
     pub span: Range<usize>,
-    /// Its operands in the order of the text.
+    /// The operands in the order of the text.
     pub operands: Vec<Filled<'a>>,
 }
 
@@ -99,14 +99,14 @@ impl<'a> Options<'a> {
     }
 }
 
-/// All operands and options of a command.
+/// Operands and options of a command.
 #[derive(Clone, Debug, Default)]
 pub struct Given<'a> {
     /// The operands in the order of the text.
     pub filled: Vec<Filled<'a>>,
     /// The options.
     pub options: Options<'a>,
-    /// Where the command stands.
+    /// The place of the command.
     pub span: Range<usize>,
 }
 
@@ -173,9 +173,9 @@ impl<'g, 'a> Operands<'g, 'a> {
     }
 }
 
-/// A type of a single operand.
+/// Type of a single operand.
 pub trait One {
-    /// Its values.
+    /// The values.
     type Of<'a>;
     /// The value of an operand; `None` if it has another type.
     fn of<'a>(filled: &Filled<'a>) -> Option<Self::Of<'a>>;
@@ -210,7 +210,7 @@ impl One for Text {
     }
 }
 
-/// A colour, or the name of an image.
+/// The background that a text names.
 #[derive(Clone, Debug)]
 pub enum Behind<'a> {
     /// A colour.
@@ -237,11 +237,12 @@ impl<K: One> One for Placed<K> {
     }
 }
 
-/// A type of one parameter or of several.
+/// Type of one parameter or of several.
 pub trait Values {
     /// The values.
     type Of<'a>;
-    /// Takes the value of the next parameter or the next ones; `None` if an operand has another type.
+    /// Takes the value of the next parameter or the next ones; `None` if an operand has another
+    /// type.
     fn take<'a>(from: &mut Operands<'_, 'a>) -> Option<Self::Of<'a>>;
 }
 
@@ -311,7 +312,8 @@ fn refuse_option(name: &Name<'_>, options: &'static [OptionSpec]) -> Outcome<()>
 }
 
 impl<'a> Reader<'_, 'a> {
-    /// All operands and options of a command, to its end. In a chain, `chain` fills the first parameter.
+    /// Reads the operands and options of a command, to its end. In a chain, `chain` fills the first
+    /// parameter.
     ///
     /// # Errors
     /// If one is missing, of the wrong kind or out of its range, or if something is left.

@@ -119,7 +119,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         self.here().start
     }
 
-    /// Where the command stands.
+    /// Returns the place of the command.
     pub(crate) fn command_span(&self) -> Range<usize> {
         self.end.clone()
     }

@@ -1,16 +1,16 @@
-//! A change of a text, as a hand, a tool or a person asks for it.
+//! Changes of texts, as a hand, a tool or a person asks for them.
 
 use crate::Project;
 use std::ops::Range;
 
-/// A change of one file.
+/// Change of one file.
 ///
 /// ```
 /// use rats::{Project, TextEdit};
 ///
 /// let project = Project::single("sphere Clay 1, 0 0 0\n");
 /// let edit = TextEdit::new(0, 12..13, "2.5");
-/// assert_eq!(project.edited(&[edit]).files[0].text, "sphere Clay 2.5, 0 0 0\n");
+/// assert_eq!(project.apply(&[edit]).files[0].text, "sphere Clay 2.5, 0 0 0\n");
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextEdit {
@@ -34,8 +34,8 @@ impl TextEdit {
         Self::new(file, 0..usize::MAX, text)
     }
 
-    /// The text with changes made, which must be in its order and must not overlap. One whose range does
-    /// not lie on characters is left out.
+    /// Returns the text with changes made, which must be in its order and must not overlap. One whose
+    /// range does not lie on characters is left out.
     pub fn apply<'e>(text: &str, edits: impl IntoIterator<Item = &'e Self>) -> String {
         let mut new = String::with_capacity(text.len());
         let mut at = 0;
@@ -57,9 +57,10 @@ impl TextEdit {
 }
 
 impl Project {
-    /// The project with changes made; those of a file must be in the order of its text and must not overlap.
+    /// Returns the project with changes made; those of a file must be in the order of its text and must
+    /// not overlap.
     #[must_use]
-    pub fn edited(&self, edits: &[TextEdit]) -> Self {
+    pub fn apply(&self, edits: &[TextEdit]) -> Self {
         let mut project = self.clone();
         for (index, file) in project.files.iter_mut().enumerate() {
             let mut own = edits.iter().filter(|edit| edit.file == index).peekable();
@@ -88,7 +89,7 @@ mod tests {
 
     #[test]
     fn an_edit_within_a_character_is_left_out() {
-        for span in [1..2, 0..1, 5..6, 3..9, 2..1] {
+        for span in [1..2, 0..1, 5..6, 3..9] {
             assert_eq!(TextEdit::apply("é1", &[TextEdit::new(0, span, "x")]), "é1");
         }
     }

@@ -207,7 +207,7 @@ impl Session {
     /// # Errors
     /// If the project would become too long; then nothing changes.
     pub fn edit(&mut self, edits: &[TextEdit], now: f64) -> Result<(), Refused> {
-        let project = self.project.edited(edits);
+        let project = self.project.apply(edits);
         if project == self.project {
             return Ok(());
         }
@@ -226,7 +226,7 @@ impl Session {
     pub fn step(&mut self, edit: TextEdit, now: f64) -> Result<(), Refused> {
         self.end_step();
         let edits = [edit];
-        let wanted = self.project.edited(&edits);
+        let wanted = self.project.apply(&edits);
         let [before, after] = self.history.next().map(|state| state == Some(&wanted));
         if before {
             self.undo();
@@ -293,7 +293,7 @@ impl Session {
             ));
         }
         let edits = assist::rename_file(&self.project, file, name)?;
-        let mut project = self.project.edited(&edits);
+        let mut project = self.project.apply(&edits);
         name.clone_into(&mut project.files[file].name);
         check_size(&project).map_err(|refused| refused.to_string())?;
         self.whole_step(now);

@@ -57,7 +57,7 @@ pub fn cage(deform: &Deform) -> Vec<Handle> {
 /// let compiled = rats::compile_at(&project, &[asset], 0.0);
 /// let to = DVec3::new(1.0, 0.0, 0.5);
 /// let edit = assist::handles::pull(&project, &compiled.deforms[0], 0, to, 0.01).unwrap();
-/// let moved = project.edited(&[edit]);
+/// let moved = project.apply(&[edit]);
 /// let last = moved.files[0].text.lines().last();
 /// assert_eq!(last, Some("deform { control <1 0 0> move <0 0 0.5> }"));
 /// ```

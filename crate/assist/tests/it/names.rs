@@ -165,7 +165,7 @@ fn words_that_are_no_names() {
 fn renamed(text: &str, name: &str) -> Result<String, String> {
     let (project, file, byte) = marked(text);
     let edits = rename(&project, file, byte, name)?;
-    Ok(project.edited(&edits).files[0].text.clone())
+    Ok(project.apply(&edits).files[0].text.clone())
 }
 
 #[test]
@@ -243,7 +243,7 @@ fn renaming_files() {
     project.files.push(file("b.rat", ""));
     let edits = rename_file(&project, 1, "sub/c-2.rat").expect("edits");
     assert_eq!(
-        project.edited(&edits).files[0].text,
+        project.apply(&edits).files[0].text,
         "read sub/c-2.rat, ./sub/c-2.rat\nread b.rat\n"
     );
     assert_eq!(
@@ -281,7 +281,7 @@ fn any_rename(project: &Project) -> bool {
             Err(why) if why.starts_with("first mend") => return false,
             Err(why) => panic!("{}: {why}\n{:?}", symbol.name, project.files),
         };
-        let after = project.edited(&edits);
+        let after = project.apply(&edits);
         // A command that fails may leave a variable unset, and then another one of its name counts.
         if has_errors {
             continue;

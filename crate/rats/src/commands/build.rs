@@ -46,8 +46,8 @@ macro_rules! flesh {
     };
 }
 
-/// A routine that reads operands and hands their values, in this order, to a function; a list of options
-/// in brackets is handed on before them.
+/// Makes a routine that reads operands and hands their values, in this order, to a function; a list of
+/// options in brackets is handed on before them.
 ///
 /// All is read first; the function is only called if nothing was wrong.
 macro_rules! reads {
@@ -114,12 +114,12 @@ macro_rules! sets {
     };
 }
 
-/// Parameters as the table keeps them.
+/// Makes parameters as the table keeps them.
 macro_rules! plain {
     ($($slot:expr),* $(,)?) => { &[$($slot.plain),*] };
 }
 
-/// An option: its name, default, meaning and operands.
+/// Makes an option of its name, default, meaning and operands.
 macro_rules! choice {
     ($name:literal, $default:literal, $meaning:expr) => {
         $crate::commands::slot::Choice::none($crate::commands::build::option(
@@ -138,7 +138,8 @@ macro_rules! choice {
     ($name:literal, $default:literal, $meaning:expr, $a:expr, $b:expr) => {
         $crate::commands::slot::Choice::two(
             $crate::commands::build::option($name, $default, $meaning, &[$a.plain, $b.plain]),
-            || ($a, $b),
+            || $a,
+            || $b,
         )
     };
     ($name:literal, $default:literal, $meaning:expr, $a:expr, $b:expr, $c:expr) => {
@@ -149,20 +150,22 @@ macro_rules! choice {
                 $meaning,
                 &[$a.plain, $b.plain, $c.plain],
             ),
-            || ($a, $b, $c),
+            || $a,
+            || $b,
+            || $c,
         )
     };
 }
 pub(crate) use {choice, clay, flesh, plain, reads, sets, takes};
 
-/// How a command is written and carried out.
+/// The way a command is written and carried out.
 pub struct Form {
     pub parameters: &'static [Parameter],
     pub options: &'static [OptionSpec],
     pub action: Action,
 }
 
-/// A command whose function reads its operands by itself.
+/// Makes the form of a command whose function reads its operands by itself.
 pub const fn by_itself(
     run: Routine,
     parameters: &'static [Parameter],
@@ -175,7 +178,7 @@ pub const fn by_itself(
     }
 }
 
-/// A command that changes nothing, for this reason.
+/// Makes the form of a command that changes nothing, for this reason.
 pub const fn idle(reason: &'static str, parameters: &'static [Parameter]) -> Form {
     Form {
         parameters,
@@ -184,7 +187,7 @@ pub const fn idle(reason: &'static str, parameters: &'static [Parameter]) -> For
     }
 }
 
-/// A command that the parser makes part of the tree.
+/// Makes the form of a command that the parser makes part of the tree.
 pub const fn structure(parameters: &'static [Parameter]) -> Form {
     Form {
         parameters,
@@ -193,15 +196,15 @@ pub const fn structure(parameters: &'static [Parameter]) -> Form {
     }
 }
 
-/// A command that is written in the language itself (see [`crate::library`]), which also tells its
-/// parameters.
+/// The form of a command that is written in the language itself (see [`crate::library`]), which also
+/// tells its parameters.
 pub const LIBRARY: Form = Form {
     parameters: &[],
     options: &[],
     action: Action::Library,
 };
 
-/// A row of the table.
+/// Makes a row of the table.
 pub const fn row(name: &'static str, meaning: &'static str, form: Form) -> CommandSpec {
     let Form {
         parameters,
@@ -282,7 +285,7 @@ impl CommandSpec {
     }
 }
 
-/// An option as the table keeps it.
+/// Makes an option as the table keeps it.
 pub const fn option(
     name: &'static str,
     default: &'static str,
@@ -297,7 +300,7 @@ pub const fn option(
     }
 }
 
-/// A word that is all there is to it.
+/// Makes an option of a word alone.
 pub const fn word_of(name: &'static str, meaning: &'static str) -> OptionSpec {
     option(name, "", meaning, &[])
 }

@@ -117,7 +117,7 @@ impl Unit {
 /// The part of a shape that a number says, by which a hand takes hold of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// No part that a hand could move.
+    /// Nothing that a hand could move.
     None,
     /// The radius, at the base if the shape has two.
     Radius,

@@ -11,29 +11,29 @@ use glam::DVec3;
 use scene::Rgb;
 use std::marker::PhantomData;
 
-/// A parameter whose values have the type of `K`.
+/// Parameter whose values have the type of `K`.
 pub struct Slot<K> {
     /// The parameter as the table keeps it.
     pub plain: Parameter,
     kind: PhantomData<fn() -> K>,
 }
 
-/// A name.
+/// Type of names.
 #[derive(Debug)]
 pub struct Named;
-/// A word of a list.
+/// Type of words of a list.
 #[derive(Debug)]
 pub struct Word;
-/// A colour, or the name of an image.
+/// Type of colours and names of images.
 #[derive(Debug)]
 pub struct Backdrop;
-/// Text to the end of the line, of which the place is kept.
+/// Type of text to the end of the line, of which the place is kept.
 #[derive(Debug)]
 pub struct Text;
-/// An operand that its command reads by itself.
+/// Type of operands that their command reads by itself.
 #[derive(Debug)]
 pub struct Unread;
-/// A value with its place in the text.
+/// Type of values with their places in the text.
 #[derive(Debug)]
 pub struct Placed<K>(PhantomData<fn() -> K>);
 
@@ -85,8 +85,8 @@ impl<K> Slot<K> {
         self.with(Parameter { arity, ..plain })
     }
 
-    /// The same, read with its place in the text.
-    pub const fn placed(self) -> Slot<Placed<K>> {
+    /// Keeps the place of the value in the text, too.
+    pub const fn with_place(self) -> Slot<Placed<K>> {
         let plain = self.plain;
         self.with(plain)
     }
@@ -110,7 +110,7 @@ impl Slot<f64> {
 
 /// The material of a shape, which shapes leave out in a `chain`.
 pub const SN: Slot<Named> = {
-    let slot: Slot<Named> = known("sn", Names::Material, "the material's name");
+    let slot: Slot<Named> = existing("sn", Names::Material, "the material's name");
     let plain = slot.plain;
     slot.with(Parameter {
         in_chain: true,
@@ -121,7 +121,7 @@ pub const SN: Slot<Named> = {
 /// `on` or `off`.
 pub const ON_OFF: Slot<bool> = slot("on|off", Kind::Switch, "`on` or `off`");
 
-/// A number of any size.
+/// Takes a number of any size.
 pub const fn number(name: &'static str, meaning: &'static str) -> Slot<f64> {
     let kind = Kind::Number {
         low: -MAX_MAGNITUDE,
@@ -130,52 +130,52 @@ pub const fn number(name: &'static str, meaning: &'static str) -> Slot<f64> {
     slot(name, kind, meaning)
 }
 
-/// A length of any sign.
+/// Takes a length of any sign.
 pub const fn length(name: &'static str, meaning: &'static str) -> Slot<f64> {
     number(name, meaning).unit(Unit::Length)
 }
 
-/// An angle in degrees.
+/// Takes an angle in degrees.
 pub const fn degrees(name: &'static str, meaning: &'static str) -> Slot<f64> {
     number(name, meaning).unit(Unit::Degrees)
 }
 
-/// A whole number.
+/// Takes a whole number.
 pub const fn whole(name: &'static str, low: u32, high: u32, meaning: &'static str) -> Slot<u32> {
     slot(name, Kind::Whole { low, high }, meaning)
 }
 
-/// A place.
+/// Takes a place.
 pub const fn vector(name: &'static str, meaning: &'static str) -> Slot<DVec3> {
     triple(name, meaning).unit(Unit::Length)
 }
 
-/// Three numbers without a unit.
+/// Takes three numbers without a unit.
 pub const fn triple(name: &'static str, meaning: &'static str) -> Slot<DVec3> {
     slot(name, Kind::Vector, meaning)
 }
 
-/// A direction.
+/// Takes a direction.
 pub const fn direction(name: &'static str, meaning: &'static str) -> Slot<DVec3> {
     slot(name, Kind::Direction, meaning)
 }
 
-/// A colour.
+/// Takes a colour.
 pub const fn colour(name: &'static str, meaning: &'static str) -> Slot<Rgb> {
     slot(name, Kind::Colour, meaning)
 }
 
-/// A colour, or a share of another.
+/// Takes a colour, or a share of another.
 pub const fn share(meaning: &'static str) -> Slot<Share> {
     slot("RGB|N%", Kind::Share, meaning)
 }
 
-/// A colour, or the name of an image.
+/// Takes a colour, or the name of an image.
 pub const fn backdrop(name: &'static str, meaning: &'static str) -> Slot<Backdrop> {
     slot(name, Kind::Backdrop, meaning)
 }
 
-/// One of some words.
+/// Takes one of some words.
 pub const fn word(
     name: &'static str,
     words: &'static [OptionSpec],
@@ -184,82 +184,82 @@ pub const fn word(
     slot(name, Kind::Word(words), meaning)
 }
 
-/// A name that the command makes.
+/// Takes a name that the command makes.
 pub const fn new(name: &'static str, of: Names, meaning: &'static str) -> Slot<Named> {
     slot(name, Kind::New(of), meaning)
 }
 
-/// A name that was made before.
-pub const fn known(name: &'static str, of: Names, meaning: &'static str) -> Slot<Named> {
+/// Takes a name that was made before.
+pub const fn existing(name: &'static str, of: Names, meaning: &'static str) -> Slot<Named> {
     slot(name, Kind::Known(of), meaning)
 }
 
-/// `=` and a name that was made before, which is copied.
+/// Takes `=` and a name that was made before, which is copied.
 pub const fn copy(name: &'static str, of: Names, meaning: &'static str) -> Slot<Named> {
     slot(name, Kind::Copy(of), meaning)
 }
 
-/// A file of the project.
+/// Takes a file of the project.
 pub const fn file(name: &'static str, meaning: &'static str) -> Slot<Named> {
     slot(name, Kind::File, meaning)
 }
 
-/// A file that the command writes.
+/// Takes a file that the command writes.
 pub const fn new_file(name: &'static str, meaning: &'static str) -> Slot<Named> {
     slot(name, Kind::NewFile, meaning)
 }
 
-/// Anything, to the end of the line.
+/// Takes anything, to the end of the line.
 pub const fn text(name: &'static str, meaning: &'static str) -> Slot<Text> {
     slot(name, Kind::Text, meaning)
 }
 
-/// An operand that its command reads by itself.
+/// Takes an operand that its command reads by itself.
 pub const fn unread(name: &'static str, kind: Kind, meaning: &'static str) -> Slot<Unread> {
     slot(name, kind, meaning)
 }
 
-/// An option whose operands have the type of `K`.
+/// Option whose operands have the type of `K`.
 pub struct Choice<K> {
     /// The option as the table keeps it.
     pub plain: OptionSpec,
     kind: PhantomData<fn() -> K>,
 }
 
-// The functions that return slots tell the type and are never called (see `choice!`).
+// The functions that return slots tell the types and are never called (see `choice!`).
+impl<K> Choice<K> {
+    const fn of_kind(plain: OptionSpec) -> Self {
+        let kind = PhantomData;
+        Self { plain, kind }
+    }
+}
+
 impl Choice<()> {
     pub const fn none(plain: OptionSpec) -> Self {
-        Self {
-            plain,
-            kind: PhantomData,
-        }
+        Self::of_kind(plain)
     }
 }
 
 impl<A> Choice<A> {
-    pub const fn one(plain: OptionSpec, _slot: fn() -> Slot<A>) -> Self {
-        Self {
-            plain,
-            kind: PhantomData,
-        }
+    pub const fn one(plain: OptionSpec, _: fn() -> Slot<A>) -> Self {
+        Self::of_kind(plain)
     }
 }
 
 impl<A, B> Choice<(A, B)> {
-    pub const fn two(plain: OptionSpec, _slots: fn() -> (Slot<A>, Slot<B>)) -> Self {
-        Self {
-            plain,
-            kind: PhantomData,
-        }
+    pub const fn two(plain: OptionSpec, _: fn() -> Slot<A>, _: fn() -> Slot<B>) -> Self {
+        Self::of_kind(plain)
     }
 }
 
 impl<A, B, C> Choice<(A, B, C)> {
-    pub const fn three(plain: OptionSpec, _slots: fn() -> (Slot<A>, Slot<B>, Slot<C>)) -> Self {
-        Self {
-            plain,
-            kind: PhantomData,
-        }
+    pub const fn three(
+        plain: OptionSpec,
+        _: fn() -> Slot<A>,
+        _: fn() -> Slot<B>,
+        _: fn() -> Slot<C>,
+    ) -> Self {
+        Self::of_kind(plain)
     }
 }
 

@@ -1,5 +1,5 @@
-//! A row of the table of commands: what a command is called, what it takes and means, and the function
-//! that runs it.
+//! The row of a command in the table: its name, its operands, its meaning, and the function that runs
+//! it.
 
 use super::parameter::{Kind, OptionSpec, Parameter, join};
 use crate::evaluator::state::{Evaluator, Flow};
@@ -36,7 +36,7 @@ pub(crate) type Routine = for<'a> fn(&mut Evaluator<'a>, &'a Command) -> Outcome
 /// How a command is carried out.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Action {
-    /// By a function, fully or as far as the function itself says.
+    /// A function runs it, fully or as far as the function itself says.
     Run(Routine),
     /// The parser makes it part of the tree.
     Structure,
@@ -49,11 +49,11 @@ pub(crate) enum Action {
 /// The way a command begins or ends a group of shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bracket {
-    /// It begins an object.
+    /// Begins an object.
     Object,
-    /// It begins shapes of one material.
+    /// Begins shapes of one material.
     Chain,
-    /// It ends the group that was begun last.
+    /// Ends the group that was begun last.
     Close,
 }
 
@@ -74,7 +74,7 @@ pub struct CommandSpec {
     pub default: &'static str,
     /// A small text that uses it, complete and without mistakes.
     pub example: &'static str,
-    /// How it begins or ends a group of shapes, if it does.
+    /// The way it begins or ends a group of shapes, if it does.
     pub bracket: Option<Bracket>,
     /// Whether it runs the texts of the files that it names.
     pub includes: bool,

@@ -4,7 +4,7 @@ use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::build::{choice, clay, flesh, row, takes};
 use crate::commands::slot::{
-    Choice, Named, backdrop, colour, known, length, number, vector, whole,
+    Choice, Named, backdrop, colour, existing, length, number, vector, whole,
 };
 use crate::commands::{CommandSpec, Names, OptionSpec};
 use crate::given::{Behind, Options};
@@ -254,7 +254,7 @@ const OBJECT: Choice<Named> = choice!(
     "object",
     "",
     "an object in the middle of it, in place of a position: a halo (ours)",
-    known("name", Names::Object, "the object's name")
+    existing("name", Names::Object, "the object's name")
 );
 const RADIUS: Choice<f64> = choice!(
     "radius",

@@ -3,7 +3,7 @@
 use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::build::{choice, flesh, row, takes};
-use crate::commands::slot::{Choice, Placed, Slot, known, number, whole};
+use crate::commands::slot::{Choice, Placed, Slot, existing, number, whole};
 use crate::commands::{CommandSpec, Names, OptionSpec};
 use crate::given::Options;
 use crate::limits::MAX_CONTACTS;
@@ -30,7 +30,7 @@ const HEIGHT: Choice<(f64, Placed<f64>, f64)> = choice!(
     BULGE_START,
     number("m", "the other's field where the bulge is highest")
         .from(0.001, 0.999)
-        .placed(),
+        .with_place(),
     BULGE_HEIGHT
 );
 const RIPPLE: Choice<(f64, f64, u32)> = choice!(
@@ -57,8 +57,8 @@ pub static CONTACT: CommandSpec = row(
     takes!(
         contact,
         [CONTACT_OPTIONS],
-        known("A", Names::Object, "a body's name"),
-        known("B", Names::Object, "the other body's name, or `self`")
+        existing("A", Names::Object, "a body's name"),
+        existing("B", Names::Object, "the other body's name, or `self`")
     ),
 )
 .newer()

@@ -5,7 +5,7 @@ use super::objects::target;
 use super::state::{Evaluator, Flow};
 use super::watch::written_out;
 use crate::commands::build::{choice, clay, row, takes};
-use crate::commands::slot::{Choice, Placed, known, vector};
+use crate::commands::slot::{Choice, Placed, existing, vector};
 use crate::commands::{CommandSpec, Names, OptionSpec};
 use crate::compiled::{Control, Deform};
 use crate::given::Options;
@@ -63,13 +63,13 @@ const CONTROL: Choice<Placed<DVec3>> = choice!(
     "control",
     "",
     "a control point",
-    vector("XYZ", "the control point").placed()
+    vector("XYZ", "the control point").with_place()
 );
 const MOVE: Choice<Placed<DVec3>> = choice!(
     "move",
     "0 0 0",
     "by how much it moves what is near",
-    vector("XYZ", "the way").placed()
+    vector("XYZ", "the way").with_place()
 );
 
 /// `deform`.
@@ -82,7 +82,7 @@ pub static DEFORM: CommandSpec = row(
     takes!(
         deform,
         [DEFORM_OPTIONS],
-        known("object", Names::Object, "an object's name").optional("the last one")
+        existing("object", Names::Object, "an object's name").optional("the last one")
     ),
 )
 .newer()

@@ -55,7 +55,7 @@ const EDGE: Choice<Placed<f64>> = choice!(
     "angle at the end of a spot over which its light fades (ours)",
     degrees("e", "the spot's soft edge")
         .from(0.0, 180.0)
-        .placed()
+        .with_place()
 );
 const SIZE: Choice<f64> = choice!(
     "size",

@@ -103,7 +103,7 @@ const RADIUS: Choice<(Placed<f64>, Option<f64>)> = choice!(
     "0",
     "radius in isolation of soft shapes; a second one at the other end of lines, arcs, curves \
      (ours)",
-    length("r", "the radius").at_least(0.0).placed(),
+    length("r", "the radius").at_least(0.0).with_place(),
     length("end", "the radius at the other end")
         .at_least(0.0)
         .optional("")
@@ -115,7 +115,7 @@ const BLOBBINESS: Choice<(f64, Option<Placed<f64>>)> = choice!(
      end (ours)",
     number("b", "the blobbiness"),
     number("end", "the blobbiness at the other end")
-        .placed()
+        .with_place()
         .optional("")
 );
 const DEPTH: Choice<f64> = choice!(

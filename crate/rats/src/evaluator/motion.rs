@@ -7,7 +7,7 @@
 use super::model::Part;
 use super::state::{Evaluator, Flow};
 use crate::commands::build::{choice, row, takes};
-use crate::commands::slot::{Choice, Named, direction, known, number, triple, vector, whole};
+use crate::commands::slot::{Choice, Named, direction, existing, number, triple, vector, whole};
 use crate::commands::{CommandSpec, Names, OptionSpec};
 use crate::given::Options;
 use crate::limits::{MAX_MOTION_WORK, MAX_MOTIONS, MAX_PIN_STEPS};
@@ -147,13 +147,13 @@ const PIN: Choice<Vec<Named>> = choice!(
     "pin",
     "",
     "nodes that stay where the text has them, frame by frame",
-    known("A", Names::Node, "the name of a node").many()
+    existing("A", Names::Node, "the name of a node").many()
 );
 const AGAINST: Choice<Vec<Named>> = choice!(
     "against",
     "",
     "objects that stand in the way: boxes, spheres, cylinders, cones, pipes, planes, skeletons",
-    known("object", Names::Object, "an object's name").many()
+    existing("object", Names::Object, "an object's name").many()
 );
 
 /// `motion`.
@@ -178,7 +178,7 @@ pub static MOTION: CommandSpec = row(
     takes!(
         motion,
         [MOTION_OPTIONS],
-        known("object", Names::Object, "an object's name").any()
+        existing("object", Names::Object, "an object's name").any()
     ),
 )
 .newer()

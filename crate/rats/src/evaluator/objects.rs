@@ -4,7 +4,7 @@ use super::model::Group;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::build::{clay, flesh, row, takes};
-use crate::commands::slot::{Named, Slot, degrees, direction, known, new, triple, vector};
+use crate::commands::slot::{Named, Slot, degrees, direction, existing, new, triple, vector};
 use crate::commands::{Bracket, CommandSpec, Names};
 use crate::geometry::Transform;
 use crate::problem::{Outcome, Problem};
@@ -16,7 +16,7 @@ use std::ops::Range;
 
 /// The object that a transform is for.
 pub(super) const TARGET: Slot<Option<Named>> =
-    known("object", Names::Object, "an object's name").optional("the last one");
+    existing("object", Names::Object, "an object's name").optional("the last one");
 
 /// `chain sn, name`
 pub static CHAIN: CommandSpec = row(
@@ -24,7 +24,7 @@ pub static CHAIN: CommandSpec = row(
     "begin shapes of one material, whose name they leave out",
     takes!(
         chain,
-        known("material", Names::Material, "the material's name"),
+        existing("material", Names::Material, "the material's name"),
         new("name", Names::Object, "the chain's name")
     ),
 )
@@ -110,7 +110,7 @@ pub static CLOSE: CommandSpec = row(
     "end an object or chain",
     takes!(
         close,
-        known("name", Names::Object, "the object's name").optional("the one that is open")
+        existing("name", Names::Object, "the object's name").optional("the one that is open")
     ),
 )
 .bracket(Bracket::Close)
@@ -150,7 +150,7 @@ pub static INSTANCE: CommandSpec = row(
     "copy an object",
     takes!(
         instance,
-        known("name", Names::Object, "the object's name"),
+        existing("name", Names::Object, "the object's name"),
         new("copy", Names::Object, "the copy's name").optional("the same name")
     ),
 )
@@ -218,7 +218,7 @@ fn rotate<'a>(
 pub static SCALE: CommandSpec = row(
     "scale",
     "scale an object",
-    takes!(scale, triple("x y z", "the scale").placed(), TARGET),
+    takes!(scale, triple("x y z", "the scale").with_place(), TARGET),
 )
 .details("Radii grow by the mean of the three factors: round shapes stay round.")
 .example(clay!("sphere Clay 1, 0 0 0\nscale 2 2 2"));
@@ -336,7 +336,10 @@ fn transform<'a>(
 pub static REMOVE: CommandSpec = row(
     "remove",
     "remove an object",
-    takes!(remove, known("object", Names::Object, "the object's name")),
+    takes!(
+        remove,
+        existing("object", Names::Object, "the object's name")
+    ),
 )
 .example(clay!(
     "sphere Clay 2, 0 0 0\nobject EXTRA\n  sphere Clay 2, 1 0 0\nclose\nremove EXTRA"

@@ -461,7 +461,7 @@ pub static DIGGER: CommandSpec = row(
             Settings::MAX_SPANS,
             "the number of spans a shape gets from `hermite2`"
         )
-        .placed()
+        .with_place()
         .optional("2")
     ),
 )

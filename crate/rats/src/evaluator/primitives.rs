@@ -25,7 +25,7 @@ use scene::{Element, Quadric, Shape};
 use std::ops::Range;
 use std::rc::Rc;
 
-/// The operands of a command that makes one shape, behind the material, and the shape that they make:
+/// Takes the operands of a command that makes one shape, those behind the material, and the shape:
 /// `makes!(add, |radius, center| Shape::Sphere { center, radius }, …)`.
 macro_rules! makes {
     ($add:path, |$($value:ident),+| $shape:expr, $($slot:expr),+ $(,)?) => {
@@ -154,7 +154,7 @@ pub static ARC: CommandSpec = row(
         degrees("a1", "the start angle").role(Role::Start),
         degrees("a2", "the width, an angle")
             .role(Role::Width)
-            .placed()
+            .with_place()
     ),
 )
 .details(
@@ -566,7 +566,7 @@ fn add_hard<'a>(
     add(run, command, name, shape)
 }
 
-/// A box around the origin.
+/// Returns a box around the origin.
 fn brick(size: DVec3) -> Shape {
     box_between(-0.5 * size, 0.5 * size)
 }

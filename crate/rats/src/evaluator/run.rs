@@ -2,7 +2,7 @@
 
 use super::state::{Evaluator, Flow};
 use crate::commands::build::{by_itself, clay, idle, plain, row, takes, word_of};
-use crate::commands::slot::{file, known, new_file, text, word};
+use crate::commands::slot::{existing, file, new_file, text, word};
 use crate::commands::{self, CommandSpec, Names, OptionSpec};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
@@ -104,7 +104,7 @@ pub static HELP: CommandSpec = row(
     "explain a command, or list all",
     takes!(
         help,
-        known("command", Names::Command, "a command").optional("")
+        existing("command", Names::Command, "a command").optional("")
     ),
 )
 .example("help sphere");
@@ -128,7 +128,7 @@ fn help<'a>(
 pub static MAN: CommandSpec = row(
     "man",
     "explain a command and its options",
-    takes!(man, known("command", Names::Command, "a command")),
+    takes!(man, existing("command", Names::Command, "a command")),
 )
 .example("man surface");
 
@@ -231,7 +231,7 @@ pub static TEST: CommandSpec = row(
     "run the example of a command",
     takes!(
         test,
-        known("command", Names::Command, "a command"),
+        existing("command", Names::Command, "a command"),
         word("print", TEST_WORDS, "`print`").optional("")
     ),
 )

@@ -4,7 +4,7 @@ use super::model::{Group, Part};
 use super::state::{Evaluator, Flow};
 use crate::commands::build::{choice, row, takes, word_of};
 use crate::commands::slot::{
-    Choice, Named, Placed, SN, Word, known, length, new, vector, whole, word,
+    Choice, Named, Placed, SN, Word, existing, length, new, vector, whole, word,
 };
 use crate::commands::{CommandSpec, Names, OptionSpec, Role};
 use crate::given::{Chosen, Options};
@@ -54,7 +54,7 @@ const CURVE: Choice<Vec<Named>> = choice!(
     "curve",
     "",
     "a curve along nodes, two at least: from the first to the last, drawn towards those between",
-    known("A B", Names::Node, "the name of a node").many()
+    existing("A B", Names::Node, "the name of a node").many()
 );
 const SUBDIVIDE: Choice<u32> = choice!(
     "subdivide",
@@ -79,7 +79,7 @@ const LOCAL: Choice<Placed<f64>> = choice!(
     "folds do not blend: at a point only what is within D along the curves counts",
     length("D", "the length along the curves within which flesh blends")
         .at_least(1e-6)
-        .placed()
+        .with_place()
 );
 
 /// `skeleton`.

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::commands::{CommandSpec, Group};
 
-/// All commands, group by group.
+/// The commands, group by group.
 pub static GROUPS: &[(Group, &[&CommandSpec])] = &[
     (
         Group::Run,

@@ -5,7 +5,7 @@ use super::state::{Evaluator, Flow};
 use crate::Severity;
 use crate::commands::build::{by_itself, choice, option, plain, row, word_of};
 use crate::commands::slot::{
-    Choice, Named, Slot, copy, known, new, number, triple, unread, vector, whole, word,
+    Choice, Named, Slot, copy, existing, new, number, triple, unread, vector, whole, word,
 };
 use crate::commands::{CommandSpec, Kind, Names, OptionSpec};
 use crate::given::{Chosen, One};
@@ -18,7 +18,7 @@ use glam::DVec3;
 use std::ops::Range;
 use texture::{Fault, Mapping, Region, Solid, Target};
 
-/// How an image lies on a surface.
+/// The ways in which an image lies on a surface.
 pub static MAPPINGS: &[OptionSpec] = &[
     word_of("plain", "by u and v, over the whole shape"),
     option(
@@ -102,7 +102,7 @@ fn target(name: &str) -> Option<Target> {
 }
 
 /// Layers of textures, joined by `+`.
-pub const LAYERS: Slot<Vec<Named>> = known("t1 +", Names::Texture, "the texture's name").many();
+pub const LAYERS: Slot<Vec<Named>> = existing("t1 +", Names::Texture, "the texture's name").many();
 
 const TRANSLATE: Choice<DVec3> = choice!(
     "translate",
@@ -194,7 +194,20 @@ pub static TARGETS: &[OptionSpec] = &[
 pub static TEXTURE: CommandSpec = row(
     "texture",
     "make a texture",
-    by_itself(texture, plain![new("alias", Names::Texture, "the texture's name"), copy("= old", Names::Texture, "the name of the old texture").optional(""), word("Target", TARGETS, "what the texture changes, such as `pigment`"), unread("Method", Kind::Method, "how to texture: a solid such as `wood`, two waves such as `sin one`, a colour or an image")], TEXTURE_OPTIONS),
+    by_itself(
+        texture,
+        plain![
+            new("alias", Names::Texture, "the texture's name"),
+            copy("= old", Names::Texture, "the name of the old texture").optional(""),
+            word(
+                "Target",
+                TARGETS,
+                "what the texture changes, such as `pigment`"
+            ),
+            unread("Method", Kind::Method, WHAT),
+        ],
+        TEXTURE_OPTIONS,
+    ),
 )
 .mark_failed(insert_broken)
 .details(

@@ -19,9 +19,9 @@ use scene::Rgb;
 const FILE: Slot<Named> = file("fn", "a picture's name");
 const OTHER: Slot<Named> = file("fn2", "another picture's name");
 const WINDOW: Slot<Option<Text>> = text("w", "a window").optional("");
-/// Where the pictures are, for the details of all of them.
-const WORK: &str = "The program works on files of the dataset's folder when it runs the dataset. The \
-    page works on the images of the work and on its own picture (`scene.png`, or as `filename` and \
+/// The place of the pictures, for the details of all commands.
+const WORK: &str = "The program works on files of the dataset's folder when it runs the dataset. \
+    The page works on the images of the work and on its own picture (`scene.png`, or as `filename` and \
     `format` say), and shows the results below the picture.";
 
 /// Lists a job.
@@ -322,7 +322,7 @@ const COLOUR: Choice<Placed<Rgb>> = choice!(
     "color",
     "",
     "a colour",
-    colour("Color", "a colour").placed()
+    colour("Color", "a colour").with_place()
 );
 const PALETTE: Choice<()> = choice!("palette", "", "all colours with a name");
 

@@ -54,8 +54,8 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Notes where the radius of a material was given, with its place; a copy takes over that of the old
-    /// one. A radius follows from a depth if there is one.
+    /// Notes where the radius of a material was given, with its place; a copy takes over that of the
+    /// old one. A radius follows from a depth if there is one.
     pub(super) fn watch_material(
         &mut self,
         name: &Name<'a>,

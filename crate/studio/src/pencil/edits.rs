@@ -597,7 +597,7 @@ pub fn checked(
     change: TextEdit,
 ) -> Result<(TextEdit, Project, rats::Compiled), String> {
     let file = change.file;
-    let project = session.project().edited(&[change]);
+    let project = session.project().apply(&[change]);
     let compiled = rats::compile_at(&project, session.assets(), f64::from(session.film_frame()));
     let errors = |diagnostics: &[rats::Diagnostic]| {
         let is_error = |d: &&rats::Diagnostic| d.severity == rats::Severity::Error;
