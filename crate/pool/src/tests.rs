@@ -3,7 +3,7 @@
 use crate::Pool;
 use crate::core::Core;
 use crate::job::{Job, MAX_WORKERS, TILE, TileDone};
-use crate::workers::Workers;
+use crate::workers::{Manager, Workers};
 use scene::Scene;
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
@@ -125,7 +125,7 @@ fn taking_turns(
 ) -> (HashMap<Tile, Vec<u8>>, u64) {
     let engines = (0..workers).map(|_| Engine::default()).collect();
     let mut core = Core::new(workers, Desks(engines));
-    core.launch(0.0);
+    core.loaded(Ok(()), 0.0);
     let job = Job {
         scene,
         size: [300, 260],
@@ -242,7 +242,7 @@ fn picture_shows_nothing_of_an_older_one() {
     for workers in [2, 3, 5] {
         let engines = (0..workers).map(|_| Engine::default()).collect();
         let mut core = Core::new(workers, Desks(engines));
-        core.launch(0.0);
+        core.loaded(Ok(()), 0.0);
         let mut late: Vec<Vec<Answer>> = vec![Vec::new(); workers];
         let mut now = 0.0;
         for picture in 0..60 {
@@ -335,7 +335,7 @@ fn samples_of_a_failed_picture_are_dropped() {
     let desks = Desks((0..2).map(|_| Engine::default()).collect());
     let tile = tracer::tiles(260, 200, TILE)[0];
     let mut core = Core::new(2, Stuck(desks, Vec::new(), tile));
-    core.launch(0.0);
+    core.loaded(Ok(()), 0.0);
     let job = Job {
         scene: &scene,
         size: [260, 200],
@@ -382,7 +382,7 @@ fn samples_are_shared_only_where_useful() {
         };
         change(&mut scene, &mut job);
         let mut core = Core::new(workers, Asked(None));
-        core.launch(0.0);
+        core.loaded(Ok(()), 0.0);
         core.start(
             Job {
                 scene: &scene,

@@ -6,7 +6,7 @@ use preview::{Draft, Mesh, Sampling, looks};
 use rats::{Asset, File, Project};
 use scene::Scene;
 use std::path::{Path, PathBuf};
-use tools::{Detail, Job, Output, Progress, ViewJob};
+use tools::{Detail, Job, Progress, ViewScene};
 
 fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../www/examples")
@@ -77,14 +77,14 @@ fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>
     if soft.elements.is_empty() || is_endless || soft.elements.len() > MOST {
         return (plain, None);
     }
-    let job = Job::View(Box::new(ViewJob {
+    let job = ViewScene {
         looks: looks(&soft),
         scene: soft,
         detail: Detail::Coarse,
-    }));
-    let Ok(Output::View(view)) = tools::run(job, &mut Progress::silent()) else {
-        panic!("there is a surface");
     };
+    let view = job
+        .run(&mut Progress::silent())
+        .expect("there is a surface");
     let mesh = Mesh {
         vertices: &view.vertices,
         triangles: &view.triangles,
