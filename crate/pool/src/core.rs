@@ -56,7 +56,8 @@ impl<W: Workers> Core<W> {
         self.scheduler.start(plan, now);
         let request = Request::Begin {
             generation: self.scheduler.number(),
-            scene: Box::new(job.scene.clone()),
+            scene: job.scene.clone(),
+            camera: job.camera,
             size: job.size,
             kind: job.kind,
             shared,

@@ -8,9 +8,10 @@
 //! ```
 //! # #[cfg(not(target_arch = "wasm32"))] {
 //! let mut pool = pool::Pool::new(|| {});
-//! let scene = scene::Scene::default();
+//! let scene = std::sync::Arc::new(scene::Scene::default());
 //! pool.start(pool::Job {
 //!     scene: &scene,
+//!     camera: None,
 //!     size: [80, 60],
 //!     generation: 1,
 //!     kind: worker::Kind::Colours,

@@ -440,7 +440,8 @@ impl App {
             self.lab.pictures.tick(ctx);
         } else {
             self.lab.pictures.pause();
-            self.renderer.tick(ctx, now, || session.scene());
+            let scene = session.scene();
+            self.renderer.tick(ctx, now, scene, session.chosen_camera());
         }
     }
 

@@ -8,7 +8,8 @@
 use crate::session::Session;
 use pool::{Ticket, Tools};
 use preview::Mesh;
-use scene::{Scene, Shape};
+use scene::{Element, Scene, Shape};
+use std::sync::Arc;
 use tools::{Detail, ViewMesh, ViewScene};
 
 /// Seconds that a coarse mesh may take to be one that follows a hand.
@@ -149,13 +150,14 @@ impl LiveMesh {
             Some(Detail::Coarse) if rests && now - self.seen.1 >= STILL => Detail::Fine,
             _ => return,
         };
-        let Some(scene) = session.scene().and_then(soft_part) else {
+        let whole = session.scene();
+        let Some((whole, soft)) = whole.and_then(|scene| Some((scene, soft_part(scene)?))) else {
             self.hopeless = Some(shape);
             return;
         };
         let job = ViewScene {
-            looks: preview::looks(&scene),
-            scene,
+            scene: Arc::new(soft),
+            looks: preview::looks(whole),
             detail,
         };
         self.running = Some(Running {
@@ -211,23 +213,23 @@ fn elements(session: &Session) -> usize {
     session.compiled().scene.elements.len()
 }
 
-/// The soft elements of a scene, and what their surfaces depend on; `None` if there are none, too many, or one that has no end.
-fn soft_part(mut scene: Scene) -> Option<Scene> {
-    let mut elements = std::mem::take(&mut scene.elements);
-    elements.retain(|element| scene.is_soft(element));
-    let is_endless = |shape: &Shape| matches!(shape, Shape::Plane { .. });
-    if elements.is_empty()
-        || elements.len() > MOST
-        || elements.iter().any(|element| is_endless(&element.shape))
-    {
+/// The soft elements of a scene, and what their surfaces depend on; `None` if there are
+/// none, too many, or one that has no end.
+fn soft_part(scene: &Scene) -> Option<Scene> {
+    let soft = || scene.elements.iter().filter(|e| scene.is_soft(e));
+    let has_end = |element: &Element| !matches!(element.shape, Shape::Plane { .. });
+    if !(1..=MOST).contains(&soft().count()) || !soft().all(has_end) {
         return None;
     }
     Some(Scene {
-        elements,
-        images: Vec::new(),
-        moments: Vec::new(),
-        clouds: Vec::new(),
-        ..scene
+        elements: soft().cloned().collect(),
+        bodies: scene.bodies.clone(),
+        contacts: scene.contacts.clone(),
+        flesh: scene.flesh.clone(),
+        finishes: scene.finishes.clone(),
+        frames: scene.frames.clone(),
+        settings: scene.settings,
+        ..Scene::default()
     })
 }
 

@@ -16,6 +16,7 @@ use mesher::{Tolerance, Wishes};
 use pool::{Ticket, Tools};
 use rats::Project;
 use scene::Scene;
+use std::sync::Arc;
 use tools::{CoatScene, Coated, MeshFacts, MeshScene, Meshed, Poses, WriteMesh, Written};
 use viewport::{Surface, View};
 
@@ -267,7 +268,7 @@ impl MeshExport {
                 let scene = rats::compile_at(&filming.project, &filming.assets, frame).scene;
                 // The first one is meshed, of the others only the motion counts.
                 filming.scenes.push(if filming.scenes.is_empty() {
-                    scene
+                    Arc::unwrap_or_clone(scene)
                 } else {
                     rig::skeletons_of(&scene)
                 });
@@ -284,7 +285,7 @@ impl MeshExport {
                 Next::File(wanted) => self.write(wanted, Some(Poses { scenes, rate })),
                 Next::Script(script) => {
                     let (order, name, taker) = *script;
-                    let first = scenes[0].clone();
+                    let first = Arc::new(scenes[0].clone());
                     self.make(order, name, first, Some(Poses { scenes, rate }), taker);
                 }
             }
@@ -338,7 +339,7 @@ impl MeshExport {
             return;
         };
         if order.rig {
-            if !rig::has_skeleton(&scene) {
+            if !rig::has_skeleton(scene) {
                 taker(Err(String::from(
                     "There is no skeleton: joints come from the command skeleton.",
                 )));
@@ -348,12 +349,19 @@ impl MeshExport {
             self.filming
                 .push(filming(session, Some(film), Next::Script(script)));
         } else {
-            self.make(order, name.to_owned(), scene, None, taker);
+            self.make(order, name.to_owned(), scene.clone(), None, taker);
         }
     }
 
     /// Has a scene meshed and written for a script.
-    fn make(&mut self, order: Order, name: String, scene: Scene, rig: Option<Poses>, taker: Taker) {
+    fn make(
+        &mut self,
+        order: Order,
+        name: String,
+        scene: Arc<Scene>,
+        rig: Option<Poses>,
+        taker: Taker,
+    ) {
         let job = MeshScene {
             format: Some(order.format),
             rig,
@@ -453,7 +461,7 @@ impl MeshExport {
                 let (project, assets) = (session.project(), session.assets());
                 Some(rats::compile_at(project, assets, 0.0).scene)
             } else {
-                session.scene()
+                session.scene().cloned()
             };
             let Some(scene) = scene else {
                 return;
@@ -568,7 +576,7 @@ impl MeshExport {
 }
 
 /// The job of meshing a scene for the eye.
-fn meshing(scene: Scene, order: Order, name: String) -> MeshScene {
+fn meshing(scene: Arc<Scene>, order: Order, name: String) -> MeshScene {
     MeshScene {
         scene,
         wishes: Wishes {

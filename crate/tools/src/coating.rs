@@ -5,12 +5,13 @@ use mesh::TriangleMesh;
 use mesher::Coating;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Coats the skeletons of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CoatScene {
     /// The scene.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// Largest |f − T| in the middle of an edge.
     pub bound: f64,
     /// What the last job gave, to start from; empty at first.
@@ -53,7 +54,7 @@ impl Job for CoatScene {
 
 /// Makes a scene of a soft ball in the origin.
 #[cfg(test)]
-pub(crate) fn ball(radius: f64) -> Scene {
+pub(crate) fn ball(radius: f64) -> Arc<Scene> {
     let mut scene = Scene::default();
     scene.flesh.push(scene::Flesh {
         blobbiness: -2.0,
@@ -64,7 +65,7 @@ pub(crate) fn ball(radius: f64) -> Scene {
         flesh: Some(0),
         ..scene::Element::new(scene::Shape::Sphere { center, radius })
     });
-    scene
+    Arc::new(scene)
 }
 
 #[cfg(test)]

@@ -6,12 +6,13 @@ use mesh::{Aabb, Export, ExportedFile, Format, Part, TriangleMesh};
 use mesher::{Model, Wishes};
 use scene::Scene;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Meshes a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeshScene {
     /// The scene.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// Tolerance, union and the like.
     pub wishes: Wishes,
     /// Format of the file; `None` if only the preview is wanted.
@@ -345,7 +346,7 @@ mod tests {
         };
         let wrong = WriteMesh {
             rig: Some(Poses {
-                scenes: vec![ball(3.0)],
+                scenes: vec![Arc::unwrap_or_clone(ball(3.0))],
                 rate: 12.0,
             }),
             ..job.clone()
@@ -365,7 +366,7 @@ mod tests {
     #[test]
     fn scene_without_a_surface_gives_a_sentence() {
         let mut job = meshing_of_a_ball();
-        job.scene.elements.clear();
+        Arc::make_mut(&mut job.scene).elements.clear();
         let message = job.run(&mut Progress::silent()).unwrap_err();
         assert!(message.contains("no surface"), "{message}");
     }

@@ -15,6 +15,7 @@ use mesher::{Cage, MeshError, Spoke};
 use scene::{Scene, SoftSurface, Surface};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use wide::f32x8;
 
 /// Least and most side of the grid's cells, in diagonals of the skeletons' box with their flesh.
@@ -41,7 +42,7 @@ pub enum Detail {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ViewScene {
     /// The scene.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// For each of its finishes the parameters that the view shows, 0 … 1, which are mixed by the
     /// shares of the elements: ambient, diffuse and specular colours, and the shine.
     pub looks: Vec<[f32; 10]>,
@@ -327,7 +328,7 @@ mod tests {
 
     fn view(x: f64, detail: Detail) -> ViewMesh {
         let job = ViewScene {
-            scene: scene(x),
+            scene: Arc::new(scene(x)),
             looks: looks(),
             detail,
         };
@@ -407,7 +408,7 @@ mod tests {
     fn nothing_to_see_is_told() {
         for detail in [Detail::Coarse, Detail::Fine] {
             let job = ViewScene {
-                scene: Scene::default(),
+                scene: Arc::default(),
                 looks: Vec::new(),
                 detail,
             };

@@ -79,7 +79,7 @@ fn cancelled_job_does_not_delay_the_next() {
 fn long_job_keeps_no_hand_waiting() {
     let tools = unreliable();
     let mut long = tools.submit(CoatScene {
-        scene: scene::Scene::default(),
+        scene: std::sync::Arc::default(),
         bound: -1.0,
         coatings: Vec::new(),
     });

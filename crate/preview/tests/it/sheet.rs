@@ -39,7 +39,7 @@ fn scene(name: &str) -> Scene {
     }
     let compiled = rats::compile_at(&Project { files }, &assets, 0.0);
     assert!(!compiled.scene.elements.is_empty(), "{name}");
-    compiled.scene
+    std::sync::Arc::unwrap_or_clone(compiled.scene)
 }
 
 /// The traced picture of an example, as the gallery shows it.
@@ -79,7 +79,7 @@ fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>
     }
     let job = ViewScene {
         looks: looks(&soft),
-        scene: soft,
+        scene: soft.into(),
         detail: Detail::Coarse,
     };
     let view = job
